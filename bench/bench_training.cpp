@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// One epoch of training, 9,000 samples in batches of 64: the plain loss, the physics-informed one, and Eigen typed naively.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/loss/physics_informed.hpp"
+#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/training/trainer.hpp"
+#include "support/naive_eigen_trainer.hpp"
+#include "support/program.hpp"
+
+namespace {
+
+using namespace pinnquad;
+using namespace pinnquad::bench;
+
+using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
+template <class Loss>
+using PaperTrainer = Trainer<PaperNetwork, Loss, Adam, PaperContext>;
+using Vanilla = Mse;
+using PhysicsInformedLoss = PaperLoss<CyclicalAnnealing>;
+
+/// The trainers hold their work space: too large for a stack.
+template <class Loss>
+std::unique_ptr<PaperTrainer<Loss>> make_trainer() {
+  return std::make_unique<PaperTrainer<Loss>>(healthy_network(), Loss{}, Adam{}, PaperContext{});
+}
+
+const PaperTrainingData& training_set() {
+  static const PaperTrainingData data = smooth_training_set();
+  return data;
+}
+
+/// The schedule stands at its first epoch, where the weight of the physics-informed terms is largest.
+template <class Loss>
+void train_epoch(benchmark::State& state) {
+  const PaperTrainingData& data = training_set();
+  const auto trainer = make_trainer<Loss>();
+  std::mt19937_64 engine(4);
+  for (auto _ : state) benchmark::DoNotOptimize(trainer->epoch(data, Progress{0, 300}, engine));
+  state.counters["samples_per_second"] =
+      benchmark::Counter(static_cast<double>(data.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void train_epoch_naive(benchmark::State& state) {
+  const PaperTrainingData& data = training_set();
+  const auto trainer = std::make_unique<NaiveEigenTrainer>(healthy_network(), Adam{});
+  std::mt19937_64 engine(4);
+  for (auto _ : state) benchmark::DoNotOptimize(trainer->epoch(data, engine));
+  state.counters["samples_per_second"] =
+      benchmark::Counter(static_cast<double>(data.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// The same seed must give both trainers the same losses, to what rounding becomes in three epochs.
+void require_same_training() {
+  const auto ours = make_trainer<Vanilla>();
+  const auto naive = std::make_unique<NaiveEigenTrainer>(healthy_network(), Adam{});
+  std::mt19937_64 our_engine(4), naive_engine(4);
+  for (int epoch = 0; epoch < 3; ++epoch) {
+    const double expected = naive->epoch(training_set(), naive_engine);
+    const double actual = ours->epoch(training_set(), Progress{epoch, 3}, our_engine);
+    require_close("TrainEpoch/vanilla", expected, actual, 2e-3 * expected);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  require_same_training();
+  benchmark::RegisterBenchmark("TrainEpoch/vanilla", train_epoch<Vanilla>)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("TrainEpoch/physics_informed", train_epoch<PhysicsInformedLoss>)
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("TrainEpoch/naive_eigen", train_epoch_naive)->Unit(benchmark::kMillisecond);
+  return run_benchmarks(argc, argv);
+}

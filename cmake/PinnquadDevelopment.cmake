@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+#
+# How pinnquad's own tests, benches and examples are compiled. Linked PRIVATE by them, never exported:
+# a user's flags are the user's.
+add_library(pinnquad_development INTERFACE)
+target_compile_options(pinnquad_development INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow
+  $<$<BOOL:${PINNQUAD_WARNINGS_AS_ERRORS}>:-Werror>
+  # With FMA hardware (-march=native) gcc fuses a*b+c across statements and clang only within one, so the same
+  # source gives different last bits. Without contraction both give the same flights and the same weights;
+  # where a fused operation is wanted (the kernels) it is written as one.
+  -ffp-contract=off)
+
+# gcc 12's straight-line vectoriser makes vfmaddsub of separate products and sums, whatever -ffp-contract says.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(pinnquad_development INTERFACE -fno-tree-slp-vectorize)
+endif()
+
+# gcc before 13 calls the deliberately undefined operands inside its own AVX-512 intrinsics uninitialised (Eigen uses
+# them); the warning stays on where no such instruction set is targeted.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13
+   AND CMAKE_CXX_FLAGS MATCHES "-march=|-mavx512")
+  target_compile_options(pinnquad_development INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+endif()

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Ctrl-C as a wish: long work looks at it, stops in good order and keeps what is finished. A second Ctrl-C ends at once.
+#pragma once
+
+#include <atomic>
+#include <csignal>
+
+namespace programs {
+
+constexpr int exit_interrupted = 130;
+
+namespace detail {
+inline std::atomic<bool> interrupt_wanted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+extern "C" inline void on_interrupt(int signal) {
+  interrupt_wanted.store(true);
+  std::signal(signal, SIG_DFL);
+}
+}  // namespace detail
+
+/// From here on the first Ctrl-C (or SIGTERM) only sets a flag.
+inline void catch_interrupt() {
+  std::signal(SIGINT, detail::on_interrupt);
+  std::signal(SIGTERM, detail::on_interrupt);
+}
+
+inline bool interrupted() { return detail::interrupt_wanted.load(); }
+
+}  // namespace programs

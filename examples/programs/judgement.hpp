@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// How good one model is on the test flight, and the tables that compare models over seeds.
+#pragma once
+
+#include <array>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/evaluation/errors.hpp"
+#include "pinnquad/evaluation/paired_test.hpp"
+#include "pinnquad/evaluation/physical_consistency.hpp"
+#include "pinnquad/evaluation/summary.hpp"
+
+namespace programs {
+
+constexpr std::array<const char*, 3> axis_names = {"roll", "pitch", "yaw"};
+
+/// Commands of every row of a block, one model's.
+using Predictions = std::vector<std::array<double, pinnquad::rotor_count>>;
+
+/// One model on one block of rows.
+struct Judgement {
+  pinnquad::PredictionErrors<pinnquad::rotor_count> errors;
+  std::array<pinnquad::PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
+};
+
+/// Signed command sum and angular acceleration about one axis, row by row.
+struct AxisSeries {
+  std::vector<double> angular_acceleration;
+  std::vector<double> target;
+  std::vector<double> predicted;
+};
+
+template <class Context>
+std::array<AxisSeries, 3> axis_series(const pinnquad::Flight& flight, const pinnquad::IndexRange& range,
+                                      const Predictions& predictions) {
+  using pinnquad::signed_sum;
+  const std::array<std::array<double, pinnquad::rotor_count>, 3> signs = {
+      Context::template signs<pinnquad::Roll>(), Context::template signs<pinnquad::Pitch>(),
+      Context::template signs<pinnquad::Yaw>()};
+  std::array<AxisSeries, 3> series;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < range.size(); ++i) {
+      const pinnquad::Sample& sample = flight[range.begin + i];
+      series[axis].angular_acceleration.push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
+      series[axis].target.push_back(signed_sum(signs[axis], sample.commands));
+      series[axis].predicted.push_back(signed_sum(signs[axis], predictions[i]));
+    }
+  }
+  return series;
+}
+
+template <class Context>
+Judgement judge(const pinnquad::Flight& flight, const pinnquad::IndexRange& range, const Predictions& predictions) {
+  Predictions targets;
+  for (std::size_t row = range.begin; row < range.end; ++row) targets.push_back(flight[row].commands);
+  Judgement result;
+  result.errors = pinnquad::prediction_errors(predictions, targets);
+  const std::array<AxisSeries, 3> series = axis_series<Context>(flight, range, predictions);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.axes[axis] = pinnquad::physical_consistency(series[axis].target, series[axis].predicted,
+                                                       series[axis].angular_acceleration);
+  }
+  return result;
+}
+
+/// One row of results.csv: a model of one seed.
+struct Result {
+  std::string model;
+  std::uint64_t seed = 0;
+  Judgement test;
+  double validation_error = 0;  ///< mean absolute error on the validation rows
+  double training_s = 0;
+};
+
+/// A figure of a Judgement with its column name: the one list behind table, CSV and JSON.
+struct Figure {
+  std::string name;
+  double (*of)(const Judgement&, std::size_t axis_or_motor);
+  std::size_t index;
+};
+
+inline std::vector<Figure> figures() {
+  std::vector<Figure> list = {
+      {"mae", [](const Judgement& j, std::size_t) { return j.errors.mean.mean_absolute; }, 0},
+      {"rmse", [](const Judgement& j, std::size_t) { return j.errors.mean.root_mean_square; }, 0},
+      {"r2", [](const Judgement& j, std::size_t) { return j.errors.mean.r_squared; }, 0}};
+  for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+    const std::string suffix = "_u" + std::to_string(motor + 1);
+    list.push_back({"mae" + suffix,
+                    [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].mean_absolute; }, motor});
+    list.push_back({"rmse" + suffix,
+                    [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].root_mean_square; }, motor});
+    list.push_back(
+        {"r2" + suffix, [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].r_squared; }, motor});
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string suffix = std::string("_") + axis_names[axis];
+    list.push_back({"angle_difference_deg" + suffix,
+                    [](const Judgement& j, std::size_t i) { return j.axes[i].angle_difference_deg; }, axis});
+    list.push_back({"raw_angle_difference_deg" + suffix,
+                    [](const Judgement& j, std::size_t i) { return j.axes[i].raw_angle_difference_deg; }, axis});
+    list.push_back(
+        {"slope_error" + suffix, [](const Judgement& j, std::size_t i) { return j.axes[i].slope_error; }, axis});
+    list.push_back({"correlation" + suffix,
+                    [](const Judgement& j, std::size_t i) { return j.axes[i].predicted_correlation; }, axis});
+    list.push_back({"target_correlation" + suffix,
+                    [](const Judgement& j, std::size_t i) { return j.axes[i].target_correlation; }, axis});
+    list.push_back({"sign_violation_share" + suffix,
+                    [](const Judgement& j, std::size_t i) { return j.axes[i].sign_violation_share; }, axis});
+  }
+  return list;
+}
+
+/// One figure of one model over its seeds.
+inline std::vector<double> over_seeds(const std::vector<Result>& results, const std::string& model,
+                                      const Figure& figure) {
+  std::vector<double> values;
+  for (const Result& result : results) {
+    if (result.model == model) values.push_back(figure.of(result.test, figure.index));
+  }
+  return values;
+}
+
+/// "12.34 +- 0.56", or without deviation for a single value.
+inline std::string mean_and_deviation(const std::vector<double>& values, double scale, int digits) {
+  const pinnquad::Summary summary = pinnquad::summarize(values);
+  char text[64];
+  if (summary.count < 2) {
+    std::snprintf(text, sizeof text, "%.*f", digits, scale * summary.mean);
+  } else {
+    std::snprintf(text, sizeof text, "%.*f +- %.*f", digits, scale * summary.mean, digits, scale * summary.deviation);
+  }
+  return text;
+}
+
+/// Prints the comparison on stdout: rows are figures, columns models.
+inline void print_table(const std::vector<Result>& results, const std::vector<std::string>& models) {
+  const auto line = [&](const std::string& label, const std::string& figure_name, double scale, int digits) {
+    std::printf("  %-34s", label.c_str());
+    for (const Figure& figure : figures()) {
+      if (figure.name != figure_name) continue;
+      for (const std::string& model : models) {
+        std::printf("  %20s", mean_and_deviation(over_seeds(results, model, figure), scale, digits).c_str());
+      }
+    }
+    std::printf("\n");
+  };
+  std::printf("  %-34s", "test flight, mean +- deviation");
+  for (const std::string& model : models) std::printf("  %20s", model.c_str());
+  std::printf("\n");
+  line("mean absolute error, 1e-3", "mae", 1e3, 2);
+  line("RMSE, 1e-3", "rmse", 1e3, 2);
+  line("R^2", "r2", 1, 4);
+  for (int motor = 1; motor <= pinnquad::rotor_count; ++motor) {
+    const std::string name = "u" + std::to_string(motor);
+    line("  " + name + ": mean absolute error, 1e-3", "mae_" + name, 1e3, 2);
+    line("  " + name + ": RMSE, 1e-3", "rmse_" + name, 1e3, 2);
+    line("  " + name + ": R^2", "r2_" + name, 1, 4);
+  }
+  const auto per_axis = [&](const char* label, const char* figure, double scale, int digits) {
+    for (const char* axis : axis_names) line(std::string(label) + ", " + axis, std::string(figure) + "_" + axis, scale, digits);
+  };
+  per_axis("ellipse angle difference, deg", "angle_difference_deg", 1, 3);
+  per_axis("slope error, %", "slope_error", 100, 2);
+  per_axis("correlation (PCC)", "correlation", 1, 4);
+  per_axis("  of the flown commands", "target_correlation", 1, 4);
+  per_axis("sign violations, % of pairs", "sign_violation_share", 100, 2);
+}
+
+/// Prints candidate against baseline, seed by seed.
+inline void print_paired(const std::vector<Result>& results, const std::string& candidate, const std::string& baseline) {
+  std::printf("  %s against %s, paired over seeds (lower is better):\n", candidate.c_str(), baseline.c_str());
+  for (const Figure& figure : figures()) {
+    const bool compared = figure.name == "mae" || figure.name == "rmse" ||
+                          figure.name.rfind("angle_difference_deg", 0) == 0 ||
+                          figure.name.rfind("slope_error", 0) == 0 ||
+                          figure.name.rfind("sign_violation_share", 0) == 0;
+    if (!compared) continue;
+    std::vector<double> of_candidate, of_baseline;
+    for (const Result& a : results) {
+      for (const Result& b : results) {
+        if (a.model != candidate || b.model != baseline || a.seed != b.seed) continue;
+        of_candidate.push_back(figure.of(a.test, figure.index));
+        of_baseline.push_back(figure.of(b.test, figure.index));
+      }
+    }
+    if (of_candidate.empty()) continue;
+    const pinnquad::PairedComparison c = pinnquad::compare_paired(of_candidate, of_baseline);
+    std::printf("    %-32s %+7.2f %%   better in %zu of %zu, p = %.3f\n", figure.name.c_str(),
+                100 * c.relative_difference, c.wins, c.pairs, c.p_value);
+  }
+}
+
+/// results.csv: one row per finished training, whole or not at all.
+inline void write_results(const std::string& path, const std::vector<Result>& results) {
+  std::string text = "model,seed";
+  const std::vector<Figure> list = figures();
+  for (const Figure& figure : list) text += "," + figure.name;
+  text += ",validation_mae,training_s\n";
+  for (const Result& result : results) {
+    text += result.model + "," + std::to_string(result.seed);
+    for (const Figure& figure : list) text += "," + pinnquad::detail::number_text(figure.of(result.test, figure.index));
+    text += "," + pinnquad::detail::number_text(result.validation_error);
+    text += "," + pinnquad::detail::number_text(result.training_s) + "\n";
+  }
+  pinnquad::AtomicFile file(path);
+  file.stream() << text;
+  file.commit();
+}
+
+/// report.json: settings and every result.
+inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Result& result : results) {
+    nlohmann::json row = {{"model", result.model}, {"seed", result.seed}};
+    for (const Figure& figure : figures()) row[figure.name] = figure.of(result.test, figure.index);
+    row["validation_mae"] = result.validation_error;
+    row["training_s"] = result.training_s;
+    rows.push_back(std::move(row));
+  }
+  pinnquad::AtomicFile file(path);
+  file.stream() << nlohmann::json{{"settings", std::move(settings)}, {"results", std::move(rows)}}.dump(2) << "\n";
+  file.commit();
+}
+
+}  // namespace programs

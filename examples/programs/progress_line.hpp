@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Progress with the time left, on stderr: one line rewritten in place on a terminal, few plain lines elsewhere.
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include <unistd.h>
+
+namespace programs {
+
+/// Shows how much of one job is done. update() may be called as often as one likes; what is shown is limited.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string job) : job_(std::move(job)), terminal_(isatty(STDERR_FILENO) != 0) {}
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() { clear(); }
+
+  /// `share` of the job done, 0..1.
+  void update(double share) {
+    constexpr double terminal_interval_s = 0.1, plain_interval_s = 5.0;
+    const double now_s = elapsed_s();
+    if (share < 1 && now_s < next_s_) return;
+    if (!terminal_ && share >= 1) return;  // the summary says so
+    next_s_ = now_s + (terminal_ ? terminal_interval_s : plain_interval_s);
+    if (!terminal_ && now_s < plain_interval_s) return;
+    const double left_s = share > 0 ? now_s * (1 - share) / share : 0;
+    std::fprintf(stderr, "%s%s: %3.0f %%, %.0f s left%s", terminal_ ? "\r" : "", job_.c_str(), 100 * share, left_s,
+                 terminal_ ? "   " : "\n");
+    std::fflush(stderr);
+    shown_ = terminal_;
+  }
+
+  /// Takes the line off the terminal, so that other text can follow.
+  void clear() {
+    if (shown_) std::fprintf(stderr, "\r\033[K");
+    shown_ = false;
+  }
+
+  double elapsed_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::string job_;
+  bool terminal_;
+  bool shown_{false};
+  double next_s_{0};
+  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
+};
+
+}  // namespace programs

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+// Trains the linearized model's rivals on a recorded flight, judges all on its test block, exports the best
+// physics-informed network as a header.
+//   train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "airframes.hpp"
+#include "campaign.hpp"
+#include "judgement.hpp"
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/dynamics/linearized.hpp"
+#include "plots.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+constexpr int exit_bad_input = 2;
+constexpr const char* linear_name = "linearized";
+constexpr std::size_t golden_count = 8;
+/// Fewer rows than this can't train 6,379 weights to anything worth flying: 20 batches of 64 in the 60 % that train.
+constexpr std::size_t minimum_rows = 2200;
+
+struct Options {
+  std::string flight;
+  std::string airframe = PaperQuadrotor::name;
+  std::string out = "demo_out";
+  std::string model_name = "TrainedQuadModel";
+  int seeds = 5;
+  int epochs = 300;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+};
+
+/// Model 1 on a block of rows. The air's density is that of the paper's site at the row's altitude.
+template <class Vehicle>
+programs::Predictions linear_predictions(const Flight& flight, const IndexRange& range) {
+  const Airframe<double> airframe = airframe_value<Vehicle, double>();
+  const Rotors<double> rotors(airframe);
+  const Site<double> site = paper_site<double>();
+  programs::Predictions result;
+  for (std::size_t row = range.begin; row < range.end; ++row) {
+    const Sample& sample = flight[row];
+    const double density = standard_atmosphere_density_kg_m3(site.elevation_m + sample.altitude_m);
+    result.push_back(linearized_commands(airframe, rotors,
+                                         Accelerations<double>{sample.linear_acceleration_m_s2,
+                                                               sample.angular_acceleration_rad_s2},
+                                         site.gravity_m_s2, density / standard_air_density_kg_m3<double>));
+  }
+  return result;
+}
+
+template <class Model>
+programs::Predictions network_predictions(const Model& model, const Flight& flight, const IndexRange& range) {
+  programs::Predictions result;
+  for (std::size_t row = range.begin; row < range.end; ++row) {
+    const auto u = model.predict(flight[row]);
+    result.push_back({static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]),
+                      static_cast<double>(u[3])});
+  }
+  return result;
+}
+
+/// The test flight as the flight side is asked it, and what the trainer predicts: a line of counts, then a row of numbers per
+/// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4).
+template <class Model>
+void write_replay(const std::string& path, const Model& model, const Flight& flight, const IndexRange& range) {
+  using Inputs = MotionInputs<typename Model::Scalar>;
+  AtomicFile file(path);
+  file.stream() << "pinnquad-replay 1 " << range.size() << " 24\n";
+  for (std::size_t row = range.begin; row < range.end; ++row) {
+    const Inputs in = SampleInputs<Inputs>::from(flight[row]);
+    const auto predicted = model.predict(flight[row]);
+    std::string line;
+    const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + detail::number_text(value); };
+    for (const auto* vector : {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s,
+                               &in.body_rates_rad_s}) {
+      for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
+    }
+    for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z}) add(static_cast<double>(v));
+    for (const auto u : predicted) add(static_cast<double>(u));
+    for (const double u : flight[row].commands) add(u);
+    file.stream() << line << '\n';
+  }
+  file.commit();
+}
+
+/// Evenly spaced training rows: inside the envelope by construction.
+template <class Model>
+std::vector<typename Model::FeatureVector> golden_features(const Flight& flight, const IndexRange& range) {
+  std::vector<typename Model::FeatureVector> golden;
+  for (std::size_t i = 0; i < golden_count; ++i) {
+    const std::size_t row = range.begin + i * (range.size() - 1) / (golden_count - 1);
+    golden.push_back(sample_features<typename Model::Features, typename Model::Scalar>(flight[row]));
+  }
+  return golden;
+}
+
+template <class Vehicle>
+int train_judge_export(const Options& options, const Flight& flight) {
+  using Context = Context<PaperFeatures, Vehicle>;
+  using Model = TrainedModel<programs::PaperNetwork, Context>;
+  const DatasetSplit split = split_contiguous(flight.size());
+  const Context context = make_context<Context>(flight, split.train);
+  const auto data = standardised<float>(context, flight, split.train);
+  std::printf("      %zu rows: %zu train, %zu validate, %zu test, in contiguous blocks\n", flight.size(),
+              split.train.size(), split.validation.size(), split.test.size());
+  std::printf("      network %d -> 10 x 25 ReLU -> %d, %d parameters; Adam, batch 64, %d epochs, %d seeds\n",
+              programs::PaperNetwork::inputs, programs::PaperNetwork::outputs, programs::PaperNetwork::parameter_count,
+              options.epochs, options.seeds);
+  std::fflush(stdout);
+
+  programs::catch_interrupt();
+  const unsigned threads = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  const std::vector<programs::Training> trainings =
+      programs::train_all(context, data, options.epochs, options.seed, options.seeds, threads);
+
+  std::printf("[3/5] judge\n");
+  std::vector<programs::Result> results;
+  std::vector<Model> models;
+  std::vector<programs::Predictions> predictions;
+  results.push_back({linear_name, 0, {}, 0, 0});
+  predictions.push_back(linear_predictions<Vehicle>(flight, split.test));
+  results.back().test = programs::judge<Context>(flight, split.test, predictions.back());
+  results.back().validation_error =
+      programs::judge<Context>(flight, split.validation, linear_predictions<Vehicle>(flight, split.validation))
+          .errors.mean.mean_absolute;
+  for (const programs::Training& training : trainings) {
+    models.push_back(make_trained_model(training.network, context, flight, split.train));
+    predictions.push_back(network_predictions(models.back(), flight, split.test));
+    programs::Result result{programs::kind_name(training.kind), training.seed, {}, 0, training.training_s};
+    result.test = programs::judge<Context>(flight, split.test, predictions.back());
+    result.validation_error = programs::judge<Context>(flight, split.validation,
+                                                       network_predictions(models.back(), flight, split.validation))
+                                  .errors.mean.mean_absolute;
+    results.push_back(result);
+  }
+  const std::string folder = options.out + "/";
+  programs::write_results(folder + "results.csv", results);
+  programs::write_report(folder + "report.json",
+                         {{"version", PINNQUAD_VERSION},
+                          {"flight", std::filesystem::path(options.flight).filename().string()},
+                          {"flight_hash", detail::hexadecimal(content_hash(flight))},
+                          {"rows", flight.size()},
+                          {"airframe", Vehicle::name},
+                          {"epochs", options.epochs},
+                          {"first_seed", options.seed},
+                          {"seeds", options.seeds},
+                          {"batch", 64},
+                          {"learning_rate", Adam{}.learning_rate},
+                          {"weight_decay", Adam{}.weight_decay},
+                          {"lambda_max", CyclicalAnnealing{}.maximum},
+                          {"cycles", CyclicalAnnealing{}.cycles},
+                          {"hold", CyclicalAnnealing{}.hold},
+                          {"step_gain", TanhStep{}.gain},
+                          {"finished", trainings.size()}},
+                         results);
+
+  const std::string vanilla = programs::kind_name(programs::Kind::vanilla);
+  const std::string informed = programs::kind_name(programs::Kind::physics_informed);
+  programs::print_table(results, {linear_name, vanilla, informed});
+  programs::print_paired(results, informed, vanilla);
+  double seconds = 0;
+  for (const programs::Result& result : results) seconds += result.training_s;
+  if (!trainings.empty()) {
+    std::printf("  training took %.2f s per network and core\n", seconds / static_cast<double>(trainings.size()));
+  }
+
+  // The best of each kind by its validation error; the test block has no say.
+  const auto best_of = [&](const std::string& kind) {
+    std::size_t best = results.size();
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (results[i].model != kind) continue;
+      if (best == results.size() || results[i].validation_error < results[best].validation_error) best = i;
+    }
+    return best;
+  };
+  const std::size_t best_vanilla = best_of(vanilla), best_informed = best_of(informed);
+  if (best_informed == results.size()) {
+    std::fprintf(stderr, "train: no physics-informed network was finished; nothing to export\n");
+    return programs::interrupted() ? programs::exit_interrupted : 1;
+  }
+  std::vector<std::size_t> shown;
+  if (best_vanilla < results.size()) shown.push_back(best_vanilla);
+  shown.push_back(best_informed);
+  std::vector<std::string> shown_names;
+  std::vector<std::array<programs::AxisSeries, 3>> series;
+  std::vector<programs::Judgement> judged;
+  std::vector<double> time_s, target;
+  std::vector<std::vector<double>> command(shown.size());
+  const IndexRange excerpt = {split.test.begin, std::min(split.test.end, split.test.begin + 200)};
+  for (std::size_t row = excerpt.begin; row < excerpt.end; ++row) {
+    time_s.push_back(flight[row].time_s);
+    target.push_back(flight[row].commands[0]);
+  }
+  for (std::size_t s = 0; s < shown.size(); ++s) {
+    shown_names.push_back(results[shown[s]].model);
+    series.push_back(programs::axis_series<Context>(flight, split.test, predictions[shown[s]]));
+    judged.push_back(results[shown[s]].test);
+    for (std::size_t i = 0; i < excerpt.size(); ++i) command[s].push_back(predictions[shown[s]][i][0]);
+  }
+  const bool drawn = programs::plot_ellipses(folder + "ellipses.svg", shown_names, series, judged) &&
+                     programs::plot_errors(folder + "errors.svg", results, {linear_name, vanilla, informed}) &&
+                     programs::plot_prediction(folder + "prediction.svg", time_s, target, shown_names, command);
+  if (drawn) std::printf("  pictures: %sellipses.svg, errors.svg, prediction.svg\n", folder.c_str());
+
+  std::printf("[4/5] export\n");
+  const Model& best = models[best_informed - 1];  // results[0] is the linearized model
+  const Provenance provenance = {std::filesystem::path(options.flight).filename().string(), content_hash(flight),
+                                 split.train.size(), results[best_informed].seed, options.epochs,
+                                 "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"};
+  write_model_header(folder + "model.hpp", options.model_name, best, golden_features<Model>(flight, split.train),
+                     provenance);
+  write_replay(folder + "replay.txt", best, flight, split.test);
+  std::printf("  %smodel.hpp: struct %s, %s of seed %llu (least error on the validation rows)\n", folder.c_str(),
+              options.model_name.c_str(), informed.c_str(),
+              static_cast<unsigned long long>(results[best_informed].seed));
+  if (programs::interrupted()) {
+    std::fprintf(stderr, "train: interrupted; %zu of %d trainings were finished and kept\n", trainings.size(),
+                 2 * options.seeds);
+    return programs::exit_interrupted;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  Options options;
+  CLI::App app{"Trains vanilla and physics-informed networks on a flight, judges them, exports the best as a header.",
+               "train"};
+  app.add_option("--flight", options.flight, "recorded flight, CSV as `fly` writes it")->type_name("FILE.csv")->required();
+  app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
+      ->capture_default_str();
+  app.add_option("--out", options.out, "folder for results, pictures and the exported header")->capture_default_str();
+  app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
+  app.add_option("--seeds", options.seeds, "networks per kind")->capture_default_str()->check(CLI::Range(1, 1000));
+  app.add_option("--epochs", options.epochs, "training epochs")->capture_default_str()->check(CLI::Range(1, 100000));
+  app.add_option("--seed", options.seed, "first seed (initialisation and batch order)")->capture_default_str();
+  app.add_option("--threads", options.threads, "trainings at once (default: all cores)")->check(CLI::Range(1u, 1024u));
+  try {
+    app.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    std::fprintf(stderr, "train: %s\n", error.what());
+    return exit_bad_input;
+  }
+  if (!is_identifier(options.model_name)) {
+    std::fprintf(stderr, "train: --name %s: a C++ identifier was expected\n", options.model_name.c_str());
+    return exit_bad_input;
+  }
+  try {
+    const Flight flight = read_flight_csv(options.flight, minimum_rows);
+    std::error_code error;
+    std::filesystem::create_directories(options.out, error);
+    AtomicFile probe(options.out + "/results.csv");  // an unwritable folder is found before the training
+    int code = exit_bad_input;
+    const bool known = programs::with_airframe(options.airframe, [&](auto tag) {
+      code = train_judge_export<typename decltype(tag)::type>(options, flight);
+    });
+    if (!known) {
+      std::fprintf(stderr, "train: no airframe named '%s'; known: %s\n", options.airframe.c_str(),
+                   programs::airframe_names().c_str());
+    }
+    return code;
+  } catch (const std::exception& error) {  // InputError, OutputError: one line
+    std::fprintf(stderr, "train: %s\n", error.what());
+    return exit_bad_input;
+  }
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Wind fields: the air's velocity over ground, NED.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/aero/effect.hpp"
+
+namespace pinnquad {
+
+/// The same wind everywhere and always; adds to the wind set so far.
+struct ConstantWind {
+  std::array<double, 3> velocity_m_s{0.0, 0.0, 0.0};  ///< NED
+
+  template <class Scalar>
+  PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
+    for (int i = 0; i < 3; ++i) air.wind_m_s[i] += Scalar(velocity_m_s[static_cast<std::size_t>(i)]);
+  }
+};
+
+/// amplitude sin(2 pi t / period) + mean along one direction; adds to the wind set so far.
+/// The defaults are those of the paper's D3: 2.5 sin(pi t / 5) + 2.5 m/s towards north.
+struct PeriodicWind {
+  std::array<double, 3> direction{1.0, 0.0, 0.0};  ///< NED unit vector
+  double mean_m_s{2.5};
+  double amplitude_m_s{2.5};
+  double period_s{10.0};
+
+  template <class Scalar>
+  PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
+    using std::sin;
+    const Scalar phase = Scalar(6.283185307179586 / period_s) * air.time_s;
+    const Scalar speed = Scalar(amplitude_m_s) * sin(phase) + Scalar(mean_m_s);
+    for (int i = 0; i < 3; ++i) air.wind_m_s[i] += speed * Scalar(direction[static_cast<std::size_t>(i)]);
+  }
+};
+
+}  // namespace pinnquad

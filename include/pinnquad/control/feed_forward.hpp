@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Feed-forward policies: the commands for a motion wanted, before any feedback.
+// Contract: `Status operator()(const State<S>&, const Accelerations<S>& desired, S time_s, Commands<S>&) noexcept`; the
+// commands are not clipped, and untouched unless the Status is ok.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "pinnquad/inference/features.hpp"
+#include "pinnquad/vehicle/inverse.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+template <class Policy, class Scalar, class = void>
+struct IsFeedForward : std::false_type {};
+template <class Policy, class Scalar>
+struct IsFeedForward<Policy, Scalar,
+                     std::void_t<decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
+                                                                  std::declval<const Accelerations<Scalar>&>(),
+                                                                  Scalar(0), std::declval<Commands<Scalar>&>()))>>
+    : std::is_same<Status, decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
+                                                            std::declval<const Accelerations<Scalar>&>(), Scalar(0),
+                                                            std::declval<Commands<Scalar>&>()))> {};
+}  // namespace detail
+
+/// True for a type that fulfils the contract at the head of this file.
+template <class Policy, class Scalar>
+inline constexpr bool is_feed_forward = detail::IsFeedForward<Policy, Scalar>::value;
+
+/// No feed-forward: the commands of the hover, whatever is wanted.
+template <class Scalar>
+struct HoverTrim {
+  Commands<Scalar> commands{};
+
+  Status operator()(const State<Scalar>& /*state*/, const Accelerations<Scalar>& /*desired*/, Scalar /*time_s*/,
+                    Commands<Scalar>& result) noexcept {
+    result = commands;
+    return Status::ok;
+  }
+};
+
+/// The trim of a vehicle that stands still at a place, in calm or in the wind of its effects at time 0.
+/// `no_solution` (vehicle/inverse.hpp) or `not_finite`; `trim` is untouched unless the Status is ok.
+template <class Scalar, class... Effects>
+Status hover_trim(const Quadrotor<Scalar, Effects...>& quadrotor, const Vector3<Scalar>& position_m,
+                  HoverTrim<Scalar>& trim) noexcept {
+  State<Scalar> state;
+  state.position_m = position_m;
+  return inverse_commands(quadrotor, state, Accelerations<Scalar>{}, Scalar(0), trim.commands);
+}
+
+template <class Vehicle>
+class AnalyticInverse;
+
+/// The inverse by formula, through the vehicle's own effects (vehicle/inverse.hpp).
+template <class Scalar, class... Effects>
+class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
+ public:
+  explicit AnalyticInverse(const Quadrotor<Scalar, Effects...>& quadrotor) noexcept : quadrotor_(quadrotor) {}
+
+  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, Scalar time_s,
+                    Commands<Scalar>& commands) noexcept {
+    return inverse_commands(quadrotor_, state, desired, time_s, commands);
+  }
+
+ private:
+  Quadrotor<Scalar, Effects...> quadrotor_;
+};
+
+/// How often a network's answer was replaced, and why.
+struct FallbackCount {
+  static constexpr std::size_t statuses = static_cast<std::size_t>(Status::self_test_failed) + 1;
+
+  std::uint32_t asked{0};
+  std::array<std::uint32_t, statuses> by_status{};  ///< indexed by Status; `ok` counts the network's own answers
+
+  constexpr std::uint32_t of(Status status) const noexcept { return by_status[index(status)]; }
+  constexpr std::uint32_t fallbacks() const noexcept { return asked - of(Status::ok); }
+  constexpr void add(Status status) noexcept {
+    ++asked;
+    ++by_status[index(status)];
+  }
+
+ private:
+  static constexpr std::size_t index(Status status) noexcept { return static_cast<std::size_t>(status) % statuses; }
+};
+
+/// The network's prediction for the motion wanted; where it declines (outside the training envelope, bad input), the
+/// fallback's answer, counted by Status. `InverseDynamics` has the interface of inference/inverse_dynamics.hpp; its
+/// scalar may be narrower than the loop's.
+template <class InverseDynamics, class Fallback>
+class NetworkInverse {
+ public:
+  using NetworkScalar = typename InverseDynamics::Scalar;
+  static_assert(std::is_same_v<typename InverseDynamics::Inputs, MotionInputs<NetworkScalar>>,
+                "pinnquad: NetworkInverse fills MotionInputs; this model's feature set asks for other inputs "
+                "(inference/features.hpp)");
+
+  NetworkInverse(const InverseDynamics& inverse, const Fallback& fallback) noexcept
+      : inverse_(inverse), fallback_(fallback) {}
+
+  template <class Scalar>
+  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, Scalar time_s,
+                    Commands<Scalar>& commands) noexcept {
+    Commands<NetworkScalar> predicted{};
+    const Status status = inverse_.predict(narrowed(motion_inputs(state, desired)), predicted);
+    count_.add(status);
+    if (status != Status::ok) return fallback_(state, desired, time_s, commands);
+    for (std::size_t i = 0; i < predicted.size(); ++i) commands[i] = Scalar(predicted[i]);
+    return Status::ok;
+  }
+
+  const FallbackCount& count() const noexcept { return count_; }
+
+ private:
+  template <class Scalar>
+  static MotionInputs<NetworkScalar> narrowed(const MotionInputs<Scalar>& in) noexcept {
+    const Quaternion<Scalar>& q = in.attitude;
+    return {in.linear_acceleration_m_s2.template cast<NetworkScalar>(),
+            in.angular_acceleration_rad_s2.template cast<NetworkScalar>(),
+            in.velocity_m_s.template cast<NetworkScalar>(),
+            in.body_rates_rad_s.template cast<NetworkScalar>(),
+            {NetworkScalar(q.w), NetworkScalar(q.x), NetworkScalar(q.y), NetworkScalar(q.z)}};
+  }
+
+  InverseDynamics inverse_;
+  Fallback fallback_;
+  FallbackCount count_{};
+};
+
+namespace detail {
+template <class Policy, class = void>
+struct CountsFallbacks : std::false_type {};
+template <class Policy>
+struct CountsFallbacks<Policy, std::void_t<decltype(std::declval<const Policy&>().count())>> : std::true_type {};
+}  // namespace detail
+
+/// The policy's count; all zero for a policy that has no fallback.
+template <class Policy>
+constexpr FallbackCount fallback_count(const Policy& policy) noexcept {
+  if constexpr (detail::CountsFallbacks<Policy>::value) {
+    return policy.count();
+  } else {
+    static_cast<void>(policy);
+    return {};
+  }
+}
+
+}  // namespace pinnquad

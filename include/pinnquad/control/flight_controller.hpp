@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// A cascaded flight controller: position -> velocity -> attitude -> body rates, proportional all through, no memory.
+// It says which accelerations it wants; an inverse of the dynamics, any, turns them into commands.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/control/flatness.hpp"
+#include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/dynamics/state.hpp"
+
+namespace pinnquad {
+
+/// Gains of the cascade, each loop slower than the one inside it. The defaults are moderate: a tracking error of 10 cm
+/// asks for 0.54 m/s^2.
+template <class Scalar>
+struct FlightGains {
+  Scalar position_1_s = Scalar(1.8);        ///< velocity wanted per position error
+  Scalar velocity_1_s = Scalar(3);          ///< acceleration wanted per velocity error
+  Scalar tilt_1_s = Scalar(9);              ///< body rate wanted per attitude error, roll and pitch
+  Scalar yaw_1_s = Scalar(3);               ///< the same for yaw, where rotors have little torque
+  Scalar roll_pitch_rate_1_s = Scalar(22);  ///< angular acceleration wanted per body rate error
+  Scalar yaw_rate_1_s = Scalar(8);          ///< the same for yaw
+};
+
+/// What the controller may ask for: limits on the specific force (thrust / mass, NED), on turning and on its onset.
+template <class Scalar>
+struct FlightLimits {
+  Scalar max_tilt_rad = Scalar(0.85);  ///< of the thrust wanted, 49 degrees
+  Scalar max_horizontal_acceleration_m_s2 = Scalar(9);
+  Scalar min_vertical_specific_force_m_s2 = Scalar(3.5);  ///< never falls freely: attitude needs thrust
+  Scalar max_specific_force_m_s2 = Scalar(17);
+  Scalar max_roll_pitch_rate_rad_s = Scalar(4);  ///< of what an attitude error asks for
+  Scalar max_roll_pitch_acceleration_rad_s2 = Scalar(100);
+  Scalar max_yaw_acceleration_rad_s2 = Scalar(4);
+};
+
+/// The default limits, lowered to what the airframe can do at a density ratio rho / rho_0: 97 % of its thrust, and 55 %
+/// of the horizontal acceleration that this leaves in level flight; angular accelerations that move a rotor by 60 % (roll,
+/// pitch) and 40 % (yaw) of what hover leaves it; body rates that can be stopped as fast as the attitude loop wants to.
+template <class Scalar>
+FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar density_ratio,
+                                   const FlightGains<Scalar>& gains = {}) noexcept {
+  using std::sqrt;
+  const auto lower = [](Scalar& limit, Scalar value) noexcept {
+    if (value < limit) limit = value;
+  };
+  FlightLimits<Scalar> limits{};
+  const Scalar thrust_to_weight = airframe.thrust_to_weight() * density_ratio;
+  lower(limits.max_specific_force_m_s2, Scalar(0.97) * thrust_to_weight * standard_gravity_m_s2<Scalar>);
+  const Scalar spare = thrust_to_weight * thrust_to_weight - Scalar(1);
+  lower(limits.max_horizontal_acceleration_m_s2,
+        Scalar(0.55) * standard_gravity_m_s2<Scalar> * sqrt(spare > Scalar(0) ? spare : Scalar(0)));
+  const Scalar hover = Scalar(1) / thrust_to_weight;
+  const Scalar left = hover < Scalar(1) - hover ? hover : Scalar(1) - hover;
+  const AllocationMatrix<Scalar> matrix = allocation(airframe);
+  Scalar most[3] = {};  // angular acceleration of all rotors together, each moved by what hover leaves
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const Scalar entry : matrix[axis + 1]) most[axis] += entry < Scalar(0) ? -entry : entry;
+    most[axis] *= left * density_ratio / airframe.inertia_kg_m2[axis];
+  }
+  lower(limits.max_roll_pitch_acceleration_rad_s2, Scalar(0.6) * (most[0] < most[1] ? most[0] : most[1]));
+  lower(limits.max_yaw_acceleration_rad_s2, Scalar(0.4) * most[2]);
+  lower(limits.max_roll_pitch_rate_rad_s, limits.max_roll_pitch_acceleration_rad_s2 / gains.tilt_1_s);
+  return limits;
+}
+
+/// What a pilot asks for through a radio: a velocity and a yaw rate, and what his thumbs add to the body rates.
+template <class Scalar>
+struct SetPoint {
+  Vector3<Scalar> velocity_m_s = Vector3<Scalar>::Zero();  ///< NED
+  Scalar yaw_rate_rad_s = Scalar(0);                       ///< about world down
+  Vector3<Scalar> stick_rad_s = Vector3<Scalar>::Zero();   ///< added to the body rates wanted, FRD
+};
+
+/// Reference and feedback, kept apart: a feed-forward policy answers the first, allocation the second.
+template <class Scalar>
+struct TrackingDemand {
+  Accelerations<Scalar> reference;                                                 ///< in the current attitude
+  Vector3<Scalar> feedback_acceleration_m_s2 = Vector3<Scalar>::Zero();            ///< body
+  Vector3<Scalar> feedback_angular_acceleration_rad_s2 = Vector3<Scalar>::Zero();  ///< body
+};
+
+template <class Scalar>
+class FlightController {
+ public:
+  explicit constexpr FlightController(const FlightGains<Scalar>& gains = {}, const FlightLimits<Scalar>& limits = {},
+                                      Scalar gravity_m_s2 = standard_gravity_m_s2<Scalar>) noexcept
+      : gains_(gains), limits_(limits), gravity_m_s2_(gravity_m_s2) {}
+
+  constexpr const FlightGains<Scalar>& gains() const noexcept { return gains_; }
+  constexpr const FlightLimits<Scalar>& limits() const noexcept { return limits_; }
+
+  /// Pilot's loop: the accelerations that bring the vehicle to the velocity and yaw rate wanted; yaw itself is free.
+  /// `not_finite` for a bad input; `demand` is untouched unless the Status is ok.
+  Status operator()(const State<Scalar>& state, const SetPoint<Scalar>& wanted,
+                    Accelerations<Scalar>& demand) const noexcept {
+    if (!(all_finite(state) && all_finite(wanted.velocity_m_s) && is_finite(wanted.yaw_rate_rad_s) &&
+          all_finite(wanted.stick_rad_s))) {
+      return Status::not_finite;
+    }
+    const Vector3<Scalar> acceleration = limited((wanted.velocity_m_s - state.velocity_m_s) * gains_.velocity_1_s);
+    Quaternion<Scalar> error;
+    const Status status = attitude_error(state, acceleration, heading(state.attitude), error);
+    if (status != Status::ok) return status;
+    const Vector3<Scalar> turn =
+        world_to_body<Scalar>(state.attitude, Vector3<Scalar>(Scalar(0), Scalar(0), wanted.yaw_rate_rad_s));
+    demand.linear_m_s2 = body_derivative(state, acceleration);
+    demand.angular_rad_s2 = angular_feedback(state, error, turn + wanted.stick_rad_s);
+    return Status::ok;
+  }
+
+  /// Trajectory loop. Reference: the point's world acceleration in the current attitude, angular accelerations from
+  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory.
+  /// `not_finite`, `no_solution` (flatness.hpp); `demand` is untouched unless the Status is ok.
+  Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point,
+                    TrackingDemand<Scalar>& demand) const noexcept {
+    using std::cos;
+    using std::sin;
+    if (!(all_finite(state) && all_finite(point.position_m) && all_finite(point.velocity_m_s))) {
+      return Status::not_finite;
+    }
+    FlatMotion<Scalar> flat;
+    Status status = flat_motion(point, gravity_m_s2_, flat);
+    if (status != Status::ok) return status;
+    const Vector3<Scalar> velocity = point.velocity_m_s + (point.position_m - state.position_m) * gains_.position_1_s;
+    const Vector3<Scalar> acceleration =
+        limited(point.acceleration_m_s2 + (velocity - state.velocity_m_s) * gains_.velocity_1_s);
+    Quaternion<Scalar> error;
+    status = attitude_error(state, acceleration, Heading<Scalar>{sin(point.yaw_rad), cos(point.yaw_rad)}, error);
+    if (status != Status::ok) return status;
+    // `error` also turns vectors from the axes of the attitude wanted into those of the body
+    demand.reference.linear_m_s2 = body_derivative(state, point.acceleration_m_s2);
+    demand.reference.angular_rad_s2 = body_to_world(error, flat.angular_acceleration_rad_s2);
+    demand.feedback_acceleration_m_s2 = world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2);
+    demand.feedback_angular_acceleration_rad_s2 =
+        angular_feedback(state, error, body_to_world(error, flat.body_rates_rad_s));
+    return Status::ok;
+  }
+
+  /// The acceleration (NED) within the limits: the vertical part first, then as much of the horizontal as thrust and
+  /// tilt leave.
+  Vector3<Scalar> limited(const Vector3<Scalar>& acceleration_m_s2) const noexcept {
+    using std::sqrt;
+    using std::tan;
+    Scalar up = gravity_m_s2_ - acceleration_m_s2[2];
+    if (up > limits_.max_specific_force_m_s2) up = limits_.max_specific_force_m_s2;
+    if (up < limits_.min_vertical_specific_force_m_s2) up = limits_.min_vertical_specific_force_m_s2;
+    const Scalar left = limits_.max_specific_force_m_s2 * limits_.max_specific_force_m_s2 - up * up;
+    Scalar most = sqrt(left > Scalar(0) ? left : Scalar(0));
+    const Scalar most_by_tilt = up * tan(limits_.max_tilt_rad);
+    if (most > most_by_tilt) most = most_by_tilt;
+    if (most > limits_.max_horizontal_acceleration_m_s2) most = limits_.max_horizontal_acceleration_m_s2;
+    const Scalar north = acceleration_m_s2[0], east = acceleration_m_s2[1];
+    const Scalar horizontal = sqrt(north * north + east * east);
+    const Scalar scale = horizontal > most ? most / horizontal : Scalar(1);
+    return Vector3<Scalar>(north * scale, east * scale, gravity_m_s2_ - up);
+  }
+
+ private:
+  /// Rotation from the attitude that points the thrust along `acceleration` - gravity, into the current one.
+  Status attitude_error(const State<Scalar>& state, const Vector3<Scalar>& acceleration, const Heading<Scalar>& yaw,
+                        Quaternion<Scalar>& error) const noexcept {
+    Matrix<Scalar, 3, 3> axes;
+    const Vector3<Scalar> force = acceleration - Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2_);
+    const Status status = body_axes(force, yaw, axes);
+    if (status != Status::ok) return status;
+    error = conjugate(state.attitude) * from_rotation_matrix(axes);
+    return Status::ok;
+  }
+
+  /// Attitude and body rate loops: angular acceleration, body.
+  Vector3<Scalar> angular_feedback(const State<Scalar>& state, const Quaternion<Scalar>& error,
+                                   const Vector3<Scalar>& reference_rates) const noexcept {
+    const Scalar two(error.w < Scalar(0) ? -2 : 2);  // the short way round
+    Vector3<Scalar> turn(gains_.tilt_1_s * two * error.x, gains_.tilt_1_s * two * error.y, Scalar(0));
+    shorten(turn, limits_.max_roll_pitch_rate_rad_s);
+    turn[2] = gains_.yaw_1_s * two * error.z;
+    const Vector3<Scalar> rate_error = reference_rates + turn - state.body_rates_rad_s;
+    Vector3<Scalar> result = rate_error * gains_.roll_pitch_rate_1_s;
+    shorten(result, limits_.max_roll_pitch_acceleration_rad_s2);
+    const Scalar most = limits_.max_yaw_acceleration_rad_s2;
+    const Scalar yaw = gains_.yaw_rate_1_s * rate_error[2];
+    result[2] = yaw > most ? most : (yaw < -most ? -most : yaw);
+    return result;
+  }
+
+  /// Shortens the (x, y) part to a length; its direction stays.
+  static void shorten(Vector3<Scalar>& v, Scalar most) noexcept {
+    using std::sqrt;
+    const Scalar length = sqrt(v[0] * v[0] + v[1] * v[1]);
+    if (length > most) {
+      v[0] *= most / length;
+      v[1] *= most / length;
+    }
+  }
+
+  FlightGains<Scalar> gains_;
+  FlightLimits<Scalar> limits_;
+  Scalar gravity_m_s2_;
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// A closed loop on a trajectory: simulated vehicle, tracking controller, one feed-forward policy; how far off it flies.
+// No heap and no state of its own: it can run on the target as a check before flight.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/control/tracking_controller.hpp"
+
+namespace pinnquad {
+
+/// How long and how finely to fly.
+template <class Scalar>
+struct TrackingPlan {
+  Scalar duration_s = Scalar(30);
+  Scalar physics_step_s = Scalar(0.001);
+  int steps_per_control{2};  ///< the commands are held over these
+};
+
+/// What came of it.
+template <class Scalar>
+struct TrackingResult {
+  Status status{Status::ok};  ///< what ended the flight early
+  Scalar flown_s = Scalar(0);
+  Scalar rmse_m = Scalar(0);  ///< position error, root of the mean square of its length over all control ticks
+  Scalar max_error_m = Scalar(0);
+  Scalar max_speed_m_s = Scalar(0);
+  Scalar saturated_share = Scalar(0);  ///< of the control ticks, with a rotor at its end
+  FallbackCount fallback{};            ///< of a policy that has one, else zero
+};
+
+/// Flies `trajectory` from its point at time 0, at rest with level attitude if the trajectory starts so.
+/// The flight ends early if controller, policy or physics give a Status that isn't ok; the figures cover what was flown
+/// until then.
+template <class Scalar, class... Effects, class Trajectory, class FeedForward>
+TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, const Trajectory& trajectory,
+                             const FlightController<Scalar>& flight_controller, const FeedForward& feed_forward,
+                             const TrackingPlan<Scalar>& plan = {}) noexcept {
+  using std::sqrt;
+  TrackingResult<Scalar> result;
+  const TrajectoryPoint<Scalar> start = trajectory.sample(Scalar(0));
+  FlatMotion<Scalar> flat;
+  result.status = flat_motion(start, quadrotor.site().gravity_m_s2, flat);
+  if (result.status == Status::ok) result.status = quadrotor.status();
+  if (result.status != Status::ok) return result;
+
+  VehicleState<Scalar> vehicle;
+  vehicle.body = {start.position_m, start.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
+  const Scalar density_ratio = quadrotor.density_ratio(quadrotor.surroundings(vehicle.body, Scalar(0)));
+  HoverTrim<Scalar> trim;
+  result.status = hover_trim(quadrotor, start.position_m, trim);
+  if (result.status != Status::ok) return result;
+  vehicle.rotors = trim.commands;
+
+  TrackingController<Scalar, FeedForward> controller(quadrotor.airframe(), flight_controller, feed_forward,
+                                                     density_ratio);
+  Commands<Scalar> commands{};
+  const Scalar tick_s = plan.physics_step_s * Scalar(plan.steps_per_control);
+  Scalar squares(0), largest_square(0), largest_speed_square(0);
+  int ticks = 0, ticks_at_end = 0;
+  for (; Scalar(ticks) * tick_s < plan.duration_s; ++ticks) {
+    const Scalar time_s = Scalar(ticks) * tick_s;
+    vehicle.time_s = static_cast<double>(time_s);
+    const TrajectoryPoint<Scalar> point = trajectory.sample(time_s);
+    const Scalar square = (point.position_m - vehicle.body.position_m).squaredNorm();
+    squares += square;
+    if (square > largest_square) largest_square = square;
+    const Scalar speed_square = vehicle.body.velocity_m_s.squaredNorm();
+    if (speed_square > largest_speed_square) largest_speed_square = speed_square;
+    result.status = controller(vehicle.body, point, time_s, commands);
+    if (saturated(commands)) ++ticks_at_end;
+    for (int i = 0; i < plan.steps_per_control && result.status == Status::ok; ++i) {
+      result.status = quadrotor.step(vehicle, commands, plan.physics_step_s);
+    }
+    if (result.status != Status::ok) break;
+  }
+  const int counted = result.status == Status::ok ? ticks : ticks + 1;
+  result.flown_s = Scalar(ticks) * tick_s;
+  result.rmse_m = counted > 0 ? sqrt(squares / Scalar(counted)) : Scalar(0);
+  result.max_error_m = sqrt(largest_square);
+  result.max_speed_m_s = sqrt(largest_speed_square);
+  result.saturated_share = counted > 0 ? Scalar(ticks_at_end) / Scalar(counted) : Scalar(0);
+  result.fallback = fallback_count(controller.feed_forward());
+  return result;
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Compiler attributes that flight code needs and C++17 has no word for.
+#pragma once
+
+/// Inlines a function whatever the optimiser thinks: prediction kernels must not be emitted out of line, where the linker
+/// could pick a copy compiled for another instruction set.
+/// Sanitizers are left to inline as they like: instrumented kernels inlined by force take minutes to compile.
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(__SANITIZE_ADDRESS__)
+#define PINNQUAD_ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define PINNQUAD_ALWAYS_INLINE inline
+#endif
+
+/// The same for a lambda: `[&](auto i) PINNQUAD_INLINE_LAMBDA { ... }`.
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(__SANITIZE_ADDRESS__)
+#define PINNQUAD_INLINE_LAMBDA __attribute__((always_inline))
+#else
+#define PINNQUAD_INLINE_LAMBDA
+#endif
+
+/// Inlines all that a function calls: for a hot function made of many small ones.
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(__SANITIZE_ADDRESS__)
+#define PINNQUAD_FLATTEN __attribute__((flatten))
+#else
+#define PINNQUAD_FLATTEN
+#endif

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// Attitude: NED world, FRD body. A unit quaternion (w, x, y, z) rotates body to world; Euler angles are ZYX.
+// Written here because Eigen/Geometry would double the compile time of flight code and orders its storage x, y, z, w.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/core/types.hpp"
+
+namespace pinnquad {
+
+/// Rotation body (FRD) -> world (NED): v_world = q v_body q*.
+template <class Scalar>
+struct Quaternion {
+  Scalar w{1};
+  Scalar x{0};
+  Scalar y{0};
+  Scalar z{0};
+};
+
+/// Roll phi, pitch theta, yaw psi in rad, ZYX order: R = Rz(psi) Ry(theta) Rx(phi).
+template <class Scalar>
+struct EulerAngles {
+  Scalar roll_rad{0};
+  Scalar pitch_rad{0};
+  Scalar yaw_rad{0};
+};
+
+/// Roll and pitch alone.
+template <class Scalar>
+struct Tilt {
+  Scalar roll_rad{0};
+  Scalar pitch_rad{0};
+};
+
+/// Sine and cosine of yaw; by algebra from the quaternion, without trigonometry.
+template <class Scalar>
+struct Heading {
+  Scalar sine{0};
+  Scalar cosine{1};
+};
+
+/// Hamilton product: first b, then a.
+template <class Scalar>
+constexpr Quaternion<Scalar> operator*(const Quaternion<Scalar>& a, const Quaternion<Scalar>& b) noexcept {
+  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+/// The inverse rotation of a unit quaternion.
+template <class Scalar>
+constexpr Quaternion<Scalar> conjugate(const Quaternion<Scalar>& q) noexcept {
+  return {q.w, -q.x, -q.y, -q.z};
+}
+
+template <class Scalar>
+constexpr Scalar squared_norm(const Quaternion<Scalar>& q) noexcept {
+  return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+}
+
+/// |q|^2 may differ from 1 by this much; a larger error is a broken estimator, not rounding.
+template <class Scalar>
+inline constexpr Scalar unit_quaternion_tolerance = Scalar(1e-3);
+
+/// False for NaN.
+template <class Scalar>
+constexpr bool is_unit(const Quaternion<Scalar>& q) noexcept {
+  const Scalar excess = squared_norm(q) - Scalar(1);
+  return excess <= unit_quaternion_tolerance<Scalar> && -excess <= unit_quaternion_tolerance<Scalar>;
+}
+
+template <class Scalar>
+Quaternion<Scalar> normalized(const Quaternion<Scalar>& q) noexcept {
+  using std::sqrt;
+  const Scalar scale = Scalar(1) / sqrt(squared_norm(q));
+  return {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
+}
+
+/// Body vector in the world frame, unit quaternion: v + 2 w (n x v) + 2 n x (n x v).
+template <class Scalar>
+Vector3<Scalar> body_to_world(const Quaternion<Scalar>& q, const Vector3<Scalar>& v) noexcept {
+  const Vector3<Scalar> n(q.x, q.y, q.z);
+  const Vector3<Scalar> t = cross<Scalar>(n, v) * Scalar(2);
+  return v + t * q.w + cross<Scalar>(n, t);
+}
+
+/// World vector in the body frame, unit quaternion.
+template <class Scalar>
+Vector3<Scalar> world_to_body(const Quaternion<Scalar>& q, const Vector3<Scalar>& v) noexcept {
+  return body_to_world(conjugate(q), v);
+}
+
+/// The body's z axis (down) in the world: third column of R. Thrust acts along its negative.
+template <class Scalar>
+Vector3<Scalar> body_down_axis(const Quaternion<Scalar>& q) noexcept {
+  return Vector3<Scalar>(Scalar(2) * (q.x * q.z + q.w * q.y), Scalar(2) * (q.y * q.z - q.w * q.x),
+                         Scalar(1) - Scalar(2) * (q.x * q.x + q.y * q.y));
+}
+
+template <class Scalar>
+Quaternion<Scalar> from_euler(const EulerAngles<Scalar>& angles) noexcept {
+  using std::cos;
+  using std::sin;
+  const Scalar half(0.5);
+  const Scalar cr = cos(angles.roll_rad * half), sr = sin(angles.roll_rad * half);
+  const Scalar cp = cos(angles.pitch_rad * half), sp = sin(angles.pitch_rad * half);
+  const Scalar cy = cos(angles.yaw_rad * half), sy = sin(angles.yaw_rad * half);
+  return {cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
+          cr * cp * sy - sr * sp * cy};
+}
+
+/// (sin psi, cos psi). Straight up or down (cos theta = 0) yaw has no meaning: (0, 1) is returned.
+/// Like tilt() and to_euler() homogeneous in q: an error of the quaternion's norm does not turn the attitude.
+template <class Scalar>
+Heading<Scalar> heading(const Quaternion<Scalar>& q) noexcept {
+  using std::sqrt;
+  const Scalar sine = Scalar(2) * (q.w * q.z + q.x * q.y);
+  const Scalar cosine = q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z;
+  const Scalar norm = sqrt(sine * sine + cosine * cosine);  // = |q|^2 cos theta
+  if (norm == Scalar(0)) return {};
+  return {sine / norm, cosine / norm};
+}
+
+/// Roll in [-pi, pi] and pitch in [-pi/2, pi/2].
+template <class Scalar>
+Tilt<Scalar> tilt(const Quaternion<Scalar>& q) noexcept {
+  using std::atan2;
+  using std::sqrt;
+  const Scalar across = Scalar(2) * (q.w * q.x + q.y * q.z);                   // |q|^2 sin phi cos theta
+  const Scalar upright = q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z;        // |q|^2 cos phi cos theta
+  const Scalar along = Scalar(2) * (q.w * q.y - q.z * q.x);                    // |q|^2 sin theta
+  return {atan2(across, upright), atan2(along, sqrt(across * across + upright * upright))};
+}
+
+/// Euler angles; yaw in [-pi, pi], see tilt() for the others.
+template <class Scalar>
+EulerAngles<Scalar> to_euler(const Quaternion<Scalar>& q) noexcept {
+  using std::atan2;
+  const Tilt<Scalar> level = tilt(q);
+  return {level.roll_rad, level.pitch_rad,
+          atan2(Scalar(2) * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)};
+}
+
+/// dq/dt = q (0, omega) / 2, omega in body axes, rad/s.
+template <class Scalar>
+Quaternion<Scalar> attitude_rate(const Quaternion<Scalar>& q, const Vector3<Scalar>& body_rates_rad_s) noexcept {
+  const Scalar half(0.5);
+  return q * Quaternion<Scalar>{Scalar(0), half * body_rates_rad_s[0], half * body_rates_rad_s[1],
+                                half * body_rates_rad_s[2]};
+}
+
+/// Attitude from a proper rotation matrix body -> world (Shepperd's choice of the largest divisor).
+template <class Scalar>
+Quaternion<Scalar> from_rotation_matrix(const Matrix<Scalar, 3, 3>& r) noexcept {
+  using std::sqrt;
+  const Scalar one(1), two(2), half(0.5);
+  const Scalar trace = r(0, 0) + r(1, 1) + r(2, 2);
+  if (trace > r(0, 0) && trace > r(1, 1) && trace > r(2, 2)) {
+    const Scalar s = sqrt(one + trace) * two;
+    return {s / Scalar(4), (r(2, 1) - r(1, 2)) / s, (r(0, 2) - r(2, 0)) / s, (r(1, 0) - r(0, 1)) / s};
+  }
+  const int i = r(0, 0) > r(1, 1) ? (r(0, 0) > r(2, 2) ? 0 : 2) : (r(1, 1) > r(2, 2) ? 1 : 2);
+  const int j = (i + 1) % 3, k = (i + 2) % 3;
+  const Scalar s = sqrt(one + r(i, i) - r(j, j) - r(k, k)) * two;
+  Scalar n[3] = {};
+  n[i] = s * half * half;
+  n[j] = (r(j, i) + r(i, j)) / s;
+  n[k] = (r(k, i) + r(i, k)) / s;
+  return {(r(k, j) - r(j, k)) / s, n[0], n[1], n[2]};
+}
+
+/// ENU world vector <-> NED world vector (its own inverse).
+template <class Scalar>
+Vector3<Scalar> swap_enu_ned(const Vector3<Scalar>& v) noexcept {
+  return Vector3<Scalar>(v[1], v[0], -v[2]);
+}
+
+/// FLU body vector <-> FRD body vector (its own inverse).
+template <class Scalar>
+Vector3<Scalar> swap_flu_frd(const Vector3<Scalar>& v) noexcept {
+  return Vector3<Scalar>(v[0], -v[1], -v[2]);
+}
+
+/// Attitude FLU -> ENU <-> attitude FRD -> NED (its own inverse up to the quaternion's sign).
+template <class Scalar>
+Quaternion<Scalar> swap_enu_flu_ned_frd(const Quaternion<Scalar>& q) noexcept {
+  using std::sqrt;
+  const Scalar h = sqrt(Scalar(0.5));
+  const Quaternion<Scalar> world{Scalar(0), h, h, Scalar(0)};  // half turn about (1, 1, 0): ENU <-> NED
+  const Quaternion<Scalar> body{Scalar(0), Scalar(1), Scalar(0), Scalar(0)};  // half turn about x: FLU <-> FRD
+  return world * q * body;
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Matrix and vector aliases: the vocabulary of every interface.
+// The only file that includes Eigen. Nothing is over-aligned, so values may be copied into any buffer.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+
+namespace pinnquad {
+
+/// Number of rotors of a quadrotor.
+inline constexpr int rotor_count = 4;
+
+/// Fixed-size matrix without alignment demands (row vectors must be row-major in Eigen).
+template <class Scalar, int Rows, int Columns = 1>
+using Matrix = Eigen::Matrix<Scalar, Rows, Columns,
+                             (Rows == 1 && Columns != 1 ? int(Eigen::RowMajor) : int(Eigen::ColMajor)) |
+                                 int(Eigen::DontAlign)>;
+
+template <class Scalar, int Size>
+using Vector = Matrix<Scalar, Size, 1>;
+
+template <class Scalar>
+using Vector3 = Vector<Scalar, 3>;
+
+/// Motor commands u_1..u_4, dimensionless, 0..1; thrust is proportional to u (NOTES: u = (n / n_max)^2).
+template <class Scalar>
+using Commands = std::array<Scalar, rotor_count>;
+
+/// a x b. Eigen's own lives in Eigen/Geometry, which would double the compile time of every flight translation unit.
+template <class Scalar>
+constexpr Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scalar>& b) noexcept {
+  return Vector3<Scalar>(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+}
+
+/// Vector from the three literals of an airframe.
+template <class Scalar>
+Vector3<Scalar> to_vector(const std::array<Scalar, 3>& values) noexcept {
+  return Vector3<Scalar>(values[0], values[1], values[2]);
+}
+
+}  // namespace pinnquad

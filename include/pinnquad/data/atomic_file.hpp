@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// An output file that appears whole or not at all: written aside, put in its place by commit().
+// Created at once, so that an unwritable folder is found before the work that fills the file.
+#pragma once
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <string>
+#include <system_error>
+
+#include "pinnquad/data/file_error.hpp"
+
+namespace pinnquad {
+
+/// Writes `path.partial-N` in the folder of `path` and renames it to `path` on commit(). A file that was there stays as
+/// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file.
+/// A link is followed: its target is replaced. Whole after a crash of the program, not after a loss of power (no sync).
+/// Throws OutputError, one line: folder missing or not writable, path is a folder or a device, disk full.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::string& path) : path_(path), target_(resolve(path)) {
+    reserve_partial();
+    errno = 0;
+    stream_.open(partial_, std::ios::binary | std::ios::trunc);
+    if (!stream_) {
+      const int reason = errno;
+      discard();
+      throw OutputError(path_, detail::system_reason(reason, "the partial file does not open"));
+    }
+  }
+
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  ~AtomicFile() { discard(); }
+
+  /// Where to write; binary, so line ends stay as written. Write errors are kept and reported by commit().
+  std::ostream& stream() noexcept { return stream_; }
+
+  /// Flushes, closes, checks and puts the file in its place. To be called once.
+  void commit() {
+    stream_.exceptions(std::ios::goodbit);  // whatever the user set: this class reports in its own words
+    const bool written = stream_.good();
+    errno = 0;
+    if (!written) {  // lost already; one more byte makes the system tell its reason again
+      stream_.clear();
+      stream_.put('\n');
+    }
+    stream_.flush();
+    const int flush_reason = errno;
+    const bool flushed = stream_.good();
+    errno = 0;
+    stream_.close();
+    const bool closed = stream_.good();
+    if (!written || !flushed || !closed) {
+      const int reason = flush_reason != 0 ? flush_reason : errno;
+      discard();
+      throw OutputError(path_, detail::system_reason(reason, "writing failed"));
+    }
+    std::error_code error;
+    std::filesystem::rename(partial_, target_, error);
+    if (error) {
+      discard();
+      throw OutputError(path_, error.message());
+    }
+    partial_.clear();
+  }
+
+ private:
+  /// The file to replace: the path itself, or what a link points to.
+  static std::filesystem::path resolve(const std::string& path) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::is_directory(status)) {
+      throw OutputError(path, "it is a folder");
+    }
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+      throw OutputError(path, "it is not a regular file");
+    }
+    if (!fs::is_symlink(fs::symlink_status(path, error))) {
+      return path;
+    }
+    const fs::path target = fs::canonical(path, error);
+    if (error) {
+      throw OutputError(path, "it is a link to nowhere");
+    }
+    return target;
+  }
+
+  /// Creates the partial file under a name that no other writer holds.
+  void reserve_partial() {
+    constexpr int most_names = 1000;  // left over by killed programs; more means that something else is wrong
+    int reason = 0;
+    for (int number = 1; number <= most_names; ++number) {
+      const std::string name = target_.string() + ".partial-" + std::to_string(number);
+      errno = 0;
+      if (std::FILE* file = std::fopen(name.c_str(), "wbx")) {
+        std::fclose(file);
+        partial_ = name;
+        return;
+      }
+      reason = errno;
+      if (reason != EEXIST) break;
+    }
+    throw OutputError(path_, detail::system_reason(reason, "no partial file can be made"));
+  }
+
+  /// Removes the partial file, if there still is one.
+  void discard() noexcept {
+    if (partial_.empty()) return;
+    stream_.exceptions(std::ios::goodbit);
+    stream_.close();
+    std::error_code ignored;
+    std::filesystem::remove(partial_, ignored);
+    partial_.clear();
+  }
+
+  std::string path_;
+  std::filesystem::path target_;
+  std::filesystem::path partial_;
+  std::ofstream stream_;
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// A recorded flight as a CSV file: header `t,vdot_bx,...,u4` (`sample_field_names`), one sample per line, SI units.
+// What is written can be read, and gives the same bits; what cannot be read is refused in one line.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/file_error.hpp"
+
+namespace pinnquad {
+
+/// Fewest rows that `read_flight_csv` takes by default: the 60/20/20 split then leaves two rows in every block.
+inline constexpr std::size_t minimum_flight_rows = 10;
+
+namespace detail {
+
+inline std::vector<std::string> flight_columns() { return {sample_field_names.begin(), sample_field_names.end()}; }
+
+}  // namespace detail
+
+/// Reads a flight. Columns are found by name, in any order; others are ignored. Units and frames: see `Sample`.
+/// Throws InputError (all of `read_csv`, and time that does not increase from row to row), its text one line:
+///   flight.csv:17:5: expected a finite number in column wdot_x, found "abc"
+inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows) {
+  Flight flight;
+  detail::for_each_csv_row(
+      path, detail::flight_columns(), minimum_rows,
+      [&](const std::vector<double>& values, std::size_t line, const std::vector<std::size_t>& fields) {
+        if (!flight.empty() && !(values[0] > flight.back().time_s)) {
+          throw InputError(path, line, fields[0] + 1,
+                           "a time above " + detail::number_text(flight.back().time_s) + " in column t",
+                           detail::number_text(values[0]));
+        }
+        SampleValues row;
+        std::copy(values.begin(), values.end(), row.begin());
+        flight.push_back(to_sample(row));
+      });
+  return flight;
+}
+
+/// Writes a flight; the file appears whole or not at all. `read_flight_csv` gives the same bits back.
+/// Throws OutputError if the file cannot be written, or if the flight could not be read back: a value that is not
+/// finite, time that does not increase.
+inline void write_flight_csv(const std::string& path, const Flight& flight) {
+  std::vector<std::vector<double>> rows;
+  rows.reserve(flight.size());
+  for (std::size_t i = 0; i < flight.size(); ++i) {
+    const SampleValues values = to_values(flight[i]);
+    for (std::size_t field = 0; field < values.size(); ++field) {
+      if (!is_finite(values[field])) {
+        throw OutputError(path,
+                          "sample " + std::to_string(i) + " has no finite " + std::string(sample_field_names[field]));
+      }
+    }
+    if (i > 0 && !(flight[i].time_s > flight[i - 1].time_s)) {
+      throw OutputError(path, "time does not increase at sample " + std::to_string(i));
+    }
+    rows.emplace_back(values.begin(), values.end());
+  }
+  write_csv(path, detail::flight_columns(), rows);
+}
+
+}  // namespace pinnquad

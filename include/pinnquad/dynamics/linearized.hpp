@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Eq. (3): the dynamics linearised about hover, both ways. Inverted it is "Model 1" of Table 2.
+// NOTES #17: v_dot_z gives T, omega_dot gives tau, Eq. (2) inverted gives the commands, which are not clipped.
+#pragma once
+
+#include "pinnquad/dynamics/rotor.hpp"
+
+namespace pinnquad {
+
+/// Eq. (3): v_dot = (-theta T / m, phi T / m, g - T / m), omega_dot = tau / J. `wrench.force_N` is (0, 0, -T).
+template <class Scalar>
+Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe, Scalar roll_rad, Scalar pitch_rad,
+                                               const Wrench<Scalar>& wrench, Scalar gravity_m_s2) noexcept {
+  const Scalar specific_thrust = -wrench.force_N[2] / airframe.mass_kg;
+  Accelerations<Scalar> result;
+  result.linear_m_s2 = Vector3<Scalar>(-pitch_rad * specific_thrust, roll_rad * specific_thrust,
+                                       gravity_m_s2 - specific_thrust);
+  result.angular_rad_s2 = wrench.torque_N_m.cwiseQuotient(to_vector(airframe.inertia_kg_m2));
+  return result;
+}
+
+/// Eq. (3) inverted: T = m (g - v_dot_z), tau = J omega_dot. v_dot_x and v_dot_y are not used.
+template <class Scalar>
+Wrench<Scalar> linearized_wrench(const Airframe<Scalar>& airframe, const Accelerations<Scalar>& motion,
+                                 Scalar gravity_m_s2) noexcept {
+  Wrench<Scalar> result;
+  result.force_N =
+      Vector3<Scalar>(Scalar(0), Scalar(0), airframe.mass_kg * (motion.linear_m_s2[2] - gravity_m_s2));
+  result.torque_N_m = to_vector(airframe.inertia_kg_m2).cwiseProduct(motion.angular_rad_s2);
+  return result;
+}
+
+/// Model 1: accelerations -> commands, at a density ratio rho / rho_0.
+template <class Scalar>
+Commands<Scalar> linearized_commands(const Airframe<Scalar>& airframe, const Rotors<Scalar>& rotors,
+                                     const Accelerations<Scalar>& motion, Scalar gravity_m_s2,
+                                     Scalar density_ratio) noexcept {
+  return rotors.commands(linearized_wrench(airframe, motion, gravity_m_s2), density_ratio);
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Where the vehicle is and how it moves; which force and torque act on it.
+// World NED, body FRD, SI units.
+#pragma once
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/rotation.hpp"
+#include "pinnquad/core/types.hpp"
+
+namespace pinnquad {
+
+/// Rigid-body state.
+template <class Scalar>
+struct State {
+  Vector3<Scalar> position_m = Vector3<Scalar>::Zero();        ///< NED
+  Vector3<Scalar> velocity_m_s = Vector3<Scalar>::Zero();      ///< NED
+  Quaternion<Scalar> attitude{};                               ///< body -> world
+  Vector3<Scalar> body_rates_rad_s = Vector3<Scalar>::Zero();  ///< (p, q, r), FRD
+};
+
+/// The left-hand sides of Eq. (1), body frame.
+template <class Scalar>
+struct Accelerations {
+  /// d/dt of the body-frame velocity: R^T a_world - omega x v_B. Not what an accelerometer or a world derivative shows
+  /// (NOTES #3).
+  Vector3<Scalar> linear_m_s2 = Vector3<Scalar>::Zero();
+  Vector3<Scalar> angular_rad_s2 = Vector3<Scalar>::Zero();  ///< (p, q, r) derivatives
+};
+
+/// Force and torque about the centre of gravity, body frame, without gravity.
+template <class Scalar>
+struct Wrench {
+  Vector3<Scalar> force_N = Vector3<Scalar>::Zero();
+  Vector3<Scalar> torque_N_m = Vector3<Scalar>::Zero();
+};
+
+template <class Scalar>
+Wrench<Scalar> operator+(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexcept {
+  return {a.force_N + b.force_N, a.torque_N_m + b.torque_N_m};
+}
+
+template <class Scalar>
+Wrench<Scalar> operator-(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexcept {
+  return {a.force_N - b.force_N, a.torque_N_m - b.torque_N_m};
+}
+
+/// Velocity in the body frame, m/s.
+template <class Scalar>
+Vector3<Scalar> body_velocity(const State<Scalar>& state) noexcept {
+  return world_to_body(state.attitude, state.velocity_m_s);
+}
+
+/// a_world (NED, gravity included) from v_dot_B: R (v_dot_B + omega x v_B).
+template <class Scalar>
+Vector3<Scalar> world_acceleration(const State<Scalar>& state, const Vector3<Scalar>& body_derivative_m_s2) noexcept {
+  const Vector3<Scalar> transport = cross<Scalar>(state.body_rates_rad_s, body_velocity(state));
+  return body_to_world<Scalar>(state.attitude, body_derivative_m_s2 + transport);
+}
+
+/// v_dot_B from a_world: R^T a_world - omega x v_B.
+template <class Scalar>
+Vector3<Scalar> body_derivative(const State<Scalar>& state, const Vector3<Scalar>& world_acceleration_m_s2) noexcept {
+  return world_to_body(state.attitude, world_acceleration_m_s2) -
+         cross<Scalar>(state.body_rates_rad_s, body_velocity(state));
+}
+
+template <class Scalar>
+bool all_finite(const State<Scalar>& state) noexcept {
+  const Quaternion<Scalar>& q = state.attitude;
+  const Scalar attitude[4] = {q.w, q.x, q.y, q.z};
+  return all_finite(state.position_m) && all_finite(state.velocity_m_s) && all_finite(attitude, 4) &&
+         all_finite(state.body_rates_rad_s);
+}
+
+}  // namespace pinnquad

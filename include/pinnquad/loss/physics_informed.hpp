@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Eq. (5): a base loss plus terms, each with a schedule of its own for its weight.
+#pragma once
+
+#include <tuple>
+
+#include "pinnquad/loss/loss.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
+#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/schedule/schedule.hpp"
+
+namespace pinnquad {
+
+/// A loss term and the schedule of its weight lambda.
+template <class LossType, class ScheduleType>
+struct Weighted {
+  static_assert(is_loss<LossType>, "pinnquad: Weighted's first argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+  static_assert(is_schedule<ScheduleType>,
+                "pinnquad: Weighted's second argument is not a schedule; it needs weight(epoch, epochs) "
+                "(schedule/schedule.hpp)");
+  LossType loss{};
+  ScheduleType schedule{};
+};
+
+namespace detail {
+template <class T>
+struct IsWeighted : std::false_type {};
+template <class LossType, class ScheduleType>
+struct IsWeighted<Weighted<LossType, ScheduleType>> : std::true_type {};
+}  // namespace detail
+
+/// L = base + sum_i lambda_i(epoch) L_i.
+template <class Base, class... Terms>
+struct PhysicsInformed {
+  static_assert(is_loss<Base>,
+                "pinnquad: PhysicsInformed's first argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+  static_assert((detail::IsWeighted<Terms>::value && ...),
+                "pinnquad: a term of PhysicsInformed is not Weighted<Loss, Schedule> (loss/physics_informed.hpp)");
+  Base base{};
+  std::tuple<Terms...> terms{};
+
+  template <class Context, class Batch, class Gradient>
+  typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
+                                  Gradient& gradient) const {
+    using Scalar = typename Batch::Scalar;
+    const auto weighted = [&](const auto& term) {
+      const Scalar lambda = Scalar(term.schedule.weight(context.progress.epoch, context.progress.epochs));
+      return lambda * term.loss.evaluate(context, batch, weight * lambda, gradient);
+    };
+    const Scalar value = base.evaluate(context, batch, weight, gradient);
+    return std::apply([&](const auto&... term) { return (value + ... + weighted(term)); }, terms);
+  }
+};
+
+/// The paper's loss: Mse and local monotonicity about roll, pitch and yaw under one kind of schedule.
+template <class Schedule, class Step = TanhStep>
+using PaperLoss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, Step>, Schedule>,
+                                  Weighted<LocalMonotonicity<Pitch, Step>, Schedule>,
+                                  Weighted<LocalMonotonicity<Yaw, Step>, Schedule>>;
+
+}  // namespace pinnquad

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Fully connected layer: y = W x + b.
+// Parameters: W row-major (row = output, column = input), then b. This layout holds from training to flash.
+#pragma once
+
+#include "pinnquad/nn/kernel/portable.hpp"
+#include "pinnquad/nn/layer.hpp"
+
+namespace pinnquad {
+
+template <class ScalarType, int In, int Out>
+struct DenseLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = In;
+  static constexpr int outputs = Out;
+  static constexpr int weight_count = Out * In;
+  static constexpr int parameter_count = weight_count + Out;
+
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    multiply_row_major<Out, In>(parameters, parameters + weight_count, x, y);
+  }
+};
+
+/// `Out` neurons; the number of inputs is deduced.
+template <int Out>
+struct Dense {
+  template <class Scalar, int In>
+  using Bind = DenseLayer<Scalar, In, Out>;
+};
+
+}  // namespace pinnquad

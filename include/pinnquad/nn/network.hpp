@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// A feed-forward network as a type: layers in order, sizes deduced, all parameters in one flat array.
+// Mlp writes the paper's shape (Eq. (4)) in one line.
+#pragma once
+
+#include <array>
+#include <tuple>
+
+#include "pinnquad/nn/dense.hpp"
+#include "pinnquad/nn/layer.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+
+template <class Scalar, int In, class... Specs>
+struct Chain {
+  using Layers = std::tuple<>;
+};
+template <class Scalar, int In, class First, class... Rest>
+struct Chain<Scalar, In, First, Rest...> {
+  static_assert(is_layer<First, Scalar, In>,
+                "pinnquad: this type is not a layer; it needs Bind<Scalar, In> with sizes and forward() (nn/layer.hpp)");
+  using Layer = typename First::template Bind<Scalar, In>;
+  static_assert(Layer::inputs == In, "pinnquad: a layer does not take the outputs of the layer before it");
+  using Layers = decltype(std::tuple_cat(std::declval<std::tuple<Layer>>(),
+                                         std::declval<typename Chain<Scalar, Layer::outputs, Rest...>::Layers>()));
+};
+
+template <class Layers>
+struct Sizes;
+template <class... Layers>
+struct Sizes<std::tuple<Layers...>> {
+  static constexpr int count = sizeof...(Layers);
+  static constexpr int parameter_count = (Layers::parameter_count + ... + 0);
+  static constexpr std::array<int, sizeof...(Layers)> parameters = {Layers::parameter_count...};
+  static constexpr std::array<int, sizeof...(Layers)> outputs = {Layers::outputs...};
+  /// Index of a layer's first parameter in the flat array.
+  static constexpr int offset(int layer) noexcept {
+    int sum = 0;
+    for (int i = 0; i < layer; ++i) sum += parameters[static_cast<std::size_t>(i)];
+    return sum;
+  }
+  static constexpr int widest(int least) noexcept {
+    for (int width : outputs) least = width > least ? width : least;
+    return least;
+  }
+};
+
+}  // namespace detail
+
+/// Layers in order behind `InputSize`; a value that owns its parameters.
+template <class ScalarType, class InputSize, class... Specs>
+class Network {
+ public:
+  using Scalar = ScalarType;
+  using Layers = typename detail::Chain<Scalar, InputSize::size, Specs...>::Layers;
+  using Sizes = detail::Sizes<Layers>;
+  template <int Index>
+  using Layer = std::tuple_element_t<static_cast<std::size_t>(Index), Layers>;
+  template <class OtherScalar>
+  using Rebind = Network<OtherScalar, InputSize, Specs...>;
+
+  static_assert(sizeof...(Specs) > 0, "pinnquad: a network needs at least one layer");
+  static constexpr int layer_count = Sizes::count;
+  static constexpr int inputs = InputSize::size;
+  static constexpr int outputs = Layer<layer_count - 1>::outputs;
+  static constexpr int parameter_count = Sizes::parameter_count;
+  static constexpr int widest = Sizes::widest(inputs);
+  /// Stack that the portable forward pass needs for activations.
+  static constexpr std::size_t workspace_bytes = 2 * sizeof(Scalar) * static_cast<std::size_t>(widest);
+  using Parameters = std::array<Scalar, static_cast<std::size_t>(parameter_count)>;
+
+  Parameters parameters{};
+
+  /// y = network(x) with these parameters, by the portable kernel. x has `inputs`, y `outputs` entries.
+  void forward(const Scalar* x, Scalar* y) const noexcept { forward(parameters.data(), x, y); }
+
+  /// The same for parameters that live elsewhere (flash).
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Scalar even[static_cast<std::size_t>(widest)];
+    Scalar odd[static_cast<std::size_t>(widest)];
+    run<0>(parameters, x, even, odd, y);
+  }
+
+ private:
+  template <int Index>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* even, Scalar* odd,
+                                         Scalar* y) noexcept {
+    const Scalar* own = parameters + Sizes::offset(Index);
+    if constexpr (Index + 1 == layer_count) {
+      Layer<Index>::forward(own, x, y);
+    } else {
+      Scalar* target = Index % 2 == 0 ? even : odd;
+      Layer<Index>::forward(own, x, target);
+      run<Index + 1>(parameters, target, even, odd, y);
+    }
+  }
+};
+
+namespace detail {
+template <class Scalar, class InputSize, int Count, int Width, int Out, class Activation, class... Specs>
+struct MakeMlp : MakeMlp<Scalar, InputSize, Count - 1, Width, Out, Activation, Dense<Width>, Activation, Specs...> {};
+template <class Scalar, class InputSize, int Width, int Out, class Activation, class... Specs>
+struct MakeMlp<Scalar, InputSize, 0, Width, Out, Activation, Specs...> {
+  using type = Network<Scalar, InputSize, Specs..., Dense<Out>>;
+};
+template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
+struct Mlp;
+template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
+struct Mlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
+    : MakeMlp<Scalar, InputSize, Count, Width, OutputSize::size, Activation> {};
+template <class T>
+struct IsNetwork : std::false_type {};
+template <class Scalar, class InputSize, class... Specs>
+struct IsNetwork<Network<Scalar, InputSize, Specs...>> : std::true_type {};
+}  // namespace detail
+
+template <class T>
+inline constexpr bool is_network = detail::IsNetwork<T>::value;
+
+/// Eq. (4): `Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>`.
+template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
+using Mlp = typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
+
+}  // namespace pinnquad

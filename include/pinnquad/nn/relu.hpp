@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Rectified linear unit: y = v < 0 ? 0 : v. NaN goes through (fmax would swallow it).
+#pragma once
+
+#include "pinnquad/nn/layer.hpp"
+
+namespace pinnquad {
+
+template <class ScalarType, int Size>
+struct ReluLayer : ElementwiseLayer<ReluLayer<ScalarType, Size>, ScalarType, Size> {
+  static PINNQUAD_ALWAYS_INLINE ScalarType activate(ScalarType v) noexcept {
+    return v < ScalarType(0) ? ScalarType(0) : v;
+  }
+  template <class Pack>
+  static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
+    return Pack::positive_part(v);
+  }
+};
+
+struct Relu {
+  template <class Scalar, int In>
+  using Bind = ReluLayer<Scalar, In>;
+};
+
+}  // namespace pinnquad

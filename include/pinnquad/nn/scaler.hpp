@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Standardisation by a training set: z = (v - mean) / spread, part of every model on both ends.
+#pragma once
+
+#include <array>
+
+#include "pinnquad/core/attributes.hpp"
+
+namespace pinnquad {
+
+/// Mean and spread (standard deviation) per entry. A spread is never zero.
+template <class Scalar, int Size>
+struct Scaler {
+  static constexpr int size = Size;
+  std::array<Scalar, Size> mean{};
+  std::array<Scalar, Size> spread = ones();
+
+  PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* values, Scalar* standardised) const noexcept {
+    for (int i = 0; i < Size; ++i) {
+      standardised[i] = (values[i] - mean[static_cast<std::size_t>(i)]) / spread[static_cast<std::size_t>(i)];
+    }
+  }
+  PINNQUAD_ALWAYS_INLINE void restore(const Scalar* standardised, Scalar* values) const noexcept {
+    for (int i = 0; i < Size; ++i) {
+      values[i] = standardised[i] * spread[static_cast<std::size_t>(i)] + mean[static_cast<std::size_t>(i)];
+    }
+  }
+
+  static constexpr std::array<Scalar, Size> ones() noexcept {
+    std::array<Scalar, Size> result{};
+    for (Scalar& v : result) v = Scalar(1);
+    return result;
+  }
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Umbrella: everything, for programs on the ground.
+#pragma once
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/split.hpp"
+#include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/evaluation/confidence_ellipse.hpp"
+#include "pinnquad/evaluation/correlation.hpp"
+#include "pinnquad/evaluation/errors.hpp"
+#include "pinnquad/evaluation/paired_test.hpp"
+#include "pinnquad/evaluation/physical_consistency.hpp"
+#include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/flight.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
+#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/physics_informed.hpp"
+#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/random_pilot.hpp"
+#include "pinnquad/training/adam.hpp"
+#include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/trained_model.hpp"
+#include "pinnquad/training/trainer.hpp"
+#include "pinnquad/training/training_data.hpp"

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// An agile pilot who flies at random: smooth velocities in all directions up to a limit, turns, and busy thumbs.
+// What he flies excites every input of the inverse dynamics; the same engine state gives the same flight.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/simulation/pilot.hpp"
+
+namespace pinnquad {
+
+/// How the random pilot flies.
+struct PilotStyle {
+  double max_speed_m_s{8};    ///< of what is flown; 95 % of it is asked for
+  double max_climb_m_s{8};    ///< what a heavy vehicle cannot climb is not asked for (pilot_style)
+  double max_descent_m_s{8};  ///< nor a fall that leaves the rotors nothing to do
+  double min_hold_s{0.8};     ///< a target velocity is held between these two times
+  double max_hold_s{2.6};
+  double velocity_lag_s{0.45};  ///< the velocity asked for follows its target with this lag
+  double max_yaw_rate_rad_s{1.0};
+  double yaw_rate_lag_s{0.4};
+  double stick_frame_s{0.004};          ///< the sticks arrive in frames, as over a 250 Hz radio link
+  double stick_bandwidth_rad_s{14};     ///< of the thumbs: a first-order random process
+  double roll_pitch_stick_rad_s{0.21};  ///< its standard deviation
+  double yaw_stick_rad_s{0.062};
+  double lowest_m{10};  ///< box, heights above ground and distances from the origin
+  double highest_m{60};
+  double farthest_m{60};
+  double braking_m{6};  ///< room left to the border when a target velocity is chosen
+};
+
+/// Draws a target velocity (any direction; the greatest speed and the vertical more often), holds it for a random time,
+/// and asks for it with a lag. A component that would lead out of the box before its time is up is turned round. Yaw
+/// rate targets change with it; stick noise goes on all the time.
+template <class Engine>
+class RandomPilot {
+ public:
+  /// `ground_z_m`: NED z of the ground (Site). The engine is the pilot's own from here on.
+  explicit RandomPilot(const Engine& engine, const PilotStyle& style = {}, double ground_z_m = 0)
+      : engine_(engine),
+        style_(style),
+        ground_z_m_(ground_z_m),
+        stick_memory_(std::exp(-style.stick_frame_s * style.stick_bandwidth_rad_s)),
+        stick_drive_(std::sqrt(1 - stick_memory_ * stick_memory_)) {}
+
+  SetPoint<double> operator()(const State<double>& state, double time_s) {
+    const double elapsed_s = time_s - time_s_;
+    time_s_ = time_s;
+    if (time_s >= next_target_s_) {
+      next_target_s_ = time_s + uniform(engine_, style_.min_hold_s, style_.max_hold_s);
+      choose_target(state);
+    }
+    const double velocity_share = elapsed_s / (style_.velocity_lag_s + elapsed_s);
+    const double yaw_share = elapsed_s / (style_.yaw_rate_lag_s + elapsed_s);
+    wanted_.velocity_m_s += (target_velocity_m_s_ - wanted_.velocity_m_s) * velocity_share;
+    wanted_.yaw_rate_rad_s += (target_yaw_rate_rad_s_ - wanted_.yaw_rate_rad_s) * yaw_share;
+    constexpr double early = 1e-6;  // a frame is due on a tick although both times are rounded
+    if (time_s >= next_frame_s_ - early) {
+      next_frame_s_ += style_.stick_frame_s;
+      move_sticks();
+    }
+    return wanted_;
+  }
+
+  const PilotStyle& style() const noexcept { return style_; }
+
+ private:
+  void choose_target(const State<double>& state) {
+    constexpr double two_pi = 6.283185307179586;
+    constexpr double beyond = 1.25;     // draws past the limits are cut: the limits themselves are flown often
+    constexpr double overshoot = 0.95;  // what is asked for, so that what is flown stays near the limit
+    const double down = within(uniform(engine_, -beyond, beyond), 1);
+    const double level = std::sqrt(1 - down * down);
+    const double course = uniform(engine_, 0, two_pi);
+    const double speed = overshoot * style_.max_speed_m_s * within(beyond * std::sqrt(uniform_01(engine_)), 1);
+    Vector3<double> velocity(speed * level * std::cos(course), speed * level * std::sin(course), speed * down);
+
+    const double hold_s = next_target_s_ - time_s_;
+    const Vector3<double> lowest(-style_.farthest_m, -style_.farthest_m, ground_z_m_ - style_.highest_m);
+    const Vector3<double> highest(style_.farthest_m, style_.farthest_m, ground_z_m_ - style_.lowest_m);
+    for (int i = 0; i < 3; ++i) {
+      const double there = state.position_m[i] + velocity[i] * hold_s;
+      const double magnitude = velocity[i] < 0 ? -velocity[i] : velocity[i];
+      if (there > highest[i] - style_.braking_m) velocity[i] = -magnitude;
+      if (there < lowest[i] + style_.braking_m) velocity[i] = magnitude;
+    }
+    if (velocity[2] < -style_.max_climb_m_s) velocity[2] = -style_.max_climb_m_s;
+    if (velocity[2] > style_.max_descent_m_s) velocity[2] = style_.max_descent_m_s;
+    target_velocity_m_s_ = velocity;
+    target_yaw_rate_rad_s_ = uniform(engine_, -style_.max_yaw_rate_rad_s, style_.max_yaw_rate_rad_s);
+  }
+
+  static double within(double value, double most) { return value > most ? most : (value < -most ? -most : value); }
+
+  void move_sticks() {
+    const double spread[3] = {style_.roll_pitch_stick_rad_s, style_.roll_pitch_stick_rad_s, style_.yaw_stick_rad_s};
+    for (int i = 0; i < 3; ++i) {
+      wanted_.stick_rad_s[i] =
+          stick_memory_ * wanted_.stick_rad_s[i] + stick_drive_ * spread[i] * standard_normal(engine_);
+    }
+  }
+
+  Engine engine_;
+  PilotStyle style_;
+  double ground_z_m_;
+  double stick_memory_;
+  double stick_drive_;
+  double time_s_{0};
+  double next_target_s_{0};
+  double next_frame_s_{0};
+  Vector3<double> target_velocity_m_s_ = Vector3<double>::Zero();
+  double target_yaw_rate_rad_s_{0};
+  SetPoint<double> wanted_{};
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Adam with coupled weight decay (Kingma and Ba 2015; PyTorch's `Adam(weight_decay=...)`).
+// Contract of an optimiser: `Step begin(long step)` once per batch, `update<Pack>(step, p, g, first, second, count)` per layer.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/nn/kernel/pack.hpp"
+
+namespace pinnquad {
+
+/// g <- g + decay p;  m <- b1 m + (1 - b1) g;  v <- b2 v + (1 - b2) g^2;
+/// p <- p - rate / (1 - b1^t) * m / (sqrt(v) / sqrt(1 - b2^t) + epsilon).
+/// The decay applies to weights and biases alike, as in PyTorch.
+struct Adam {
+  double learning_rate = 1e-3;
+  double beta_1 = 0.9;
+  double beta_2 = 0.999;
+  double epsilon = 1e-8;
+  double weight_decay = 1e-5;
+
+  /// Factors that are the same for all parameters of step t (from 1).
+  struct Step {
+    double rate;        ///< learning_rate / (1 - b1^t)
+    double root_scale;  ///< 1 / sqrt(1 - b2^t)
+  };
+  Step begin(long t) const {
+    const double n = static_cast<double>(t);
+    return {learning_rate / (1.0 - std::pow(beta_1, n)), 1.0 / std::sqrt(1.0 - std::pow(beta_2, n))};
+  }
+
+  /// Updates `count` parameters (a multiple of the pack) and both moments in place.
+  template <class Pack, class Scalar>
+  void update(const Step& step, Scalar* parameters, const Scalar* gradient, Scalar* first, Scalar* second,
+              int count) const noexcept {
+    const Pack decay = Pack::broadcast(Scalar(weight_decay));
+    const Pack b1 = Pack::broadcast(Scalar(beta_1));
+    const Pack b2 = Pack::broadcast(Scalar(beta_2));
+    const Pack one_less_b1 = Pack::broadcast(Scalar(1.0 - beta_1));
+    const Pack one_less_b2 = Pack::broadcast(Scalar(1.0 - beta_2));
+    const Pack rate = Pack::broadcast(Scalar(step.rate));
+    const Pack root_scale = Pack::broadcast(Scalar(step.root_scale));
+    const Pack smallest = Pack::broadcast(Scalar(epsilon));
+    for (int i = 0; i < count; i += Pack::width) {
+      const Pack p = Pack::load(parameters + i);
+      const Pack g = Pack::multiply_add(decay, p, Pack::load(gradient + i));
+      const Pack m = Pack::multiply_add(b1, Pack::load(first + i), one_less_b1 * g);
+      const Pack v = Pack::multiply_add(b2, Pack::load(second + i), one_less_b2 * (g * g));
+      m.store(first + i);
+      v.store(second + i);
+      const Pack denominator = Pack::multiply_add(Pack::square_root(v), root_scale, smallest);
+      (p - rate * m / denominator).store(parameters + i);
+    }
+  }
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// A layer over a mini-batch: activations are [sample][padded width], parameters stand as the kernels want them.
+// Dense uses register tiles, element-wise layers work in place, any other layer runs its BackwardRule sample by sample.
+#pragma once
+
+#include "pinnquad/nn/kernel/tile.hpp"
+#include "pinnquad/training/backward/backward.hpp"
+#include "pinnquad/training/backward/dense.hpp"
+#include "pinnquad/training/backward/relu.hpp"
+#include "pinnquad/training/backward/tanh.hpp"
+
+namespace pinnquad {
+
+/// Any layer, sample by sample. `stored` and `gradient` are what the optimiser sees: one flat array of `size` scalars.
+template <class Layer, class Pack, int BatchSize, class = void>
+struct BatchLayer {
+  static_assert(is_trainable<Layer>,
+                "pinnquad: this layer cannot be trained; specialise BackwardRule (training/backward/backward.hpp)");
+  using Scalar = typename Layer::Scalar;
+  static constexpr bool in_place = false;
+  static constexpr bool needs_output = true;  ///< backward() looks at y, so nobody may overwrite it
+  static constexpr int size = padded<Pack>(Layer::parameter_count);
+  static constexpr int x_stride = padded<Pack>(Layer::inputs);
+  static constexpr int y_stride = padded<Pack>(Layer::outputs);
+
+  alignas(64) Scalar stored[size > 0 ? size : 1] = {};
+  alignas(64) Scalar gradient[size > 0 ? size : 1] = {};
+
+  void load(const Scalar* parameters) noexcept {
+    for (int i = 0; i < Layer::parameter_count; ++i) stored[i] = parameters[i];
+  }
+  void store(Scalar* parameters) const noexcept {
+    for (int i = 0; i < Layer::parameter_count; ++i) parameters[i] = stored[i];
+  }
+  void store_gradient(Scalar* parameters) const noexcept {
+    for (int i = 0; i < Layer::parameter_count; ++i) parameters[i] = gradient[i];
+  }
+  void refresh() noexcept {}
+
+  void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
+    for (int i = 0; i < samples; ++i) Layer::forward(stored, x + i * x_stride, y + i * y_stride);
+  }
+  /// `delta` holds dy; dx goes to `previous` (which may be null for the first layer).
+  void backward(const Scalar* x, const Scalar* y, const Scalar* delta, Scalar* previous, int samples) noexcept {
+    for (Scalar& g : gradient) g = Scalar(0);
+    Scalar scratch[x_stride] = {};
+    for (int i = 0; i < samples; ++i) {
+      Scalar* dx = previous != nullptr ? previous + i * x_stride : scratch;
+      BackwardRule<Layer>::backward(stored, x + i * x_stride, y + i * y_stride, delta + i * y_stride, dx, gradient);
+    }
+  }
+};
+
+/// Dense: weights stand input by input, each row padded, the bias as last row; a transposed copy serves dX.
+template <class Scalar, int In, int Out, class Pack, int BatchSize>
+struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> {
+  static constexpr bool in_place = false;
+  static constexpr bool needs_output = false;
+  static constexpr int x_stride = padded<Pack>(In);
+  static constexpr int y_stride = padded<Pack>(Out);
+  static constexpr int size = (In + 1) * y_stride;
+
+  alignas(64) Scalar stored[size] = {};           // [input][output], then the bias
+  alignas(64) Scalar gradient[size] = {};
+  alignas(64) Scalar by_output[Out * x_stride] = {};  // [output][input]
+
+  void load(const Scalar* parameters) noexcept {
+    for (int out = 0; out < Out; ++out) {
+      for (int in = 0; in < In; ++in) stored[in * y_stride + out] = parameters[out * In + in];
+      stored[In * y_stride + out] = parameters[Out * In + out];
+    }
+    refresh();
+  }
+  void store(Scalar* parameters) const noexcept { gather(stored, parameters); }
+  void store_gradient(Scalar* parameters) const noexcept { gather(gradient, parameters); }
+  /// Call after `stored` was changed.
+  void refresh() noexcept {
+    for (int out = 0; out < Out; ++out) {
+      for (int in = 0; in < In; ++in) by_output[out * x_stride + in] = stored[in * y_stride + out];
+    }
+  }
+
+  void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
+    multiply_batch<Pack, x_stride, y_stride>(x, stored, In, stored + In * y_stride, y, samples);
+  }
+  void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous, int samples) noexcept {
+    multiply_transposed<Pack, In, x_stride, y_stride>(x, delta, samples, gradient);
+    constexpr int vectors = y_stride / Pack::width;
+    Pack sum[vectors];
+    for (Pack& s : sum) s = Pack::broadcast(Scalar(0));
+    for (int i = 0; i < samples; ++i) {
+      unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
+        sum[v] = sum[v] + Pack::load(delta + i * y_stride + v * Pack::width);
+      });
+    }
+    for (int v = 0; v < vectors; ++v) sum[v].store(gradient + In * y_stride + v * Pack::width);
+    if (previous != nullptr) {
+      multiply_batch<Pack, y_stride, x_stride>(delta, by_output, Out, nullptr, previous, samples);
+    }
+  }
+
+ private:
+  static void gather(const Scalar* from, Scalar* parameters) noexcept {
+    for (int out = 0; out < Out; ++out) {
+      for (int in = 0; in < In; ++in) parameters[out * In + in] = from[in * y_stride + out];
+      parameters[Out * In + out] = from[In * y_stride + out];
+    }
+  }
+};
+
+/// Element-wise: forward works on its own buffer or on that of the layer before, dx overwrites dy. The padding of y may hold anything finite; that of dy stays zero.
+template <class Layer, class Pack, int BatchSize>
+struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>>> {
+  static_assert(is_trainable<Layer>,
+                "pinnquad: this layer cannot be trained; BackwardRule needs slope(y) (training/backward/backward.hpp)");
+  using Scalar = typename Layer::Scalar;
+  static constexpr bool in_place = true;  ///< if the layer before does not need its output
+  static constexpr bool needs_output = true;
+  static constexpr int size = 0;
+  static constexpr int stride = padded<Pack>(Layer::outputs);
+
+  void load(const Scalar*) noexcept {}
+  void store(Scalar*) const noexcept {}
+  void store_gradient(Scalar*) const noexcept {}
+  void refresh() noexcept {}
+
+  void forward(Scalar* values, int samples) const noexcept {
+    if constexpr (activates_pack<Layer, Pack>) {
+      for (int i = 0; i < samples * stride; i += Pack::width) Layer::activate(Pack::load(values + i)).store(values + i);
+    } else {
+      for (int i = 0; i < samples; ++i) Layer::forward(nullptr, values + i * stride, values + i * stride);
+    }
+  }
+  void backward(const Scalar* y, Scalar* delta, int samples) noexcept {
+    if constexpr (HasScaled<BackwardRule<Layer>>::value) {
+      for (int i = 0; i < samples * stride; i += Pack::width) {
+        BackwardRule<Layer>::scaled(Pack::load(y + i), Pack::load(delta + i)).store(delta + i);
+      }
+    } else {
+      for (int i = 0; i < samples * stride; ++i) delta[i] *= BackwardRule<Layer>::slope(y[i]);
+    }
+  }
+
+ private:
+  template <class Rule, class = void>
+  struct HasScaled : std::false_type {};
+  template <class Rule>
+  struct HasScaled<Rule, std::void_t<decltype(Rule::scaled(std::declval<Pack>(), std::declval<Pack>()))>>
+      : std::true_type {};
+};
+
+}  // namespace pinnquad

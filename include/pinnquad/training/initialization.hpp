@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Initial weights. Contract: `template <class Layer, class Engine> void initialise(Scalar* parameters, Engine&) const`.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/nn/kernel/unroll.hpp"
+#include "pinnquad/nn/network.hpp"
+
+namespace pinnquad {
+
+/// Xavier (Glorot and Bengio 2010), uniform: W in +-sqrt(6 / (inputs + outputs)), biases 0. Layers of another kind that have
+/// parameters start at 0 unless they bring `initialise(parameters, engine)` themselves.
+struct XavierUniform {
+  template <class Scalar, int In, int Out, class Engine>
+  void initialise(DenseLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
+    const double limit = std::sqrt(6.0 / (In + Out));
+    for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
+    for (int i = 0; i < Out; ++i) parameters[Out * In + i] = Scalar(0);
+  }
+  template <class Layer, class Scalar, class Engine>
+  void initialise(Layer, Scalar* parameters, Engine& engine) const {
+    if constexpr (brings_own<Layer, Scalar, Engine>(0)) {
+      Layer::initialise(parameters, engine);
+    } else {
+      for (int i = 0; i < Layer::parameter_count; ++i) parameters[i] = Scalar(0);
+    }
+  }
+
+ private:
+  template <class Layer, class Scalar, class Engine>
+  static constexpr auto brings_own(int)
+      -> decltype(Layer::initialise(static_cast<Scalar*>(nullptr), std::declval<Engine&>()), true) {
+    return true;
+  }
+  template <class Layer, class Scalar, class Engine>
+  static constexpr bool brings_own(long) {
+    return false;
+  }
+};
+
+/// A network with initial weights, layer by layer from one engine: the same seed gives the same bits.
+template <class NetworkType, class Initialization = XavierUniform, class Engine>
+NetworkType initialised(Engine& engine, const Initialization& initialization = {}) {
+  NetworkType network;
+  unroll<NetworkType::layer_count>([&](auto index) {
+    using Layer = typename NetworkType::template Layer<decltype(index)::value>;
+    initialization.initialise(Layer{}, network.parameters.data() + NetworkType::Sizes::offset(index), engine);
+  });
+  return network;
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+// Trains a network: shuffled mini-batches, forward, loss, backward, optimiser step. Composition by type.
+#pragma once
+
+#include <numeric>
+#include <vector>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/loss/loss.hpp"
+#include "pinnquad/training/adam.hpp"
+#include "pinnquad/training/flush_denormals.hpp"
+#include "pinnquad/training/network_gradient.hpp"
+#include "pinnquad/training/training_data.hpp"
+
+namespace pinnquad {
+
+/// Batches of a random permutation, drawn anew each epoch. Default.
+struct ShuffledBatches {
+  template <class Engine>
+  void arrange(std::vector<int>& order, Engine& engine) const {
+    shuffle(order, engine);
+  }
+};
+
+/// Batches in recorded order: consecutive pairs of a batch are consecutive in time.
+struct TimeOrderedBatches {
+  template <class Engine>
+  void arrange(std::vector<int>&, Engine&) const {}
+};
+
+/// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.5 MB for the paper's network:
+/// put it on the heap or a large stack).
+template <class NetworkType, class LossType, class OptimizerType, class ContextType, class Order = ShuffledBatches,
+          int BatchSize = 64>
+class Trainer {
+  static_assert(is_network<NetworkType>, "pinnquad: Trainer's first argument is not a Network (nn/network.hpp)");
+  static_assert(is_loss<LossType>,
+                "pinnquad: Trainer's second argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+  static_assert(NetworkType::inputs == ContextType::Features::size,
+                "pinnquad: the network's input count differs from the feature set's size");
+  static_assert(NetworkType::outputs == rotor_count, "pinnquad: the network's output count differs from the rotor count");
+
+ public:
+  using Network = NetworkType;
+  using Scalar = typename Network::Scalar;
+  using Data = TrainingData<Scalar, Network::inputs, Network::outputs>;
+
+  Trainer(const Network& network, const LossType& loss, const OptimizerType& optimizer, const ContextType& context,
+          const Order& order = {})
+      : loss_(loss), optimizer_(optimizer), context_(context), order_policy_(order) {
+    gradient_.load(network.parameters);
+  }
+
+  /// One pass over the data; the last batch may be smaller. Returns the mean loss over the samples.
+  template <class Engine>
+  double epoch(const Data& data, const Progress& progress, Engine& engine) {
+    context_.progress = progress;
+    if (static_cast<int>(order_.size()) != data.size()) {
+      order_.resize(static_cast<std::size_t>(data.size()));
+      std::iota(order_.begin(), order_.end(), 0);
+    }
+    order_policy_.arrange(order_, engine);
+    double sum = 0;
+    for (int first = 0; first < data.size(); first += BatchSize) {
+      const int size = data.size() - first < BatchSize ? data.size() - first : BatchSize;
+      sum += size * static_cast<double>(batch(data, order_.data() + first, size));
+    }
+    return data.size() > 0 ? sum / data.size() : 0.0;
+  }
+
+  /// Loss of these rows and one optimiser step down its gradient.
+  Scalar batch(const Data& data, const int* rows, int size) {
+    const FlushDenormals flush;
+    const Scalar value = differentiate(data, rows, size);
+    const auto step = optimizer_.begin(++steps_);
+    gradient_.each([&](auto& layer, auto index) {
+      if constexpr (std::decay_t<decltype(layer)>::size > 0) {
+        auto& moments = std::get<decltype(index)::value>(moments_);
+        optimizer_.template update<Pack>(step, layer.stored, layer.gradient, moments.first, moments.second,
+                                         std::decay_t<decltype(layer)>::size);
+        layer.refresh();
+      }
+    });
+    return value;
+  }
+
+  /// Loss of these rows and its gradient by all parameters (see parameter_gradient()); nothing is changed.
+  Scalar differentiate(const Data& data, const int* rows, int size) {
+    loss_batch_.resize(size);
+    for (int i = 0; i < size; ++i) {
+      const Scalar* x = data.features_of(rows[i]);
+      const Scalar* y = data.outputs_of(rows[i]);
+      Scalar* input = gradient_.input(i);
+      for (int k = 0; k < Network::inputs; ++k) input[k] = loss_batch_.features(k, i) = x[k];
+      for (int k = 0; k < Network::outputs; ++k) loss_batch_.target(k, i) = y[k];
+    }
+    gradient_.forward(size);
+    for (int i = 0; i < size; ++i) {
+      const Scalar* output = gradient_.output(i);
+      for (int k = 0; k < Network::outputs; ++k) loss_batch_.prediction(k, i) = output[k];
+    }
+    output_gradient_.setZero(Eigen::NoChange, size);
+    const Scalar value = loss_.evaluate(context_, loss_batch_, Scalar(1), output_gradient_);
+    for (int i = 0; i < size; ++i) {
+      Scalar* delta = gradient_.output_delta(i);
+      for (int k = 0; k < Gradient::output_stride; ++k) delta[k] = k < Network::outputs ? output_gradient_(k, i) : Scalar(0);
+    }
+    gradient_.backward(size);
+    return value;
+  }
+
+  /// The network as trained so far.
+  Network network() const {
+    Network result;
+    gradient_.store(result.parameters);
+    return result;
+  }
+  /// Gradient of the last differentiated batch, in the layout of Network::parameters.
+  typename Network::Parameters parameter_gradient() const {
+    typename Network::Parameters result{};
+    gradient_.store_gradient(result);
+    return result;
+  }
+  const ContextType& context() const noexcept { return context_; }
+  long steps() const noexcept { return steps_; }
+
+ private:
+  using Gradient = NetworkGradient<Network, BatchSize>;
+  using Pack = typename Gradient::Pack;
+  using Batch = LossBatch<Scalar, Network::inputs, Network::outputs, BatchSize>;
+
+  /// First and second moment of one layer's stored parameters.
+  template <int Size>
+  struct Moments {
+    alignas(64) Scalar first[Size > 0 ? Size : 1] = {};
+    alignas(64) Scalar second[Size > 0 ? Size : 1] = {};
+  };
+  template <class Layers>
+  struct MomentsOf;
+  template <class... Layers>
+  struct MomentsOf<std::tuple<Layers...>> {
+    using type = std::tuple<Moments<BatchLayer<Layers, Pack, BatchSize>::size>...>;
+  };
+
+  LossType loss_;
+  OptimizerType optimizer_;
+  ContextType context_;
+  Order order_policy_;
+  Gradient gradient_{};
+  typename MomentsOf<typename Network::Layers>::type moments_{};
+  Batch loss_batch_{};
+  typename Batch::Gradient output_gradient_{};
+  std::vector<int> order_;
+  long steps_ = 0;
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// A quadrotor: airframe, rotors and aerodynamic effects composed by type. Forward dynamics and one step in time.
+#pragma once
+
+#include <tuple>
+#include <utility>
+
+#include "pinnquad/aero/effect.hpp"
+#include "pinnquad/core/attributes.hpp"
+#include "pinnquad/dynamics/integrator.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
+#include "pinnquad/dynamics/rotor.hpp"
+
+namespace pinnquad {
+
+/// Everything that evolves in time.
+template <class Scalar>
+struct VehicleState {
+  State<Scalar> body{};
+  Commands<Scalar> rotors{};  ///< lag-filtered commands: thrust of rotor i is proportional to rotors[i]
+  double time_s{0};  ///< double also for a float vehicle: in float a millisecond is lost after a few hours
+};
+
+/// One evaluation of the dynamics, taken apart.
+template <class Scalar>
+struct Evaluation {
+  Surroundings<Scalar> surroundings;
+  Wrench<Scalar> rotors;       ///< body
+  Wrench<Scalar> aerodynamic;  ///< body, all effects
+  Accelerations<Scalar> motion;
+};
+
+/// Eqs. (1) and (2) with effects. An effect that is not named costs nothing.
+template <class Scalar, class... Effects>
+class Quadrotor {
+  static_assert((is_effect<Effects> && ...),
+                "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
+
+ public:
+  /// Effects as they are by default.
+  template <std::size_t Count = sizeof...(Effects), std::enable_if_t<(Count > 0), int> = 0>
+  explicit Quadrotor(const Airframe<Scalar>& airframe, const Site<Scalar>& site = {}) noexcept
+      : Quadrotor(airframe, site, Effects{}...) {}
+  template <std::size_t Count = sizeof...(Effects), std::enable_if_t<Count == 0, int> = 0>
+  explicit Quadrotor(const Airframe<Scalar>& airframe) noexcept : Quadrotor(airframe, Site<Scalar>{}) {}
+  explicit Quadrotor(const Airframe<Scalar>& airframe, const Site<Scalar>& site, Effects... effects) noexcept
+      : airframe_(airframe),
+        inverse_mass_(Scalar(1) / airframe.mass_kg),
+        site_(site),
+        effects_(bound_effect(effects, airframe)...),
+        rotors_(airframe) {}
+
+  const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
+  const Site<Scalar>& site() const noexcept { return site_; }
+  const Rotors<Scalar>& rotors() const noexcept { return rotors_; }
+
+  /// Invalid values or an allocation that can't be inverted.
+  Status status() const noexcept {
+    const Status airframe = check_airframe(airframe_);
+    return airframe == Status::ok ? rotors_.status() : airframe;
+  }
+
+  /// The air at a place and time: density and wind as the effects set them.
+  PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
+    Surroundings<Scalar> air;
+    air.time_s = time_s;
+    air.position_m = state.position_m;
+    air.altitude_m = site_.elevation_m - state.position_m[2];
+    each_effect([&air](const auto& effect) PINNQUAD_INLINE_LAMBDA {
+      if constexpr (changes_surroundings<std::decay_t<decltype(effect)>>) effect.surroundings(air);
+    });
+    return air;
+  }
+
+  /// Body wrench of all effects for a given wrench of the rotors.
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench(const State<Scalar>& state, const Surroundings<Scalar>& air,
+                                                           const Wrench<Scalar>& rotors) const noexcept {
+    AeroCondition<Scalar> condition;
+    condition.air_relative_velocity_m_s =
+        Axes(state.attitude).to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
+                                     state.velocity_m_s[2] - air.wind_m_s[2]);
+    condition.body_rates_rad_s = state.body_rates_rad_s;
+    condition.attitude = state.attitude;
+    condition.height_above_ground_m = site_.ground_z_m - state.position_m[2];
+    condition.air_density_kg_m3 = air.air_density_kg_m3;
+    condition.time_s = air.time_s;
+    each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
+      using Effect = std::decay_t<decltype(effect)>;
+      if constexpr (makes_wrench<Effect>) {
+        condition.rotors = uses_rotor_wrench<Effect> ? rotors : Wrench<Scalar>{};
+        condition.aerodynamic = condition.aerodynamic + effect.wrench(condition, airframe_);
+      }
+    });
+    return condition.aerodynamic;
+  }
+
+  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag.
+  Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
+                              Scalar time_s) const noexcept {
+    Evaluation<Scalar> result = loads(state, rotor_commands, time_s);
+    result.motion = accelerations(airframe_, state, result.rotors + result.aerodynamic, site_.gravity_m_s2);
+    return result;
+  }
+
+  /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly.
+  /// `not_finite` for a bad input, `out_of_range` for a step backwards, `not_unit_quaternion`, `output_not_finite` for a
+  /// diverged result; the state is untouched then.
+  PINNQUAD_FLATTEN Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                               Scalar step_s) const noexcept {
+    if (!(all_finite(state.body) && all_finite(state.rotors) && is_finite(state.time_s) && all_finite(commands) &&
+          is_finite(step_s))) {
+      return Status::not_finite;
+    }
+    if (step_s < Scalar(0)) return Status::out_of_range;
+    if (!is_unit(state.body.attitude)) return Status::not_unit_quaternion;
+    const Scalar half_factor = lag_factor(airframe_.rotor_time_constant_s, step_s / Scalar(2));
+    const Commands<Scalar> middle = lagged(state.rotors, commands, half_factor);
+    const Commands<Scalar> end = lagged(middle, commands, half_factor);
+    const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
+      const Commands<Scalar>& rotors = offset_s == Scalar(0) ? state.rotors : (offset_s < step_s ? middle : end);
+      return rate_of_change(body, rotors, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)));
+    };
+    const State<Scalar> next = rk4_step(state.body, step_s, rate);
+    if (!all_finite(next)) return Status::output_not_finite;
+    state.body = next;
+    state.rotors = end;
+    state.time_s += static_cast<double>(step_s);
+    return Status::ok;
+  }
+
+  /// rho / rho_0, by which thrust and torque of the rotors scale.
+  static constexpr Scalar density_ratio(const Surroundings<Scalar>& air) noexcept {
+    constexpr Scalar inverse = Scalar(1) / standard_air_density_kg_m3<Scalar>;
+    return air.air_density_kg_m3 * inverse;
+  }
+
+ private:
+  /// The rotation worked out once for the two vectors that an evaluation turns: less than half the work of turning each by
+  /// the quaternion, and written in scalars because Eigen would split a vector of three into two and one.
+  struct Axes {
+    Scalar xx, xy, xz, yx, yy, yz, zx, zy, zz;  ///< R, row (world) by row
+
+    explicit Axes(const Quaternion<Scalar>& q) noexcept {
+      const Scalar one(1), x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+      const Scalar w_x = q.w * x2, w_y = q.w * y2, w_z = q.w * z2;
+      const Scalar x_x = q.x * x2, x_y = q.x * y2, x_z = q.x * z2, y_y = q.y * y2, y_z = q.y * z2, z_z = q.z * z2;
+      xx = one - (y_y + z_z), xy = x_y - w_z, xz = x_z + w_y;
+      yx = x_y + w_z, yy = one - (x_x + z_z), yz = y_z - w_x;
+      zx = x_z - w_y, zy = y_z + w_x, zz = one - (x_x + y_y);
+    }
+    Vector3<Scalar> to_world(Scalar x, Scalar y, Scalar z) const noexcept {
+      return Vector3<Scalar>(xx * x + xy * y + xz * z, yx * x + yy * y + yz * z, zx * x + zy * y + zz * z);
+    }
+    Vector3<Scalar> to_body(Scalar x, Scalar y, Scalar z) const noexcept {
+      return Vector3<Scalar>(xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z);
+    }
+  };
+
+  /// An evaluation up to the wrenches.
+  PINNQUAD_ALWAYS_INLINE Evaluation<Scalar> loads(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
+                                                  Scalar time_s) const noexcept {
+    Evaluation<Scalar> result;
+    result.surroundings = surroundings(state, time_s);
+    result.rotors = rotors_.wrench(clipped(rotor_commands), density_ratio(result.surroundings));
+    result.aerodynamic = aerodynamic_wrench(state, result.surroundings, result.rotors);
+    return result;
+  }
+
+  /// The same motion as evaluate()'s, in world axes as the integrator wants it. v_dot = R f / m + g directly: Eq. (1)'s
+  /// omega x v_B would be subtracted only to be added again.
+  PINNQUAD_ALWAYS_INLINE StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
+                                                                const Commands<Scalar>& rotor_commands,
+                                                                Scalar time_s) const noexcept {
+    const Evaluation<Scalar> e = loads(state, rotor_commands, time_s);
+    const Wrench<Scalar> wrench = e.rotors + e.aerodynamic;
+    StateDerivative<Scalar> d;
+    d.velocity_m_s = state.velocity_m_s;
+    d.acceleration_m_s2 =
+        Axes(state.attitude).to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
+                                      wrench.force_N[2] * inverse_mass_);
+    d.acceleration_m_s2[2] += site_.gravity_m_s2;
+    d.attitude_rate = attitude_rate(state.attitude, state.body_rates_rad_s);
+    d.angular_acceleration_rad_s2 = accelerations(airframe_, state, wrench, site_.gravity_m_s2).angular_rad_s2;
+    return d;
+  }
+
+  template <class Function>
+  PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function) const noexcept {
+    each_effect(function, std::index_sequence_for<Effects...>{});
+  }
+  template <class Function, std::size_t... Index>
+  PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function, std::index_sequence<Index...>) const noexcept {
+    (function(std::get<Index>(effects_)), ...);
+  }
+
+  Airframe<Scalar> airframe_;
+  Scalar inverse_mass_;
+  Site<Scalar> site_;
+  std::tuple<decltype(bound_effect(std::declval<Effects>(), std::declval<Airframe<Scalar>>()))...> effects_;
+  Rotors<Scalar> rotors_;
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=bash
+#
+# How a script speaks: errors in one line, stages with their time. Sourced, never run.
+
+# die <exit code> <message>: one line on stderr, then the end.
+die() {
+  local code=$1
+  shift
+  echo "${0##*/}: $*" >&2
+  exit "$code"
+}
+
+# need_value <option> <number of arguments left, the option included>
+need_value() {
+  if [ "$2" -lt 2 ]; then die 2 "option $1 needs a value (see --help)"; fi
+}
+
+# need_natural <option> <value> <least>
+need_natural() {
+  case $2 in
+    '' | *[!0-9]*) die 2 "option $1 needs a whole number, not '$2'" ;;
+  esac
+  if [ "${#2}" -gt 9 ] || [ "$((10#$2))" -lt "$3" ]; then die 2 "option $1 needs a whole number from $3 to 999999999, not '$2'"; fi
+}
+
+# parallel_jobs: how many compilers at a time. PINNQUAD_JOBS overrides; a heavy translation unit takes about a
+# gigabyte, so memory is a limit too.
+parallel_jobs() {
+  if [ -n "${PINNQUAD_JOBS:-}" ]; then
+    echo "$PINNQUAD_JOBS"
+    return
+  fi
+  local cores memory_gib
+  cores=$(nproc 2>/dev/null || echo 2)
+  memory_gib=$(awk '/^MemAvailable:/ { print int($2 / 1048576) }' /proc/meminfo 2>/dev/null || true)
+  [ -n "$memory_gib" ] || memory_gib=$cores
+  if [ "$memory_gib" -lt 1 ]; then memory_gib=1; fi
+  if [ "$memory_gib" -lt "$cores" ]; then echo "$memory_gib"; else echo "$cores"; fi
+}

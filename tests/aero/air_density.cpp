@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/aero/air_density.hpp"
+
+#include <doctest/doctest.h>
+
+#include "support/plain_dynamics.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::standard_atmosphere_density_kg_m3;
+
+TEST_CASE_TEMPLATE("the table of the US Standard Atmosphere 1976", Scalar, float, double) {
+  // geometric altitude and density as printed in Table I: six digits, five of them compared
+  const struct {
+    double altitude_m, density;
+  } rows[] = {{-1000, 1.3470}, {0, 1.2250},     {1000, 1.1117},  {2000, 1.0066},
+              {3000, 0.90925}, {5000, 0.73643}, {8000, 0.52579}, {10000, 0.41351}};
+  const double printed_digits = 1e-4;
+  for (const auto& row : rows) {
+    CAPTURE(row.altitude_m);
+    CHECK(static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(row.altitude_m))) ==
+          doctest::Approx(row.density).epsilon(printed_digits));
+  }
+}
+
+TEST_CASE_TEMPLATE("the formula as it stands, temperature, pressure and gas law, from below the sea to 11 km", Scalar,
+                   float, double) {
+  for (int altitude = -500; altitude <= 11000; altitude += 50) {
+    CAPTURE(altitude);
+    CHECK(static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(altitude))) ==
+          doctest::Approx(plain::density(altitude)).epsilon(pinnquad::test::rounding<Scalar>(100)));
+  }
+}
+
+TEST_CASE_TEMPLATE("what the running simulator prints", Scalar, float, double) {
+  const double printed_digits = 1e-6;  // float32
+  CHECK(static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(0))) ==
+        doctest::Approx(1.22499945).epsilon(printed_digits));
+  CHECK(static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(122))) ==
+        doctest::Approx(1.21071629).epsilon(printed_digits));
+}
+
+TEST_CASE_TEMPLATE("hydrostatic balance: the pressure's gradient carries the air's weight", Scalar, float, double) {
+  // d(rho R T)/dh = -rho g (r / (r + h))^2; the simulator's exponent and lapse rate meet it to four digits
+  using std::pow;
+  for (int altitude = 0; altitude <= 10000; altitude += 500) {
+    const auto pressure = [](double h) {
+      const double geopotential = 6356.766 * h / (6356.766 + h / 1000.0);
+      return static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(h))) * 287.053 *
+             (288.15 - 6.5e-3 * geopotential);
+    };
+    const double h = altitude, step = 100.0;
+    const double gravity = 9.80665 * pow(6356766.0 / (6356766.0 + h), 2.0);
+    const double weight = static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(h))) * gravity;
+    CHECK(-(pressure(h + step) - pressure(h - step)) / (2 * step) == doctest::Approx(weight).epsilon(1e-3));
+  }
+}
+
+TEST_CASE_TEMPLATE("the effect sets the density of its altitude and nothing else", Scalar, float, double) {
+  pinnquad::Surroundings<Scalar> air;
+  air.altitude_m = Scalar(1000);
+  air.wind_m_s[1] = Scalar(3);
+  pinnquad::StandardAtmosphere{}.surroundings(air);
+  CHECK(air.air_density_kg_m3 == standard_atmosphere_density_kg_m3(Scalar(1000)));
+  CHECK(air.wind_m_s == pinnquad::Vector3<Scalar>(0, 3, 0));
+  CHECK(air.altitude_m == Scalar(1000));
+  static_assert(pinnquad::changes_surroundings<pinnquad::StandardAtmosphere>);
+  static_assert(!pinnquad::makes_wrench<pinnquad::StandardAtmosphere>);
+}
+
+TEST_CASE_TEMPLATE("without the effect the density is that of sea level", Scalar, float, double) {
+  CHECK(pinnquad::Surroundings<Scalar>{}.air_density_kg_m3 == standard_atmosphere_density_kg_m3(Scalar(0)));
+}

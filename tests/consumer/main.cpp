@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+//
+// The least that a user can do: include what flies, use one name of it, say the version.
+#include <cstdio>
+#include <pinnquad/flight.hpp>
+#include <pinnquad/version.hpp>
+
+int main() {
+  const pinnquad::Status status = pinnquad::Status::ok;
+  std::printf("pinnquad %s: %s\n", PINNQUAD_VERSION, pinnquad::to_string(status));
+  return status == pinnquad::Status::ok ? 0 : 1;
+}

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Differential flatness: the attitude carries the acceleration; rates and angular accelerations are its derivatives.
+#include "pinnquad/control/flatness.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "pinnquad/dynamics/airframe.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+constexpr double gravity = standard_gravity_m_s2<double>;
+
+FigureEight<double> agile_figure_eight() {
+  FigureEight<double> eight;
+  eight.yaw_amplitude_rad = 1.1;
+  eight.half_height_m = 1.5;
+  eight.period_s = 5;
+  return eight;
+}
+
+FlatMotion<double> flat_at(const FigureEight<double>& eight, double time_s) {
+  FlatMotion<double> motion;
+  REQUIRE(flat_motion(eight.sample(time_s), gravity, motion) == Status::ok);
+  return motion;
+}
+
+/// Body rates between two attitudes: 2 vec(q_a* q_b) / dt for a small turn.
+Vector3<double> rates_between(const Quaternion<double>& a, const Quaternion<double>& b, double dt_s) {
+  const Quaternion<double> turn = conjugate(a) * b;
+  const double sign = turn.w < 0 ? -1 : 1;
+  return Vector3<double>(turn.x, turn.y, turn.z) * (2 * sign / dt_s);
+}
+
+}  // namespace
+
+TEST_CASE("thrust along the attitude plus gravity gives the acceleration; yaw is the trajectory's") {
+  const FigureEight<double> eight = agile_figure_eight();
+  constexpr double rounding = 1e-12;
+  for (double t = 0; t < 11; t += 0.37) {
+    const TrajectoryPoint<double> point = eight.sample(t);
+    const FlatMotion<double> motion = flat_at(eight, t);
+    const Vector3<double> thrust = body_down_axis(motion.attitude) * -motion.specific_thrust_m_s2;
+    CHECK((thrust + Vector3<double>(0, 0, gravity) - point.acceleration_m_s2).norm() <= 10 * rounding);
+    CHECK(to_euler(motion.attitude).yaw_rad == doctest::Approx(point.yaw_rad).epsilon(rounding));
+    CHECK(squared_norm(motion.attitude) == doctest::Approx(1).epsilon(rounding));
+  }
+}
+
+TEST_CASE("body rates are the derivative of the attitude, angular accelerations that of the rates") {
+  const FigureEight<double> eight = agile_figure_eight();
+  constexpr double step_s = 1e-4;
+  constexpr double tolerance = 1e-6;  // central differences: step^2 times derivatives of order 10 to 100
+  for (double t = 0.05; t < 11; t += 0.19) {
+    const FlatMotion<double> before = flat_at(eight, t - step_s), now = flat_at(eight, t),
+                             after = flat_at(eight, t + step_s);
+    const Vector3<double> rates = rates_between(before.attitude, after.attitude, 2 * step_s);
+    const Vector3<double> accelerations = (after.body_rates_rad_s - before.body_rates_rad_s) / (2 * step_s);
+    CHECK((rates - now.body_rates_rad_s).norm() <= tolerance);
+    CHECK((accelerations - now.angular_acceleration_rad_s2).norm() <= 10 * tolerance);
+  }
+}
+
+TEST_CASE("hover: level, still, thrust balances gravity") {
+  FlatMotion<float> motion;
+  REQUIRE(flat_motion(Hover<float>{}.sample(0.0f), 9.80665f, motion) == Status::ok);
+  CHECK(motion.attitude.w == 1);
+  CHECK(motion.body_rates_rad_s.norm() == 0);
+  CHECK(motion.angular_acceleration_rad_s2.norm() == 0);
+  CHECK(motion.specific_thrust_m_s2 == 9.80665f);
+}
+
+TEST_CASE("mirror symmetry: east turned to west turns roll, yaw and their rates") {
+  FigureEight<double> right = agile_figure_eight();
+  FigureEight<double> left = right;
+  left.half_width_m = -right.half_width_m;
+  left.yaw_amplitude_rad = -right.yaw_amplitude_rad;
+  constexpr double rounding = 1e-12;
+  for (double t = 0; t < 11; t += 0.41) {
+    const FlatMotion<double> a = flat_at(right, t), b = flat_at(left, t);
+    const Vector3<double> sides(-1, 1, -1);
+    CHECK(a.specific_thrust_m_s2 == doctest::Approx(b.specific_thrust_m_s2).epsilon(rounding));
+    CHECK((a.body_rates_rad_s - sides.cwiseProduct(b.body_rates_rad_s)).norm() <= 100 * rounding);
+    CHECK((a.angular_acceleration_rad_s2 - sides.cwiseProduct(b.angular_acceleration_rad_s2)).norm() <=
+          1000 * rounding);
+  }
+}
+
+TEST_CASE("what has no attitude has a Status, and the output is left alone") {
+  FlatMotion<double> motion;
+  motion.specific_thrust_m_s2 = 42;
+  TrajectoryPoint<double> point;
+  SUBCASE("free fall") {
+    point.acceleration_m_s2[2] = gravity;
+    CHECK(flat_motion(point, gravity, motion) == Status::no_solution);
+  }
+  SUBCASE("thrust too small to have a direction worth flying") {
+    point.acceleration_m_s2[2] = gravity - 0.1 * flatness_limit<double>;
+    CHECK(flat_motion(point, gravity, motion) == Status::no_solution);
+  }
+  SUBCASE("thrust along the horizon, across the heading") {
+    point.acceleration_m_s2 = Vector3<double>(0, 20, gravity);
+    CHECK(flat_motion(point, gravity, motion) == Status::no_solution);
+  }
+  SUBCASE("NaN in snap") {
+    point.snap_m_s4[1] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(flat_motion(point, gravity, motion) == Status::not_finite);
+  }
+  SUBCASE("infinite yaw rate") {
+    point.yaw_rate_rad_s = std::numeric_limits<double>::infinity();
+    CHECK(flat_motion(point, gravity, motion) == Status::not_finite);
+  }
+  CHECK(motion.specific_thrust_m_s2 == 42);
+}

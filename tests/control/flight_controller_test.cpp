@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// The cascaded controller: rest at rest, convergence, limits, symmetry, refusal of bad input.
+#include "pinnquad/control/flight_controller.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <random>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/control/torque_priority.hpp"
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+template <class Scalar>
+using Vehicle = Quadrotor<Scalar, StandardAtmosphere, QuadraticDrag>;
+
+template <class Scalar>
+Vehicle<Scalar> vehicle() {
+  return Vehicle<Scalar>(airframe_value<PaperQuadrotor, Scalar>(), paper_site<Scalar>(), {}, {});
+}
+
+/// Flies a set point for a while through the analytic inverse.
+template <class Scalar>
+Status fly_set_point(const Vehicle<Scalar>& quadrotor, const SetPoint<Scalar>& wanted, Scalar duration_s,
+                     VehicleState<Scalar>& state) {
+  const FlightController<Scalar> controller;
+  const auto step_s = Scalar(0.001);
+  Commands<Scalar> commands{};
+  while (Scalar(state.time_s) < duration_s) {
+    Accelerations<Scalar> demand;
+    Status status = controller(state.body, wanted, demand);
+    if (status == Status::ok) status = inverse_commands(quadrotor, state.body, demand, Scalar(state.time_s), commands);
+    if (status == Status::ok) status = quadrotor.step(state, keep_torque(commands), step_s);
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("in hover nothing is asked for, and the hover holds", Scalar, float, double) {
+  const Vehicle<Scalar> quadrotor = vehicle<Scalar>();
+  const FlightController<Scalar> controller;
+  Accelerations<Scalar> demand;
+  REQUIRE(controller(State<Scalar>{}, SetPoint<Scalar>{}, demand) == Status::ok);
+  CHECK(demand.linear_m_s2.norm() <= Scalar(1e-6));
+  CHECK(demand.angular_rad_s2.norm() <= Scalar(1e-6));
+
+  HoverTrim<Scalar> trim;
+  REQUIRE(hover_trim(quadrotor, Vector3<Scalar>(Scalar(0), Scalar(0), Scalar(0)), trim) == Status::ok);
+  CHECK(trim.commands[0] == doctest::Approx(0.505).epsilon(0.01));  // "hovers at command 0.50", at 122 m
+  VehicleState<Scalar> state;
+  state.rotors = trim.commands;
+  REQUIRE(fly_set_point(quadrotor, SetPoint<Scalar>{}, Scalar(5), state) == Status::ok);
+  CHECK(state.body.position_m.norm() <= Scalar(1e-3));  // float: 5,000 roundings of 1e-7 N's worth of thrust
+  CHECK(state.body.velocity_m_s.norm() <= Scalar(1e-3));
+}
+
+TEST_CASE("the velocity and the yaw rate wanted are reached from random states") {
+  const Vehicle<double> quadrotor = vehicle<double>();
+  std::mt19937_64 engine(5);
+  for (int run = 0; run < 20; ++run) {
+    VehicleState<double> state;
+    for (int i = 0; i < 3; ++i) {
+      state.body.velocity_m_s[i] = uniform(engine, -5, 5);
+      state.body.body_rates_rad_s[i] = uniform(engine, -3, 3);
+    }
+    state.body.attitude =
+        from_euler<double>({uniform(engine, -1.2, 1.2), uniform(engine, -1.2, 1.2), uniform(engine, -3, 3)});
+    state.rotors = {0.5, 0.5, 0.5, 0.5};
+    SetPoint<double> wanted;
+    wanted.velocity_m_s = Vector3<double>(uniform(engine, -4, 4), uniform(engine, -4, 4), uniform(engine, -4, 4));
+    wanted.yaw_rate_rad_s = uniform(engine, -0.8, 0.8);
+    REQUIRE(fly_set_point(quadrotor, wanted, 6.0, state) == Status::ok);
+    // no integral action: lateral drag (0.1 m/s^2 at 4 m/s) over the velocity gain of 3 1/s stays
+    constexpr double standing_error_m_s = 0.1;
+    CHECK((state.body.velocity_m_s - wanted.velocity_m_s).norm() <= standing_error_m_s);
+    const double turn = body_to_world(state.body.attitude, state.body.body_rates_rad_s)[2];
+    CHECK(turn == doctest::Approx(wanted.yaw_rate_rad_s).epsilon(0.05));
+  }
+}
+
+TEST_CASE("mirror symmetry of the demand") {
+  const FlightController<double> controller;
+  State<double> state;
+  state.velocity_m_s = Vector3<double>(1, 2, -0.5);
+  state.attitude = from_euler<double>({0.3, -0.2, 0.9});
+  state.body_rates_rad_s = Vector3<double>(0.4, -0.6, 0.2);
+  State<double> mirrored = state;
+  mirrored.velocity_m_s[1] *= -1;
+  mirrored.attitude = from_euler<double>({-0.3, -0.2, -0.9});
+  mirrored.body_rates_rad_s = Vector3<double>(-0.4, -0.6, -0.2);
+  SetPoint<double> wanted{Vector3<double>(3, -1, 0.5), 0.4, Vector3<double>(0.1, 0.2, -0.1)};
+  SetPoint<double> mirror{Vector3<double>(3, 1, 0.5), -0.4, Vector3<double>(-0.1, 0.2, 0.1)};
+  Accelerations<double> a, b;
+  REQUIRE(controller(state, wanted, a) == Status::ok);
+  REQUIRE(controller(mirrored, mirror, b) == Status::ok);
+  constexpr double rounding = 1e-12;
+  CHECK((a.linear_m_s2 - Vector3<double>(1, -1, 1).cwiseProduct(b.linear_m_s2)).norm() <= rounding);
+  CHECK((a.angular_rad_s2 - Vector3<double>(-1, 1, -1).cwiseProduct(b.angular_rad_s2)).norm() <= 100 * rounding);
+}
+
+TEST_CASE("on the reference there is no feedback, and the reference motion is that of flatness") {
+  FigureEight<double> eight;
+  eight.yaw_amplitude_rad = 0.8;
+  const FlightController<double> controller;
+  constexpr double rounding = 1e-10;  // gains of up to 200 1/s^2 on errors of 1e-14
+  for (double t = 0.1; t < 12; t += 0.7) {
+    const TrajectoryPoint<double> point = eight.sample(t);
+    FlatMotion<double> flat;
+    REQUIRE(flat_motion(point, standard_gravity_m_s2<double>, flat) == Status::ok);
+    const State<double> state{point.position_m, point.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
+    TrackingDemand<double> demand;
+    REQUIRE(controller(state, point, demand) == Status::ok);
+    CHECK(demand.feedback_acceleration_m_s2.norm() <= rounding);
+    CHECK(demand.feedback_angular_acceleration_rad_s2.norm() <= rounding);
+    CHECK((demand.reference.angular_rad_s2 - flat.angular_acceleration_rad_s2).norm() <= rounding);
+    CHECK((world_acceleration(state, demand.reference.linear_m_s2) - point.acceleration_m_s2).norm() <= rounding);
+  }
+}
+
+TEST_CASE("limits: tilt, thrust and horizontal acceleration hold whatever is asked for") {
+  const FlightController<double> controller;
+  const FlightLimits<double>& limits = controller.limits();
+  const double gravity = standard_gravity_m_s2<double>;
+  std::mt19937_64 engine(6);
+  constexpr double rounding = 1e-12;
+  for (int i = 0; i < 1000; ++i) {
+    Vector3<double> asked;
+    for (int k = 0; k < 3; ++k) asked[k] = uniform(engine, -40, 40);
+    const Vector3<double> given = controller.limited(asked);
+    const double up = gravity - given[2];
+    const double horizontal = std::sqrt(given[0] * given[0] + given[1] * given[1]);
+    CHECK(up >= limits.min_vertical_specific_force_m_s2 - rounding);
+    CHECK(std::sqrt(up * up + horizontal * horizontal) <= limits.max_specific_force_m_s2 + rounding);
+    CHECK(horizontal <= limits.max_horizontal_acceleration_m_s2 + rounding);
+    CHECK(horizontal <= up * std::tan(limits.max_tilt_rad) + rounding);
+    CHECK(asked[0] * given[1] == doctest::Approx(asked[1] * given[0]));  // the course is kept
+  }
+  const Vector3<double> small(0.5, -0.2, 0.1);
+  CHECK((controller.limited(small) - small).norm() <= rounding);
+}
+
+TEST_CASE("an airframe with little thrust gets narrower limits") {
+  Airframe<double> heavy = airframe_value<PaperQuadrotor, double>();
+  const FlightLimits<double> light_limits = flight_limits(heavy, 1.0);
+  heavy.mass_kg *= 1.75;
+  const FlightLimits<double> limits = flight_limits(heavy, 1.0);
+  CHECK(limits.max_specific_force_m_s2 < heavy.thrust_to_weight() * standard_gravity_m_s2<double>);
+  CHECK(limits.max_roll_pitch_acceleration_rad_s2 < 0.4 * light_limits.max_roll_pitch_acceleration_rad_s2);
+  CHECK(limits.max_yaw_acceleration_rad_s2 < light_limits.max_yaw_acceleration_rad_s2);
+}
+
+TEST_CASE("bad input: a Status, and the demand is left alone") {
+  const FlightController<float> controller;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Accelerations<float> demand;
+  demand.linear_m_s2[0] = 42;
+  State<float> state;
+  SetPoint<float> wanted;
+  SUBCASE("state") { state.attitude.y = nan; }
+  SUBCASE("velocity wanted") { wanted.velocity_m_s[1] = std::numeric_limits<float>::infinity(); }
+  SUBCASE("yaw rate wanted") { wanted.yaw_rate_rad_s = nan; }
+  SUBCASE("sticks") { wanted.stick_rad_s[2] = nan; }
+  CHECK(controller(state, wanted, demand) == Status::not_finite);
+  CHECK(demand.linear_m_s2[0] == 42);
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Torque before thrust.
+#include "pinnquad/control/torque_priority.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+using pinnquad::Commands;
+using pinnquad::keep_torque;
+using pinnquad::saturated;
+
+namespace {
+
+bool same(const Commands<double>& a, const Commands<double>& b) {
+  constexpr double rounding = 1e-15;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!(a[i] - b[i] <= rounding && b[i] - a[i] <= rounding)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("commands that fit stay, others shift together") {
+  CHECK(keep_torque(Commands<double>{0.1, 0.9, 0.5, 1.0}) == Commands<double>{0.1, 0.9, 0.5, 1.0});
+  CHECK(same(keep_torque(Commands<double>{0.9, 1.2, 0.8, 1.0}), {0.7, 1.0, 0.6, 0.8}));
+  CHECK(same(keep_torque(Commands<double>{-0.2, 0.1, 0.3, 0.0}), {0.0, 0.3, 0.5, 0.2}));
+}
+
+TEST_CASE("a spread above 1 keeps the largest at the limit; the rotors clip the rest") {
+  CHECK(same(keep_torque(Commands<double>{-0.4, 1.2, 0.5, 0.5}), {-0.6, 1.0, 0.3, 0.3}));
+  CHECK(same(keep_torque(Commands<double>{-0.8, 0.6, 0.0, 0.0}), {-0.4, 1.0, 0.4, 0.4}));
+}
+
+TEST_CASE("saturated: a rotor at its end, or NaN") {
+  CHECK(!saturated(Commands<float>{0.1f, 0.2f, 0.3f, 0.99f}));
+  CHECK(saturated(Commands<float>{0.0f, 0.2f, 0.3f, 0.4f}));
+  CHECK(saturated(Commands<float>{0.1f, 0.2f, 0.3f, 1.0f}));
+  CHECK(saturated(Commands<float>{0.1f, 0.2f, std::numeric_limits<float>::quiet_NaN(), 0.5f}));
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// Closed loop on trajectories: feed-forward policies under the same feedback, and the fallback's book-keeping.
+#include "pinnquad/control/tracking.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
+
+Vehicle vehicle() { return Vehicle(airframe_value<PaperQuadrotor, double>(), paper_site<double>(), {}, {}); }
+
+FigureEight<double> course() {
+  FigureEight<double> eight;
+  eight.center_m = Vector3<double>(0, 0, -20);
+  return eight;
+}
+
+HoverTrim<double> trim() {
+  HoverTrim<double> result;
+  REQUIRE(hover_trim(vehicle(), Vector3<double>(0, 0, -20), result) == Status::ok);
+  return result;
+}
+
+/// Stands in for a trained network: the interface of InverseDynamics, the vehicle's formula in float, times `gain`.
+struct FakeInverseDynamics {
+  using Scalar = float;
+  using Inputs = MotionInputs<float>;
+
+  float gain = 1;
+  float max_speed_m_s = 100;
+
+  Status predict(const Inputs& in, Commands<float>& commands) const noexcept {
+    if (in.velocity_m_s.norm() > max_speed_m_s) return Status::outside_envelope;
+    const Quadrotor<float, StandardAtmosphere, QuadraticDrag> quadrotor(airframe_value<PaperQuadrotor, float>(),
+                                                                        paper_site<float>(), {}, {});
+    State<float> state;
+    state.attitude = in.attitude;
+    state.velocity_m_s = body_to_world(in.attitude, in.velocity_m_s);
+    state.body_rates_rad_s = in.body_rates_rad_s;
+    const Status status = inverse_commands(
+        quadrotor, state, {in.linear_acceleration_m_s2, in.angular_acceleration_rad_s2}, 0.0f, commands);
+    for (float& u : commands) u *= gain;
+    return status;
+  }
+};
+
+using Network = NetworkInverse<FakeInverseDynamics, AnalyticInverse<Vehicle>>;
+
+template <class FeedForward>
+TrackingResult<double> tracked(const FeedForward& feed_forward) {
+  return track(vehicle(), course(), FlightController<double>{}, feed_forward);
+}
+
+}  // namespace
+
+TEST_CASE("feed-forward policies under one feedback law: analytic inverse < hover trim") {
+  const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
+  const TrackingResult<double> hover = tracked(trim());
+  MESSAGE("analytic inverse ", 100 * analytic.rmse_m, " cm, hover trim ", 100 * hover.rmse_m, " cm");
+  REQUIRE(analytic.status == Status::ok);
+  REQUIRE(hover.status == Status::ok);
+  CHECK(analytic.flown_s == doctest::Approx(30));
+  CHECK(analytic.max_speed_m_s > 4.5);
+  CHECK(analytic.rmse_m < 0.05);  // rotor lag and lateral drag, which four rotors can't answer, are left
+  CHECK(analytic.max_error_m >= analytic.rmse_m);
+  CHECK(hover.rmse_m > 2 * analytic.rmse_m);
+  CHECK(hover.rmse_m < 1);  // worse, but the feedback holds it
+  CHECK(analytic.saturated_share == 0);
+  CHECK(analytic.fallback.asked == 0);
+}
+
+TEST_CASE("a network that knows the formula tracks like the formula; a broken one visibly worse") {
+  const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
+  const TrackingResult<double> network = tracked(Network({}, AnalyticInverse<Vehicle>(vehicle())));
+  const TrackingResult<double> zeroed = tracked(Network({0.0f, 100.0f}, AnalyticInverse<Vehicle>(vehicle())));
+  REQUIRE(network.status == Status::ok);
+  constexpr double float_rounding_m = 1e-3;  // float commands, and sea-level density instead of 20 m up: 0.2 %
+  CHECK(std::abs(network.rmse_m - analytic.rmse_m) <= float_rounding_m);
+  CHECK(network.fallback.asked == 15000);
+  CHECK(network.fallback.fallbacks() == 0);
+  CHECK(zeroed.rmse_m > 5 * analytic.rmse_m);
+}
+
+TEST_CASE("where the network declines the fallback flies, and is counted by Status") {
+  const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
+  const TrackingResult<double> never = tracked(Network({0.0f, -1.0f}, AnalyticInverse<Vehicle>(vehicle())));
+  CHECK(never.rmse_m == analytic.rmse_m);  // the same arithmetic, to the bit
+  CHECK(never.fallback.fallbacks() == never.fallback.asked);
+  CHECK(never.fallback.of(Status::outside_envelope) == never.fallback.asked);
+
+  const TrackingResult<double> slow_only = tracked(Network({1.0f, 4.0f}, AnalyticInverse<Vehicle>(vehicle())));
+  CHECK(slow_only.fallback.fallbacks() > 0);
+  CHECK(slow_only.fallback.of(Status::ok) > slow_only.fallback.fallbacks());
+  CHECK(slow_only.rmse_m < 0.05);
+}
+
+TEST_CASE("a circle, and a hover that stays") {
+  Circle<double> circle;
+  circle.center_m = Vector3<double>(0, 0, -20);
+  const AnalyticInverse<Vehicle> inverse(vehicle());
+  const TrackingResult<double> round = track(vehicle(), circle, FlightController<double>{}, inverse);
+  CHECK(round.status == Status::ok);
+  CHECK(round.rmse_m < 0.05);
+  const Hover<double> still{Vector3<double>(1, 2, -20), 0.5};
+  CHECK(track(vehicle(), still, FlightController<double>{}, inverse).max_error_m <= 1e-9);
+  CHECK(track(vehicle(), still, FlightController<double>{}, trim()).max_error_m <= 1e-9);
+}
+
+TEST_CASE("the loop recovers from a start far off, in every direction") {
+  const Vehicle quadrotor = vehicle();
+  const Hover<double> goal{Vector3<double>(0, 0, -20), 0.0};
+  for (int direction = 0; direction < 6; ++direction) {
+    VehicleState<double> state;
+    state.body.position_m = Vector3<double>(0, 0, -20);
+    state.body.position_m[direction % 3] += direction < 3 ? 5 : -5;
+    state.rotors = trim().commands;
+    TrackingController<double, HoverTrim<double>> controller(quadrotor.airframe(), FlightController<double>{}, trim());
+    Commands<double> commands{};
+    for (int i = 0; i < 8000; ++i) {
+      REQUIRE(controller(state.body, goal.sample(state.time_s), state.time_s, commands) == Status::ok);
+      REQUIRE(quadrotor.step(state, commands, 0.001) == Status::ok);
+    }
+    CHECK((state.body.position_m - Vector3<double>(0, 0, -20)).norm() <= 0.01);
+  }
+}
+
+TEST_CASE("mirror symmetry: the mirrored course is missed by as much") {
+  FigureEight<double> right = course(), left = course();
+  left.half_width_m = -left.half_width_m;
+  const AnalyticInverse<Vehicle> inverse(vehicle());
+  const FlightController<double> controller;
+  constexpr double chaos = 1e-9;  // rounding, grown over 30 s in a stable loop
+  CHECK(track(vehicle(), right, controller, inverse).rmse_m ==
+        doctest::Approx(track(vehicle(), left, controller, inverse).rmse_m).epsilon(chaos));
+}
+
+TEST_CASE("float flies it too") {
+  using FloatVehicle = Quadrotor<float, StandardAtmosphere, QuadraticDrag>;
+  const FloatVehicle quadrotor(airframe_value<PaperQuadrotor, float>(), paper_site<float>(), {}, {});
+  FigureEight<float> eight;
+  eight.center_m[2] = -20;
+  const TrackingResult<float> result =
+      track(quadrotor, eight, FlightController<float>{}, AnalyticInverse<FloatVehicle>(quadrotor));
+  CHECK(result.status == Status::ok);
+  CHECK(result.rmse_m < 0.05f);
+}
+
+TEST_CASE("bad input ends the flight with its Status") {
+  FigureEight<double> broken = course();
+  broken.half_width_m = std::numeric_limits<double>::quiet_NaN();
+  const TrackingResult<double> result =
+      track(vehicle(), broken, FlightController<double>{}, AnalyticInverse<Vehicle>(vehicle()));
+  CHECK(result.status == Status::not_finite);
+  CHECK(result.flown_s == 0);
+
+  TrackingController<double, HoverTrim<double>> controller(vehicle().airframe(), FlightController<double>{}, trim());
+  Commands<double> commands{42, 42, 42, 42};
+  State<double> state;
+  state.velocity_m_s[0] = std::numeric_limits<double>::infinity();
+  CHECK(controller(state, course().sample(1.0), 1.0, commands) == Status::not_finite);
+  CHECK(commands[0] == 42);
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/core/types.hpp"
+
+#include <doctest/doctest.h>
+
+#include <type_traits>
+
+#include "support/random_states.hpp"
+#include "support/tolerances.hpp"
+
+TEST_CASE_TEMPLATE("matrices have no alignment demands and no padding", Scalar, float, double) {
+  static_assert(alignof(pinnquad::Vector<Scalar, 4>) == alignof(Scalar));
+  static_assert(alignof(pinnquad::Matrix<Scalar, 4, 4>) == alignof(Scalar));
+  static_assert(sizeof(pinnquad::Vector3<Scalar>) == 3 * sizeof(Scalar));
+  static_assert(sizeof(pinnquad::State<Scalar>) == 13 * sizeof(Scalar));
+  static_assert(pinnquad::Matrix<Scalar, 1, 4>::IsRowMajor);
+  static_assert(!pinnquad::Matrix<Scalar, 4, 4>::IsRowMajor);
+  CHECK(true);
+}
+
+TEST_CASE_TEMPLATE("cross: basis vectors, at a right angle to both, Lagrange's identity", Scalar, float, double) {
+  using V = pinnquad::Vector3<Scalar>;
+  const V x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  CHECK(pinnquad::cross<Scalar>(x, y) == z);
+  CHECK(pinnquad::cross<Scalar>(y, z) == x);
+  CHECK(pinnquad::cross<Scalar>(z, x) == y);
+  const double tolerance = pinnquad::test::rounding<Scalar>(8);
+  pinnquad::test::RandomStates random(6);
+  for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
+    const V a = random.vector<Scalar>(1.0), b = random.vector<Scalar>(1.0);
+    const V c = pinnquad::cross<Scalar>(a, b);
+    CHECK(pinnquad::cross<Scalar>(b, a) == -c);
+    CHECK(static_cast<double>(std::abs(a.dot(c))) <= tolerance);
+    CHECK(static_cast<double>(std::abs(b.dot(c))) <= tolerance);
+    const Scalar identity = a.squaredNorm() * b.squaredNorm() - a.dot(b) * a.dot(b);
+    CHECK(static_cast<double>(std::abs(c.squaredNorm() - identity)) <= 2 * tolerance);
+  }
+}

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+#include <pinnquad/data/csv.hpp>
+#include <pinnquad/data/split.hpp>
+#include <string>
+#include <vector>
+
+#include "recorded_flight.hpp"
+#include "temporary_folder.hpp"
+
+using pinnquad::Flight;
+using pinnquad::InputError;
+using pinnquad::OutputError;
+using pinnquad::read_flight_csv;
+using pinnquad::write_flight_csv;
+using pinnquad_test::random_flight;
+using pinnquad_test::TemporaryFolder;
+
+namespace {
+
+const std::string header =
+    "t,vdot_bx,vdot_by,vdot_bz,wdot_x,wdot_y,wdot_z,v_bx,v_by,v_bz,w_x,w_y,w_z,roll,pitch,yaw,altitude,u1,u2,u3,u4";
+
+/// Two rows as an independent simulator recorded them.
+const std::string row_1 =
+    "0.050,0.0081039992,0.0017680993,-0.79444088,0.71187556,-3.2602422,0.14148764,8.537749e-05,1.8412273e-05,"
+    "-0.035656471,0.017792288,-0.080160178,0.0040518781,0.00026387197,-0.0012027206,6.3046282e-05,15.877752,"
+    "0.96524167,1,0.9304949,0.95474672";
+const std::string row_2 =
+    "0.100,0.071674583,0.015849292,-0.87404968,0.42356798,-1.7929393,0.14264864,0.0017909763,0.00039406927,"
+    "-0.076029175,0.051837988,-0.23023456,0.011162658,0.0020764207,-0.0093431855,0.00043371267,15.880524,0.98590267,1,"
+    "0.9482035,0.95769918";
+
+bool same_bits(const Flight& a, const Flight& b) {
+  return a.size() == b.size() && pinnquad::content_hash(a) == pinnquad::content_hash(b);
+}
+
+/// The text of the InputError that reading gives, without the folder.
+std::string complaint(const TemporaryFolder& folder, const std::string& text, std::size_t minimum_rows = 1) {
+  const std::string path = folder.write("flight.csv", text);
+  try {
+    read_flight_csv(path, minimum_rows);
+  } catch (const InputError& error) {
+    return std::string(error.what()).substr(path.size() - std::string("flight.csv").size());
+  }
+  return "accepted";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("a flight survives writing and reading to the bit") {
+  const TemporaryFolder folder;
+  const Flight flight = random_flight(500, 3);
+  write_flight_csv(folder.path("flight.csv"), flight);
+  CHECK(same_bits(read_flight_csv(folder.path("flight.csv")), flight));
+  CHECK(folder.listing() == std::vector<std::string>{"flight.csv"});
+}
+
+TEST_CASE("rows of an independent simulator are read as they stand") {
+  const TemporaryFolder folder;
+  const Flight flight = read_flight_csv(folder.write("in.csv", header + "\r\n" + row_1 + "\r\n" + row_2 + "\r\n"), 2);
+  REQUIRE(flight.size() == 2);
+  CHECK(flight[0].time_s == 0.05);
+  CHECK(flight[0].linear_acceleration_m_s2[2] == -0.79444088);
+  CHECK(flight[0].angular_acceleration_rad_s2[1] == -3.2602422);
+  CHECK(flight[0].velocity_m_s[0] == 8.537749e-05);
+  CHECK(flight[0].body_rates_rad_s[2] == 0.0040518781);
+  CHECK(flight[1].roll_rad == 0.0020764207);
+  CHECK(flight[1].pitch_rad == -0.0093431855);
+  CHECK(flight[1].yaw_rad == 0.00043371267);
+  CHECK(flight[1].altitude_m == 15.880524);
+  CHECK(flight[1].commands == std::array<double, 4>{0.98590267, 1, 0.9482035, 0.95769918});
+}
+
+TEST_CASE("the order of columns does not matter, strangers are ignored") {
+  const TemporaryFolder folder;
+  const Flight flight = random_flight(12, 5);
+  pinnquad::CsvTable table;
+  table.header = {"stranger"};
+  for (const auto name : pinnquad::sample_field_names) table.header.insert(table.header.begin(), std::string(name));
+  for (const auto& sample : flight) {
+    const auto values = pinnquad::to_values(sample);
+    table.rows.emplace_back(values.rbegin(), values.rend());
+    table.rows.back().push_back(std::numeric_limits<double>::quiet_NaN());
+  }
+  write_csv(folder.path("mixed.csv"), table);
+  CHECK(same_bits(read_flight_csv(folder.path("mixed.csv")), flight));
+}
+
+TEST_CASE("each column is needed, once") {
+  const TemporaryFolder folder;
+  for (const auto view : pinnquad::sample_field_names) {
+    const std::string name(view);
+    const std::string others = replaced("," + header + ",", "," + name + ",", ",other,");
+    CHECK(complaint(folder, others.substr(1, others.size() - 2) + "\n" + row_1 + "\n") ==
+          "flight.csv:1: expected a column named " + name + ", found none of that name among 21 columns");
+    const std::string found = complaint(folder, header + "," + name + "\n" + row_1 + ",0\n");
+    CHECK(found.substr(0, found.find(" (")) ==
+          "flight.csv:1:22: expected one column named " + name + ", found a second one");
+  }
+}
+
+TEST_CASE("a bad cell is told by line, column and name") {
+  const TemporaryFolder folder;
+  const std::string good = header + "\n" + row_1 + "\n";
+  CHECK(complaint(folder, good + row_2 + "\n") == "accepted");
+  CHECK(complaint(folder, good + replaced(row_2, "0.42356798", "abc") + "\n") ==
+        "flight.csv:3:5: expected a finite number in column wdot_x, found \"abc\"");
+  CHECK(complaint(folder, good + replaced(row_2, "0.95769918", "NaN") + "\n") ==
+        "flight.csv:3:21: expected a finite number in column u4, found \"NaN\"");
+  CHECK(complaint(folder, good + replaced(row_2, "15.880524", "") + "\n") ==
+        "flight.csv:3:17: expected a finite number in column altitude, found an empty cell");
+  CHECK(complaint(folder, good + replaced(row_2, ",0.95769918", "") + "\n") ==
+        "flight.csv:3:21: expected 21 fields as in the header, found 20");
+  CHECK(complaint(folder, good + row_2 + ",1\n") == "flight.csv:3:22: expected 21 fields as in the header, found 22");
+}
+
+TEST_CASE("time must increase from row to row") {
+  const TemporaryFolder folder;
+  CHECK(complaint(folder, header + "\n" + row_1 + "\n" + row_1 + "\n") ==
+        "flight.csv:3:1: expected a time above 0.05 in column t, found 0.05");
+  CHECK(complaint(folder, header + "\n" + row_2 + "\n" + row_1 + "\n") ==
+        "flight.csv:3:1: expected a time above 0.1 in column t, found 0.05");
+  const std::string time_last = header.substr(2) + ",t\n" + row_2.substr(6) + ",0.1\n" + row_1.substr(6) + ",-3\n";
+  CHECK(complaint(folder, time_last) == "flight.csv:3:21: expected a time above 0.1 in column t, found -3");
+}
+
+TEST_CASE("a flight of too few rows is refused; by default what is accepted can be split") {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("short.csv");
+  CHECK(complaint(folder, header + "\n", pinnquad::minimum_flight_rows) ==
+        "flight.csv:1: expected at least 10 rows of data, found 0");
+  write_flight_csv(path, random_flight(9, 1));
+  CHECK_THROWS_WITH_AS(read_flight_csv(path), (path + ":10: expected at least 10 rows of data, found 9").c_str(),
+                       InputError);
+  write_flight_csv(path, random_flight(10, 1));
+  CHECK_NOTHROW(pinnquad::split_contiguous(read_flight_csv(path).size()));
+}
+
+TEST_CASE("a flight that could not be read back is not written, and the old file stays") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("out.csv", "old");
+  Flight flight = random_flight(12, 2);
+  SUBCASE("not finite") {
+    flight[7].body_rates_rad_s[1] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(write_flight_csv(path, flight),
+                         ("cannot write " + path + ": sample 7 has no finite w_y").c_str(), OutputError);
+  }
+  SUBCASE("time stands still") {
+    flight[4].time_s = flight[3].time_s;
+    CHECK_THROWS_WITH_AS(write_flight_csv(path, flight),
+                         ("cannot write " + path + ": time does not increase at sample 4").c_str(), OutputError);
+  }
+  CHECK(folder.listing() == std::vector<std::string>{"out.csv"});
+  CHECK(folder.read("out.csv") == "old");
+}

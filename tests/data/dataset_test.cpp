@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <pinnquad/data/dataset.hpp>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "recorded_flight.hpp"
+
+using pinnquad::content_hash;
+using pinnquad::Flight;
+
+namespace {
+
+std::uint64_t fnv1a(const std::string& bytes) {
+  pinnquad::detail::Fnv1a fnv;
+  for (const char byte : bytes) fnv.absorb(static_cast<unsigned char>(byte));
+  return fnv.hash;
+}
+
+}  // namespace
+
+TEST_CASE("the hash is FNV-1a: the vectors its authors publish") {
+  CHECK(fnv1a("") == 0xcbf29ce484222325u);
+  CHECK(fnv1a("a") == 0xaf63dc4c8601ec8cu);
+  CHECK(fnv1a("foobar") == 0x85944171f73967e8u);
+}
+
+TEST_CASE("the bytes that are hashed are fixed: row count, then IEEE 754 bits, least significant byte first") {
+  CHECK(content_hash({}) == fnv1a(std::string(8, '\0')));
+
+  pinnquad::Sample sample;
+  sample.time_s = 1.0;        // 0x3ff0000000000000
+  sample.commands[3] = -2.5;  // 0xc004000000000000
+  std::string bytes = std::string("\x01", 1) + std::string(7, '\0');
+  bytes += std::string(6, '\0') + "\xf0\x3f" + std::string(19 * 8, '\0') + std::string(6, '\0') + "\x04\xc0";
+  CHECK(content_hash({sample}) == fnv1a(bytes));
+}
+
+TEST_CASE("the last bit of any value changes the hash, and so do order and number of rows") {
+  const Flight flight = pinnquad_test::random_flight(3, 7);
+  std::set<std::uint64_t> hashes{content_hash(flight)};
+  std::size_t variants = 1;
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    for (std::size_t field = 0; field < pinnquad::sample_value_count; ++field) {
+      auto values = pinnquad::to_values(flight[row]);
+      values[field] = std::nextafter(values[field], std::numeric_limits<double>::infinity());
+      Flight changed = flight;
+      changed[row] = pinnquad::to_sample(values);
+      hashes.insert(content_hash(changed));
+      ++variants;
+    }
+  }
+  Flight swapped = flight;
+  std::swap(swapped[0], swapped[1]);
+  hashes.insert(content_hash(swapped));
+  hashes.insert(content_hash({flight[0], flight[1]}));
+  CHECK(hashes.size() == variants + 2);
+  CHECK(content_hash(flight) == content_hash(Flight(flight)));
+}
+
+TEST_CASE("signed zeros differ, NaNs do not") {
+  pinnquad::Sample sample;
+  const auto with_yaw = [&sample](double yaw) {
+    sample.yaw_rad = yaw;
+    return content_hash({sample});
+  };
+  CHECK(with_yaw(0.0) != with_yaw(-0.0));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(with_yaw(nan) == with_yaw(-nan));
+  CHECK(with_yaw(nan) != with_yaw(std::numeric_limits<double>::infinity()));
+}

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/dynamics/airframe.hpp"
+
+#include <doctest/doctest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
+
+using pinnquad::Airframe;
+using pinnquad::check_airframe;
+using pinnquad::Status;
+
+namespace {
+
+template <class Scalar>
+using Field = std::pair<std::string, std::function<Scalar&(Airframe<Scalar>&)>>;
+
+/// Fields that must be positive.
+template <class Scalar>
+std::vector<Field<Scalar>> positive_fields() {
+  using A = Airframe<Scalar>;
+  return {{"mass", [](A& a) -> Scalar& { return a.mass_kg; }},
+          {"Jx", [](A& a) -> Scalar& { return a.inertia_kg_m2[0]; }},
+          {"Jy", [](A& a) -> Scalar& { return a.inertia_kg_m2[1]; }},
+          {"Jz", [](A& a) -> Scalar& { return a.inertia_kg_m2[2]; }},
+          {"thrust coefficient", [](A& a) -> Scalar& { return a.thrust_coefficient; }},
+          {"power coefficient", [](A& a) -> Scalar& { return a.power_coefficient; }},
+          {"propeller diameter", [](A& a) -> Scalar& { return a.propeller_diameter_m; }},
+          {"rotor speed", [](A& a) -> Scalar& { return a.max_rotor_speed_rev_s; }}};
+}
+
+/// Fields that may be zero but not negative.
+template <class Scalar>
+std::vector<Field<Scalar>> non_negative_fields() {
+  using A = Airframe<Scalar>;
+  return {{"time constant", [](A& a) -> Scalar& { return a.rotor_time_constant_s; }},
+          {"drag x", [](A& a) -> Scalar& { return a.drag_area_m2[0]; }},
+          {"drag y", [](A& a) -> Scalar& { return a.drag_area_m2[1]; }},
+          {"drag z", [](A& a) -> Scalar& { return a.drag_area_m2[2]; }},
+          {"deadband", [](A& a) -> Scalar& { return a.drag_deadband_m_s; }}};
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("the airframes of the library are valid and carry their names", Scalar, float, double) {
+  CHECK(check_airframe(pinnquad::airframe_value<pinnquad::PaperQuadrotor, Scalar>()) == Status::ok);
+  CHECK(check_airframe(pinnquad::airframe_value<pinnquad::ReferenceQuadrotor15, Scalar>()) == Status::ok);
+  CHECK(check_airframe(pinnquad::airframe_value<pinnquad::ReferenceQuadrotor10, Scalar>()) == Status::ok);
+  CHECK(std::string(pinnquad::PaperQuadrotor::name) == "paper_quadrotor");
+  CHECK(std::string(pinnquad::ReferenceQuadrotor15::name) == "reference_1.5kg");
+  CHECK(std::string(pinnquad::ReferenceQuadrotor10::name) == "reference_1.0kg");
+}
+
+TEST_CASE_TEMPLATE("check_airframe refuses each bad field", Scalar, float, double) {
+  const Airframe<Scalar> good = pinnquad::PaperQuadrotor::value<Scalar>();
+  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+  for (const auto& [label, field] : positive_fields<Scalar>()) {
+    const std::string name = label;  // a structured binding can't be captured in C++17
+    for (const Scalar bad : {Scalar(0), Scalar(-1), nan}) {
+      CAPTURE(name);
+      CAPTURE(bad);
+      Airframe<Scalar> airframe = good;
+      field(airframe) = bad;
+      CHECK(check_airframe(airframe) == Status::invalid_airframe);
+    }
+  }
+  for (const auto& [label, field] : non_negative_fields<Scalar>()) {
+    const std::string name = label;
+    CAPTURE(name);
+    Airframe<Scalar> airframe = good;
+    field(airframe) = Scalar(0);
+    CHECK(check_airframe(airframe) == Status::ok);
+    for (const Scalar bad : {Scalar(-1), nan}) {
+      CAPTURE(bad);
+      field(airframe) = bad;
+      CHECK(check_airframe(airframe) == Status::invalid_airframe);
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("check_airframe refuses an infinite value", Scalar, float, double) {
+  const Airframe<Scalar> good = pinnquad::PaperQuadrotor::value<Scalar>();
+  auto fields = positive_fields<Scalar>();
+  for (const auto& field : non_negative_fields<Scalar>()) fields.push_back(field);
+  for (const auto& [label, field] : fields) {
+    const std::string name = label;
+    CAPTURE(name);
+    Airframe<Scalar> airframe = good;
+    field(airframe) = std::numeric_limits<Scalar>::infinity();
+    CHECK(check_airframe(airframe) == Status::invalid_airframe);
+  }
+}
+
+TEST_CASE_TEMPLATE("an inertia that no body has: the triangle inequality, each side", Scalar, float, double) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+    airframe.inertia_kg_m2 = {Scalar(0.01), Scalar(0.01), Scalar(0.01)};
+    airframe.inertia_kg_m2[axis] = Scalar(0.0199);
+    CHECK(check_airframe(airframe) == Status::ok);
+    airframe.inertia_kg_m2[axis] = Scalar(0.0201);
+    CHECK(check_airframe(airframe) == Status::invalid_airframe);
+  }
+}
+
+TEST_CASE_TEMPLATE("too heavy to hover is refused, just light enough is not", Scalar, float, double) {
+  Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  const Scalar heaviest = airframe.mass_kg * airframe.thrust_to_weight();
+  airframe.mass_kg = heaviest * Scalar(1.001);
+  CHECK(check_airframe(airframe) == Status::invalid_airframe);
+  airframe.mass_kg = heaviest * Scalar(0.999);
+  CHECK(check_airframe(airframe) == Status::ok);
+}
+
+TEST_CASE("Table 1 and the simulator: coefficients, limits, thrust-to-weight") {
+  const Airframe<double> reference = pinnquad::ReferenceQuadrotor15::value<double>();
+  // printed by the running simulator in float32: seven digits
+  const double printed_digits = 1e-6;
+  CHECK(reference.max_rotor_thrust_N() == doctest::Approx(4.179446).epsilon(printed_digits));
+  CHECK(reference.max_rotor_torque_N_m() == doctest::Approx(0.0555622).epsilon(printed_digits));
+  CHECK(reference.thrust_to_weight() == doctest::Approx(1.1365).epsilon(1e-4));  // NOTES #7: 1.137
+  CHECK(pinnquad::ReferenceQuadrotor10::value<double>().mass_kg == 1.0);
+
+  const Airframe<double> paper = pinnquad::PaperQuadrotor::value<double>();
+  CHECK(paper.mass_kg == 1.5);
+  CHECK(paper.inertia_kg_m2[0] == 1.469e-2);
+  CHECK(paper.inertia_kg_m2[1] == 1.686e-2);
+  CHECK(paper.inertia_kg_m2[2] == 3.093e-2);
+  CHECK(paper.thrust_coefficient == 0.1099);
+  CHECK(paper.power_coefficient == 0.04016);
+  CHECK(paper.propeller_diameter_m == 0.2286);
+  CHECK(1.0 / paper.thrust_to_weight() == doctest::Approx(0.498).epsilon(5e-3));  // hovers at command 0.50
+  // c_T and c_Q of Eq. (2): thrust and torque at 100 rev/s
+  CHECK(paper.dimensional_thrust_coefficient() * 1e4 ==
+        doctest::Approx(0.1099 * 1.225 * 1e4 * 0.2286 * 0.2286 * 0.2286 * 0.2286).epsilon(1e-12));
+  CHECK(paper.dimensional_torque_coefficient() / paper.dimensional_thrust_coefficient() ==
+        doctest::Approx(0.04016 * 0.2286 / (2.0 * 3.14159265358979 * 0.1099)).epsilon(1e-12));
+}
+
+TEST_CASE("the arm is half the diagonal motor spacing over sqrt(2)") {
+  const Airframe<double> paper = pinnquad::PaperQuadrotor::value<double>();
+  for (const pinnquad::RotorMount<double>& rotor : paper.rotors) {
+    CHECK(std::hypot(rotor.x_m, rotor.y_m) == doctest::Approx(0.345).epsilon(1e-5));
+    CHECK(std::fabs(rotor.x_m) == std::fabs(rotor.y_m));
+  }
+}
+
+namespace {
+struct NotAnAirframe {};
+struct WithoutName {
+  template <class Scalar>
+  static constexpr Airframe<Scalar> value() {
+    return {};
+  }
+};
+struct ReturnsSomethingElse {
+  static constexpr const char* name = "something else";
+  template <class Scalar>
+  static constexpr Scalar value() {
+    return {};
+  }
+};
+}  // namespace
+
+TEST_CASE("the contract of an airframe") {
+  static_assert(pinnquad::is_airframe<pinnquad::PaperQuadrotor>);
+  static_assert(!pinnquad::is_airframe<NotAnAirframe>);
+  static_assert(!pinnquad::is_airframe<WithoutName>);
+  static_assert(!pinnquad::is_airframe<ReturnsSomethingElse>);
+  static_assert(check_airframe(pinnquad::PaperQuadrotor::value<float>()) == Status::ok,
+                "an airframe is a literal type");
+  CHECK(true);
+}

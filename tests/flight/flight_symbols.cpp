@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+//
+// Everything that may fly, behind C functions named pinnquad_flight_...: the symbol gate looks at what they need.
+// Data comes in and goes out through plain arrays, so that nothing can be computed by the compiler instead.
+#include <pinnquad/flight.hpp>
+
+#include "../support/small_model.hpp"
+#include "pinnquad/control/tracking.hpp"
+#include "pinnquad/dynamics/integrator.hpp"
+#include "pinnquad/inference/self_test.hpp"
+#include "pinnquad/nn/tanh.hpp"
+
+namespace {
+
+using pinnquad::Commands;
+using pinnquad::Quaternion;
+using pinnquad::Status;
+using pinnquad::Vector3;
+using pinnquad::test::SmallModel;
+
+template <class Scalar>
+using Everything =
+    pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
+                        pinnquad::QuadraticDrag, pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
+
+template <class Scalar>
+Everything<Scalar> everything() noexcept {
+  return Everything<Scalar>(pinnquad::airframe_value<pinnquad::PaperQuadrotor, Scalar>(),
+                            pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {}, {});
+}
+
+template <class Scalar>
+pinnquad::VehicleState<Scalar> read(const Scalar* v) noexcept {
+  pinnquad::VehicleState<Scalar> state;
+  state.body.position_m = Vector3<Scalar>(v[0], v[1], v[2]);
+  state.body.velocity_m_s = Vector3<Scalar>(v[3], v[4], v[5]);
+  state.body.attitude = {v[6], v[7], v[8], v[9]};
+  state.body.body_rates_rad_s = Vector3<Scalar>(v[10], v[11], v[12]);
+  state.rotors = {v[13], v[14], v[15], v[16]};
+  state.time_s = static_cast<double>(v[17]);
+  return state;
+}
+
+template <class Scalar>
+void write(const pinnquad::VehicleState<Scalar>& state, Scalar* v) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    v[i] = state.body.position_m[i];
+    v[3 + i] = state.body.velocity_m_s[i];
+    v[10 + i] = state.body.body_rates_rad_s[i];
+  }
+  const Quaternion<Scalar>& q = state.body.attitude;
+  v[6] = q.w, v[7] = q.x, v[8] = q.y, v[9] = q.z;
+  for (std::size_t i = 0; i < state.rotors.size(); ++i) v[13 + i] = state.rotors[i];
+  v[17] = static_cast<Scalar>(state.time_s);
+}
+
+template <class Scalar>
+pinnquad::Accelerations<Scalar> motion(const Scalar* v) noexcept {
+  pinnquad::Accelerations<Scalar> result;
+  result.linear_m_s2 = Vector3<Scalar>(v[0], v[1], v[2]);
+  result.angular_rad_s2 = Vector3<Scalar>(v[3], v[4], v[5]);
+  return result;
+}
+
+template <class Scalar>
+unsigned char step(Scalar* state, const Scalar* u, Scalar step_s) noexcept {
+  auto vehicle = read(state);
+  const Status status = everything<Scalar>().step(vehicle, {u[0], u[1], u[2], u[3]}, step_s);
+  write(vehicle, state);
+  return static_cast<unsigned char>(status);
+}
+
+template <class Scalar>
+unsigned char inverse(const Scalar* state, const Scalar* wanted, Scalar* u) noexcept {
+  const auto vehicle = read(state);
+  Commands<Scalar> commands{};
+  const Status status = inverse_commands(everything<Scalar>(), vehicle.body, motion(wanted), wanted[6], commands);
+  for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i];
+  return static_cast<unsigned char>(status);
+}
+
+/// A closed loop of everything in control/, the network in it.
+template <class Scalar, class Trajectory, class FeedForward>
+unsigned char fly(const Trajectory& trajectory, const FeedForward& feed_forward, Scalar* rmse_m) noexcept {
+  const auto quadrotor = everything<Scalar>();
+  const pinnquad::FlightGains<Scalar> gains{};
+  const pinnquad::FlightController<Scalar> controller(
+      gains, pinnquad::flight_limits(quadrotor.airframe(), Scalar(1), gains), quadrotor.site().gravity_m_s2);
+  const auto result = pinnquad::track(quadrotor, trajectory, controller, feed_forward);
+  *rmse_m = result.rmse_m + Scalar(result.fallback.fallbacks());
+  return static_cast<unsigned char>(result.status);
+}
+
+}  // namespace
+
+extern "C" {
+
+const char* pinnquad_flight_status_text(unsigned char status) {
+  return pinnquad::to_string(static_cast<Status>(status));
+}
+
+// inference
+
+unsigned char pinnquad_flight_predict(const float* state, const float* wanted, float* u) {
+  const auto vehicle = read(state);
+  Commands<float> commands{};
+  const pinnquad::InverseDynamics<SmallModel> model;
+  const Status status = model.predict(pinnquad::motion_inputs(vehicle.body, motion(wanted)), commands);
+  for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i];
+  return static_cast<unsigned char>(status);
+}
+
+unsigned char pinnquad_flight_predict_features(const float* x, float* u) {
+  Commands<float> commands{};
+  const Status status = pinnquad::InverseDynamics<SmallModel>{}.predict_features(x, commands);
+  for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i];
+  return static_cast<unsigned char>(status);
+}
+
+unsigned char pinnquad_flight_self_test() {
+  return static_cast<unsigned char>(pinnquad::self_test(pinnquad::InverseDynamics<SmallModel>{}));
+}
+
+float pinnquad_flight_output_schema(float output) {
+  constexpr auto airframe = pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>();
+  using Schema = pinnquad::RotorSpeedOutputs;
+  return Schema::command(output, airframe) + Schema::from_command(output, airframe) +
+         Schema::command_slope(output, airframe);
+}
+
+// nn: the layers that the small model has not
+
+void pinnquad_flight_tanh_network(const float* parameters, const float* x, float* y) {
+  using Net = pinnquad::Mlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<2, 12>, pinnquad::Outputs<4>, pinnquad::Tanh>;
+  Net::forward(parameters, x, y);
+}
+
+void pinnquad_flight_double_network(const double* parameters, const double* x, double* y) {
+  using Net = pinnquad::Mlp<double, pinnquad::Inputs<16>, pinnquad::Hidden<1, 8>, pinnquad::Outputs<4>, pinnquad::Relu>;
+  Net::forward(parameters, x, y);
+}
+
+// vehicle, dynamics, aero
+
+unsigned char pinnquad_flight_step_float(float* state, const float* u, float step_s) { return step(state, u, step_s); }
+unsigned char pinnquad_flight_step_double(double* state, const double* u, double step_s) {
+  return step(state, u, step_s);
+}
+unsigned char pinnquad_flight_inverse_float(const float* state, const float* wanted, float* u) {
+  return inverse(state, wanted, u);
+}
+unsigned char pinnquad_flight_inverse_double(const double* state, const double* wanted, double* u) {
+  return inverse(state, wanted, u);
+}
+
+unsigned char pinnquad_flight_vehicle_status() { return static_cast<unsigned char>(everything<float>().status()); }
+
+void pinnquad_flight_linearized(const float* wanted, float density_ratio, float* u) {
+  const auto airframe = pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>();
+  const pinnquad::Rotors<float> rotors(airframe);
+  const Commands<float> commands = pinnquad::linearized_commands(airframe, rotors, motion(wanted),
+                                                                 pinnquad::standard_gravity_m_s2<float>, density_ratio);
+  for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i];
+  const auto made =
+      pinnquad::linearized_accelerations(airframe, wanted[0], wanted[1], rotors.wrench(commands, density_ratio), 9.8F);
+  u[0] += made.linear_m_s2[2];
+}
+
+void pinnquad_flight_euler_step(float* state, const float* u, float time_s, float step_s) {
+  auto vehicle = read(state);
+  const auto quadrotor = everything<float>();
+  vehicle.body = pinnquad::semi_implicit_euler_step(
+      vehicle.body, step_s, [&](const pinnquad::State<float>& body, float offset_s) noexcept {
+        return pinnquad::derivative(body, quadrotor.evaluate(body, {u[0], u[1], u[2], u[3]}, time_s + offset_s).motion);
+      });
+  write(vehicle, state);
+}
+
+void pinnquad_flight_frames(float* v) {
+  const auto q = pinnquad::normalized(Quaternion<float>{v[0], v[1], v[2], v[3]});
+  const auto euler = pinnquad::to_euler(pinnquad::swap_enu_flu_ned_frd(q));
+  const auto back = pinnquad::from_euler(euler);
+  const auto moved =
+      pinnquad::swap_enu_ned(pinnquad::swap_flu_frd(pinnquad::world_to_body(back, Vector3<float>(v[4], v[5], v[6]))));
+  for (int i = 0; i < 3; ++i) v[4 + i] = moved[i];
+}
+
+// control
+
+unsigned char pinnquad_flight_track_network(float* rmse_m) {
+  using Model = pinnquad::InverseDynamics<SmallModel>;
+  using Fallback = pinnquad::AnalyticInverse<Everything<float>>;
+  const pinnquad::NetworkInverse<Model, Fallback> feed_forward(Model{}, Fallback(everything<float>()));
+  return fly(pinnquad::FigureEight<float>{}, feed_forward, rmse_m);
+}
+
+unsigned char pinnquad_flight_track_analytic(double* rmse_m) {
+  return fly(pinnquad::Circle<double>{}, pinnquad::AnalyticInverse<Everything<double>>(everything<double>()), rmse_m);
+}
+
+unsigned char pinnquad_flight_track_hover(float* rmse_m) {
+  pinnquad::HoverTrim<float> trim;
+  const Status status = pinnquad::hover_trim(everything<float>(), Vector3<float>(0.0F, 0.0F, -5.0F), trim);
+  if (status != Status::ok) return static_cast<unsigned char>(status);
+  return fly(pinnquad::Hover<float>{}, trim, rmse_m);
+}
+
+unsigned char pinnquad_flight_pilot_loop(const float* state, const float* wanted, float* demand) {
+  const pinnquad::FlightController<float> controller;
+  pinnquad::SetPoint<float> set_point;
+  set_point.velocity_m_s = Vector3<float>(wanted[0], wanted[1], wanted[2]);
+  set_point.yaw_rate_rad_s = wanted[3];
+  pinnquad::Accelerations<float> result;
+  const Status status = controller(read(state).body, set_point, result);
+  for (int i = 0; i < 3; ++i) {
+    demand[i] = result.linear_m_s2[i];
+    demand[3 + i] = result.angular_rad_s2[i];
+  }
+  return static_cast<unsigned char>(status);
+}
+
+}  // extern "C"

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// FAULT 'attic' is no room

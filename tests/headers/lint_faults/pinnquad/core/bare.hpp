@@ -1,0 +1,3 @@
+// Planted: neither guard nor licence.
+// FAULT no '#pragma once'
+// FAULT no line '// SPDX-License-Identifier: MIT'

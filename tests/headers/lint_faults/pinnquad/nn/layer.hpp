@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// FAULT write <pinnquad/...>
+#include "dense.hpp"

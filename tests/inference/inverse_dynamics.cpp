@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/inference/inverse_dynamics.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "support/plain_network.hpp"
+#include "support/random_states.hpp"
+#include "support/small_model.hpp"
+
+using pinnquad::Commands;
+using pinnquad::InverseDynamics;
+using pinnquad::MotionInputs;
+using pinnquad::PaperFeatures;
+using pinnquad::RotorSpeedOutputs;
+using pinnquad::Status;
+using pinnquad::test::RandomStates;
+using pinnquad::test::SmallModel;
+
+namespace {
+
+/// The commands are near 0.5; two layers of float sums and the scalers: some ten ulp of it.
+constexpr double float_tolerance = 2e-6;
+
+/// The features of a model, in double, through plain loops.
+std::vector<double> plain_commands(const float* x) {
+  std::vector<double> z(16);
+  for (std::size_t i = 0; i < 16; ++i) {
+    z[i] = (static_cast<double>(x[i]) - static_cast<double>(SmallModel::input.mean[i])) /
+           static_cast<double>(SmallModel::input.spread[i]);
+  }
+  auto y = plain::forward({{16, 8, 4}, plain::Activation::relu}, SmallModel::parameters, z).outputs;
+  for (std::size_t i = 0; i < 4; ++i) {
+    y[i] = y[i] * static_cast<double>(SmallModel::output.spread[i]) + static_cast<double>(SmallModel::output.mean[i]);
+  }
+  return y;
+}
+
+/// Inputs in the middle of the envelope.
+MotionInputs<float> gentle_inputs(RandomStates& random) {
+  MotionInputs<float> inputs;
+  inputs.linear_acceleration_m_s2 = random.vector<float>(9.0);
+  inputs.angular_acceleration_rad_s2 = random.vector<float>(5.0);
+  inputs.velocity_m_s = random.vector<float>(6.0);
+  inputs.body_rates_rad_s = random.vector<float>(3.0);
+  inputs.attitude = pinnquad::from_euler(pinnquad::EulerAngles<float>{
+      random.scalar<float>(-0.7, 0.7), random.scalar<float>(-0.7, 0.7), random.scalar<float>(-3.1, 3.1)});
+  return inputs;
+}
+
+/// Bits that no prediction gives: "untouched" can be seen.
+Commands<float> marked() { return {-1.25F, -0.0F, std::numeric_limits<float>::quiet_NaN(), 1e30F}; }
+
+bool same_bits(const Commands<float>& a, const Commands<float>& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+template <class Model>
+void check_refused(const typename InverseDynamics<Model>::Inputs& inputs, Status expected) {
+  Commands<float> commands = marked();
+  CHECK(InverseDynamics<Model>{}.predict(inputs, commands) == expected);
+  CHECK(same_bits(commands, marked()));
+}
+
+template <std::size_t Size>
+constexpr std::array<float, Size> with_nan(std::array<float, Size> parameters, std::size_t index) {
+  parameters[index] = std::numeric_limits<float>::quiet_NaN();
+  return parameters;
+}
+
+struct NanInFirstWeight : SmallModel {
+  static constexpr auto parameters = with_nan(SmallModel::parameters, 0);
+};
+struct NanInLastBias : SmallModel {
+  static constexpr auto parameters = with_nan(SmallModel::parameters, 171);
+};
+struct InfiniteSpread : SmallModel {
+  static constexpr pinnquad::Scaler<float, 4> output{SmallModel::output.mean,
+                                                     {1.0F, std::numeric_limits<float>::infinity(), 1.0F, 1.0F}};
+};
+struct SpeedModel : SmallModel {
+  using Outputs = RotorSpeedOutputs;
+  static constexpr pinnquad::Scaler<float, 4> output{{100.0F, 100.0F, 100.0F, 0.0F}, {10.0F, 10.0F, 10.0F, 10.0F}};
+};
+
+}  // namespace
+
+TEST_CASE("a model has no state: predict() needs nothing but the type") {
+  CHECK(std::is_empty_v<InverseDynamics<SmallModel>>);
+  CHECK(noexcept(std::declval<const InverseDynamics<SmallModel>&>().predict(std::declval<const MotionInputs<float>&>(),
+                                                                            std::declval<Commands<float>&>())));
+  CHECK(pinnquad::is_model<SmallModel>);
+  CHECK_FALSE(pinnquad::is_model<PaperFeatures>);
+}
+
+TEST_CASE("predict() agrees with plain loops in double") {
+  RandomStates random(171);
+  const InverseDynamics<SmallModel> inverse;
+  for (int i = 0; i < 500; ++i) {
+    const auto inputs = gentle_inputs(random);
+    Commands<float> commands = marked(), by_features = marked();
+    REQUIRE(inverse.predict(inputs, commands) == Status::ok);
+    float x[16] = {};
+    PaperFeatures::extract(inputs, x);
+    const auto expected = plain_commands(x);
+    for (std::size_t k = 0; k < 4; ++k)
+      CHECK(std::fabs(static_cast<double>(commands[k]) - expected[k]) <= float_tolerance);
+    REQUIRE(inverse.predict_features(x, by_features) == Status::ok);
+    CHECK(same_bits(commands, by_features));
+    // again: the same bits
+    Commands<float> again{};
+    REQUIRE(inverse.predict(inputs, again) == Status::ok);
+    CHECK(same_bits(commands, again));
+  }
+}
+
+TEST_CASE("the golden vectors of the independent script are reproduced") {
+  for (std::size_t i = 0; i < SmallModel::golden_features.size(); ++i) {
+    Commands<float> commands{};
+    REQUIRE(InverseDynamics<SmallModel>{}.predict_features(SmallModel::golden_features[i].data(), commands) ==
+            Status::ok);
+    for (std::size_t k = 0; k < 4; ++k) {
+      CHECK(std::fabs(static_cast<double>(commands[k] - SmallModel::golden_commands[i][k])) <= float_tolerance);
+    }
+  }
+}
+
+TEST_CASE("a network with rotor speeds as outputs gives commands all the same") {
+  RandomStates random(172);
+  const auto inputs = gentle_inputs(random);
+  Commands<float> plain{}, by_speed{};
+  REQUIRE(InverseDynamics<SmallModel>{}.predict(inputs, plain) == Status::ok);
+  REQUIRE(InverseDynamics<SpeedModel>{}.predict(inputs, by_speed) == Status::ok);
+  const double n_max_rev_s = 8500.0 / 60.0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double z = (static_cast<double>(plain[k]) - static_cast<double>(SmallModel::output.mean[k])) /
+                     static_cast<double>(SmallModel::output.spread[k]);
+    const double speed_rev_s = 10.0 * z + (k < 3 ? 100.0 : 0.0);
+    const double expected = std::copysign(speed_rev_s * speed_rev_s / (n_max_rev_s * n_max_rev_s), speed_rev_s);
+    CHECK(std::fabs(static_cast<double>(by_speed[k]) - expected) <= 10 * float_tolerance);  // z was divided by 0.1
+  }
+}
+
+TEST_CASE("bad inputs: a Status, and not a bit of the commands changed") {
+  RandomStates random(173);
+  const auto good = gentle_inputs(random);
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {nan, infinity, -infinity}) {
+    auto inputs = good;
+    inputs.linear_acceleration_m_s2[2] = bad;
+    check_refused<SmallModel>(inputs, Status::not_finite);
+    inputs = good;
+    inputs.attitude.y = bad;
+    check_refused<SmallModel>(inputs, Status::not_finite);
+  }
+  auto inputs = good;
+  inputs.attitude = {0.5F, 0.5F, 0.5F, 0.6F};
+  check_refused<SmallModel>(inputs, Status::not_unit_quaternion);
+  inputs = good;
+  inputs.velocity_m_s[0] = 50.0F;
+  check_refused<SmallModel>(inputs, Status::outside_envelope);
+  inputs = good;
+  inputs.velocity_m_s[0] = std::numeric_limits<float>::max();
+  check_refused<SmallModel>(inputs, Status::outside_envelope);
+}
+
+TEST_CASE("the envelope holds for each of the features, on both sides, its borders included") {
+  using Inverse = InverseDynamics<SmallModel>;
+  for (std::size_t i = 0; i < 16; ++i) {
+    CAPTURE(i);
+    auto x = SmallModel::golden_features[0];
+    CHECK(Inverse::inside_envelope(x.data()));
+    x[i] = SmallModel::envelope_upper[i];
+    CHECK(Inverse::inside_envelope(x.data()));
+    x[i] = std::nextafter(SmallModel::envelope_upper[i], 1e9F);
+    CHECK_FALSE(Inverse::inside_envelope(x.data()));
+    x[i] = SmallModel::envelope_lower[i];
+    CHECK(Inverse::inside_envelope(x.data()));
+    x[i] = std::nextafter(SmallModel::envelope_lower[i], -1e9F);
+    CHECK_FALSE(Inverse::inside_envelope(x.data()));
+    x[i] = std::numeric_limits<float>::quiet_NaN();
+    CHECK_FALSE(Inverse::inside_envelope(x.data()));
+    Commands<float> commands = marked();
+    CHECK(Inverse{}.predict_features(x.data(), commands) == Status::outside_envelope);
+    CHECK(same_bits(commands, marked()));
+  }
+}
+
+TEST_CASE("broken weights: output_not_finite, commands untouched") {
+  RandomStates random(174);
+  // the first weight reaches the outputs only through a hidden neuron; NaN opens the ReLU
+  check_refused<NanInFirstWeight>(gentle_inputs(random), Status::output_not_finite);
+  check_refused<NanInLastBias>(gentle_inputs(random), Status::output_not_finite);
+  check_refused<InfiniteSpread>(gentle_inputs(random), Status::output_not_finite);
+}
+
+TEST_CASE("the vector unit's kernel and the portable one agree") {
+  RandomStates random(175);
+  for (int i = 0; i < 100; ++i) {
+    std::array<float, 16> z{};
+    for (float& v : z) v = random.scalar<float>(-2, 2);
+    std::array<float, 4> y{}, portable{};
+    InverseDynamics<SmallModel>::forward(z.data(), y.data());
+    SmallModel::Network::forward(SmallModel::parameters.data(), z.data(), portable.data());
+    for (std::size_t k = 0; k < 4; ++k) CHECK(std::fabs(static_cast<double>(y[k] - portable[k])) <= float_tolerance);
+  }
+}

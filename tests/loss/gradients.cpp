@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Every loss in every context: its gradient against central differences, in double.
+#include <doctest/doctest.h>
+
+#include <random>
+#include <vector>
+
+#include "pinnquad/loss/physics_informed.hpp"
+#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "support/central_difference.hpp"
+#include "support/loss_batches.hpp"
+
+using pinnquad::CommandOutputs;
+using pinnquad::Constant;
+using pinnquad::Context;
+using pinnquad::CyclicalAnnealing;
+using pinnquad::LocalMonotonicity;
+using pinnquad::Mse;
+using pinnquad::PaperFeatures;
+using pinnquad::PaperLoss;
+using pinnquad::PaperQuadrotor;
+using pinnquad::PhysicsInformed;
+using pinnquad::Pitch;
+using pinnquad::Roll;
+using pinnquad::RotorSpeedOutputs;
+using pinnquad::TanhStep;
+using pinnquad::Weighted;
+using pinnquad::Yaw;
+using pinnquad::test::central_differences;
+using pinnquad::test::flight_context;
+using pinnquad::test::gradient_error;
+using pinnquad::test::gradient_tolerance;
+using pinnquad::test::PaperBatch;
+using pinnquad::test::random_batch;
+
+namespace {
+
+/// A loss as a user writes it: no term of the library, gradient of a single entry per sample.
+struct QuarticFirstOutput {
+  template <class ContextType, class Batch, class Gradient>
+  typename Batch::Scalar evaluate(const ContextType&, const Batch& batch, typename Batch::Scalar weight,
+                                  Gradient& gradient) const {
+    using Scalar = typename Batch::Scalar;
+    Scalar sum(0);
+    for (int i = 0; i < batch.size(); ++i) {
+      const Scalar v = batch.prediction(0, i);
+      sum += v * v * v * v;
+      gradient(0, i) += weight * Scalar(4) * v * v * v;
+    }
+    return sum;
+  }
+};
+
+/// Terms with weights far apart, so that one in the wrong place shows.
+struct Wide : PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnnealing>,
+                              Weighted<LocalMonotonicity<Pitch, TanhStep>, Constant>,
+                              Weighted<LocalMonotonicity<Yaw>, CyclicalAnnealing>> {
+  Wide() {
+    std::get<0>(terms).schedule = {0.7, 5, 0.2};
+    std::get<1>(terms).schedule.value = 3.0;
+    std::get<1>(terms).loss.step.gain = 0.4;
+    std::get<2>(terms).schedule.maximum = 11.0;
+  }
+};
+
+template <class Loss, class ContextType>
+void check_gradient(const Loss& loss, ContextType context) {
+  static_assert(pinnquad::is_loss<Loss>);
+  context.progress = {13, 20};
+  std::mt19937_64 engine(71);
+  for (const int size : {1, 2, 3, 5, 40, 63, 64}) {
+    for (const double weight : {1.0, -0.25}) {
+      CAPTURE(size);
+      CAPTURE(weight);
+      auto batch = random_batch<double>(size, engine);
+      batch.prediction *= 0.3;  // steps that are not saturated: a slope to see
+      batch.features *= 0.3;
+      PaperBatch<double>::Gradient before, gradient;
+      before.setZero(4, size);
+      for (Eigen::Index i = 0; i < before.size(); ++i) before.data()[i] = pinnquad::standard_normal(engine);
+      gradient = before;
+      const double value = loss.evaluate(context, batch, weight, gradient);
+      const PaperBatch<double>::Gradient added = gradient - before;  // a loss adds to the gradient
+      const auto count = static_cast<std::size_t>(batch.prediction.size());
+      auto numerical = central_differences(
+          [&] {
+            PaperBatch<double>::Gradient unused;
+            unused.setZero(4, size);
+            return loss.evaluate(context, batch, weight, unused);
+          },
+          batch.prediction.data(), count);
+      for (double& v : numerical) v *= weight;  // the value is the loss itself, the gradient is weighted
+      CHECK(gradient_error(added.data(), numerical.data(), count) <= gradient_tolerance);
+      PaperBatch<double>::Gradient unused;
+      unused.setZero(4, size);
+      CHECK(loss.evaluate(context, batch, 0.0, unused) == value);
+      CHECK(unused.cwiseAbs().maxCoeff() == 0.0);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>, LocalMonotonicity<Pitch>,
+                   LocalMonotonicity<Yaw>, PaperLoss<CyclicalAnnealing>, PaperLoss<Constant>, Wide,
+                   PhysicsInformed<Mse>, QuarticFirstOutput) {
+  SUBCASE("commands") {
+    check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, CommandOutputs>>());
+  }
+  SUBCASE("rotor speeds") {
+    check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>>());
+  }
+}

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+// Algorithm 1, with the readings of NOTES #8 and #9.
+#include "pinnquad/loss/local_monotonicity.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "support/loss_batches.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::Airframe;
+using pinnquad::CommandOutputs;
+using pinnquad::Context;
+using pinnquad::LocalMonotonicity;
+using pinnquad::PaperFeatures;
+using pinnquad::PaperQuadrotor;
+using pinnquad::Pitch;
+using pinnquad::Roll;
+using pinnquad::RotorSpeedOutputs;
+using pinnquad::SignStep;
+using pinnquad::TanhStep;
+using pinnquad::Yaw;
+using pinnquad::test::flight_context;
+using pinnquad::test::PaperBatch;
+using pinnquad::test::random_batch;
+using pinnquad::test::rounding;
+
+namespace {
+
+using Array = Eigen::ArrayXd;
+using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
+
+/// The paper and NOTES give four digits after the point.
+constexpr double printed_digits = 5e-5;
+
+Array array(std::initializer_list<double> values) {
+  Array result(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), result.data());
+  return result;
+}
+
+template <class Step>
+double value(const Step& step, const Array& m, const Array& n) {
+  Array gradient = Array::Zero(m.size());
+  return pinnquad::local_monotonicity(step, m, n, 1.0, gradient);
+}
+
+template <class Loss, class ContextType>
+double value(const Loss& loss, const ContextType& context, const PaperBatch<double>& batch) {
+  PaperBatch<double>::Gradient gradient;
+  gradient.setZero(4, batch.size());
+  return loss.evaluate(context, batch, 1.0, gradient);
+}
+
+/// The same number a second time: loops, the signs of Eq. (2) typed again, physical units.
+template <class ContextType, class ToCommand>
+double plain_monotonicity(const std::array<double, 4>& signs, int axis, double gain, const ContextType& context,
+                          const PaperBatch<double>& batch, const ToCommand& to_command) {
+  std::vector<double> m, n;
+  for (int sample = 0; sample < batch.size(); ++sample) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double output =
+          batch.prediction(static_cast<int>(i), sample) * context.output.spread[i] + context.output.mean[i];
+      sum += signs[i] * to_command(output);
+    }
+    m.push_back(sum / context.signed_sum_spread[static_cast<std::size_t>(axis)]);
+    n.push_back(batch.features(3 + axis, sample));
+  }
+  double total = 0.0;
+  for (std::size_t i = 0; i + 1 < m.size(); ++i) {
+    total += 1.0 - std::tanh(gain * (m[i + 1] - m[i])) * std::tanh(gain * (n[i + 1] - n[i]));
+  }
+  return m.size() > 1 ? total / static_cast<double>(m.size() - 1) : 0.0;
+}
+
+/// The paper's airframe with the connectors of two motors swapped: 1 <-> 3 (front right, front left).
+struct Swapped {
+  static constexpr const char* name = "swapped";
+  template <class Scalar>
+  static constexpr Airframe<Scalar> value() {
+    Airframe<Scalar> a = PaperQuadrotor::value<Scalar>();
+    const auto first = a.rotors[0];
+    a.rotors[0] = a.rotors[2];
+    a.rotors[2] = first;
+    return a;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("footnote 2 of the paper") {
+  const Array x = array({1, 2, 3, 4, 5});
+  const Array y1 = array({1, -2, -3, 4, 5});
+  const Array y2 = array({1, 2, 3, 1.9455, 2.5});
+  SUBCASE("the sign as step function gives the paper's values") {
+    CHECK(value(SignStep{}, y1, x) == 1.0);
+    CHECK(value(SignStep{}, y2, x) == 0.5);
+  }
+  SUBCASE("Algorithm 1's tanh, mean over N - 1 pairs (NOTES #8)") {
+    CHECK(std::fabs(value(TanhStep{1.0}, y1, x) - 0.9991) <= printed_digits);
+    CHECK(std::fabs(value(TanhStep{1.0}, y2, x) - 0.7632) <= printed_digits);
+  }
+  SUBCASE("divided by N_b as printed, tanh gives neither (NOTES #8)") {
+    CHECK(std::fabs(value(TanhStep{1.0}, y1, x) * 4.0 / 5.0 - 0.7992) <= printed_digits);
+    CHECK(std::fabs(value(TanhStep{1.0}, y2, x) * 4.0 / 5.0 - 0.6106) <= printed_digits);
+  }
+}
+
+TEST_CASE("laws of the loss on two series") {
+  std::mt19937_64 engine(51);
+  for (int round = 0; round < 200; ++round) {
+    const auto size = static_cast<Eigen::Index>(1 + pinnquad::uniform_index(engine, 20));
+    Array m(size), n(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      m[i] = pinnquad::standard_normal(engine);
+      n[i] = pinnquad::standard_normal(engine);
+    }
+    const TanhStep step{};
+    const double loss = value(step, m, n);
+    CHECK(loss >= 0.0);
+    CHECK(loss <= 2.0);
+    CHECK(loss == value(step, n, m));  // symmetric
+    CHECK(loss == doctest::Approx(value(step, Array(-m), Array(-n))));
+    CHECK(loss == doctest::Approx(value(step, Array(m + 7.0), Array(n - 3.0))).epsilon(1e-12));  // offsets cancel
+    if (size > 1) {
+      CHECK(loss + value(step, Array(-m), n) == doctest::Approx(2.0));  // opposed: 2 - loss
+      CHECK(value(SignStep{}, Array(3.0 * m), n) == value(SignStep{}, m, n));
+    }
+  }
+}
+
+TEST_CASE("0 for series that rise steeply together, 2 for opposed ones, 1 for one that stands still") {
+  const Array steep = array({0, 100, 300, 350, 900}), still = array({4, 4, 4, 4, 4});
+  for (const double gain : {1.0, 3.0}) {
+    CHECK(value(TanhStep{gain}, steep, steep) == 0.0);
+    CHECK(value(TanhStep{gain}, steep, Array(-steep)) == 2.0);
+    CHECK(value(TanhStep{gain}, still, steep) == 1.0);
+  }
+  CHECK(value(SignStep{}, steep, steep) == 0.0);
+  CHECK(value(SignStep{}, steep, Array(-steep)) == 2.0);
+  CHECK(value(SignStep{}, still, steep) == 1.0);
+}
+
+TEST_CASE("every pair counts once: first, last and inner ones alike") {
+  for (int kink = 0; kink < 5; ++kink) {
+    Array m(6), n(6);
+    for (int i = 0; i < 6; ++i) {
+      n[i] = 100.0 * i;
+      m[i] = 100.0 * i - (i > kink ? 150.0 : 0.0);  // the pair (kink, kink + 1) falls, the others rise
+    }
+    CHECK(value(TanhStep{}, m, n) == 2.0 / 5.0);
+    CHECK(value(SignStep{}, m, n) == 2.0 / 5.0);
+  }
+}
+
+TEST_CASE("a batch of one has no pair: 0, no gradient, no division by zero") {
+  Array gradient = array({5});
+  CHECK(pinnquad::local_monotonicity(TanhStep{}, array({1}), array({2}), 1.0, gradient) == 0.0);
+  CHECK(gradient[0] == 5.0);
+  std::mt19937_64 engine(52);
+  CHECK(value(LocalMonotonicity<Roll>{}, PaperContext{}, random_batch<double>(1, engine)) == 0.0);
+}
+
+TEST_CASE("the gain scales both series") {
+  const Array m = array({0.1, 0.3, -0.2, 0.5}), n = array({0.2, 0.1, -0.1, 0.4});
+  CHECK(value(TanhStep{3.0}, m, n) == doctest::Approx(value(TanhStep{1.0}, Array(3.0 * m), Array(3.0 * n))));
+}
+
+TEST_CASE("the sign has no slope: it can't train") {
+  Array gradient = Array::Zero(3);
+  pinnquad::local_monotonicity(SignStep{}, array({1, 2, 0}), array({0, 1, 2}), 1.0, gradient);
+  CHECK(gradient.abs().maxCoeff() == 0.0);
+}
+
+TEST_CASE("the order of a batch matters: not a sum over samples (NOTES #9)") {
+  std::mt19937_64 engine(53);
+  const auto batch = random_batch<double>(12, engine);
+  auto rotated = batch;
+  for (int i = 0; i < 12; ++i) {
+    rotated.features.col(i) = batch.features.col((i * 5) % 12);
+    rotated.prediction.col(i) = batch.prediction.col((i * 5) % 12);
+  }
+  const auto context = flight_context<PaperContext>();
+  const LocalMonotonicity<Yaw> loss{};
+  CHECK(std::fabs(value(loss, context, batch) - value(loss, context, rotated)) > 0.01);
+  // reversed, every difference changes its sign in both series
+  auto reversed = batch;
+  reversed.features = batch.features.rowwise().reverse().eval();
+  reversed.prediction = batch.prediction.rowwise().reverse().eval();
+  CHECK(value(loss, context, reversed) == doctest::Approx(value(loss, context, batch)).epsilon(1e-12));
+}
+
+TEST_CASE("pairs of NOTES #9: p_dot with -u1+u2+u3-u4, q_dot with u1-u2+u3-u4, r_dot with u1+u2-u3-u4") {
+  std::mt19937_64 engine(54);
+  const std::array<double, 4> roll = {-1, 1, 1, -1}, pitch = {1, -1, 1, -1}, yaw = {1, 1, -1, -1};
+  for (const int size : {1, 2, 3, 17, 64}) {
+    const auto batch = random_batch<double>(size, engine);
+    const double tolerance = rounding<double>(100);
+    SUBCASE("commands") {
+      const auto context = flight_context<PaperContext>();
+      const auto plain = [&](const std::array<double, 4>& signs, int axis) {
+        return plain_monotonicity(signs, axis, 3.0, context, batch, [](double u) { return u; });
+      };
+      CHECK(std::fabs(value(LocalMonotonicity<Roll>{}, context, batch) - plain(roll, 0)) <= tolerance);
+      CHECK(std::fabs(value(LocalMonotonicity<Pitch>{}, context, batch) - plain(pitch, 1)) <= tolerance);
+      CHECK(std::fabs(value(LocalMonotonicity<Yaw>{}, context, batch) - plain(yaw, 2)) <= tolerance);
+    }
+    SUBCASE("rotor speeds count as the commands they stand for (NOTES #20)") {
+      const auto context = flight_context<Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>>();
+      const auto plain = [&](const std::array<double, 4>& signs, int axis) {
+        return plain_monotonicity(signs, axis, 3.0, context, batch, [](double speed_rev_s) {
+          const double n_max_rev_s = 8500.0 / 60.0;
+          return std::copysign(speed_rev_s * speed_rev_s / (n_max_rev_s * n_max_rev_s), speed_rev_s);
+        });
+      };
+      CHECK(std::fabs(value(LocalMonotonicity<Roll>{}, context, batch) - plain(roll, 0)) <= tolerance);
+      CHECK(std::fabs(value(LocalMonotonicity<Pitch>{}, context, batch) - plain(pitch, 1)) <= tolerance);
+      CHECK(std::fabs(value(LocalMonotonicity<Yaw>{}, context, batch) - plain(yaw, 2)) <= tolerance);
+    }
+  }
+}
+
+TEST_CASE("the signs come from the airframe: swapped motors, swapped signs") {
+  std::mt19937_64 engine(55);
+  const auto batch = random_batch<double>(20, engine);
+  auto swapped = batch;  // prediction rows 0 and 2 change places
+  swapped.prediction.row(0) = batch.prediction.row(2);
+  swapped.prediction.row(2) = batch.prediction.row(0);
+  const PaperContext paper{};
+  const Context<PaperFeatures, Swapped> other{};
+  const auto check = [&](const auto& loss) {
+    CHECK(value(loss, other, swapped) == doctest::Approx(value(loss, paper, batch)).epsilon(1e-12));
+    CHECK(std::fabs(value(loss, other, batch) - value(loss, paper, batch)) > 0.01);
+  };
+  check(LocalMonotonicity<Roll>{});
+  check(LocalMonotonicity<Yaw>{});
+  using SwappedContext = Context<PaperFeatures, Swapped>;
+  CHECK(SwappedContext::signs<Roll>() == std::array<double, 4>{1, 1, -1, -1});
+  CHECK(SwappedContext::signs<Pitch>() == std::array<double, 4>{1, -1, 1, -1});
+  CHECK(SwappedContext::signs<Yaw>() == std::array<double, 4>{-1, 1, 1, -1});
+}
+
+TEST_CASE("a motion and its commands agree: the loss of true commands is below that of scrambled ones") {
+  // angular acceleration in proportion to the signed sum: monotone by construction
+  std::mt19937_64 engine(56);
+  auto batch = random_batch<double>(64, engine);
+  const auto context = flight_context<PaperContext>();
+  const auto signs = PaperContext::signs<Roll>();
+  for (int i = 0; i < 64; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 4; ++k)
+      sum += signs[k] * batch.prediction(static_cast<int>(k), i) * context.output.spread[k];
+    batch.features(3, i) = sum / context.signed_sum_spread[0];
+  }
+  const double agreeing = value(LocalMonotonicity<Roll>{}, context, batch);
+  batch.features.row(3) *= -1.0;
+  CHECK(agreeing < 0.5);
+  CHECK(value(LocalMonotonicity<Roll>{}, context, batch) == doctest::Approx(2.0 - agreeing));
+}

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+// Every kernel against plain loops in double: portable, packed and mini-batch, all packs, many sizes.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "pinnquad/nn/kernel/column_broadcast.hpp"
+#include "pinnquad/nn/kernel/portable.hpp"
+#include "pinnquad/nn/kernel/tile.hpp"
+#include "support/random_network.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::GenericPack;
+using pinnquad::NativePack;
+using pinnquad::padded;
+using pinnquad::test::fill_uniform;
+using pinnquad::test::rounding;
+
+namespace {
+
+/// What padding holds before a kernel runs, and what it must not read.
+constexpr double canary = 1e30;
+
+/// Rows x Columns of a matrix under test.
+template <int Rows, int Columns>
+struct Shape {
+  static constexpr int rows = Rows;
+  static constexpr int columns = Columns;
+};
+
+template <class... Shapes>
+struct ShapeList {};
+
+/// One to forty, on both sides of a pack's width, and the sizes of the paper's network. Unrolled kernels compile
+/// slowly: each shape is there for a remainder of its own.
+using Shapes = ShapeList<Shape<1, 1>, Shape<3, 2>, Shape<2, 40>, Shape<4, 25>, Shape<7, 3>, Shape<9, 5>, Shape<16, 4>,
+                         Shape<25, 16>, Shape<33, 9>, Shape<40, 1>>;
+
+template <class Function, class... Each>
+void for_each_shape(ShapeList<Each...>, const Function& function) {
+  (function(Each{}), ...);
+}
+
+/// A sum of `terms` products of numbers in +-1: one rounding each, of a sum that stays below `terms`.
+template <class Scalar>
+double sum_tolerance(int terms) {
+  return rounding<Scalar>(terms + 1) * std::sqrt(static_cast<double>(terms) + 1.0);
+}
+
+template <class Scalar, int Rows, int Columns>
+struct Problem {
+  std::array<Scalar, Rows * Columns> weight{};
+  std::array<Scalar, Rows> bias{};
+  std::array<Scalar, Columns> x{};
+
+  explicit Problem(std::mt19937_64& engine) {
+    fill_uniform(weight, engine);
+    fill_uniform(bias, engine);
+    fill_uniform(x, engine);
+  }
+  double expected(int row) const {
+    double sum = static_cast<double>(bias[static_cast<std::size_t>(row)]);
+    for (int column = 0; column < Columns; ++column) {
+      sum += static_cast<double>(weight[static_cast<std::size_t>(row * Columns + column)]) *
+             static_cast<double>(x[static_cast<std::size_t>(column)]);
+    }
+    return sum;
+  }
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("portable matrix-vector product", Scalar, float, double) {
+  std::mt19937_64 engine(21);
+  for_each_shape(Shapes{}, [&engine](auto shape) {
+    constexpr int rows = decltype(shape)::rows, columns = decltype(shape)::columns;
+    CAPTURE(rows);
+    CAPTURE(columns);
+    const Problem<Scalar, rows, columns> problem(engine);
+    std::array<Scalar, rows + 1> y{};
+    y[rows] = Scalar(canary);
+    pinnquad::multiply_row_major<rows, columns>(problem.weight.data(), problem.bias.data(), problem.x.data(), y.data());
+    for (int row = 0; row < rows; ++row) {
+      CHECK(std::fabs(static_cast<double>(y[static_cast<std::size_t>(row)]) - problem.expected(row)) <=
+            sum_tolerance<Scalar>(columns));
+    }
+    CHECK(y[rows] == Scalar(canary));  // writes its rows and nothing behind
+  });
+}
+
+TEST_CASE_TEMPLATE("packed matrix-vector product: values, zero padding, nothing written behind it", Pack,
+                   GenericPack<float, 4>, GenericPack<double, 4>, NativePack<float>) {
+  using Scalar = typename Pack::Scalar;
+  std::mt19937_64 engine(22);
+  for_each_shape(Shapes{}, [&engine](auto shape) {
+    constexpr int rows = decltype(shape)::rows, columns = decltype(shape)::columns;
+    constexpr int stride = padded<Pack>(rows);
+    CAPTURE(rows);
+    CAPTURE(columns);
+    const Problem<Scalar, rows, columns> problem(engine);
+    std::array<Scalar, pinnquad::packed_size<Pack, rows, columns>> packed{};
+    packed.fill(Scalar(canary));
+    pinnquad::pack_columns<Pack, rows, columns>(problem.weight.data(), problem.bias.data(), packed.data());
+    std::array<Scalar, stride + 1> y{};
+    y.fill(Scalar(canary));
+    pinnquad::multiply_packed<Pack, rows, columns>(packed.data(), problem.x.data(), y.data(), [](Pack v) { return v; });
+    for (int row = 0; row < stride; ++row) {
+      const double value = static_cast<double>(y[static_cast<std::size_t>(row)]);
+      if (row < rows) {
+        CHECK(std::fabs(value - problem.expected(row)) <= sum_tolerance<Scalar>(columns));
+      } else {
+        CHECK(value == 0.0);
+      }
+    }
+    CHECK(y[stride] == Scalar(canary));
+  });
+}
+
+TEST_CASE_TEMPLATE("mini-batch products: values, and padding that never leaks", Pack, GenericPack<float, 4>,
+                   GenericPack<double, 4>, NativePack<float>) {
+  using Scalar = typename Pack::Scalar;
+  std::mt19937_64 engine(23);
+  for_each_shape(Shapes{}, [&engine](auto shape) {
+    constexpr int columns = decltype(shape)::rows, depth = decltype(shape)::columns;
+    constexpr int a_stride = padded<Pack>(depth), b_stride = padded<Pack>(columns);
+    for (const int samples : {1, 2, 3, 5, 8, 13}) {
+      CAPTURE(columns);
+      CAPTURE(depth);
+      CAPTURE(samples);
+      const int rows = (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows;
+      const auto at = [](auto& values, int stride, int row, int column) -> Scalar& {
+        return values[static_cast<std::size_t>(row * stride + column)];
+      };
+      const auto size = [](int count, int stride) { return static_cast<std::size_t>(count * stride); };
+      // A: samples x depth, B: depth x columns; padding columns of A hold what would show if it were read
+      std::vector<Scalar> a(size(rows, a_stride), Scalar(canary)), b(size(depth, b_stride)), start(size(1, b_stride));
+      fill_uniform(b, engine);
+      fill_uniform(start, engine);
+      for (int row = 0; row < rows; ++row) {
+        for (int k = 0; k < depth; ++k) at(a, a_stride, row, k) = static_cast<Scalar>(pinnquad::uniform(engine, -1, 1));
+      }
+      std::vector<Scalar> c(size(rows, b_stride) + 1, Scalar(canary));
+      pinnquad::multiply_batch<Pack, a_stride, b_stride>(a.data(), b.data(), depth, start.data(), c.data(), samples);
+      for (int row = 0; row < samples; ++row) {
+        for (int column = 0; column < columns; ++column) {
+          double sum = static_cast<double>(at(start, b_stride, 0, column));
+          for (int k = 0; k < depth; ++k) {
+            sum += static_cast<double>(at(a, a_stride, row, k)) * static_cast<double>(at(b, b_stride, k, column));
+          }
+          CHECK(std::fabs(static_cast<double>(at(c, b_stride, row, column)) - sum) <= sum_tolerance<Scalar>(depth));
+        }
+      }
+      CHECK(c.back() == Scalar(canary));
+
+      // A^T D: depth x columns over the samples, without a start
+      std::vector<Scalar> d(size(samples, b_stride));
+      fill_uniform(d, engine);
+      std::vector<Scalar> product(size(depth, b_stride) + 1, Scalar(canary));
+      pinnquad::multiply_transposed<Pack, depth, a_stride, b_stride>(a.data(), d.data(), samples, product.data());
+      for (int k = 0; k < depth; ++k) {
+        for (int column = 0; column < columns; ++column) {
+          double sum = 0.0;
+          for (int row = 0; row < samples; ++row) {
+            sum += static_cast<double>(at(a, a_stride, row, k)) * static_cast<double>(at(d, b_stride, row, column));
+          }
+          CHECK(std::fabs(static_cast<double>(at(product, b_stride, k, column)) - sum) <=
+                sum_tolerance<Scalar>(samples));
+        }
+      }
+      CHECK(product.back() == Scalar(canary));
+    }
+  });
+}
+
+TEST_CASE_TEMPLATE("every pack does what a scalar does, lane by lane", Pack, GenericPack<float, 4>,
+                   GenericPack<double, 4>, GenericPack<float, 1>, NativePack<float>) {
+  using Scalar = typename Pack::Scalar;
+  const Scalar infinity = std::numeric_limits<Scalar>::infinity();
+  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+  const Scalar specials[] = {Scalar(0), Scalar(-0.0), Scalar(1.5),   Scalar(-2.25), infinity,
+                             -infinity, nan,          Scalar(1e-30), Scalar(-1e-30)};
+  const auto same = [](Scalar a, Scalar b) { return a == b || (a != a && b != b); };
+  for (const Scalar special : specials) {
+    for (int lane = 0; lane < Pack::width; ++lane) {
+      CAPTURE(special);
+      CAPTURE(lane);
+      // distinct values around the special one: a lane that moved would show
+      std::array<Scalar, Pack::width> a{}, b{}, c{}, r{};
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        a[i] = Scalar(0.5) * static_cast<Scalar>(i) - Scalar(1.75);
+        b[i] = static_cast<Scalar>(i) + Scalar(1.25);
+        c[i] = Scalar(3) - static_cast<Scalar>(i);
+      }
+      a[static_cast<std::size_t>(lane)] = special;
+      const Pack pa = Pack::load(a.data()), pb = Pack::load(b.data()), pc = Pack::load(c.data());
+      const auto check = [&](const Pack& pack, const auto& expected) {
+        pack.store(r.data());
+        for (std::size_t i = 0; i < r.size(); ++i) CHECK(same(r[i], expected(i)));
+      };
+      check(pa + pb, [&](std::size_t i) { return a[i] + b[i]; });
+      check(pa - pb, [&](std::size_t i) { return a[i] - b[i]; });
+      check(pa * pb, [&](std::size_t i) { return a[i] * b[i]; });
+      check(pa / pb, [&](std::size_t i) { return a[i] / b[i]; });
+      check(Pack::broadcast(special), [&](std::size_t) { return special; });
+      check(Pack::square_root(pb), [&](std::size_t i) { return std::sqrt(b[i]); });
+      check(Pack::hyperbolic_tangent(pa), [&](std::size_t i) { return std::tanh(a[i]); });
+      check(Pack::positive_part(pa), [&](std::size_t i) { return a[i] < Scalar(0) ? Scalar(0) : a[i]; });
+      check(Pack::where_positive(pa, pb), [&](std::size_t i) { return a[i] > Scalar(0) ? b[i] : Scalar(0); });
+      // small integers and quarters: exact with one rounding or two
+      if (std::fabs(special) < infinity && std::fabs(special) > Scalar(1e-20)) {
+        check(Pack::multiply_add(pa, pb, pc), [&](std::size_t i) { return a[i] * b[i] + c[i]; });
+      }
+    }
+  }
+}
+
+TEST_CASE("the portable kernel has one order of operations: bias first, inputs ascending") {
+  // 1e8 absorbs a 1 in float unless the 1e8 has gone before
+  const float weight[3] = {1.0F, 1.0F, 1.0F};
+  const float bias[1] = {1e8F};
+  const float x[3] = {-1e8F, 1.0F, 2.0F};
+  float y[1] = {};
+  pinnquad::multiply_row_major<1, 3>(weight, bias, x, y);
+  CHECK(y[0] == 3.0F);
+  const float reversed[3] = {2.0F, 1.0F, -1e8F};
+  pinnquad::multiply_row_major<1, 3>(weight, bias, reversed, y);
+  CHECK(y[0] == 0.0F);
+}

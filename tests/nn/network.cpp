@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/nn/network.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/tanh.hpp"
+#include "support/plain_network.hpp"
+#include "support/random_network.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::Dense;
+using pinnquad::Hidden;
+using pinnquad::Inputs;
+using pinnquad::Mlp;
+using pinnquad::Network;
+using pinnquad::Outputs;
+using pinnquad::Relu;
+using pinnquad::Tanh;
+using pinnquad::test::fill_uniform;
+using pinnquad::test::random_parameters;
+using pinnquad::test::rounding;
+
+namespace {
+
+using PaperNetwork = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+
+/// Eight inputs, two hidden layers of different width.
+template <class Scalar, class Activation>
+using Uneven = Network<Scalar, Inputs<8>, Dense<13>, Activation, Dense<5>, Activation, Dense<3>>;
+
+struct NotALayer {};
+struct NoForward {
+  template <class Scalar, int In>
+  struct Bind {
+    static constexpr int inputs = In, outputs = In, parameter_count = 0;
+  };
+};
+
+}  // namespace
+
+TEST_CASE("the paper's network has the paper's size") {
+  CHECK(PaperNetwork::parameter_count == 6379);  // 16 x 25 + 25, nine times 25 x 25 + 25, 25 x 4 + 4
+  CHECK(Mlp<float, Inputs<15>, Hidden<10, 25>, Outputs<4>, Relu>::parameter_count == 6354);  // X in R^15 as printed
+  CHECK(PaperNetwork::layer_count == 21);
+  CHECK(PaperNetwork::inputs == 16);
+  CHECK(PaperNetwork::outputs == 4);
+  CHECK(PaperNetwork::widest == 25);
+  CHECK(PaperNetwork::workspace_bytes == 2 * 25 * sizeof(float));
+  CHECK(sizeof(PaperNetwork) == 6379 * sizeof(float));
+}
+
+TEST_CASE("Mlp is the network written out") {
+  using Written = Network<float, Inputs<7>, Dense<6>, Tanh, Dense<6>, Tanh, Dense<2>>;
+  CHECK((std::is_same_v<Mlp<float, Inputs<7>, Hidden<2, 6>, Outputs<2>, Tanh>, Written>));
+  CHECK((std::is_same_v<Written::Rebind<double>, Mlp<double, Inputs<7>, Hidden<2, 6>, Outputs<2>, Tanh>>));
+  CHECK((std::is_same_v<Mlp<float, Inputs<7>, Hidden<0, 6>, Outputs<2>, Tanh>, Network<float, Inputs<7>, Dense<2>>>));
+}
+
+TEST_CASE("offsets: parameters stand layer after layer, activations have none") {
+  using Sizes = Uneven<float, Relu>::Sizes;
+  const int expected[] = {0, 8 * 13 + 13, 8 * 13 + 13, 117 + 13 * 5 + 5, 187, 187 + 5 * 3 + 3};
+  for (int layer = 0; layer <= 5; ++layer) CHECK(Sizes::offset(layer) == expected[layer]);
+  CHECK(Uneven<float, Relu>::parameter_count == 205);
+  CHECK(Uneven<float, Relu>::widest == 13);
+  CHECK(Network<float, Inputs<40>, Dense<2>>::widest == 40);
+}
+
+TEST_CASE("what is a layer") {
+  CHECK(pinnquad::is_layer<Dense<3>>);
+  CHECK(pinnquad::is_layer<Relu>);
+  CHECK(pinnquad::is_layer<Tanh>);
+  CHECK_FALSE(pinnquad::is_layer<NotALayer>);
+  CHECK_FALSE(pinnquad::is_layer<NoForward>);
+  CHECK_FALSE(pinnquad::is_layer<int>);
+  CHECK(pinnquad::is_network<PaperNetwork>);
+  CHECK_FALSE(pinnquad::is_network<Dense<3>>);
+}
+
+TEST_CASE("weights are row-major: row = output, column = input; the bias follows") {
+  Network<double, Inputs<3>, Dense<2>> network;
+  network.parameters = {1, 20, 300, 4, 50, 600, 7000, 8000};
+  const double x[3] = {1, 2, 3};
+  double y[2] = {};
+  network.forward(x, y);
+  CHECK(y[0] == 7000 + 1 + 40 + 900);
+  CHECK(y[1] == 8000 + 4 + 100 + 1800);
+}
+
+TEST_CASE_TEMPLATE("forward agrees with plain loops in double", Scalar, float, double) {
+  std::mt19937_64 engine(11);
+  const auto compare = [&engine](auto network, const plain::Network& reference) {
+    using Type = decltype(network);
+    for (int round = 0; round < 20; ++round) {
+      const auto parameters = random_parameters<Scalar>(reference.sizes, engine);
+      REQUIRE(parameters.size() == network.parameters.size());
+      for (std::size_t i = 0; i < parameters.size(); ++i) network.parameters[i] = parameters[i];
+      std::array<Scalar, Type::inputs> x{};
+      std::array<Scalar, Type::outputs> y{}, by_pointer{};
+      fill_uniform(x, engine);
+      network.forward(x.data(), y.data());
+      Type::forward(parameters.data(), x.data(), by_pointer.data());
+      CHECK(y == by_pointer);
+      const auto expected = plain::forward(reference, parameters, {x.begin(), x.end()}).outputs;
+      // each layer's sums have at most 40 terms of order 1
+      CHECK(pinnquad::test::distance(y, expected) <= rounding<Scalar>(40.0 * Type::layer_count));
+    }
+  };
+  compare(Uneven<Scalar, Relu>{}, {{8, 13, 5, 3}, plain::Activation::relu});
+  compare(Uneven<Scalar, Tanh>{}, {{8, 13, 5, 3}, plain::Activation::tanh});
+  compare(Mlp<Scalar, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>{},
+          {{16, 25, 25, 25, 25, 25, 25, 25, 25, 25, 25, 4}, plain::Activation::relu});
+  compare(Network<Scalar, Inputs<1>, Dense<1>>{}, {{1, 1}, plain::Activation::none});
+}
+
+TEST_CASE_TEMPLATE("activations", Scalar, float, double) {
+  using ReluLayer = typename Relu::template Bind<Scalar, 1>;
+  using TanhLayer = typename Tanh::template Bind<Scalar, 1>;
+  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+  const Scalar infinity = std::numeric_limits<Scalar>::infinity();
+  CHECK(ReluLayer::activate(Scalar(-2)) == Scalar(0));
+  CHECK(ReluLayer::activate(Scalar(3)) == Scalar(3));
+  CHECK(ReluLayer::activate(Scalar(0)) == Scalar(0));
+  CHECK(ReluLayer::activate(-infinity) == Scalar(0));
+  CHECK(ReluLayer::activate(infinity) == infinity);
+  const Scalar through_relu = ReluLayer::activate(nan), through_tanh = TanhLayer::activate(nan);
+  CHECK(through_relu != through_relu);
+  CHECK(through_tanh != through_tanh);
+  CHECK(TanhLayer::activate(infinity) == Scalar(1));
+  CHECK(TanhLayer::activate(Scalar(-0.5)) == -TanhLayer::activate(Scalar(0.5)));
+}
+
+TEST_CASE("a network is a value: a copy has its own parameters") {
+  Network<double, Inputs<2>, Dense<2>, Relu, Dense<1>> first;
+  first.parameters.fill(0.5);
+  auto second = first;
+  second.parameters.fill(0.0);
+  const double x[2] = {1, 1};
+  double y = 0;
+  first.forward(x, &y);
+  CHECK(y == doctest::Approx(2.0));
+}

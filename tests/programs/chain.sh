@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+# fly -> train -> judge -> export -> fly the export, small; and the same seed gives the same bits.
+source "$(dirname "$0")/common.sh" "$@"
+
+"$fly" --seed 3 --samples 3000 --out flight.csv
+[ "$(wc -l <flight.csv)" -eq 3001 ] || fail "3000 rows and a header were expected"
+mkdir a b
+"$train" --flight flight.csv --out a --seeds 2 --epochs 8 --threads 2 >a.txt
+grep -q "physics-informed" a.txt || fail "the table names no physics-informed network"
+for file in results.csv report.json model.hpp replay.txt ellipses.svg errors.svg prediction.svg; do
+  [ -s "a/$file" ] || fail "$file is missing or empty"
+done
+[ "$(wc -l <a/results.csv)" -eq 6 ] || fail "results.csv: a header, the linearized model and 4 networks were expected"
+
+# same seed, same bits, whatever the number of threads
+"$fly" --seed 3 --samples 3000 --out again.csv >/dev/null
+cmp flight.csv again.csv || fail "the same seed flew another flight"
+"$fly" --seed 4 --samples 3000 --out other.csv >/dev/null
+! cmp -s flight.csv other.csv || fail "another seed flew the same flight"
+"$train" --flight flight.csv --out b --seeds 2 --epochs 8 --threads 1 >/dev/null
+cmp a/model.hpp b/model.hpp || fail "the same seeds trained other weights"
+
+# the exported header in a project of its own
+cmake -S "$source_dir/examples/fly_export" -B fly_export -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" \
+  -DCMAKE_CXX_FLAGS="$compiler_flags" -DPINNQUAD_MODEL_HEADER="$work/a/model.hpp" >configure.txt
+cmake --build fly_export >build.txt || { cat build.txt; fail "the exported header does not compile"; }
+fly_export/fly_export --replay a/replay.txt >flown.txt 2>flown_errors.txt || true # 8 epochs need not fly well
+cat flown.txt
+grep -q "self test .*: ok" flown.txt || fail "the self test of the export failed"
+grep -q ": agrees" flown.txt || fail "the export does not agree with the trainer"
+grep -q "weights zeroed" flown.txt || fail "no closed loop was flown"
+expect_line 2 "flight.csv:1: expected" fly_export/fly_export --replay flight.csv
+head -c 5000 a/replay.txt >truncated.txt
+expect_line 2 "truncated.txt:[0-9]+:[0-9]+: expected a number" fly_export/fly_export --replay truncated.txt

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+# Arguments and checks that the program tests share.
+set -euo pipefail
+fly=$1
+train=$2
+source_dir=$3
+work=$4
+compiler=$5
+compiler_flags=$6
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+
+# expect_line <exit code> <regular expression> <command>...: that code, one line on stderr that matches, nothing on stdout.
+expect_line() {
+  local code=$1 pattern=$2 actual=0
+  shift 2
+  "$@" >stdout.txt 2>stderr.txt || actual=$?
+  [ "$actual" -eq "$code" ] || fail "exit code $actual instead of $code: $*; said: $(cat stderr.txt)"
+  [ "$(wc -l <stderr.txt)" -eq 1 ] || fail "not one line on stderr: $*; said: $(cat stderr.txt)"
+  grep -qE -- "$pattern" stderr.txt || fail "stderr does not match '$pattern': $(cat stderr.txt)"
+}

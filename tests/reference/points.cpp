@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// 1000 random states for each ground effect model, one evaluation each: force, torque, acceleration, density, and the way back.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
+#include "reference/reference_rows.hpp"
+#include "support/compare_with_plain.hpp"
+
+using pinnquad::test::differences;
+using pinnquad::test::Differences;
+using pinnquad::test::ReferenceTable;
+using pinnquad::test::Statistics;
+
+namespace {
+
+/// The simulator's constants are float32 and so are some of its intermediate values: 6e-8 each, a handful of them.
+constexpr double row_tolerance = 1e-6;
+
+/// Cheeseman-Bennett's row at Z/R = 0.2512: its pole multiplies the rounding of Z/R by 400, and the force is 99 rotor forces.
+constexpr double pole_tolerance = 1e-5;
+constexpr double pole_ends_at = 0.26;
+
+/// The simulator's rotors use the float32 diameter, its ground effect the float32 radius in mm times a float32 0.001.
+constexpr double ground_radius_m = 114.29999768733978 * 0.0010000000474974513;
+
+/// Commands from the row's accelerations: their rounding over the smallest column of the allocation (yaw).
+constexpr double command_tolerance = 1e-5;
+
+plain::Point point(const ReferenceTable& table, std::size_t row) {
+  const auto value = [&](const char* column) { return table.at(row, column); };
+  plain::Point p{};
+  p.ground_effect = static_cast<plain::GroundEffect>(static_cast<int>(value("ge_model")));
+  p.pz = value("pz");
+  p.qw = value("qw"), p.qx = value("qx"), p.qy = value("qy"), p.qz = value("qz");
+  p.vx = value("vx"), p.vy = value("vy"), p.vz = value("vz");
+  p.wx = value("wx"), p.wy = value("wy"), p.wz = value("wz");
+  p.u1 = value("u1"), p.u2 = value("u2"), p.u3 = value("u3"), p.u4 = value("u4");
+  p.wind_x = value("windx"), p.wind_y = value("windy"), p.wind_z = value("windz");
+  return p;
+}
+
+/// What the simulator computed. fg holds the ground effect only where a model is on; v_dot_B is derived from a.
+plain::Result result(const ReferenceTable& table, std::size_t row) {
+  plain::Result out{};
+  const auto copy = [&](double(&to)[3], const char* prefix) {
+    const std::array<double, 3> v = table.vector(row, prefix);
+    for (std::size_t i = 0; i < 3; ++i) to[i] = v[i];
+  };
+  out.rho = table.at(row, "rho");
+  copy(out.rotor_force, "fb");
+  copy(out.rotor_torque, "tb");
+  copy(out.drag_force, "fd");
+  if (table.at(row, "ge_model") > 0) copy(out.ground_force, "fg");
+  copy(out.acceleration, "a");
+  copy(out.angular, "al");
+  const pinnquad::State<double> state = pinnquad::test::state_of<double>(point(table, row));
+  const pinnquad::Vector3<double> world(out.acceleration[0], out.acceleration[1], out.acceleration[2]);
+  pinnquad::test::assign<double>(out.body_derivative, pinnquad::body_derivative(state, world));
+  return out;
+}
+
+double height_over_radius(const plain::Point& p) { return (0.877 - p.pz) / ground_radius_m; }
+
+bool next_to_pole(const plain::Point& p) {
+  const double x = height_over_radius(p);
+  return p.ground_effect == plain::GroundEffect::cheeseman_bennett && x > 0.25 && x < pole_ends_at;
+}
+
+/// The reference airframe with the ground effect's radius: same thrust and torque, another Z/R in the eighth digit.
+pinnquad::Airframe<double> airframe_of_simulator() {
+  pinnquad::Airframe<double> airframe = pinnquad::ReferenceQuadrotor15::value<double>();
+  const double scale = airframe.propeller_diameter_m / (2.0 * ground_radius_m);
+  airframe.propeller_diameter_m = 2.0 * ground_radius_m;
+  airframe.thrust_coefficient *= std::pow(scale, 4);
+  airframe.power_coefficient *= std::pow(scale, 5);
+  return airframe;
+}
+
+plain::Constants constants_of_simulator() {
+  plain::Constants constants;
+  constants.ground_radius = ground_radius_m;
+  return constants;
+}
+
+/// Compares one formula with one file: every row, every quantity.
+template <class Formula>
+void compare(const char* file, const char* who, const Formula& formula) {
+  const ReferenceTable table(std::string("points/") + file);
+  REQUIRE(table.size() == 1000);
+  Statistics density, rotor_force, rotor_torque, drag_force, ground_force, acceleration, angular;
+  int pole_rows = 0;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const plain::Point p = point(table, row);
+    const Differences d = differences(formula(p), result(table, row));
+    density.add(d.density);
+    rotor_force.add(d.rotor_force);
+    rotor_torque.add(d.rotor_torque);
+    drag_force.add(d.drag_force);
+    ground_force.add(d.ground_force);
+    acceleration.add(d.acceleration);
+    angular.add(d.angular);
+    const bool pole = next_to_pole(p);
+    pole_rows += pole ? 1 : 0;
+    CAPTURE(row);
+    CHECK(d.density <= row_tolerance);
+    CHECK(d.rotor_force <= row_tolerance);
+    CHECK(d.rotor_torque <= row_tolerance);
+    CHECK(d.drag_force <= row_tolerance);
+    CHECK(d.ground_force <= (pole ? pole_tolerance : row_tolerance));
+    CHECK(d.acceleration <= (pole ? pole_tolerance : row_tolerance));
+    CHECK(d.angular <= row_tolerance);
+  }
+  const std::string label = std::string(file) + " " + who;
+  density.print(label.c_str(), "density");
+  rotor_force.print(label.c_str(), "rotor force");
+  rotor_torque.print(label.c_str(), "rotor torque");
+  drag_force.print(label.c_str(), "drag force");
+  ground_force.print(label.c_str(), "ground effect/rotors");
+  acceleration.print(label.c_str(), "linear acceleration");
+  angular.print(label.c_str(), "angular acceleration");
+  CHECK(pole_rows <= 1);
+}
+
+const char* const files[] = {"points_ge0.csv", "points_ge1.csv", "points_ge2.csv"};
+
+}  // namespace
+
+TEST_CASE("the library agrees with the simulator in every row") {
+  const auto airframe = airframe_of_simulator();
+  for (const char* file : files)
+    compare(file, "library", [&](const plain::Point& p) { return pinnquad::test::evaluate(airframe, p); });
+}
+
+TEST_CASE("the plain formula agrees with the simulator in every row") {
+  for (const char* file : files)
+    compare(file, "plain", [](const plain::Point& p) { return plain::evaluate(p, constants_of_simulator()); });
+}
+
+TEST_CASE("the library in float agrees with the simulator to float's digits") {
+  // rounding of a hundred operations in forces; angular acceleration divides a difference of torques by a small inertia
+  const double force_tolerance = 5e-6, acceleration_tolerance = 5e-5;
+  const auto airframe = pinnquad::ReferenceQuadrotor15::value<float>();
+  const ReferenceTable table("points/points_ge0.csv");
+  Statistics acceleration, angular;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const Differences d = differences(pinnquad::test::evaluate(airframe, point(table, row)), result(table, row));
+    acceleration.add(d.acceleration);
+    angular.add(d.angular);
+    CAPTURE(row);
+    CHECK(d.density <= force_tolerance);
+    CHECK(d.rotor_force <= force_tolerance);
+    CHECK(d.drag_force <= force_tolerance);
+    CHECK(d.acceleration <= acceleration_tolerance);
+    CHECK(d.angular <= acceleration_tolerance);
+  }
+  acceleration.print("points_ge0.csv float", "linear acceleration");
+  angular.print("points_ge0.csv float", "angular acceleration");
+}
+
+namespace {
+
+/// Commands recovered from the simulator's accelerations, where no rotor was clipped.
+template <class... Ground>
+void recover(const char* file, double steepest_gain, std::size_t fewest_rows) {
+  const ReferenceTable table(std::string("points/") + file);
+  const auto airframe = airframe_of_simulator();
+  Statistics commands;
+  int clipped = 0, steep = 0;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const plain::Point p = point(table, row);
+    if (std::min({p.u1, p.u2, p.u3, p.u4}) < 0.0 || std::max({p.u1, p.u2, p.u3, p.u4}) > 1.0) {
+      ++clipped;
+      continue;
+    }
+    const plain::Result reference = result(table, row);
+    const double thrust = std::sqrt(std::pow(reference.rotor_force[0], 2) + std::pow(reference.rotor_force[1], 2) +
+                                    std::pow(reference.rotor_force[2], 2));
+    const double tilt = std::fabs(reference.rotor_force[2]) / thrust;
+    double ratio = 1.0;
+    if (p.ground_effect == plain::GroundEffect::cheeseman_bennett)
+      ratio = plain::cheeseman_bennett(height_over_radius(p));
+    if (p.ground_effect == plain::GroundEffect::conyers) ratio = plain::conyers(height_over_radius(p), 690.0, 114.3);
+    // dF_ground / dF_rotor: with a gain of 1 and more the thrust equation can have two solutions
+    if (std::fabs(ratio - 1.0) * tilt > steepest_gain) {
+      ++steep;
+      std::printf("%s row %zu left out: Z/R %.4f, gain %.2f\n", file, row, height_over_radius(p),
+                  std::fabs(ratio - 1.0) * tilt);
+      continue;
+    }
+    pinnquad::Accelerations<double> motion;
+    for (int i = 0; i < 3; ++i) {
+      motion.linear_m_s2[i] = reference.body_derivative[i];
+      motion.angular_rad_s2[i] = reference.angular[i];
+    }
+    const auto vehicle = pinnquad::test::reference_vehicle<double, Ground...>(airframe, p);
+    pinnquad::Commands<double> u{};
+    CAPTURE(row);
+    REQUIRE(pinnquad::inverse_commands(vehicle, pinnquad::test::state_of<double>(p), motion, 0.0, u) ==
+            pinnquad::Status::ok);
+    double worst = 0.0;
+    const pinnquad::Commands<double> expected = pinnquad::test::commands_of<double>(p);
+    for (std::size_t i = 0; i < 4; ++i) worst = std::max(worst, std::fabs(u[i] - expected[i]));
+    commands.add(worst);
+    CHECK(worst <= command_tolerance);
+  }
+  std::printf("%s: %d rows with a clipped rotor and %d steep ones left out\n", file, clipped, steep);
+  commands.print(file, "commands recovered");
+  CHECK(commands.count() >= fewest_rows);
+}
+
+}  // namespace
+
+TEST_CASE("the inverse recovers the simulator's commands") {
+  // 50 rounds of the inverse reach 1e-6 where each leaves at most 0.75 of the difference: 0.75^50 = 6e-7
+  const double steepest_gain = 0.7;
+  recover<>("points_ge0.csv", steepest_gain, 800);
+  recover<pinnquad::CheesemanBennettGroundEffect>("points_ge1.csv", steepest_gain, 800);
+  recover<pinnquad::ConyersGroundEffect>("points_ge2.csv", steepest_gain, 800);
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Eq. (6), with the reading of NOTES #11.
+#include "pinnquad/schedule/cyclical_annealing.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <initializer_list>
+
+using pinnquad::CyclicalAnnealing;
+
+namespace {
+
+/// Two divisions and a product: a few ulp of 0.1.
+constexpr double schedule_tolerance = 1e-16;
+
+}  // namespace
+
+TEST_CASE("Fig. 3: M = 5, R = 0.5, lambda_max = 0.1, T = 300") {
+  constexpr CyclicalAnnealing schedule{};  // the paper's values are the defaults
+  for (int cycle = 0; cycle < 5; ++cycle) {
+    const int start = 60 * cycle;  // period 60, starts anew
+    CAPTURE(cycle);
+    for (int k = 0; k <= 30; ++k) CHECK(schedule.weight(start + k, 300) == 0.1);
+    for (int k = 31; k < 60; ++k) {
+      CHECK(std::fabs(schedule.weight(start + k, 300) - 0.1 * (60 - k) / 30.0) <= schedule_tolerance);
+    }
+    // never 0: lambda_max / (P (1 - R)) in the last epoch
+    CHECK(std::fabs(schedule.weight(start + 59, 300) - 0.1 / (60 * 0.5)) <= schedule_tolerance);
+  }
+  static_assert(schedule.weight(0, 300) == 0.1, "usable at compile time");
+}
+
+TEST_CASE("the fall is linear and meets the hold without a jump larger than its step") {
+  for (const double hold : {0.0, 0.25, 0.5, 0.8}) {
+    const CyclicalAnnealing schedule{2.0, 1, hold};
+    const double step = 2.0 / (100 * (1.0 - hold));
+    for (int k = 1; k < 100; ++k) {
+      CAPTURE(hold);
+      CAPTURE(k);
+      const double fall = schedule.weight(k - 1, 100) - schedule.weight(k, 100);
+      if (k <= 100 * hold) {
+        CHECK(fall == 0.0);
+      } else {
+        CHECK(std::fabs(fall - step) <= 20 * schedule_tolerance);  // the maximum is twenty times the paper's
+      }
+    }
+  }
+}
+
+TEST_CASE("R = 1 is constant") {
+  const CyclicalAnnealing schedule{0.1, 3, 1.0};
+  for (int k = 0; k < 100; ++k) CHECK(schedule.weight(k, 100) == 0.1);
+}
+
+TEST_CASE("cycles that do not divide the epochs: P is rounded up, the last cycle is cut short") {
+  const CyclicalAnnealing schedule{0.1, 3, 0.5};  // T = 7: P = ceil(7 / 3) = 3
+  const double expected[7] = {0.1, 0.1, 0.1 / 1.5, 0.1, 0.1, 0.1 / 1.5, 0.1};
+  for (int k = 0; k < 7; ++k) CHECK(std::fabs(schedule.weight(k, 7) - expected[k]) <= schedule_tolerance);
+}
+
+TEST_CASE("as many cycles as epochs, or more: every epoch starts a cycle") {
+  for (const int cycles : {4, 5, 100}) {
+    const CyclicalAnnealing schedule{0.1, cycles, 0.5};
+    for (int k = 0; k < 4; ++k) CHECK(schedule.weight(k, 4) == 0.1);
+  }
+}
+
+TEST_CASE("no epochs at all: lambda_max, no division by zero") { CHECK(CyclicalAnnealing{}.weight(0, 0) == 0.1); }

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// The random pilot as a policy: bounded, smooth, turned back at the borders, repeatable.
+#include "pinnquad/simulation/random_pilot.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace {
+
+using namespace pinnquad;
+using Pilot = RandomPilot<std::mt19937_64>;
+
+constexpr double tick_s = 0.002;
+
+}  // namespace
+
+static_assert(is_pilot<Pilot> && is_pilot<SteadyPilot> && !is_pilot<int>);
+
+TEST_CASE("set points are bounded and smooth") {
+  const PilotStyle style;
+  Pilot pilot(std::mt19937_64(1), style);
+  State<double> state;
+  state.position_m[2] = -35;
+  SetPoint<double> before;
+  double fastest_m_s = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const SetPoint<double> now = pilot(state, i * tick_s);
+    CHECK(now.velocity_m_s.norm() <= style.max_speed_m_s);
+    CHECK(std::abs(now.yaw_rate_rad_s) <= style.max_yaw_rate_rad_s);
+    // a first-order lag: no faster than twice the limit per lag
+    CHECK((now.velocity_m_s - before.velocity_m_s).norm() <= 2 * style.max_speed_m_s * tick_s / style.velocity_lag_s);
+    fastest_m_s = std::max(fastest_m_s, now.velocity_m_s.norm());
+    before = now;
+  }
+  CHECK(fastest_m_s > 0.9 * style.max_speed_m_s);
+}
+
+TEST_CASE("sticks: the standard deviation and the memory the style states") {
+  const PilotStyle style;
+  Pilot pilot(std::mt19937_64(2), style);
+  double square = 0, product = 0, before = 0;
+  int frames = 0;
+  for (int i = 0; i < 400000; ++i) {
+    const double stick = pilot(State<double>{}, i * tick_s).stick_rad_s[0];
+    if (i % 2 != 0) continue;  // a frame every 4 ms
+    square += stick * stick;
+    product += stick * before;
+    before = stick;
+    ++frames;
+  }
+  constexpr double sampling_error = 0.05;  // 800 s hold some 5,000 independent values
+  CHECK(std::abs(std::sqrt(square / frames) / style.roll_pitch_stick_rad_s - 1) <= sampling_error);
+  const double memory = std::exp(-style.stick_frame_s * style.stick_bandwidth_rad_s);
+  CHECK(std::abs((1 - product / square) / (1 - memory) - 1) <= sampling_error);
+}
+
+TEST_CASE("outside the box every target leads back") {
+  const PilotStyle style;
+  struct Place {
+    Vector3<double> position_m;
+    int axis;
+    double back;
+  };
+  const Place places[] = {{Vector3<double>(0, 0, -style.lowest_m), 2, -1},
+                          {Vector3<double>(0, 0, -style.highest_m), 2, 1},
+                          {Vector3<double>(style.farthest_m, 0, -35), 0, -1},
+                          {Vector3<double>(0, -style.farthest_m, -35), 1, 1}};
+  for (const Place& place : places) {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+      Pilot pilot(std::mt19937_64(seed), style);
+      State<double> state;
+      state.position_m = place.position_m;
+      SetPoint<double> wanted;
+      for (int i = 0; i < 300; ++i) wanted = pilot(state, i * tick_s);
+      CHECK(wanted.velocity_m_s[place.axis] * place.back >= 0);
+    }
+  }
+}
+
+TEST_CASE("the same engine state, the same set points") {
+  Pilot a(std::mt19937_64(9)), b(std::mt19937_64(9)), c(std::mt19937_64(10));
+  bool differs = false;
+  for (int i = 0; i < 2000; ++i) {
+    const SetPoint<double> x = a(State<double>{}, i * tick_s), y = b(State<double>{}, i * tick_s),
+                           z = c(State<double>{}, i * tick_s);
+    REQUIRE((x.velocity_m_s - y.velocity_m_s).norm() == 0);
+    REQUIRE((x.stick_rad_s - y.stick_rad_s).norm() == 0);
+    differs |= (x.velocity_m_s - z.velocity_m_s).norm() != 0;
+  }
+  CHECK(differs);
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Layers as a user writes them: element-wise without a pack form, with parameters of its own, and one whose backward
+// rule needs its output. The contract has to carry them as well as it carries the library's own.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/nn/layer.hpp"
+#include "pinnquad/training/backward/backward.hpp"
+
+namespace pinnquad::test {
+
+/// y = v < 0 ? v / 8 : v.
+template <class ScalarType, int Size>
+struct LeakyReluLayer : ElementwiseLayer<LeakyReluLayer<ScalarType, Size>, ScalarType, Size> {
+  static ScalarType activate(ScalarType v) noexcept { return v < ScalarType(0) ? v * ScalarType(0.125) : v; }
+};
+struct LeakyRelu {
+  template <class Scalar, int In>
+  using Bind = LeakyReluLayer<Scalar, In>;
+};
+
+/// y_i = p_i x_i.
+template <class ScalarType, int Size>
+struct ChannelScaleLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = Size;
+  static constexpr int outputs = Size;
+  static constexpr int parameter_count = Size;
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    for (int i = 0; i < Size; ++i) y[i] = parameters[i] * x[i];
+  }
+  template <class Engine>
+  static void initialise(Scalar* parameters, Engine& engine) {
+    for (int i = 0; i < Size; ++i) parameters[i] = Scalar(uniform(engine, 0.9, 1.1));
+  }
+};
+struct ChannelScale {
+  template <class Scalar, int In>
+  using Bind = ChannelScaleLayer<Scalar, In>;
+};
+
+/// y = softmax(x): every output depends on every input, and the rule needs y.
+template <class ScalarType, int Size>
+struct SoftmaxLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = Size;
+  static constexpr int outputs = Size;
+  static constexpr int parameter_count = 0;
+  static void forward(const Scalar*, const Scalar* x, Scalar* y) noexcept {
+    using std::exp;
+    Scalar sum(0);
+    for (int i = 0; i < Size; ++i) sum += exp(x[i]);
+    for (int i = 0; i < Size; ++i) y[i] = exp(x[i]) / sum;
+  }
+};
+struct Softmax {
+  template <class Scalar, int In>
+  using Bind = SoftmaxLayer<Scalar, In>;
+};
+
+}  // namespace pinnquad::test
+
+namespace pinnquad {
+
+template <class Scalar, int Size>
+struct BackwardRule<test::LeakyReluLayer<Scalar, Size>> {
+  static Scalar slope(Scalar y) noexcept { return y < Scalar(0) ? Scalar(0.125) : Scalar(1); }
+};
+
+template <class Scalar, int Size>
+struct BackwardRule<test::ChannelScaleLayer<Scalar, Size>> {
+  static void backward(const Scalar* parameters, const Scalar* x, const Scalar*, const Scalar* dy, Scalar* dx,
+                       Scalar* parameter_gradient) noexcept {
+    for (int i = 0; i < Size; ++i) {
+      dx[i] = parameters[i] * dy[i];
+      parameter_gradient[i] += x[i] * dy[i];
+    }
+  }
+};
+
+template <class Scalar, int Size>
+struct BackwardRule<test::SoftmaxLayer<Scalar, Size>> {
+  static void backward(const Scalar*, const Scalar*, const Scalar* y, const Scalar* dy, Scalar* dx, Scalar*) noexcept {
+    Scalar mean(0);
+    for (int i = 0; i < Size; ++i) mean += y[i] * dy[i];
+    for (int i = 0; i < Size; ++i) dx[i] = y[i] * (dy[i] - mean);
+  }
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// Every layer's backward rule, alone and in its mini-batch form, against central differences in double.
+#include "pinnquad/training/backward/backward.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "pinnquad/training/batch_layer.hpp"
+#include "support/central_difference.hpp"
+#include "support/own_layers.hpp"
+#include "support/random_network.hpp"
+
+using pinnquad::BackwardRule;
+using pinnquad::BatchLayer;
+using pinnquad::Dense;
+using pinnquad::GenericPack;
+using pinnquad::is_elementwise;
+using pinnquad::is_trainable;
+using pinnquad::padded;
+using pinnquad::Relu;
+using pinnquad::Tanh;
+using pinnquad::test::central_differences;
+using pinnquad::test::ChannelScale;
+using pinnquad::test::difference_step;
+using pinnquad::test::fill_uniform;
+using pinnquad::test::gradient_error;
+using pinnquad::test::gradient_tolerance;
+using pinnquad::test::LeakyRelu;
+using pinnquad::test::off_zero;
+using pinnquad::test::Softmax;
+
+namespace {
+
+constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// Layer inputs keep this from 0: a thousand steps.
+constexpr double input_margin = 1e-2;
+static_assert(input_margin > difference_step);
+
+template <class Spec, int In>
+using Bound = typename Spec::template Bind<double, In>;
+
+/// L = sum_k c_k y_k: its gradient by y is c.
+template <class Layer>
+double weighted_output(const std::vector<double>& parameters, const double* x, const double* c) {
+  double y[Layer::outputs] = {};
+  Layer::forward(parameters.data(), x, y);
+  double sum = 0.0;
+  for (int k = 0; k < Layer::outputs; ++k) sum += c[k] * y[k];
+  return sum;
+}
+
+template <class Layer>
+void check_rule() {
+  static_assert(is_trainable<Layer>);
+  std::mt19937_64 engine(81);
+  for (int round = 0; round < 10; ++round) {
+    std::vector<double> parameters(index(Layer::parameter_count)), c(index(Layer::outputs));
+    fill_uniform(parameters, engine);
+    fill_uniform(c, engine);
+    auto x = off_zero(index(Layer::inputs), engine, input_margin);
+    const auto loss = [&] { return weighted_output<Layer>(parameters, x.data(), c.data()); };
+    std::vector<double> dx(x.size()), gradient(parameters.size(), 0.5);  // the rule adds to the gradient
+    std::vector<double> y(c.size());
+    Layer::forward(parameters.data(), x.data(), y.data());
+    if constexpr (is_elementwise<Layer>) {
+      for (std::size_t i = 0; i < x.size(); ++i) dx[i] = c[i] * BackwardRule<Layer>::slope(y[i]);
+    } else {
+      for (double& v : dx) v = 99.0;  // the rule sets dx
+      BackwardRule<Layer>::backward(parameters.data(), x.data(), y.data(), c.data(), dx.data(), gradient.data());
+    }
+    for (double& g : gradient) g -= 0.5;
+    CHECK(gradient_error(dx.data(), central_differences(loss, x.data(), x.size()).data(), x.size()) <=
+          gradient_tolerance);
+    CHECK(gradient_error(gradient.data(), central_differences(loss, parameters.data(), parameters.size()).data(),
+                         parameters.size()) <= gradient_tolerance);
+  }
+}
+
+/// The mini-batch form sums over samples; what it is given past them must not count.
+template <class Layer, class Pack>
+void check_batch() {
+  constexpr int capacity = 16, x_stride = padded<Pack>(Layer::inputs), y_stride = padded<Pack>(Layer::outputs);
+  std::mt19937_64 engine(82);
+  for (const int samples : {1, 2, 3, 4, 5, 8, 13}) {
+    CAPTURE(samples);
+    const int rows = (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows;
+    auto layer = std::make_unique<BatchLayer<Layer, Pack, capacity>>();
+    std::vector<double> parameters(index(Layer::parameter_count)), stored(parameters.size());
+    fill_uniform(parameters, engine);
+    layer->load(parameters.data());
+    layer->store(stored.data());
+    CHECK(stored == parameters);
+
+    std::vector<double> x(index(capacity * x_stride)), y(index(capacity * y_stride)), delta(y.size()),
+        previous(x.size());
+    for (int sample = 0; sample < samples; ++sample) {
+      const auto values = off_zero(index(Layer::inputs), engine, input_margin);
+      for (int i = 0; i < Layer::inputs; ++i) x[index(sample * x_stride + i)] = values[index(i)];
+      for (int k = 0; k < Layer::outputs; ++k) delta[index(sample * y_stride + k)] = pinnquad::uniform(engine, -1, 1);
+    }
+    const auto c = delta;
+    const auto inputs = x;
+    std::vector<double> dx;
+    if constexpr (std::decay_t<decltype(*layer)>::in_place) {
+      y = x;
+      layer->forward(y.data(), rows);
+      layer->backward(y.data(), delta.data(), rows);
+      dx = delta;
+    } else {
+      layer->forward(x.data(), y.data(), rows);
+      layer->backward(x.data(), y.data(), delta.data(), previous.data(), rows);
+      dx = previous;
+    }
+    const auto loss = [&] {
+      double sum = 0.0;
+      for (int s = 0; s < samples; ++s) {
+        sum += weighted_output<Layer>(parameters, x.data() + s * x_stride, c.data() + s * y_stride);
+      }
+      return sum;
+    };
+    for (int sample = 0; sample < samples; ++sample) {
+      std::vector<double> expected(index(Layer::outputs));
+      Layer::forward(parameters.data(), x.data() + sample * x_stride, expected.data());
+      for (int k = 0; k < Layer::outputs; ++k) {
+        CHECK(y[index(sample * y_stride + k)] == doctest::Approx(expected[index(k)]).epsilon(1e-13));
+      }
+    }
+    const auto numerical = central_differences(loss, x.data(), index(samples * x_stride));
+    CHECK(gradient_error(dx.data(), numerical.data(), numerical.size()) <= gradient_tolerance);  // padding: 0 = 0
+    std::vector<double> gradient(parameters.size());
+    layer->store_gradient(gradient.data());
+    CHECK(gradient_error(gradient.data(), central_differences(loss, parameters.data(), parameters.size()).data(),
+                         parameters.size()) <= gradient_tolerance);
+    CHECK(x == inputs);
+  }
+}
+
+struct NoRule {
+  template <class Scalar, int In>
+  struct Bind : pinnquad::ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
+    static Scalar activate(Scalar v) noexcept { return v; }
+  };
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("backward rule of every layer", Layer, Bound<Dense<1>, 1>, Bound<Dense<5>, 3>, Bound<Dense<25>, 16>,
+                   Bound<Relu, 7>, Bound<Tanh, 6>, Bound<LeakyRelu, 5>, Bound<ChannelScale, 6>, Bound<Softmax, 5>) {
+  SUBCASE("alone") { check_rule<Layer>(); }
+  SUBCASE("mini-batch, packs of 4") { check_batch<Layer, GenericPack<double, 4>>(); }
+  SUBCASE("mini-batch, packs of 3") { check_batch<Layer, GenericPack<double, 3>>(); }
+}
+
+TEST_CASE("the slope at the kink of ReLU is 0, on both forms") {
+  using Layer = Bound<Relu, 4>;
+  using Pack = GenericPack<double, 4>;
+  CHECK(BackwardRule<Layer>::slope(0.0) == 0.0);
+  const double y[4] = {0.0, 1.0, -0.0, 1e-300}, dy[4] = {2.0, 3.0, 4.0, 5.0};
+  double dx[4] = {};
+  BackwardRule<Layer>::scaled(Pack::load(y), Pack::load(dy)).store(dx);
+  for (int i = 0; i < 4; ++i) CHECK(dx[i] == dy[i] * BackwardRule<Layer>::slope(y[i]));
+}
+
+TEST_CASE("what can be trained") {
+  CHECK(is_trainable<Bound<Dense<2>, 3>>);
+  CHECK(is_trainable<Bound<Relu, 3>>);
+  CHECK(is_trainable<Bound<LeakyRelu, 3>>);
+  CHECK(is_trainable<Bound<ChannelScale, 3>>);
+  CHECK_FALSE(is_trainable<NoRule::Bind<double, 3>>);
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// Back-propagation through whole networks against central differences, in double.
+#include "pinnquad/training/network_gradient.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "support/central_difference.hpp"
+#include "support/own_layers.hpp"
+#include "support/random_network.hpp"
+
+using pinnquad::Dense;
+using pinnquad::GenericPack;
+using pinnquad::Inputs;
+using pinnquad::Network;
+using pinnquad::NetworkGradient;
+using pinnquad::Relu;
+using pinnquad::Tanh;
+using pinnquad::test::central_differences;
+using pinnquad::test::ChannelScale;
+using pinnquad::test::fill_uniform;
+using pinnquad::test::gradient_error;
+using pinnquad::test::gradient_tolerance;
+using pinnquad::test::kink_margin;
+using pinnquad::test::LeakyRelu;
+using pinnquad::test::Softmax;
+
+namespace {
+
+/// How near this pass comes to a kink: the smallest input of any ReLU. Walks the layers with the network's own types.
+template <class Net, int Index = 0>
+double smallest_kink_input(const double* parameters, const double* x) {
+  if constexpr (Index == Net::layer_count) {
+    return std::numeric_limits<double>::infinity();
+  } else {
+    using Layer = typename Net::template Layer<Index>;
+    double smallest = std::numeric_limits<double>::infinity();
+    if constexpr (std::is_same_v<Layer, Relu::Bind<double, Layer::inputs>> ||
+                  std::is_same_v<Layer, LeakyRelu::Bind<double, Layer::inputs>>) {
+      for (int i = 0; i < Layer::inputs; ++i) {
+        // an input that is exactly 0 comes from a ReLU before, and stays 0 within the step
+        if (x[i] != 0.0) smallest = std::min(smallest, std::fabs(x[i]));
+      }
+    }
+    double y[Layer::outputs] = {};
+    Layer::forward(parameters + Net::Sizes::offset(Index), x, y);
+    return std::min(smallest, smallest_kink_input<Net, Index + 1>(parameters, y));
+  }
+}
+
+template <class Net, class Pack>
+void check_network() {
+  constexpr int capacity = 9;
+  auto gradient = std::make_unique<NetworkGradient<Net, capacity, Pack>>();
+  std::mt19937_64 engine(91);
+  for (const int samples : {9, 1, 4, 2, 5, 3, 8}) {  // larger before smaller: leftovers would show
+    CAPTURE(samples);
+    auto net = std::make_unique<Net>();
+    fill_uniform(net->parameters, engine);
+    std::vector<std::array<double, Net::inputs>> x(static_cast<std::size_t>(samples));
+    std::vector<std::array<double, Net::outputs>> c(x.size());
+    for (auto& sample : x) {
+      do {
+        fill_uniform(sample, engine);
+      } while (smallest_kink_input<Net>(net->parameters.data(), sample.data()) < kink_margin);
+    }
+    for (auto& sample : c) fill_uniform(sample, engine);
+
+    gradient->load(net->parameters);
+    const auto put = [&] {
+      for (int i = 0; i < samples; ++i) {
+        for (int k = 0; k < Net::inputs; ++k)
+          gradient->input(i)[k] = x[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+      }
+      gradient->forward(samples);
+    };
+    put();
+    for (int i = 0; i < samples; ++i) {
+      std::array<double, Net::outputs> y{};
+      net->forward(x[static_cast<std::size_t>(i)].data(), y.data());
+      for (int k = 0; k < Net::outputs; ++k) {
+        CHECK(gradient->output(i)[k] == doctest::Approx(y[static_cast<std::size_t>(k)]).epsilon(1e-12));
+        gradient->output_delta(i)[k] = c[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+      }
+      for (int k = Net::outputs; k < gradient->output_stride; ++k) gradient->output_delta(i)[k] = 0.0;
+    }
+    gradient->backward(samples);
+    typename Net::Parameters analytic{};
+    gradient->store_gradient(analytic);
+    const auto loss = [&] {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        std::array<double, Net::outputs> y{};
+        net->forward(x[i].data(), y.data());
+        for (std::size_t k = 0; k < y.size(); ++k) sum += c[i][k] * y[k];
+      }
+      return sum;
+    };
+    const auto numerical = central_differences(loss, net->parameters.data(), net->parameters.size());
+    CHECK(gradient_error(analytic.data(), numerical.data(), numerical.size()) <= gradient_tolerance);
+  }
+}
+
+using Packs4 = GenericPack<double, 4>;
+using Packs3 = GenericPack<double, 3>;
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("gradient of the library's layers in every order", Net, Network<double, Inputs<3>, Dense<2>>,
+                   Network<double, Inputs<5>, Dense<6>, Relu, Dense<7>, Relu, Dense<4>>,
+                   Network<double, Inputs<5>, Dense<6>, Tanh, Dense<9>, Relu, Dense<2>>,
+                   Network<double, Inputs<4>, Tanh, Dense<5>, Dense<3>, Tanh>) {
+  SUBCASE("packs of 4") { check_network<Net, Packs4>(); }
+  SUBCASE("packs of 3") { check_network<Net, Packs3>(); }
+}
+
+TEST_CASE_TEMPLATE("gradient of a user's layers between them", Net,
+                   Network<double, Inputs<5>, Dense<6>, LeakyRelu, Dense<7>, LeakyRelu, Dense<4>>,
+                   Network<double, Inputs<5>, ChannelScale, Dense<6>, ChannelScale, Dense<3>, ChannelScale>,
+                   Network<double, Inputs<5>, Dense<7>, ChannelScale, Tanh, Dense<3>>,
+                   Network<double, Inputs<5>, Softmax, Dense<4>, Softmax, Dense<2>>) {
+  check_network<Net, Packs4>();
+}
+
+TEST_CASE_TEMPLATE("a layer whose rule needs its output keeps it, whatever follows", Net,
+                   Network<double, Inputs<5>, Dense<6>, Tanh, Tanh, Dense<3>>,
+                   Network<double, Inputs<5>, Dense<6>, Softmax, Tanh, Dense<3>>,
+                   Network<double, Inputs<5>, Tanh, Tanh, Dense<3>>,
+                   Network<double, Inputs<5>, Dense<6>, Tanh, Tanh, Tanh>) {
+  check_network<Net, Packs4>();
+}
+
+TEST_CASE("what a larger batch left behind does not reach a smaller one, not even NaN") {
+  using Net = Network<double, Inputs<3>, Dense<5>, Relu, Dense<2>>;
+  auto gradient = std::make_unique<NetworkGradient<Net, 8, Packs4>>();
+  std::mt19937_64 engine(92);
+  Net net;
+  fill_uniform(net.parameters, engine);
+  gradient->load(net.parameters);
+  const auto run = [&](int samples) {
+    gradient->forward(samples);
+    for (int i = 0; i < samples; ++i) {
+      for (int k = 0; k < gradient->output_stride; ++k) gradient->output_delta(i)[k] = k < 2 ? 1.0 : 0.0;
+    }
+    gradient->backward(samples);
+    Net::Parameters result{};
+    gradient->store_gradient(result);
+    return result;
+  };
+  for (int k = 0; k < 3; ++k) gradient->input(0)[k] = 0.5;
+  const auto clean = run(1);
+  for (int i = 1; i < 4; ++i) {
+    for (int k = 0; k < 3; ++k) gradient->input(i)[k] = std::numeric_limits<double>::quiet_NaN();
+  }
+  run(4);
+  CHECK(run(1) == clean);
+}

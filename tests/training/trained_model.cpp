@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/training/trained_model.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/training_data.hpp"
+#include "support/plain_network.hpp"
+#include "support/training_sets.hpp"
+
+using pinnquad::Context;
+using pinnquad::Flight;
+using pinnquad::Hidden;
+using pinnquad::initialised;
+using pinnquad::Inputs;
+using pinnquad::make_context;
+using pinnquad::make_trained_model;
+using pinnquad::Mlp;
+using pinnquad::Outputs;
+using pinnquad::PaperFeatures;
+using pinnquad::PaperQuadrotor;
+using pinnquad::Relu;
+using pinnquad::RotorSpeedOutputs;
+using pinnquad::test::random_flight_rows;
+
+namespace {
+
+template <class Scalar>
+using Small = Mlp<Scalar, Inputs<16>, Hidden<1, 7>, Outputs<4>, Relu>;
+using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
+
+/// Sums of at most 16 terms, twice, in float: some 1e-6 of values of order 1.
+constexpr double float_tolerance = 5e-6;
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("predict() is scale, plain forward pass, scale back", ContextType, PaperContext,
+                   Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>) {
+  const Flight flight = random_flight_rows(60, 151);
+  std::mt19937_64 engine(152);
+  const auto context = make_context<ContextType>(flight, {0, 60});
+  const auto net = initialised<Small<float>>(engine);
+  const auto model = make_trained_model(net, context, flight, {0, 60});
+  for (const auto& sample : flight) {
+    const auto x = pinnquad::sample_features<PaperFeatures, double>(sample);
+    std::vector<double> z(16);
+    for (std::size_t i = 0; i < 16; ++i) z[i] = (x[i] - context.input.mean[i]) / context.input.spread[i];
+    const auto y = plain::forward({{16, 7, 4}, plain::Activation::relu}, net.parameters, z).outputs;
+    const auto commands = model.predict(sample);
+    for (std::size_t i = 0; i < 4; ++i) {
+      double expected = y[i] * context.output.spread[i] + context.output.mean[i];
+      if constexpr (std::is_same_v<typename ContextType::Outputs, RotorSpeedOutputs>) {
+        const double n_max_rev_s = 8500.0 / 60.0;
+        expected = std::copysign(expected * expected / (n_max_rev_s * n_max_rev_s), expected);
+      }
+      CHECK(std::fabs(static_cast<double>(commands[i]) - expected) <= float_tolerance);
+    }
+  }
+}
+
+TEST_CASE("the envelope: the range of the training rows, a tenth wider on both sides") {
+  Flight flight = random_flight_rows(100, 153);
+  flight[20].velocity_m_s[0] = -30.0;
+  flight[40].velocity_m_s[0] = 20.0;
+  flight[80].velocity_m_s[0] = 500.0;  // not a training row
+  std::mt19937_64 engine(154);
+  const auto context = make_context<PaperContext>(flight, {0, 60});
+  const auto model = make_trained_model(initialised<Small<double>>(engine), context, flight, {0, 60});
+  CHECK(model.envelope_lower[6] == doctest::Approx(-35.0));
+  CHECK(model.envelope_upper[6] == doctest::Approx(25.0));
+  for (std::size_t row = 0; row < 60; ++row) {
+    const auto x = pinnquad::sample_features<PaperFeatures, double>(flight[row]);
+    for (std::size_t i = 0; i < 16; ++i) {
+      CHECK(x[i] > model.envelope_lower[i]);
+      CHECK(x[i] < model.envelope_upper[i]);
+    }
+  }
+}
+
+TEST_CASE("weights that weigh nothing are exported as 0, no others") {
+  const Flight flight = random_flight_rows(10, 155);
+  Small<float> net{};
+  net.parameters[0] = 1e-30F;
+  net.parameters[1] = -1e-42F;  // denormal
+  net.parameters[2] = 1e-19F;
+  net.parameters[3] = -0.25F;
+  const auto model = make_trained_model(net, make_context<PaperContext>(flight, {0, 10}), flight, {0, 10});
+  CHECK(model.network.parameters[0] == 0.0F);
+  CHECK(model.network.parameters[1] == 0.0F);
+  CHECK(model.network.parameters[2] == 1e-19F);
+  CHECK(model.network.parameters[3] == -0.25F);
+}

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// Forward and inverse dynamics are each other's inverse, through the same effects.
+#include "pinnquad/vehicle/inverse.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/wind.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/random_states.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::Accelerations;
+using pinnquad::Commands;
+using pinnquad::Quadrotor;
+using pinnquad::State;
+using pinnquad::Status;
+using pinnquad::test::draws;
+using pinnquad::test::RandomStates;
+
+namespace {
+
+template <class Scalar>
+using Airborne = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::PeriodicWind, pinnquad::QuadraticDrag>;
+template <class Scalar>
+using NearGround =
+    Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::ConyersGroundEffect>;
+template <class Scalar>
+using NearGroundCheesemanBennett =
+    Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::CheesemanBennettGroundEffect>;
+
+template <class Scalar>
+Airborne<Scalar> airborne() {
+  return Airborne<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(),
+                          pinnquad::StandardAtmosphere{}, pinnquad::PeriodicWind{}, pinnquad::QuadraticDrag{});
+}
+template <class Scalar>
+NearGround<Scalar> near_ground() {
+  return NearGround<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(),
+                            pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{}, pinnquad::ConyersGroundEffect{});
+}
+
+/// The thrust equation with ground effect is solved to 1e-6 of the thrust; a loop gain of up to 1/2 doubles what is left.
+template <class Scalar>
+inline constexpr double ground_effect_tolerance = 1e-5;
+
+/// Motions as in flight: accelerations of 100 rad/s^2 times 1 / T_max, and the velocity's transport term.
+template <class Scalar>
+inline constexpr double flight_tolerance = 2.0 * pinnquad::test::inverse_tolerance<Scalar>;
+
+template <class Scalar, class Vehicle>
+double round_trip(const Vehicle& vehicle, const State<Scalar>& state, const Commands<Scalar>& u, Scalar time_s) {
+  const Accelerations<Scalar> motion = vehicle.evaluate(state, u, time_s).motion;
+  Commands<Scalar> again{};
+  if (pinnquad::inverse_commands(vehicle, state, motion, time_s, again) != Status::ok)
+    return std::numeric_limits<double>::infinity();
+  return pinnquad::test::distance(again, u);
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("commands -> motion -> commands, without effects", Scalar, float, double) {
+  RandomStates random(100);
+  const Quadrotor<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  for (int draw = 0; draw < draws; ++draw) {
+    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), Scalar(0)) <=
+          flight_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("commands -> motion -> commands, with density, wind and drag", Scalar, float, double) {
+  RandomStates random(101);
+  const Airborne<Scalar> vehicle = airborne<Scalar>();
+  for (int draw = 0; draw < draws; ++draw) {
+    const Scalar time = random.scalar<Scalar>(0.0, 20.0);
+    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), time) <= flight_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("commands -> motion -> commands in ground effect", Scalar, float, double) {
+  // commands above 0.2: the equation is solved relative to the thrust. Tilt below 60 degrees, ratios below 1.5: one solution
+  RandomStates random(102);
+  const NearGroundCheesemanBennett<Scalar> cheeseman_bennett(
+      pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), pinnquad::StandardAtmosphere{},
+      pinnquad::QuadraticDrag{}, pinnquad::CheesemanBennettGroundEffect{});
+  const NearGround<Scalar> conyers = near_ground<Scalar>();
+  for (int draw = 0; draw < draws; ++draw) {
+    State<Scalar> state = random.state<Scalar>();
+    state.position_m[2] = Scalar(0.877) - random.scalar<Scalar>(0.05, 1.5);
+    state.attitude = pinnquad::from_euler<Scalar>(
+        {random.scalar<Scalar>(-0.7, 0.7), random.scalar<Scalar>(-0.7, 0.7), random.scalar<Scalar>(-3.0, 3.0)});
+    const Commands<Scalar> u = random.commands<Scalar>(0.2, 1.0);
+    CHECK(round_trip(conyers, state, u, Scalar(0)) <= ground_effect_tolerance<Scalar>);
+    CHECK(round_trip(cheeseman_bennett, state, u, Scalar(0)) <= ground_effect_tolerance<Scalar>);
+  }
+}
+
+namespace {
+/// An effect with all six components, as a gust on a lopsided body would have.
+struct Push {
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+                                  const pinnquad::Airframe<Scalar>&) const noexcept {
+    pinnquad::Wrench<Scalar> result;
+    result.force_N = {Scalar(1), Scalar(-2), Scalar(3)};
+    result.torque_N_m = {Scalar(0.2) * condition.air_relative_velocity_m_s[1], Scalar(-0.3), Scalar(0.05)};
+    return result;
+  }
+};
+}  // namespace
+
+TEST_CASE_TEMPLATE("commands -> motion -> commands, with an effect that makes torque", Scalar, float, double) {
+  RandomStates random(106);
+  const Quadrotor<Scalar, Push> vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::Site<Scalar>{}, Push{});
+  for (int draw = 0; draw < draws; ++draw) {
+    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), Scalar(0)) <=
+          flight_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("motion -> commands -> motion: what rotors can make comes back", Scalar, float, double) {
+  RandomStates random(103);
+  const Airborne<Scalar> vehicle = airborne<Scalar>();
+  int compared = 0;
+  for (int draw = 0; draw < 10 * draws; ++draw) {
+    const State<Scalar> state = random.state<Scalar>();
+    const Accelerations<Scalar> wanted = random.motion<Scalar>();
+    Commands<Scalar> u{};
+    REQUIRE(pinnquad::inverse_commands(vehicle, state, wanted, Scalar(1), u) == Status::ok);
+    bool clipped = false;
+    for (const Scalar command : u) clipped = clipped || command < Scalar(0) || command > Scalar(1);
+    if (clipped) continue;
+    ++compared;
+    const Accelerations<Scalar> made = vehicle.evaluate(state, u, Scalar(1)).motion;
+    // thrust acts along z only; the lateral acceleration is what it is
+    CHECK(std::fabs(static_cast<double>(made.linear_m_s2[2] - wanted.linear_m_s2[2])) <=
+          50.0 * flight_tolerance<Scalar>);
+    CHECK(pinnquad::test::distance(made.angular_rad_s2, wanted.angular_rad_s2) <= 50.0 * flight_tolerance<Scalar>);
+  }
+  CHECK(compared > 10);
+}
+
+TEST_CASE_TEMPLATE("commands are not clipped: they say how far beyond its limit a rotor would have to go", Scalar,
+                   float, double) {
+  const Quadrotor<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  Accelerations<Scalar> motion;
+  motion.linear_m_s2[2] = Scalar(-30);
+  Commands<Scalar> u{};
+  REQUIRE(pinnquad::inverse_commands(vehicle, State<Scalar>{}, motion, Scalar(0), u) == Status::ok);
+  for (const Scalar command : u) CHECK(command > Scalar(1));
+  motion.linear_m_s2[2] = Scalar(20);
+  REQUIRE(pinnquad::inverse_commands(vehicle, State<Scalar>{}, motion, Scalar(0), u) == Status::ok);
+  for (const Scalar command : u) CHECK(command < Scalar(0));
+}
+
+TEST_CASE_TEMPLATE("not_finite: every input, and the commands stay", Scalar, float, double) {
+  using Limits = std::numeric_limits<Scalar>;
+  const Airborne<Scalar> vehicle = airborne<Scalar>();
+  const Commands<Scalar> before{Scalar(1), Scalar(2), Scalar(3), Scalar(4)};
+  RandomStates random(104);
+  const State<Scalar> good = random.state<Scalar>();
+  const auto refused = [&](const State<Scalar>& state, const Accelerations<Scalar>& motion, Scalar time) {
+    Commands<Scalar> u = before;
+    return pinnquad::inverse_commands(vehicle, state, motion, time, u) == Status::not_finite && u == before;
+  };
+  for (const Scalar bad : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
+    CAPTURE(bad);
+    for (int i = 0; i < 3; ++i) {
+      State<Scalar> state = good;
+      state.position_m[i] = bad;
+      CHECK(refused(state, {}, Scalar(0)));
+      state = good;
+      state.velocity_m_s[i] = bad;
+      CHECK(refused(state, {}, Scalar(0)));
+      state = good;
+      state.body_rates_rad_s[i] = bad;
+      CHECK(refused(state, {}, Scalar(0)));
+      Accelerations<Scalar> motion;
+      motion.linear_m_s2[i] = bad;
+      CHECK(refused(good, motion, Scalar(0)));
+      motion = {};
+      motion.angular_rad_s2[i] = bad;
+      CHECK(refused(good, motion, Scalar(0)));
+    }
+    State<Scalar> state = good;
+    state.attitude.w = bad;
+    CHECK(refused(state, {}, Scalar(0)));
+    CHECK(refused(good, {}, bad));
+  }
+}
+
+TEST_CASE_TEMPLATE("a motion beyond all numbers is refused and the commands stay", Scalar, float, double) {
+  const Quadrotor<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  Accelerations<Scalar> motion;
+  motion.linear_m_s2[2] = std::numeric_limits<Scalar>::max();
+  const Commands<Scalar> before{Scalar(1), Scalar(2), Scalar(3), Scalar(4)};
+  Commands<Scalar> u = before;
+  CHECK(pinnquad::inverse_commands(vehicle, State<Scalar>{}, motion, Scalar(0), u) == Status::output_not_finite);
+  CHECK(u == before);
+}
+
+TEST_CASE_TEMPLATE("a vehicle or an attitude that can't be inverted is refused", Scalar, float,
+                   double) {
+  const Commands<Scalar> before{Scalar(1), Scalar(2), Scalar(3), Scalar(4)};
+  pinnquad::Airframe<Scalar> flat = pinnquad::PaperQuadrotor::value<Scalar>();
+  for (auto& rotor : flat.rotors) rotor.y_m = Scalar(0);
+  Commands<Scalar> u = before;
+  CHECK(pinnquad::inverse_commands(Quadrotor<Scalar>(flat), State<Scalar>{}, Accelerations<Scalar>{}, Scalar(0), u) ==
+        Status::no_solution);
+  CHECK(u == before);
+  State<Scalar> twice;
+  twice.attitude.w = Scalar(2);
+  u = before;
+  CHECK(pinnquad::inverse_commands(Quadrotor<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>()), twice,
+                                   Accelerations<Scalar>{}, Scalar(0), u) == Status::not_unit_quaternion);
+  CHECK(u == before);
+}
+
+TEST_CASE_TEMPLATE("almost without thrust in ground effect there still is a solution", Scalar,
+                   float, double) {
+  RandomStates random(105);
+  const NearGround<Scalar> vehicle = near_ground<Scalar>();
+  for (int draw = 0; draw < draws; ++draw) {
+    State<Scalar> state = random.state<Scalar>();
+    state.position_m[2] = Scalar(0.877) - random.scalar<Scalar>(0.05, 1.5);
+    state.attitude = {};
+    const Scalar u = random.scalar<Scalar>(0.0, 1e-3);
+    CHECK(round_trip<Scalar>(vehicle, state, {u, u, u, u}, Scalar(0)) <= ground_effect_tolerance<Scalar>);
+  }
+}

@@ -1,0 +1,584 @@
+// SPDX-License-Identifier: MIT
+// Laws that hold for the whole vehicle, with and without effects, in float and double.
+#include "pinnquad/vehicle/quadrotor.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/wind.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
+#include "support/random_states.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::Airframe;
+using pinnquad::Commands;
+using pinnquad::Evaluation;
+using pinnquad::Quadrotor;
+using pinnquad::Quaternion;
+using pinnquad::Site;
+using pinnquad::State;
+using pinnquad::Status;
+using pinnquad::Vector3;
+using pinnquad::VehicleState;
+using pinnquad::test::distance;
+using pinnquad::test::draws;
+using pinnquad::test::evaluation_tolerance;
+using pinnquad::test::RandomStates;
+
+namespace {
+
+/// Accelerations of agile flight reach 100 m/s^2 and rad/s^2; rounding scales with them.
+constexpr double largest_acceleration = 100.0;
+
+template <class Scalar>
+using Bare = Quadrotor<Scalar>;
+template <class Scalar>
+using Full = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::QuadraticDrag,
+                       pinnquad::CheesemanBennettGroundEffect>;
+
+template <class Scalar>
+Full<Scalar> full_vehicle(const std::array<double, 3>& wind) {
+  return Full<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(),
+                      pinnquad::StandardAtmosphere{}, pinnquad::ConstantWind{wind}, pinnquad::QuadraticDrag{},
+                      pinnquad::CheesemanBennettGroundEffect{});
+}
+
+/// A state low enough for ground effect, not next to its pole.
+template <class Scalar>
+State<Scalar> low_state(RandomStates& random) {
+  State<Scalar> state = random.state<Scalar>();
+  state.position_m[2] = random.scalar<Scalar>(-1.0, 0.82);
+  return state;
+}
+
+template <class Scalar>
+Commands<Scalar> hover_commands(const Airframe<Scalar>& airframe, Scalar density_ratio) {
+  const Scalar u = Scalar(1) / (airframe.thrust_to_weight() * density_ratio);
+  return {u, u, u, u};
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("hover balances weight: level, any heading, any place", Scalar, float, double) {
+  RandomStates random(90);
+  const Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  const Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag> vehicle(
+      airframe, pinnquad::paper_site<Scalar>(), pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{});
+  for (int draw = 0; draw < draws; ++draw) {
+    State<Scalar> state;
+    state.position_m = random.vector<Scalar>(100.0);
+    state.attitude = pinnquad::from_euler<Scalar>({Scalar(0), Scalar(0), random.scalar<Scalar>(-3.1, 3.1)});
+    const Scalar ratio = vehicle.density_ratio(vehicle.surroundings(state, Scalar(0)));
+    const Evaluation<Scalar> result = vehicle.evaluate(state, hover_commands(airframe, ratio), Scalar(0));
+    CHECK(pinnquad::test::norm(result.motion.linear_m_s2) <= 10.0 * evaluation_tolerance<Scalar>);
+    CHECK(pinnquad::test::norm(result.motion.angular_rad_s2) <= largest_acceleration * evaluation_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE("the reference vehicle hovers at command 0.8903 at 122 m") {
+  const double printed_digits = 1e-6;
+  const Airframe<double> airframe = pinnquad::ReferenceQuadrotor15::value<double>();
+  const double ratio =
+      pinnquad::standard_atmosphere_density_kg_m3(122.0) / pinnquad::standard_air_density_kg_m3<double>;
+  CHECK(hover_commands(airframe, ratio)[0] == doctest::Approx(0.890280278).epsilon(printed_digits));
+  CHECK(hover_commands(airframe, 1.0)[0] == doctest::Approx(0.879899853).epsilon(printed_digits));
+}
+
+TEST_CASE_TEMPLATE("mirror symmetry: left becomes right", Scalar, float, double) {
+  RandomStates random(91);
+  for (int draw = 0; draw < draws; ++draw) {
+    const State<Scalar> state = low_state<Scalar>(random);
+    const Commands<Scalar> u = random.commands<Scalar>(-0.2, 1.2);
+    const std::array<double, 3> wind{random.scalar<double>(-5, 5), random.scalar<double>(-5, 5),
+                                     random.scalar<double>(-1, 1)};
+
+    State<Scalar> mirrored = state;
+    mirrored.position_m[1] = -state.position_m[1];
+    mirrored.velocity_m_s[1] = -state.velocity_m_s[1];
+    mirrored.attitude = {state.attitude.w, -state.attitude.x, state.attitude.y, -state.attitude.z};
+    mirrored.body_rates_rad_s[0] = -state.body_rates_rad_s[0];
+    mirrored.body_rates_rad_s[2] = -state.body_rates_rad_s[2];
+    const Commands<Scalar> swapped{u[2], u[3], u[0], u[1]};  // right with left, front and rear as they are
+
+    const Evaluation<Scalar> a = full_vehicle<Scalar>(wind).evaluate(state, u, Scalar(0));
+    const Evaluation<Scalar> b =
+        full_vehicle<Scalar>({wind[0], -wind[1], wind[2]}).evaluate(mirrored, swapped, Scalar(0));
+    const Vector3<Scalar> linear(b.motion.linear_m_s2[0], -b.motion.linear_m_s2[1], b.motion.linear_m_s2[2]);
+    const Vector3<Scalar> angular(-b.motion.angular_rad_s2[0], b.motion.angular_rad_s2[1], -b.motion.angular_rad_s2[2]);
+    CHECK(distance(a.motion.linear_m_s2, linear) <= largest_acceleration * evaluation_tolerance<Scalar>);
+    CHECK(distance(a.motion.angular_rad_s2, angular) <= 10.0 * largest_acceleration * evaluation_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("yaw invariance: north is no special direction", Scalar, float, double) {
+  RandomStates random(92);
+  for (int draw = 0; draw < draws; ++draw) {
+    const State<Scalar> state = low_state<Scalar>(random);
+    const Commands<Scalar> u = random.commands<Scalar>();
+    const Vector3<double> wind = random.vector<double>(5.0);
+    const double yaw = random.scalar<double>(-3.1, 3.1);
+    const Quaternion<double> turn = pinnquad::from_euler<double>({0.0, 0.0, yaw});
+    const Vector3<double> turned_wind = pinnquad::body_to_world(turn, wind);
+
+    State<Scalar> turned = state;
+    const Quaternion<Scalar> turn_s{Scalar(turn.w), Scalar(turn.x), Scalar(turn.y), Scalar(turn.z)};
+    turned.attitude = turn_s * state.attitude;
+    turned.velocity_m_s = pinnquad::body_to_world(turn_s, state.velocity_m_s);
+    turned.position_m = pinnquad::body_to_world(turn_s, state.position_m);
+    turned.position_m[2] = state.position_m[2];
+
+    const Evaluation<Scalar> a = full_vehicle<Scalar>({wind[0], wind[1], wind[2]}).evaluate(state, u, Scalar(0));
+    const Evaluation<Scalar> b =
+        full_vehicle<Scalar>({turned_wind[0], turned_wind[1], turned_wind[2]}).evaluate(turned, u, Scalar(0));
+    CHECK(distance(a.motion.linear_m_s2, b.motion.linear_m_s2) <= largest_acceleration * evaluation_tolerance<Scalar>);
+    CHECK(distance(a.motion.angular_rad_s2, b.motion.angular_rad_s2) <=
+          largest_acceleration * evaluation_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("Galileo: flying with the wind is standing still in still air", Scalar, float, double) {
+  RandomStates random(93);
+  for (int draw = 0; draw < draws; ++draw) {
+    const State<Scalar> still = low_state<Scalar>(random);
+    const Commands<Scalar> u = random.commands<Scalar>();
+    const std::array<double, 3> wind{4.0, -3.0, 1.0};
+    State<Scalar> carried = still;
+    carried.velocity_m_s += Vector3<Scalar>(4, -3, 1);
+    const Evaluation<Scalar> a = full_vehicle<Scalar>({0, 0, 0}).evaluate(still, u, Scalar(0));
+    const Evaluation<Scalar> b = full_vehicle<Scalar>(wind).evaluate(carried, u, Scalar(0));
+    CHECK(distance(pinnquad::world_acceleration(still, a.motion.linear_m_s2),
+                   pinnquad::world_acceleration(carried, b.motion.linear_m_s2)) <=
+          largest_acceleration * evaluation_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("the parts of an evaluation add up to its motion", Scalar, float, double) {
+  RandomStates random(94);
+  const Full<Scalar> vehicle = full_vehicle<Scalar>({2.0, -1.0, 0.5});
+  for (int draw = 0; draw < draws; ++draw) {
+    const State<Scalar> state = low_state<Scalar>(random);
+    const Evaluation<Scalar> result = vehicle.evaluate(state, random.commands<Scalar>(-0.3, 1.3), Scalar(0));
+    const pinnquad::Accelerations<Scalar> motion = pinnquad::accelerations(
+        vehicle.airframe(), state, result.rotors + result.aerodynamic, vehicle.site().gravity_m_s2);
+    CHECK(motion.linear_m_s2 == result.motion.linear_m_s2);
+    CHECK(motion.angular_rad_s2 == result.motion.angular_rad_s2);
+    CHECK(result.surroundings.wind_m_s == Vector3<Scalar>(Scalar(2), Scalar(-1), Scalar(0.5)));
+    CHECK(result.surroundings.altitude_m == Scalar(122) - state.position_m[2]);
+    CHECK(result.rotors.force_N[0] == Scalar(0));
+    CHECK(result.rotors.force_N[2] <= Scalar(0));
+  }
+}
+
+TEST_CASE("evaluate clips the rotors and has no lag") {
+  const Bare<double> vehicle(pinnquad::PaperQuadrotor::value<double>());
+  const Evaluation<double> outside = vehicle.evaluate({}, {1.7, -0.4, 0.5, 1.0}, 0.0);
+  const Evaluation<double> limits = vehicle.evaluate({}, {1.0, 0.0, 0.5, 1.0}, 0.0);
+  CHECK(outside.rotors.force_N == limits.rotors.force_N);
+  CHECK(outside.rotors.torque_N_m == limits.rotors.torque_N_m);
+  CHECK(-limits.rotors.force_N[2] ==
+        doctest::Approx(2.5 * pinnquad::PaperQuadrotor::value<double>().max_rotor_thrust_N()));
+}
+
+namespace {
+/// Effects that leave a trace: they show in which order the vehicle calls them, and with what.
+struct AddsWrench {
+  double newton;
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept {
+    pinnquad::Wrench<Scalar> result;
+    result.force_N[0] = Scalar(newton);
+    result.torque_N_m[1] = Scalar(newton);
+    return result;
+  }
+};
+struct DoublesWrenchSoFar {
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+                                  const Airframe<Scalar>&) const noexcept {
+    return condition.aerodynamic;
+  }
+};
+struct ShowsCondition {
+  static constexpr bool uses_rotor_wrench = true;
+  pinnquad::AeroCondition<double>* seen;
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+                                  const Airframe<Scalar>&) const noexcept {
+    *seen = condition;
+    return {};
+  }
+};
+
+/// The same without saying that it uses the rotors' wrench.
+struct ShowsWithoutRotors {
+  pinnquad::AeroCondition<double>* seen;
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+                                  const Airframe<Scalar>&) const noexcept {
+    *seen = condition;
+    return {};
+  }
+};
+}  // namespace
+
+TEST_CASE("effects fold in order: each sees the wrench so far") {
+  const Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  const Quadrotor<double, AddsWrench, DoublesWrenchSoFar> first(airframe, Site<double>{}, AddsWrench{3.0},
+                                                                DoublesWrenchSoFar{});
+  const Quadrotor<double, DoublesWrenchSoFar, AddsWrench> last(airframe, Site<double>{}, DoublesWrenchSoFar{},
+                                                               AddsWrench{3.0});
+  CHECK(first.evaluate({}, {}, 0.0).aerodynamic.force_N[0] == 6.0);
+  CHECK(first.evaluate({}, {}, 0.0).aerodynamic.torque_N_m[1] == 6.0);
+  CHECK(last.evaluate({}, {}, 0.0).aerodynamic.force_N[0] == 3.0);
+}
+
+TEST_CASE("surroundings run before every wrench, whatever the order of the list") {
+  const Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  const Quadrotor<double, pinnquad::QuadraticDrag, pinnquad::ConstantWind> drag_first(
+      airframe, Site<double>{}, pinnquad::QuadraticDrag{}, pinnquad::ConstantWind{{5.0, 0.0, 0.0}});
+  CHECK(drag_first.evaluate({}, {}, 0.0).aerodynamic.force_N[0] > 0.1);
+}
+
+TEST_CASE("what an effect is given") {
+  pinnquad::AeroCondition<double> seen;
+  const Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  const Quadrotor<double, pinnquad::ConstantWind, pinnquad::StandardAtmosphere, ShowsCondition> vehicle(
+      airframe, pinnquad::paper_site<double>(), pinnquad::ConstantWind{{1.0, 2.0, 3.0}}, pinnquad::StandardAtmosphere{},
+      ShowsCondition{&seen});
+  RandomStates random(95);
+  State<double> state = random.state<double>();
+  const Evaluation<double> result = vehicle.evaluate(state, {0.4, 0.5, 0.6, 0.7}, 12.5);
+  const Vector3<double> relative = state.velocity_m_s - Vector3<double>(1, 2, 3);
+  CHECK(distance(seen.air_relative_velocity_m_s, pinnquad::world_to_body<double>(state.attitude, relative)) <=
+        evaluation_tolerance<double>);
+  CHECK(seen.body_rates_rad_s == state.body_rates_rad_s);
+  CHECK(pinnquad::test::components(seen.attitude) == pinnquad::test::components(state.attitude));
+  CHECK(seen.height_above_ground_m == 0.877 - state.position_m[2]);
+  CHECK(seen.air_density_kg_m3 == pinnquad::standard_atmosphere_density_kg_m3(122.0 - state.position_m[2]));
+  CHECK(seen.time_s == 12.5);
+  CHECK(seen.rotors.force_N == result.rotors.force_N);
+  CHECK(seen.rotors.torque_N_m == result.rotors.torque_N_m);
+
+  pinnquad::AeroCondition<double> undeclared;
+  const Quadrotor<double, ShowsWithoutRotors> other(airframe, pinnquad::paper_site<double>(),
+                                                    ShowsWithoutRotors{&undeclared});
+  static_cast<void>(other.evaluate(state, {0.4, 0.5, 0.6, 0.7}, 12.5));
+  CHECK(undeclared.height_above_ground_m == seen.height_above_ground_m);
+  CHECK(undeclared.rotors.force_N.isZero(0.0));  // it does not say that it uses them
+  CHECK(undeclared.rotors.torque_N_m.isZero(0.0));
+}
+
+TEST_CASE_TEMPLATE("thrust and torque scale with the density over that of sea level", Scalar, float, double) {
+  const Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  const Quadrotor<Scalar, pinnquad::StandardAtmosphere> thin(airframe, Site<Scalar>{}, pinnquad::StandardAtmosphere{});
+  State<Scalar> high;
+  high.position_m[2] = Scalar(-3000);
+  const Commands<Scalar> u{Scalar(0.4), Scalar(0.5), Scalar(0.6), Scalar(0.8)};
+  const Evaluation<Scalar> low = Bare<Scalar>(airframe).evaluate({}, u, Scalar(0)),
+                           up = thin.evaluate(high, u, Scalar(0));
+  const double ratio = 0.90925 / 1.2250;  // the table's densities
+  CHECK(static_cast<double>(up.rotors.force_N[2] / low.rotors.force_N[2]) == doctest::Approx(ratio).epsilon(1e-4));
+  for (int axis = 0; axis < 3; ++axis) {
+    CHECK(static_cast<double>(up.rotors.torque_N_m[axis] / low.rotors.torque_N_m[axis]) ==
+          doctest::Approx(ratio).epsilon(1e-4));
+  }
+}
+
+// In time
+
+TEST_CASE_TEMPLATE("a short step follows the motion that evaluate() gives", Scalar, float, double) {
+  RandomStates random(98);
+  const Full<Scalar> vehicle = full_vehicle<Scalar>({2.0, -1.0, 0.5});
+  // the motion changes by its own derivative, some 1e3 m/s^3 and rad/s^3, over the step; rounding of 10 m/s is divided by it
+  const Scalar step = sizeof(Scalar) == 4 ? Scalar(1e-4) : Scalar(1e-7);
+  const double tolerance =
+      1e3 * static_cast<double>(step) + pinnquad::test::rounding<Scalar>(40) / static_cast<double>(step);
+  for (int draw = 0; draw < draws; ++draw) {
+    VehicleState<Scalar> state;
+    state.body = random.state<Scalar>();
+    state.rotors = random.commands<Scalar>();
+    const pinnquad::Accelerations<Scalar> motion = vehicle.evaluate(state.body, state.rotors, Scalar(0)).motion;
+    const State<Scalar> start = state.body;
+    REQUIRE(vehicle.step(state, state.rotors, step) == Status::ok);
+    const Vector3<Scalar> linear = (state.body.velocity_m_s - start.velocity_m_s) / step;
+    const Vector3<Scalar> angular = (state.body.body_rates_rad_s - start.body_rates_rad_s) / step;
+    CHECK(distance(linear, pinnquad::world_acceleration(start, motion.linear_m_s2)) <= tolerance);
+    CHECK(distance(angular, motion.angular_rad_s2) <= tolerance);
+  }
+}
+
+TEST_CASE("effects that are not given are those of the defaults") {
+  const Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  using Vehicle = Quadrotor<double, pinnquad::PeriodicWind, pinnquad::QuadraticDrag>;
+  const Vehicle given(airframe, pinnquad::paper_site<double>(), pinnquad::PeriodicWind{}, pinnquad::QuadraticDrag{});
+  const Vehicle implied(airframe, pinnquad::paper_site<double>());
+  CHECK(implied.site().elevation_m == 122.0);
+  CHECK(given.evaluate({}, {}, 3.0).aerodynamic.force_N == implied.evaluate({}, {}, 3.0).aerodynamic.force_N);
+  CHECK(implied.evaluate({}, {}, 3.0).surroundings.wind_m_s[0] ==
+        doctest::Approx(2.5 * std::sin(0.6 * 3.14159265358979) + 2.5));
+}
+
+TEST_CASE("step is of fourth order with drag, density, wind and rotor lag") {
+  // no deadband and axes that keep their sign: the dynamics is smooth; lag of 20 ms
+  Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  airframe.drag_deadband_m_s = 0.0;
+  airframe.rotor_time_constant_s = 0.02;
+  using Vehicle = Quadrotor<double, pinnquad::StandardAtmosphere, pinnquad::PeriodicWind, pinnquad::QuadraticDrag>;
+  const Vehicle vehicle(airframe, pinnquad::paper_site<double>(), pinnquad::StandardAtmosphere{},
+                        pinnquad::PeriodicWind{{0.0, 1.0, 0.0}, -4.0, 2.0, 0.5}, pinnquad::QuadraticDrag{});
+  VehicleState<double> start;
+  start.body.velocity_m_s = {6.0, 5.0, 4.0};
+  start.body.attitude = pinnquad::from_euler<double>({0.1, -0.2, 0.3});
+  start.body.body_rates_rad_s = {1.0, -2.0, 0.5};
+  start.rotors = {0.3, 0.4, 0.5, 0.6};
+  start.time_s = 0.07;
+  const Commands<double> u{0.60, 0.55, 0.62, 0.56};
+  const auto fly = [&](int steps) {
+    VehicleState<double> state = start;
+    for (int i = 0; i < steps; ++i) REQUIRE(vehicle.step(state, u, 0.2 / steps) == Status::ok);
+    return state;
+  };
+  const State<double> exact = fly(1280).body, coarse = fly(40).body, fine = fly(80).body;
+  const auto check = [](double ratio) {
+    CHECK(ratio > 13.0);
+    CHECK(ratio < 19.5);
+  };
+  using pinnquad::test::components;
+  check(distance(coarse.position_m, exact.position_m) / distance(fine.position_m, exact.position_m));
+  check(distance(coarse.velocity_m_s, exact.velocity_m_s) / distance(fine.velocity_m_s, exact.velocity_m_s));
+  check(distance(components(coarse.attitude), components(exact.attitude)) /
+        distance(components(fine.attitude), components(exact.attitude)));
+  check(distance(coarse.body_rates_rad_s, exact.body_rates_rad_s) /
+        distance(fine.body_rates_rad_s, exact.body_rates_rad_s));
+}
+
+TEST_CASE_TEMPLATE("the rotor lag of a step is exact, however long the step", Scalar, float, double) {
+  const Bare<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  for (const double step : {0.0005, 0.005, 0.05}) {
+    VehicleState<Scalar> state;
+    state.rotors = {Scalar(0.1), Scalar(0.9), Scalar(0.5), Scalar(0.2)};
+    const Commands<Scalar> u{Scalar(0.7), Scalar(0.2), Scalar(1.4), Scalar(-0.4)};
+    const double start[4] = {0.1, 0.9, 0.5, 0.2}, target[4] = {0.7, 0.2, 1.0, 0.0};
+    REQUIRE(vehicle.step(state, u, Scalar(step)) == Status::ok);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double exact = target[i] + (start[i] - target[i]) * std::exp(-step / 0.005);
+      CHECK(std::fabs(static_cast<double>(state.rotors[i]) - exact) <= pinnquad::test::rounding<Scalar>(16));
+    }
+    CHECK(state.time_s == Scalar(step));
+  }
+}
+
+TEST_CASE("a thrust that grows with the lag: closed form of speed and height") {
+  // level, no drag: m v_dot = m g - 4 T_max u_f(t), u_f = u (1 - exp(-t / tau))
+  const Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  const Bare<double> vehicle(airframe);
+  VehicleState<double> state;
+  const double u = 0.8, h = 0.001, g = 9.80665, tau = 0.005,
+               a = 4.0 * u * airframe.max_rotor_thrust_N() / airframe.mass_kg;
+  for (int i = 0; i < 50; ++i) REQUIRE(vehicle.step(state, {u, u, u, u}, h) == Status::ok);
+  const double t = 50 * h, e = std::exp(-t / tau);
+  const double rk4_tolerance =
+      1e-6;  // Simpson's rule on the exponential: a h (h / tau)^4 / 2880 in each of the first steps
+  CHECK(std::fabs(state.body.velocity_m_s[2] - (g * t - a * (t - tau * (1 - e)))) <= rk4_tolerance);
+  CHECK(std::fabs(state.body.position_m[2] - (g * t * t / 2 - a * (t * t / 2 - tau * (t - tau * (1 - e))))) <=
+        rk4_tolerance);
+}
+
+TEST_CASE_TEMPLATE("without thrust, air and torque: energy and angular momentum are kept while falling", Scalar, float,
+                   double) {
+  const Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  const Bare<Scalar> vehicle(airframe);
+  const Vector3<Scalar> inertia = pinnquad::to_vector(airframe.inertia_kg_m2);
+  const double tolerance =
+      sizeof(Scalar) == 4 ? pinnquad::test::rounding<float>(1000) : 1e-10;  // 500 steps of rounding; truncation
+  RandomStates random(96);
+  for (int draw = 0; draw < 10; ++draw) {
+    VehicleState<Scalar> state;
+    state.body = random.state<Scalar>();
+    const auto energy = [&](const State<Scalar>& s) {
+      const double spin = static_cast<double>(s.body_rates_rad_s.dot(inertia.cwiseProduct(s.body_rates_rad_s))) / 2.0;
+      const double speed = static_cast<double>(s.velocity_m_s.squaredNorm()) * 1.5 / 2.0;
+      return spin + speed - 1.5 * 9.80665 * static_cast<double>(s.position_m[2]);
+    };
+    const auto momentum = [&](const State<Scalar>& s) {
+      return pinnquad::body_to_world<Scalar>(s.attitude, inertia.cwiseProduct(s.body_rates_rad_s));
+    };
+    const State<Scalar> start = state.body;
+    for (int i = 0; i < 500; ++i) REQUIRE(vehicle.step(state, {}, Scalar(0.001)) == Status::ok);
+    CHECK(distance(state.body.velocity_m_s, start.velocity_m_s) == doctest::Approx(9.80665 * 0.5).epsilon(1e-4));
+    CHECK(std::fabs(energy(state.body) / energy(start) - 1.0) <= tolerance);
+    CHECK(pinnquad::test::relative_distance(momentum(state.body), momentum(start)) <= tolerance);
+  }
+}
+
+TEST_CASE("terminal velocity: v = v_t tanh(g t / v_t), v_t = sqrt(m g / (k rho))") {
+  Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  airframe.drag_deadband_m_s = 0.0;
+  const Quadrotor<double, pinnquad::QuadraticDrag> vehicle(airframe, Site<double>{}, pinnquad::QuadraticDrag{});
+  const double rho = pinnquad::standard_air_density_kg_m3<double>, g = 9.80665;
+  const double terminal = std::sqrt(1.5 * g / (0.1099301 * rho));
+  const double rk4_tolerance = 2e-9;  // 10 ms steps
+  VehicleState<double> state;
+  for (int i = 1; i <= 600; ++i) {
+    REQUIRE(vehicle.step(state, {}, 0.01) == Status::ok);
+    if (i % 100 == 0) {
+      CHECK(std::fabs(state.body.velocity_m_s[2] - terminal * std::tanh(g * 0.01 * i / terminal)) <= rk4_tolerance);
+      CHECK(std::fabs(state.body.position_m[2] -
+                      terminal * terminal / g * std::log(std::cosh(g * 0.01 * i / terminal))) <= 10 * rk4_tolerance);
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("terminal fall of the reference vehicle: 10.51 m/s at 122 m", Scalar, float, double) {
+  const Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag> vehicle(
+      pinnquad::ReferenceQuadrotor15::value<Scalar>(), pinnquad::paper_site<Scalar>(), pinnquad::StandardAtmosphere{},
+      pinnquad::QuadraticDrag{});
+  State<Scalar> state;
+  state.velocity_m_s[2] = Scalar(10.513);
+  const double printed_digits = 0.02;  // 10.51 to the last printed digit is 0.02 m/s^2 of acceleration
+  CHECK(std::fabs(static_cast<double>(vehicle.evaluate(state, {}, Scalar(0)).motion.linear_m_s2[2])) <= printed_digits);
+}
+
+TEST_CASE_TEMPLATE("coasting: 8 m/s becomes 7.0244 m/s after 4 s, as 1 / (1 / v + k rho t / m)", Scalar, float,
+                   double) {
+  const Airframe<Scalar> airframe = pinnquad::ReferenceQuadrotor15::value<Scalar>();
+  const Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag> vehicle(
+      airframe, pinnquad::paper_site<Scalar>(), pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{});
+  VehicleState<Scalar> state;
+  state.body.position_m[2] = Scalar(-10);
+  state.body.velocity_m_s[0] = Scalar(8);
+  const Commands<Scalar> hover =
+      hover_commands(airframe, vehicle.density_ratio(vehicle.surroundings(state.body, Scalar(0))));
+  state.rotors = hover;
+  for (int i = 0; i < 1000; ++i) REQUIRE(vehicle.step(state, hover, Scalar(0.004)) == Status::ok);
+  const double speed = static_cast<double>(state.body.velocity_m_s[0]);
+  // the simulator's first step takes half the deceleration: 0.5 ms of 0.28 m/s^2
+  const double first_step = 0.5e-3 * 0.28;
+  CHECK(std::fabs(speed - 7.02437) <= first_step);
+  const double closed_form = 8.0 / (1.0 + 8.0 * 4.0 * 0.00538309224 * 1.209551206943 / 1.5);
+  CHECK(speed ==
+        doctest::Approx(closed_form).epsilon(sizeof(Scalar) == 4 ? pinnquad::test::rounding<float>(500) : 1e-7));
+  CHECK(std::fabs(static_cast<double>(state.body.velocity_m_s[2])) <= 1e-3);  // it neither climbs nor sinks
+}
+
+// Bad input
+
+TEST_CASE_TEMPLATE("a bad input returns not_finite and leaves the state untouched", Scalar, float, double) {
+  using Limits = std::numeric_limits<Scalar>;
+  const Full<Scalar> vehicle = full_vehicle<Scalar>({1.0, 0.0, 0.0});
+  RandomStates random(97);
+  VehicleState<Scalar> good;
+  good.body = random.state<Scalar>();
+  good.rotors = random.commands<Scalar>();
+  const auto refused = [&](const VehicleState<Scalar>& bad, const Commands<Scalar>& u, Scalar step) {
+    VehicleState<Scalar> state;
+    std::memcpy(static_cast<void*>(&state), &bad, sizeof state);  // padding too: bytes are compared below
+    const Status status = vehicle.step(state, u, step);
+    // NaN does not equal itself: bytes are compared
+    return status == Status::not_finite && std::memcmp(&state, &bad, sizeof state) == 0;
+  };
+  for (const Scalar bad : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
+    CAPTURE(bad);
+    for (int i = 0; i < 3; ++i) {
+      VehicleState<Scalar> state = good;
+      state.body.position_m[i] = bad;
+      CHECK(refused(state, {}, Scalar(0.001)));
+      state = good;
+      state.body.velocity_m_s[i] = bad;
+      CHECK(refused(state, {}, Scalar(0.001)));
+      state = good;
+      state.body.body_rates_rad_s[i] = bad;
+      CHECK(refused(state, {}, Scalar(0.001)));
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      VehicleState<Scalar> state = good;
+      state.rotors[i] = bad;
+      CHECK(refused(state, {}, Scalar(0.001)));
+      Commands<Scalar> u{};
+      u[i] = bad;
+      CHECK(refused(good, u, Scalar(0.001)));
+    }
+    VehicleState<Scalar> state = good;
+    state.body.attitude.y = bad;
+    CHECK(refused(state, {}, Scalar(0.001)));
+    CHECK(refused(good, {}, bad));
+  }
+  VehicleState<Scalar> state = good;
+  CHECK(vehicle.step(state, {}, Scalar(0.001)) == Status::ok);
+}
+
+TEST_CASE_TEMPLATE("a result that is not finite is refused and leaves the state untouched", Scalar, float, double) {
+  const Quadrotor<Scalar, pinnquad::QuadraticDrag> vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), Site<Scalar>{},
+                                                           pinnquad::QuadraticDrag{});
+  VehicleState<Scalar> start;
+  start.body.velocity_m_s[0] = std::numeric_limits<Scalar>::max() / Scalar(4);
+  VehicleState<Scalar> state;
+  std::memcpy(static_cast<void*>(&state), &start, sizeof state);  // padding too: bytes are compared below
+  CHECK(vehicle.step(state, {}, Scalar(0.01)) == Status::output_not_finite);
+  CHECK(std::memcmp(&state, &start, sizeof state) == 0);
+}
+
+TEST_CASE_TEMPLATE("step refuses a time that is no number, a step backwards and an attitude that is none",
+                   Scalar, float, double) {
+  const Bare<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  VehicleState<Scalar> state;
+  state.time_s = std::numeric_limits<double>::quiet_NaN();
+  CHECK(vehicle.step(state, {}, Scalar(0.001)) == Status::not_finite);
+  state = {};
+  CHECK(vehicle.step(state, {}, Scalar(-0.001)) != Status::ok);
+  state = {};
+  state.body.attitude.w = Scalar(2);
+  CHECK(vehicle.step(state, {}, Scalar(0.001)) == Status::not_unit_quaternion);
+}
+
+TEST_CASE_TEMPLATE("status: valid, bad values, singular allocation", Scalar, float, double) {
+  CHECK(Bare<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>()).status() == Status::ok);
+  Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  airframe.mass_kg = Scalar(-1);
+  CHECK(Bare<Scalar>(airframe).status() == Status::invalid_airframe);
+  airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  for (auto& rotor : airframe.rotors) rotor.y_m = Scalar(0);
+  CHECK(Bare<Scalar>(airframe).status() == Status::no_solution);
+}
+
+TEST_CASE_TEMPLATE("a vehicle is a value: its copy flies the same", Scalar, float, double) {
+  const Full<Scalar> original = full_vehicle<Scalar>({1.0, 2.0, 0.0});
+  const Full<Scalar> copy = original;
+  VehicleState<Scalar> a, b;
+  for (int i = 0; i < 10; ++i) {
+    REQUIRE(original.step(a, {Scalar(0.5), Scalar(0.6), Scalar(0.5), Scalar(0.6)}, Scalar(0.01)) == Status::ok);
+    REQUIRE(copy.step(b, {Scalar(0.5), Scalar(0.6), Scalar(0.5), Scalar(0.6)}, Scalar(0.01)) == Status::ok);
+  }
+  CHECK(pinnquad::test::same(a.body, b.body));
+  CHECK(a.rotors == b.rotors);
+}
+
+TEST_CASE("an effect that is not named costs no memory") {
+  static_assert(sizeof(Quadrotor<float, pinnquad::QuadraticDrag>) <= sizeof(Quadrotor<float>) + sizeof(float));
+  CHECK(true);
+}
+
+TEST_CASE("float agrees with double over a second of flight") {
+  const Full<float> small = full_vehicle<float>({1.0, 2.0, 0.0});
+  const Full<double> large = full_vehicle<double>({1.0, 2.0, 0.0});
+  VehicleState<float> a;
+  VehicleState<double> b;
+  a.body.position_m[2] = -20.0f;
+  b.body.position_m[2] = -20.0;
+  for (int i = 0; i < 1000; ++i) {
+    const double lean = 0.002 * std::sin(0.01 * i);
+    const Commands<double> u{0.5 - lean, 0.5 + lean, 0.5 + lean, 0.5 - lean};
+    REQUIRE(small.step(a, {float(u[0]), float(u[1]), float(u[2]), float(u[3])}, 0.001f) == Status::ok);
+    REQUIRE(large.step(b, u, 0.001) == Status::ok);
+  }
+  const double drift = 1e-4;  // 1000 steps of float rounding, integrated twice
+  CHECK(distance(a.body.position_m, b.body.position_m) <= drift);
+  CHECK(distance(a.body.velocity_m_s, b.body.velocity_m_s) <= drift);
+  CHECK(distance(pinnquad::test::components(a.body.attitude), pinnquad::test::components(b.body.attitude)) <= drift);
+}
