@@ -105,17 +105,16 @@ void check_batch() {
     }
     const auto c = delta;
     const auto inputs = x;
-    std::vector<double> dx;
-    if constexpr (std::decay_t<decltype(*layer)>::in_place) {
+    constexpr bool in_place = std::decay_t<decltype(*layer)>::in_place;
+    if constexpr (in_place) {
       y = x;
       layer->forward(y.data(), rows);
       layer->backward(y.data(), delta.data(), rows);
-      dx = delta;
     } else {
       layer->forward(x.data(), y.data(), rows);
       layer->backward(x.data(), y.data(), delta.data(), previous.data(), rows);
-      dx = previous;
     }
+    const std::vector<double>& dx = in_place ? delta : previous;
     const auto loss = [&] {
       double sum = 0.0;
       for (int s = 0; s < samples; ++s) {
