@@ -44,9 +44,9 @@ NearGround<Scalar> near_ground() {
                             pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{}, pinnquad::ConyersGroundEffect{});
 }
 
-/// The thrust equation with ground effect is solved to 1e-6 of the thrust; a loop gain of up to 1/2 doubles what is left.
+/// The thrust equation is solved in closed form; where its branches meet, either may be taken within the rounding.
 template <class Scalar>
-inline constexpr double ground_effect_tolerance = 1e-5;
+inline constexpr double ground_effect_tolerance = pinnquad::test::rounding<Scalar>(500);
 
 /// Motions as in flight: accelerations of 100 rad/s^2 times 1 / T_max, and the velocity's transport term.
 template <class Scalar>
