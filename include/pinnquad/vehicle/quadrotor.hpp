@@ -98,7 +98,7 @@ class Quadrotor {
   Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                               Scalar time_s) const noexcept {
     Evaluation<Scalar> result = loads(state, rotor_commands, time_s);
-    result.motion = accelerations(airframe_, state, result.rotors + result.aerodynamic, site_.gravity_m_s2);
+    result.motion = accelerations(airframe_, state, total(result), site_.gravity_m_s2);
     return result;
   }
 
@@ -182,6 +182,15 @@ class Quadrotor {
     return condition.aerodynamic;
   }
 
+  /// Adding no effects is no addition: the compiler may not leave out x + 0.
+  static PINNQUAD_ALWAYS_INLINE Wrench<Scalar> total(const Evaluation<Scalar>& e) noexcept {
+    if constexpr ((makes_wrench<Effects> || ...)) {
+      return e.rotors + e.aerodynamic;
+    } else {
+      return e.rotors;
+    }
+  }
+
   /// An evaluation up to the wrenches.
   PINNQUAD_ALWAYS_INLINE Evaluation<Scalar> loads(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                                                   Scalar time_s) const noexcept {
@@ -199,7 +208,7 @@ class Quadrotor {
                                                                 const Commands<Scalar>& rotor_commands,
                                                                 Scalar time_s) const noexcept {
     const Evaluation<Scalar> e = loads(state, rotor_commands, time_s);
-    const Wrench<Scalar> wrench = e.rotors + e.aerodynamic;
+    const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
     d.acceleration_m_s2 =
