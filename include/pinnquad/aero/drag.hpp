@@ -17,7 +17,9 @@ struct QuadraticDrag {
       const Scalar v = condition.air_relative_velocity_m_s[i];
       const Scalar speed = v < Scalar(0) ? -v : v;
       const Scalar k = airframe.drag_area_m2[static_cast<std::size_t>(i)];
-      if (!(speed <= airframe.drag_deadband_m_s)) result.force_N[i] = -k * condition.air_density_kg_m3 * speed * v;
+      // chosen, not branched: near the deadband a branch would be guessed wrong
+      const Scalar drag = -(k * condition.air_density_kg_m3) * (speed * v);
+      result.force_N[i] = speed <= airframe.drag_deadband_m_s ? Scalar(0) : drag;
     }
     return result;
   }

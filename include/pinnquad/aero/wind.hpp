@@ -2,9 +2,10 @@
 // Wind fields: the air's velocity over ground, NED.
 #pragma once
 
-#include <cmath>
+#include <array>
 
 #include "pinnquad/aero/effect.hpp"
+#include "pinnquad/core/sine.hpp"
 
 namespace pinnquad {
 
@@ -28,9 +29,8 @@ struct PeriodicWind {
 
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
-    using std::sin;
-    const Scalar phase = Scalar(6.283185307179586 / period_s) * air.time_s;
-    const Scalar speed = Scalar(amplitude_m_s) * sin(phase) + Scalar(mean_m_s);
+    const Scalar turns = air.time_s * Scalar(1 / period_s);
+    const Scalar speed = Scalar(amplitude_m_s) * sine_of_turns(turns) + Scalar(mean_m_s);
     for (int i = 0; i < 3; ++i) air.wind_m_s[i] += speed * Scalar(direction[static_cast<std::size_t>(i)]);
   }
 };
