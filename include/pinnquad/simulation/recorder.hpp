@@ -26,9 +26,9 @@ struct Holds<Recorder,
 template <class Recorder, class = void>
 struct MakesRows : std::false_type {};
 template <class Recorder>
-struct MakesRows<Recorder, std::void_t<decltype(std::declval<Recorder&>()(
-                               std::declval<const Quadrotor<double>&>(), std::declval<const VehicleState<double>&>(),
-                               std::declval<const Commands<double>&>()))>>
+struct MakesRows<Recorder, std::void_t<decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
+                                                                          std::declval<const VehicleState<double>&>(),
+                                                                          std::declval<const Commands<double>&>()))>>
     : std::is_same<Sample, decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
                                                               std::declval<const VehicleState<double>&>(),
                                                               std::declval<const Commands<double>&>()))> {};
@@ -36,7 +36,7 @@ struct MakesRows<Recorder, std::void_t<decltype(std::declval<Recorder&>()(
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class Recorder>
-inline constexpr bool is_recorder = detail::Holds<Recorder>::value && detail::MakesRows<Recorder>::value;
+inline constexpr bool is_recorder = detail::Holds<Recorder>::value&& detail::MakesRows<Recorder>::value;
 
 /// The vehicle's row at its present time, without error. Accelerations come from the dynamics (NOTES #14) with the rotors
 /// as they turn now, behind their lag, not from differences. Commands are what was held up to this instant, clipped as

@@ -47,8 +47,8 @@ namespace detail {
 template <class Vehicle, class Model, class = void>
 struct HasGroundEffectSwitch : std::false_type {};
 template <class Vehicle, class Model>
-struct HasGroundEffectSwitch<
-    Vehicle, Model, std::void_t<decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()))>>
+struct HasGroundEffectSwitch<Vehicle, Model,
+                             std::void_t<decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()))>>
     : std::true_type {};
 }  // namespace detail
 
@@ -73,9 +73,8 @@ class Simulator {
       : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
     vehicle_.body.position_m = settings.start_m;
     const bool clocks_run = settings.steps_per_control > 0 && settings.controls_per_sample > 0;
-    const Status status =
-        clocks_run ? with_quadrotor(quadrotor_, [this](const auto& actual) { return start(actual); })
-                   : Status::out_of_range;
+    const Status status = clocks_run ? with_quadrotor(quadrotor_, [this](const auto& actual) { return start(actual); })
+                                     : Status::out_of_range;
     if (status != Status::ok) decline(status);
   }
 
@@ -157,9 +156,9 @@ class Simulator {
     if (status != Status::ok) return status;
     vehicle_.rotors = commands_ = hover.commands;
     const double density_ratio = quadrotor.density_ratio(quadrotor.surroundings(vehicle_.body, 0.0));
-    controller_ = FlightController<double>(settings_.gains,
-                                           flight_limits(quadrotor.airframe(), density_ratio, settings_.gains),
-                                           quadrotor.site().gravity_m_s2);
+    controller_ =
+        FlightController<double>(settings_.gains, flight_limits(quadrotor.airframe(), density_ratio, settings_.gains),
+                                 quadrotor.site().gravity_m_s2);
     return Status::ok;
   }
 

@@ -3,7 +3,10 @@
 // For programs on the ground; what flies has its effects by type.
 #pragma once
 
+#include <cstddef>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "pinnquad/aero/ground_effect.hpp"
@@ -20,7 +23,13 @@ enum class GroundEffectModel { none, cheeseman_bennett, conyers };
 template <class... Effects>
 class SwitchableQuadrotor {
  public:
-  explicit SwitchableQuadrotor(const Airframe<double>& airframe, const Site<double>& site = {}, Effects... effects)
+  /// Effects as they are by default.
+  template <std::size_t Count = sizeof...(Effects), std::enable_if_t<(Count > 0), int> = 0>
+  explicit SwitchableQuadrotor(const Airframe<double>& airframe, const Site<double>& site = {})
+      : SwitchableQuadrotor(airframe, site, Effects{}...) {}
+  template <std::size_t Count = sizeof...(Effects), std::enable_if_t<Count == 0, int> = 0>
+  explicit SwitchableQuadrotor(const Airframe<double>& airframe) : SwitchableQuadrotor(airframe, Site<double>{}) {}
+  explicit SwitchableQuadrotor(const Airframe<double>& airframe, const Site<double>& site, Effects... effects)
       : airframe_(airframe), site_(site), effects_(effects...), chosen_(Plain(airframe, site, effects...)) {}
 
   GroundEffectModel ground_effect() const noexcept { return model_; }
