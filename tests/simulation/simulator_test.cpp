@@ -104,6 +104,24 @@ TEST_CASE("it starts in hover, in balance") {
   CHECK((simulator.vehicle().body.position_m - FlightPlan{}.start_m).norm() < 1e-6);
 }
 
+TEST_CASE("commands from outside: the motors get them instead of the pilot's") {
+  const Vehicle quadrotor = vehicle();
+  Simulator<Vehicle, Pilot> simulator = running(2);
+  VehicleState<double> alone = simulator.vehicle();
+  const Commands<double> commands{0.6, 0.58, 0.59, 0.61};
+  for (int tick = 0; tick < 100; ++tick) {
+    REQUIRE(simulator.tick(commands));
+    for (int step = 0; step < 2; ++step) REQUIRE(quadrotor.step(alone, commands, 0.001) == Status::ok);
+  }
+  CHECK(simulator.commands() == commands);
+  CHECK(simulator.recording().size() == 4);
+  CHECK(simulator.recording().back().commands == commands);
+  CHECK((simulator.vehicle().body.position_m - alone.body.position_m).norm() < 1e-12);
+  CHECK(simulator.vehicle().body.position_m[2] < -35);  // more than the hover's thrust
+  CHECK_FALSE(simulator.tick({0.5, std::numeric_limits<double>::quiet_NaN(), 0.5, 0.5}));
+  CHECK(simulator.status() == Status::not_finite);
+}
+
 TEST_CASE("what ends a flight ends it for good, with time and state") {
   SUBCASE("the ground, found by a row") {
     SteadyPilot down;

@@ -80,17 +80,16 @@ class Simulator {
 
   /// One control tick. True while the vehicle flies on; false, and nothing is done, once the flight has ended.
   bool tick() {
-    if (!flying()) return false;
-    with_quadrotor(quadrotor_, [this](const auto& actual) {
-      const Status status = control_and_step(actual);
-      if (status != Status::ok) {
-        decline(status);
-        return;
-      }
-      ++ticks_;
-      if (row_is_due()) record_row(actual);
+    return tick_with([this](const auto& actual) { return ask_pilot(actual); });
+  }
+
+  /// One control tick with these motor commands, not clipped, instead of the pilot's; else as tick(). NaN among them ends
+  /// the flight.
+  bool tick(const Commands<double>& commands) {
+    return tick_with([&](const auto& /*actual*/) {
+      commands_ = commands;
+      return Status::ok;
     });
-    return flying();
   }
 
   /// Ticks up to and including the one that records the next row. False: the flight ended before it.
@@ -162,14 +161,36 @@ class Simulator {
     return Status::ok;
   }
 
+  /// `choose(quadrotor)` sets the commands of this tick.
+  template <class Choose>
+  bool tick_with(const Choose& choose) {
+    if (!flying()) return false;
+    with_quadrotor(quadrotor_, [&](const auto& actual) {
+      Status status = choose(actual);
+      if (status == Status::ok) status = hold_and_step(actual);
+      if (status != Status::ok) {
+        decline(status);
+        return;
+      }
+      ++ticks_;
+      if (row_is_due()) record_row(actual);
+    });
+    return flying();
+  }
+
   template <class Actual>
-  Status control_and_step(const Actual& quadrotor) {
+  Status ask_pilot(const Actual& quadrotor) {
     Accelerations<double> demand;
     Status status = controller_(vehicle_.body, pilot_(vehicle_.body, vehicle_.time_s), demand);
     if (status == Status::ok) status = inverse_commands(quadrotor, vehicle_.body, demand, vehicle_.time_s, commands_);
-    if (status != Status::ok) return status;
-    commands_ = keep_torque(commands_);
+    if (status == Status::ok) commands_ = keep_torque(commands_);
+    return status;
+  }
+
+  template <class Actual>
+  Status hold_and_step(const Actual& quadrotor) {
     recorder_.hold(commands_, vehicle_.time_s);
+    Status status = Status::ok;
     for (int i = 0; i < settings_.steps_per_control && status == Status::ok; ++i) {
       status = quadrotor.step(vehicle_, commands_, settings_.physics_step_s);
     }
