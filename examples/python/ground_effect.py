@@ -26,7 +26,8 @@ def main():
         change = 100.0 * (thrust_N / alone_N - 1.0)
         print("%-18s  %.4f   %7.3f N     %+.2f %%" % (model, state["commands"].mean(), thrust_N, change))
     rows = simulator.recording()
-    print("%d rows, the last at %.2f s, %.3f m above ground" % (simulator.rows, rows["time_s"][-1], rows["altitude_m"][-1]))
+    time_s, altitude_m = rows["time_s"][-1], rows["altitude_m"][-1]
+    print("%d rows, the last at %.2f s, %.3f m above ground" % (simulator.rows, time_s, altitude_m))
 
 
 if __name__ == "__main__":

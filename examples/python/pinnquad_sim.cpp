@@ -311,8 +311,8 @@ class PythonSimulator {
     return *this;
   }
 
-  /// `tick` for a duration, without the GIL; looks for Ctrl-C twenty times a second. An exception leaves the simulator at
-  /// the tick it reached, and able to fly on.
+  /// `tick` for a duration, without the GIL; looks for Ctrl-C twenty times a second. An exception leaves the simulator
+  /// at the tick it reached, and able to fly on.
   template <class Tick>
   void run(double seconds, const Tick& tick) {
     using Clock = std::chrono::steady_clock;
