@@ -320,7 +320,6 @@ class PythonSimulator {
     constexpr int ticks_per_look_at_the_clock = 64;
     checked("seconds", seconds, 0);
     idle();
-    require_flying();
     struct Busy {
       bool& flag;
       explicit Busy(bool& flag_) : flag(flag_) { flag = true; }
