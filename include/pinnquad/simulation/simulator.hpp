@@ -57,7 +57,7 @@ struct HasGroundEffectSwitch<Vehicle, Model,
 /// A tick: the pilot's set point, the controller's demand, the inverse's commands, torque before thrust, and physics
 /// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
 /// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
-/// start; `out_of_range` for settings without ticks or steps; not_finite, output_not_finite and no_solution on the
+/// start; `out_of_range` for clocks that do not run; not_finite, output_not_finite and no_solution on the
 /// way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that moment, and what was
 /// recorded stays.
 template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
@@ -72,7 +72,8 @@ class Simulator {
                      Recorder recorder = Recorder{})
       : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
     vehicle_.body.position_m = settings.start_m;
-    const bool clocks_run = settings.steps_per_control > 0 && settings.controls_per_sample > 0;
+    const bool clocks_run =
+        settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
     const Status status = clocks_run
                               ? with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); })
                               : Status::out_of_range;
