@@ -3,7 +3,6 @@
 // stamps are late. For the question of how much of it a training stands.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <deque>
 
