@@ -73,8 +73,8 @@ int fly_and_write(const Options& options) {
   const PilotStyle style = pilot_style(quadrotor, plan.start_m, options.max_speed_m_s);
   const RandomPilot<std::mt19937_64> pilot(std::mt19937_64(options.seed), style, quadrotor.site().ground_z_m);
   programs::ProgressLine progress("flying");
-  const RecordedFlight recorded = fly(quadrotor, pilot, plan, [&progress](std::size_t done, std::size_t all) {
-    progress.update(static_cast<double>(done) / static_cast<double>(all));
+  const RecordedFlight recorded = fly(quadrotor, pilot, plan, [&progress](const FlightRow& row) {
+    progress.update(static_cast<double>(row.rows_done) / static_cast<double>(row.rows));
   });
   progress.clear();
 

@@ -144,7 +144,7 @@ TEST_CASE("a row holds the command as the rotors clip it, and the height above g
   VehicleState<double> state;
   state.body.position_m[2] = -10;
   state.time_s = 1.5;
-  const Sample sample = record(vehicle(), state, {-0.2, 0.3, 1.4, 1.0});
+  const Sample sample = ExactRecorder{}(vehicle(), state, {-0.2, 0.3, 1.4, 1.0});
   CHECK(sample.commands == Commands<double>{0.0, 0.3, 1.0, 1.0});
   CHECK(sample.altitude_m == 10.877);
   CHECK(sample.time_s == 1.5);
@@ -266,14 +266,16 @@ TEST_CASE("what ends a flight early is reported with time and state, and the row
   }
 }
 
-TEST_CASE("progress is told after each row") {
+TEST_CASE("an observer is told each row, with the true state") {
   FlightPlan plan;
   plan.samples = 7;
   std::size_t calls = 0;
-  fly(vehicle(), SteadyPilot{}, plan, [&calls](std::size_t done, std::size_t all) {
+  fly(vehicle(), SteadyPilot{}, plan, [&calls](const FlightRow& row) {
     ++calls;
-    CHECK(done == calls);
-    CHECK(all == 7);
+    CHECK(row.rows_done == calls);
+    CHECK(row.rows == 7);
+    CHECK(row.vehicle.time_s == row.sample.time_s);
+    CHECK(row.vehicle.body.position_m[2] == doctest::Approx(-35));
   });
   CHECK(calls == 7);
 }

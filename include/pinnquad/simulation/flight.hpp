@@ -5,36 +5,18 @@
 #include <cmath>
 #include <cstddef>
 
-#include "pinnquad/control/feed_forward.hpp"
-#include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/control/torque_priority.hpp"
-#include "pinnquad/data/dataset.hpp"
-#include "pinnquad/simulation/pilot.hpp"
 #include "pinnquad/simulation/random_pilot.hpp"
-#include "pinnquad/simulation/recorder.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 
 namespace pinnquad {
 
-/// How long to fly, and the three clocks. The default is the paper's data set: 15,000 samples at 0.05 s, 750 s.
-struct FlightPlan {
+/// How long to fly, and the settings of the simulator. The default is the paper's data set: 15,000 samples at 0.05 s,
+/// 750 s.
+struct FlightPlan : SimulationSettings {
   std::size_t samples{15000};
-  double physics_step_s{0.001};
-  int steps_per_control{2};            ///< controller at 500 Hz; the commands are held over these steps
-  int controls_per_sample{25};         ///< a row every 0.05 s
-  Vector3<double> start_m{0, 0, -35};  ///< NED; the flight starts there in hover
-  FlightGains<double> gains{};
-
-  double control_period_s() const noexcept { return physics_step_s * steps_per_control; }
-  double sample_period_s() const noexcept { return control_period_s() * controls_per_sample; }
 };
 
-enum class FlightEnd {
-  completed,
-  bad_status,  ///< controller, inverse or physics declined: FlightReport::status says why
-  ground,      ///< the vehicle's centre came down to the ground
-};
-
-/// A flight in figures. Ranges are over the recorded rows.
+/// A flight in figures. Ranges are those of the true motion, not of what a recorder made of it, at the recorded rows.
 struct FlightReport {
   FlightEnd end{FlightEnd::completed};
   Status status{Status::ok};
@@ -93,75 +75,48 @@ PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vec
   return style;
 }
 
-/// Flies and records. `progress(rows_done, rows)` is called after each row. A Status that isn't ok, or the ground, ends
-/// the flight; the rows up to there are kept and the report says where.
-template <class... Effects, class Pilot, class Progress>
-RecordedFlight fly(const Quadrotor<double, Effects...>& quadrotor, Pilot pilot, const FlightPlan& plan,
-                   Progress progress) {
-  static_assert(is_pilot<Pilot>, "pinnquad: this type is no pilot (simulation/pilot.hpp)");
+/// What an observer is told after each row: how far the flight is, the true state, and the row as recorded.
+struct FlightRow {
+  std::size_t rows_done;
+  std::size_t rows;  ///< of the plan
+  const VehicleState<double>& vehicle;
+  const Sample& sample;
+};
+
+/// Flies and records. `observer(const FlightRow&)` is called after each row. A Status that isn't ok, or the ground,
+/// ends the flight (simulation/simulator.hpp); the rows up to there are kept and the report says where.
+template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder>
+RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan, Observer observer,
+                   const Recorder& recorder = Recorder{}) {
+  Simulator<Vehicle, Pilot, Recorder> simulator(quadrotor, pilot, plan, recorder);
+  simulator.reserve(plan.samples);
   RecordedFlight recorded;
   FlightReport& report = recorded.report;
-  recorded.flight.reserve(plan.samples);
-  VehicleState<double>& vehicle = report.last;
-  vehicle.body.position_m = plan.start_m;
-
-  HoverTrim<double> hover;
-  report.status = quadrotor.status();
-  if (report.status == Status::ok) report.status = hover_trim(quadrotor, plan.start_m, hover);
-  if (report.status != Status::ok) {
-    report.end = FlightEnd::bad_status;
-    return recorded;
-  }
-  vehicle.rotors = hover.commands;
-  Commands<double> commands = hover.commands;
-  const double density_ratio = quadrotor.density_ratio(quadrotor.surroundings(vehicle.body, 0.0));
-  const FlightController<double> controller(plan.gains, flight_limits(quadrotor.airframe(), density_ratio, plan.gains),
-                                            quadrotor.site().gravity_m_s2);
-
-  const auto control_tick = [&]() -> Status {
-    Accelerations<double> demand;
-    Status status = controller(vehicle.body, pilot(vehicle.body, vehicle.time_s), demand);
-    if (status == Status::ok) status = inverse_commands(quadrotor, vehicle.body, demand, vehicle.time_s, commands);
-    if (status == Status::ok) commands = keep_torque(commands);
-    for (int i = 0; i < plan.steps_per_control && status == Status::ok; ++i) {
-      status = quadrotor.step(vehicle, commands, plan.physics_step_s);
-    }
-    return status;
-  };
-
   std::size_t saturated_rows = 0;
-  for (std::size_t row = 0; row < plan.samples; ++row) {
-    for (int tick = 0; tick < plan.controls_per_sample && report.status == Status::ok; ++tick) {
-      report.status = control_tick();
-    }
-    if (report.status != Status::ok) {
-      report.end = FlightEnd::bad_status;
-      break;
-    }
-    vehicle.time_s = static_cast<double>(row + 1) * plan.sample_period_s();  // sums of steps drift, products do not
-    const Sample sample = record(quadrotor, vehicle, commands);
-    if (sample.altitude_m <= 0) {
-      report.end = FlightEnd::ground;
-      break;
-    }
-    const double speed_m_s = sample.velocity_m_s.norm();
-    const double tilt_rad = std::acos(body_down_axis(vehicle.body.attitude)[2]);
+  while (report.rows < plan.samples && simulator.next_row()) {
+    const State<double>& body = simulator.vehicle().body;
+    const double speed_m_s = body.velocity_m_s.norm();
+    const double tilt_rad = std::acos(body_down_axis(body.attitude)[2]);
+    const double altitude_m = simulator.altitude_m();
     if (speed_m_s > report.max_speed_m_s) report.max_speed_m_s = speed_m_s;
     if (tilt_rad > report.max_tilt_rad) report.max_tilt_rad = tilt_rad;
-    if (row == 0 || sample.altitude_m < report.min_altitude_m) report.min_altitude_m = sample.altitude_m;
-    if (row == 0 || sample.altitude_m > report.max_altitude_m) report.max_altitude_m = sample.altitude_m;
-    if (saturated(sample.commands)) ++saturated_rows;
-    recorded.flight.push_back(sample);
-    progress(row + 1, plan.samples);
+    if (report.rows == 0 || altitude_m < report.min_altitude_m) report.min_altitude_m = altitude_m;
+    if (report.rows == 0 || altitude_m > report.max_altitude_m) report.max_altitude_m = altitude_m;
+    if (saturated(simulator.commands())) ++saturated_rows;
+    ++report.rows;
+    observer(FlightRow{report.rows, plan.samples, simulator.vehicle(), simulator.recording().back()});
   }
-  report.rows = recorded.flight.size();
+  report.end = simulator.end();
+  report.status = simulator.status();
+  report.last = simulator.vehicle();
   if (report.rows > 0) report.saturated_share = static_cast<double>(saturated_rows) / static_cast<double>(report.rows);
+  recorded.flight = simulator.take_recording();
   return recorded;
 }
 
-template <class... Effects, class Pilot>
-RecordedFlight fly(const Quadrotor<double, Effects...>& quadrotor, const Pilot& pilot, const FlightPlan& plan = {}) {
-  return fly(quadrotor, pilot, plan, [](std::size_t, std::size_t) {});
+template <class Vehicle, class Pilot>
+RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan = {}) {
+  return fly(quadrotor, pilot, plan, [](const FlightRow&) {});
 }
 
 }  // namespace pinnquad

@@ -1,36 +1,71 @@
 // SPDX-License-Identifier: MIT
-// What a recorded row holds: the motion of one instant, by the dynamics themselves (NOTES #14), and the commands that
-// were in force when it happened.
+// A recorder is a policy: what a flight log says of the motion of one instant and of the commands behind it.
+// Contract, called in time order:
+//   void hold(const Commands<double>& commands, double time_s);
+//     at each control tick: from this instant on these commands, not clipped, go out to the motors;
+//   template <class... Effects> Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&,
+//                                                 const Commands<double>& commands);
+//     the row of the present instant; `commands` are those held up to it.
 #pragma once
+
+#include <type_traits>
+#include <utility>
 
 #include "pinnquad/data/sample.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad {
 
-/// The vehicle's row at its present time. Accelerations come from the dynamics with the rotors as they turn now, behind
-/// their lag, not from differences. `commands` is what was held up to this instant, clipped as the rotors clip it: the
-/// command, not the lag-filtered thrust, because that is what a flight log has and what the paper's network is to give.
-/// Behind a 5 ms lag the rotors differ from it by about 5 ms times its rate of change, some 1e-2 in agile flight:
-/// motion and command determine each other that well and no better. Altitude is above ground.
-template <class... Effects>
-Sample record(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle,
-              const Commands<double>& commands) {
-  const State<double>& body = vehicle.body;
-  const Accelerations<double> motion = quadrotor.evaluate(body, vehicle.rotors, vehicle.time_s).motion;
-  const EulerAngles<double> euler = to_euler(body.attitude);
-  Sample sample;
-  sample.time_s = vehicle.time_s;
-  sample.linear_acceleration_m_s2 = motion.linear_m_s2;
-  sample.angular_acceleration_rad_s2 = motion.angular_rad_s2;
-  sample.velocity_m_s = body_velocity(body);
-  sample.body_rates_rad_s = body.body_rates_rad_s;
-  sample.roll_rad = euler.roll_rad;
-  sample.pitch_rad = euler.pitch_rad;
-  sample.yaw_rad = euler.yaw_rad;
-  sample.altitude_m = quadrotor.site().ground_z_m - body.position_m[2];
-  for (std::size_t i = 0; i < commands.size(); ++i) sample.commands[i] = clip_command(commands[i]);
-  return sample;
-}
+namespace detail {
+template <class Recorder, class = void>
+struct Holds : std::false_type {};
+template <class Recorder>
+struct Holds<Recorder,
+             std::void_t<decltype(std::declval<Recorder&>().hold(std::declval<const Commands<double>&>(), 0.0))>>
+    : std::true_type {};
+template <class Recorder, class = void>
+struct MakesRows : std::false_type {};
+template <class Recorder>
+struct MakesRows<Recorder, std::void_t<decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
+                                                                          std::declval<const VehicleState<double>&>(),
+                                                                          std::declval<const Commands<double>&>()))>>
+    : std::is_same<Sample, decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
+                                                              std::declval<const VehicleState<double>&>(),
+                                                              std::declval<const Commands<double>&>()))> {};
+}  // namespace detail
+
+/// True for a type that fulfils the contract at the head of this file.
+template <class Recorder>
+inline constexpr bool is_recorder = detail::Holds<Recorder>::value&& detail::MakesRows<Recorder>::value;
+
+/// The vehicle's row at its present time, without error. Accelerations come from the dynamics (NOTES #14) with the
+/// rotors as they turn now, behind their lag, not from differences. Commands are what was held up to this instant,
+/// clipped as the rotors clip it: the command, not the lag-filtered thrust, because that is what a flight log has and
+/// what the paper's network is to give. Behind a 5 ms lag the rotors differ from it by about 5 ms times its rate of
+/// change, some 1e-2 in agile flight: motion and command determine each other that well and no better. Altitude is
+/// above ground.
+struct ExactRecorder {
+  void hold(const Commands<double>& /*commands*/, double /*time_s*/) const noexcept {}
+
+  template <class... Effects>
+  Sample operator()(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle,
+                    const Commands<double>& commands) const noexcept {
+    const State<double>& body = vehicle.body;
+    const Accelerations<double> motion = quadrotor.evaluate(body, vehicle.rotors, vehicle.time_s).motion;
+    const EulerAngles<double> euler = to_euler(body.attitude);
+    Sample sample;
+    sample.time_s = vehicle.time_s;
+    sample.linear_acceleration_m_s2 = motion.linear_m_s2;
+    sample.angular_acceleration_rad_s2 = motion.angular_rad_s2;
+    sample.velocity_m_s = body_velocity(body);
+    sample.body_rates_rad_s = body.body_rates_rad_s;
+    sample.roll_rad = euler.roll_rad;
+    sample.pitch_rad = euler.pitch_rad;
+    sample.yaw_rad = euler.yaw_rad;
+    sample.altitude_m = quadrotor.site().ground_z_m - body.position_m[2];
+    for (std::size_t i = 0; i < commands.size(); ++i) sample.commands[i] = clip_command(commands[i]);
+    return sample;
+  }
+};
 
 }  // namespace pinnquad

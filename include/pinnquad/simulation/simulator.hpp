@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// A running simulation: vehicle, pilot, flight controller, analytic inverse and recorder, one control tick at a time.
+// Flights of a known length are simulation/flight.hpp's fly(), a loop on this.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+#include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/control/torque_priority.hpp"
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/simulation/pilot.hpp"
+#include "pinnquad/simulation/recorder.hpp"
+
+namespace pinnquad {
+
+/// The three clocks, the place and the controller's gains.
+struct SimulationSettings {
+  double physics_step_s{0.001};
+  int steps_per_control{2};            ///< controller at 500 Hz; the commands are held over these steps
+  int controls_per_sample{25};         ///< a row every 0.05 s
+  Vector3<double> start_m{0, 0, -35};  ///< NED; the flight starts there in hover
+  FlightGains<double> gains{};
+
+  double control_period_s() const noexcept { return physics_step_s * steps_per_control; }
+  double sample_period_s() const noexcept { return control_period_s() * controls_per_sample; }
+};
+
+/// How a flight ended.
+enum class FlightEnd {
+  completed,   ///< as planned; of a running simulation: it flies
+  bad_status,  ///< controller, inverse or physics declined: the Status says why
+  ground,      ///< the vehicle's centre came down to the ground
+};
+
+/// Calls `function` with the Quadrotor that a simulated vehicle is; simulation/switchable_quadrotor.hpp has another
+/// overload. A vehicle is what this can be called with.
+template <class Function, class... Effects>
+decltype(auto) with_quadrotor(const Quadrotor<double, Effects...>& quadrotor, Function&& function) {
+  return std::forward<Function>(function)(quadrotor);
+}
+
+namespace detail {
+template <class Vehicle, class Model, class = void>
+struct HasGroundEffectSwitch : std::false_type {};
+template <class Vehicle, class Model>
+struct HasGroundEffectSwitch<Vehicle, Model,
+                             std::void_t<decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()))>>
+    : std::true_type {};
+}  // namespace detail
+
+/// Flies `Vehicle` (a Quadrotor<double, Effects...> or a SwitchableQuadrotor) as `Pilot` asks and records it by
+/// `Recorder`; all are copies, and so is a copy of a simulator, which flies on like its original.
+/// A tick: the pilot's set point, the controller's demand, the inverse's commands, torque before thrust, and physics
+/// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
+/// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
+/// start; `out_of_range` for clocks that do not run; not_finite, output_not_finite and no_solution on the
+/// way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that moment, and what was
+/// recorded stays.
+template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
+class Simulator {
+  static_assert(is_pilot<Pilot>, "pinnquad: this type is no pilot (simulation/pilot.hpp)");
+  static_assert(is_recorder<Recorder>,
+                "pinnquad: this type is no recorder; it needs hold(commands, time_s) and a call that gives a Sample "
+                "(simulation/recorder.hpp)");
+
+ public:
+  explicit Simulator(const Vehicle& quadrotor, Pilot pilot, const SimulationSettings& settings = {},
+                     Recorder recorder = Recorder{})
+      : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
+    vehicle_.body.position_m = settings.start_m;
+    const bool clocks_run =
+        settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
+    const Status status = clocks_run
+                              ? with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); })
+                              : Status::out_of_range;
+    if (status != Status::ok) decline(status);
+  }
+
+  /// One control tick. True while the vehicle flies on; false, and nothing is done, once the flight has ended.
+  bool tick() {
+    return tick_with([this](const auto& actual) { return this->ask_pilot(actual); });
+  }
+
+  /// One control tick with these motor commands, not clipped, instead of the pilot's; else as tick(). NaN among them
+  /// ends the flight.
+  bool tick(const Commands<double>& commands) {
+    return tick_with([&](const auto& /*actual*/) {
+      commands_ = commands;
+      return Status::ok;
+    });
+  }
+
+  /// Ticks up to and including the one that records the next row. False: the flight ended before it.
+  bool next_row() {
+    bool goes_on = tick();
+    while (goes_on && !row_is_due()) goes_on = tick();
+    return goes_on;
+  }
+
+  /// Flies on for a duration, rounded to control ticks; none for a negative one or NaN. True while the vehicle flies.
+  bool advance(double duration_s) {
+    const double ticks = std::floor(duration_s / settings_.control_period_s() + 0.5);
+    for (double done = 0; done < ticks && flying(); ++done) tick();
+    return flying();
+  }
+
+  bool flying() const noexcept { return end_ == FlightEnd::completed; }
+  FlightEnd end() const noexcept { return end_; }
+  Status status() const noexcept { return status_; }  ///< not ok where end() is bad_status
+
+  const VehicleState<double>& vehicle() const noexcept { return vehicle_; }
+  double time_s() const noexcept { return vehicle_.time_s; }
+  double altitude_m() const {  ///< above ground
+    return with_quadrotor(quadrotor_, [this](const auto& actual) { return this->above_ground(actual); });
+  }
+  /// What the motors were last told, not clipped.
+  const Commands<double>& commands() const noexcept { return commands_; }
+  /// What the motors must be told for a hover at the present place and time in calm attitude, not clipped; through the
+  /// vehicle's effects. The inverse's Status (vehicle/inverse.hpp); `commands` is untouched unless it is ok.
+  Status hover_commands(Commands<double>& commands) const {
+    State<double> hover;
+    hover.position_m = vehicle_.body.position_m;
+    return with_quadrotor(quadrotor_, [&](const auto& actual) {
+      return inverse_commands(actual, hover, Accelerations<double>{}, vehicle_.time_s, commands);
+    });
+  }
+
+  const Vehicle& quadrotor() const noexcept { return quadrotor_; }
+  const Pilot& pilot() const noexcept { return pilot_; }
+  const SimulationSettings& settings() const noexcept { return settings_; }
+
+  /// The rows so far, or since the last take_recording().
+  const Flight& recording() const noexcept { return recording_; }
+  Flight take_recording() noexcept { return std::exchange(recording_, Flight{}); }
+  void reserve(std::size_t rows) { recording_.reserve(rows); }
+
+  /// From the next tick on the vehicle flies with this ground effect; its state, the pilot and the clocks go on. Of a
+  /// SwitchableQuadrotor only.
+  template <class Model>
+  void set_ground_effect(Model model) {
+    static_assert(detail::HasGroundEffectSwitch<Vehicle, Model>::value,
+                  "pinnquad: this vehicle's effects are its type; a ground effect that is set in flight needs a "
+                  "SwitchableQuadrotor (simulation/switchable_quadrotor.hpp)");
+    quadrotor_.set_ground_effect(model);
+  }
+
+ private:
+  template <class Actual>
+  Status start(const Actual& quadrotor) {
+    HoverTrim<double> hover;
+    Status status = quadrotor.status();
+    if (status == Status::ok) status = hover_trim(quadrotor, settings_.start_m, hover);
+    if (status != Status::ok) return status;
+    vehicle_.rotors = commands_ = hover.commands;
+    const double density_ratio = quadrotor.density_ratio(quadrotor.surroundings(vehicle_.body, 0.0));
+    controller_ =
+        FlightController<double>(settings_.gains, flight_limits(quadrotor.airframe(), density_ratio, settings_.gains),
+                                 quadrotor.site().gravity_m_s2);
+    return Status::ok;
+  }
+
+  /// `choose(quadrotor)` sets the commands of this tick.
+  template <class Choose>
+  bool tick_with(const Choose& choose) {
+    if (!flying()) return false;
+    with_quadrotor(quadrotor_, [&](const auto& actual) {
+      Status status = choose(actual);
+      if (status == Status::ok) status = hold_and_step(actual);
+      if (status != Status::ok) {
+        decline(status);
+        return;
+      }
+      ++ticks_;
+      if (row_is_due()) record_row(actual);
+    });
+    return flying();
+  }
+
+  template <class Actual>
+  Status ask_pilot(const Actual& quadrotor) {
+    Accelerations<double> demand;
+    Status status = controller_(vehicle_.body, pilot_(vehicle_.body, vehicle_.time_s), demand);
+    if (status == Status::ok) status = inverse_commands(quadrotor, vehicle_.body, demand, vehicle_.time_s, commands_);
+    if (status == Status::ok) commands_ = keep_torque(commands_);
+    return status;
+  }
+
+  template <class Actual>
+  Status hold_and_step(const Actual& quadrotor) {
+    recorder_.hold(commands_, vehicle_.time_s);
+    Status status = Status::ok;
+    for (int i = 0; i < settings_.steps_per_control && status == Status::ok; ++i) {
+      status = quadrotor.step(vehicle_, commands_, settings_.physics_step_s);
+    }
+    return status;
+  }
+
+  bool row_is_due() const noexcept { return ticks_ % static_cast<std::size_t>(settings_.controls_per_sample) == 0; }
+
+  template <class Actual>
+  void record_row(const Actual& quadrotor) {
+    const std::size_t row = ticks_ / static_cast<std::size_t>(settings_.controls_per_sample);
+    vehicle_.time_s = static_cast<double>(row) * settings_.sample_period_s();  // sums of steps drift, products do not
+    if (above_ground(quadrotor) <= 0) {
+      end_ = FlightEnd::ground;
+      return;
+    }
+    recording_.push_back(recorder_(quadrotor, vehicle_, commands_));
+  }
+
+  template <class Actual>
+  double above_ground(const Actual& quadrotor) const noexcept {
+    return quadrotor.site().ground_z_m - vehicle_.body.position_m[2];
+  }
+
+  void decline(Status status) noexcept {
+    end_ = FlightEnd::bad_status;
+    status_ = status;
+  }
+
+  Vehicle quadrotor_;
+  Pilot pilot_;
+  Recorder recorder_;
+  SimulationSettings settings_;
+  FlightController<double> controller_;
+  VehicleState<double> vehicle_{};
+  Commands<double> commands_{};
+  std::size_t ticks_{0};
+  Flight recording_;
+  FlightEnd end_{FlightEnd::completed};
+  Status status_{Status::ok};
+};
+
+}  // namespace pinnquad

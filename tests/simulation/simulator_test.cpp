@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// The running simulation: in any portions the same flight, ended where it must, copied as a whole.
+#include "pinnquad/simulation/simulator.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/simulation/flight.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
+using Pilot = RandomPilot<std::mt19937_64>;
+
+Vehicle vehicle() { return Vehicle(airframe_value<PaperQuadrotor, double>(), paper_site<double>(), {}, {}); }
+
+Pilot pilot(std::uint64_t seed) {
+  return Pilot(std::mt19937_64(seed), pilot_style(vehicle(), FlightPlan{}.start_m), vehicle().site().ground_z_m);
+}
+
+Simulator<Vehicle, Pilot> running(std::uint64_t seed) { return Simulator<Vehicle, Pilot>(vehicle(), pilot(seed)); }
+
+/// No air from 1 s on, but only between the controller's ticks: the inverse sees nothing of it, the physics fails.
+struct Gap {
+  template <class Scalar>
+  void surroundings(Surroundings<Scalar>& air) const noexcept {
+    if (air.time_s > Scalar(1.0004) && air.time_s < Scalar(1.0006)) {
+      air.air_density_kg_m3 = std::numeric_limits<Scalar>::quiet_NaN();
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a flight in portions is the flight in one") {
+  FlightPlan plan;
+  plan.samples = 200;
+  const std::uint64_t whole = content_hash(fly(vehicle(), pilot(3), plan).flight);
+
+  Simulator<Vehicle, Pilot> by_rows = running(3), by_seconds = running(3), by_ticks = running(3);
+  for (int row = 0; row < 200; ++row) REQUIRE(by_rows.next_row());
+  CHECK(content_hash(by_rows.recording()) == whole);
+
+  CHECK(by_seconds.advance(0.013));  // not a multiple of anything: rounded to 14 ms
+  CHECK(by_seconds.time_s() == doctest::Approx(0.014));
+  CHECK(by_seconds.advance(7.0));
+  CHECK(by_seconds.advance(2.986));
+  CHECK(content_hash(by_seconds.recording()) == whole);
+
+  while (by_ticks.recording().size() < 200) REQUIRE(by_ticks.tick());
+  CHECK(content_hash(by_ticks.recording()) == whole);
+  CHECK(by_ticks.time_s() == 10.0);
+}
+
+TEST_CASE("advance: nothing for what is no duration") {
+  Simulator<Vehicle, Pilot> simulator = running(1);
+  for (const double duration_s :
+       {0.0, 0.0009, -1.0, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    CHECK(simulator.advance(duration_s));
+    CHECK(simulator.time_s() == 0);
+  }
+  CHECK(simulator.recording().empty());
+  CHECK(simulator.vehicle().body.position_m == FlightPlan{}.start_m);
+}
+
+TEST_CASE("a copy flies on like its original, and the original is not touched") {
+  Simulator<Vehicle, Pilot> original = running(5);
+  REQUIRE(original.advance(2));
+  Simulator<Vehicle, Pilot> copy = original;
+  REQUIRE(copy.advance(2));
+  CHECK(original.recording().size() == 40);
+  REQUIRE(original.advance(2));
+  CHECK(original.recording().size() == 80);
+  CHECK(content_hash(original.recording()) == content_hash(copy.recording()));
+}
+
+TEST_CASE("a recording that is taken leaves the flight as it is") {
+  Simulator<Vehicle, Pilot> whole = running(6), parts = running(6);
+  REQUIRE(whole.advance(3));
+  REQUIRE(parts.advance(1));
+  Flight rows = parts.take_recording();
+  CHECK(parts.recording().empty());
+  REQUIRE(parts.advance(2));
+  for (const Sample& sample : parts.recording()) rows.push_back(sample);
+  CHECK(content_hash(rows) == content_hash(whole.recording()));
+}
+
+TEST_CASE("it starts in hover, in balance") {
+  Simulator<Vehicle, SteadyPilot> simulator(vehicle(), SteadyPilot{});
+  Commands<double> hover{};
+  REQUIRE(simulator.hover_commands(hover) == Status::ok);
+  CHECK(simulator.commands() == hover);
+  CHECK(simulator.altitude_m() == 35.877);
+  REQUIRE(simulator.advance(5));
+  CHECK((simulator.vehicle().body.position_m - FlightPlan{}.start_m).norm() < 1e-6);
+}
+
+TEST_CASE("commands from outside: the motors get them instead of the pilot's") {
+  const Vehicle quadrotor = vehicle();
+  Simulator<Vehicle, Pilot> simulator = running(2);
+  VehicleState<double> alone = simulator.vehicle();
+  const Commands<double> commands{0.6, 0.58, 0.59, 0.61};
+  for (int tick = 0; tick < 100; ++tick) {
+    REQUIRE(simulator.tick(commands));
+    for (int step = 0; step < 2; ++step) REQUIRE(quadrotor.step(alone, commands, 0.001) == Status::ok);
+  }
+  CHECK(simulator.commands() == commands);
+  CHECK(simulator.recording().size() == 4);
+  CHECK(simulator.recording().back().commands == commands);
+  CHECK((simulator.vehicle().body.position_m - alone.body.position_m).norm() < 1e-12);
+  CHECK(simulator.vehicle().body.position_m[2] < -35);  // more than the hover's thrust
+  CHECK_FALSE(simulator.tick({0.5, std::numeric_limits<double>::quiet_NaN(), 0.5, 0.5}));
+  CHECK(simulator.status() == Status::not_finite);
+}
+
+TEST_CASE("what ends a flight ends it for good, with time and state") {
+  SUBCASE("the ground, found by a row") {
+    SteadyPilot down;
+    down.set_point.velocity_m_s[2] = 5;
+    Simulator<Vehicle, SteadyPilot> simulator(vehicle(), down);
+    CHECK_FALSE(simulator.advance(100));
+    CHECK(simulator.end() == FlightEnd::ground);
+    CHECK(simulator.status() == Status::ok);
+    CHECK(simulator.altitude_m() <= 0);
+    const std::size_t rows = simulator.recording().size();
+    CHECK(simulator.recording().back().altitude_m > 0);
+    const double time_s = simulator.time_s();
+    CHECK_FALSE(simulator.tick());
+    CHECK_FALSE(simulator.next_row());
+    CHECK(simulator.time_s() == time_s);
+    CHECK(simulator.recording().size() == rows);
+  }
+  SUBCASE("a step that is not finite") {
+    const Quadrotor<double, Gap> quadrotor(airframe_value<PaperQuadrotor, double>(), paper_site<double>(), Gap{});
+    FlightPlan plan;
+    plan.samples = 100;
+    const RecordedFlight recorded = fly(quadrotor, SteadyPilot{}, plan);
+    CHECK(recorded.report.end == FlightEnd::bad_status);
+    CHECK(recorded.report.status == Status::output_not_finite);
+    CHECK(recorded.report.rows == 20);
+    CHECK(recorded.report.last.time_s == doctest::Approx(1.0).epsilon(1e-9));
+    CHECK(recorded.report.last.body.position_m[2] == doctest::Approx(-35));
+  }
+  SUBCASE("an airframe that can't fly") {
+    Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
+    airframe.mass_kg = 0;
+    Simulator<Vehicle, SteadyPilot> simulator(Vehicle(airframe, paper_site<double>(), {}, {}), SteadyPilot{});
+    CHECK(simulator.status() == Status::invalid_airframe);
+    CHECK_FALSE(simulator.tick());
+  }
+  SUBCASE("clocks that do not run") {
+    SimulationSettings no_time, backwards, no_steps, no_ticks;
+    no_time.physics_step_s = 0;
+    backwards.physics_step_s = -0.001;
+    no_steps.steps_per_control = 0;
+    no_ticks.controls_per_sample = 0;
+    for (const SimulationSettings& settings : {no_time, backwards, no_steps, no_ticks}) {
+      Simulator<Vehicle, SteadyPilot> simulator(vehicle(), SteadyPilot{}, settings);
+      CHECK(simulator.status() == Status::out_of_range);
+      CHECK_FALSE(simulator.advance(1));
+    }
+  }
+}
+
+TEST_CASE("a recorder is told the commands of each tick, and asked for a row after the last of them") {
+  struct Counting {
+    int* ticks;
+    int* rows;
+    Commands<double> last{};
+    void hold(const Commands<double>& commands, double time_s) {
+      CHECK(time_s == doctest::Approx(0.002 * *ticks));
+      ++*ticks;
+      last = commands;
+    }
+    Sample operator()(const Vehicle&, const VehicleState<double>& state, const Commands<double>& commands) {
+      ++*rows;
+      CHECK(*ticks == 25 * *rows);
+      CHECK(commands == last);
+      CHECK(state.time_s == doctest::Approx(0.05 * *rows));
+      return {};
+    }
+    Sample operator()(const Quadrotor<double>&, const VehicleState<double>&, const Commands<double>&) { return {}; }
+  };
+  int ticks = 0, rows = 0;
+  Simulator<Vehicle, Pilot, Counting> simulator(vehicle(), pilot(1), {}, Counting{&ticks, &rows});
+  REQUIRE(simulator.advance(1));
+  CHECK(ticks == 500);
+  CHECK(rows == 20);
+}
