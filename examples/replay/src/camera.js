@@ -61,7 +61,7 @@ export class Camera {
       const centre = this.bounds.getCenter(new Vector3());
       const size = this.bounds.getSize(new Vector3()).length();
       this.controls.target.copy(centre);
-      this.camera.position.copy(centre).add(new Vector3(0.55, 0.42, 0.72).multiplyScalar(0.95 * size + 4));
+      this.camera.position.copy(centre).add(new Vector3(0.6, 0.3, 0.78).multiplyScalar(0.9 * size + 4));
       return;
     }
     const behind = new Vector3(-Math.sin(heading), 0, Math.cos(heading));
@@ -69,8 +69,8 @@ export class Camera {
     const sideways = this.mode === 'chase' ? 0 : 0.5;
     this.controls.target.copy(place);
     this.camera.position.copy(place)
-      .addScaledVector(behind, 2.9 * this.span)
-      .addScaledVector(right, 2.9 * this.span * sideways)
-      .addScaledVector(up, 1.35 * this.span);
+      .addScaledVector(behind, 2.4 * this.span)
+      .addScaledVector(right, 2.4 * this.span * sideways)
+      .addScaledVector(up, 0.92 * this.span);
   }
 }

@@ -115,9 +115,14 @@ export function drawProfile(flight, speedEnd) {
   pen.fillStyle = '#94b0d61a';
   pen.fillRect(0, 0, width, height);
   for (let x = 0; x < width; ++x) {
-    const row = flight.rowAt(flight.begin + ((flight.end - flight.begin) * (x + 0.5)) / width);
-    const top = height * (0.9 - 0.75 * ((flight.altitude(row) - lowest) / range));
-    const colour = rampColour(flight.speeds[row] / speedEnd).map(Math.round);
+    const [first, last] = [x, x + 1].map((edge) => flight.rowAt(flight.begin + ((flight.end - flight.begin) * edge) / width));
+    let [altitude, speed] = [0, 0];
+    for (let row = first; row <= last; ++row) {
+      altitude += flight.altitude(row) / (last - first + 1);
+      speed += flight.speeds[row] / (last - first + 1);
+    }
+    const top = height * (0.88 - 0.72 * ((altitude - lowest) / range));
+    const colour = rampColour(speed / speedEnd).map(Math.round);
     pen.fillStyle = `rgba(${colour}, 0.42)`;
     pen.fillRect(x, top, 1, height - top);
     pen.fillStyle = `rgb(${colour})`;

@@ -138,6 +138,7 @@ class Replay {
     this.rateButtons = rates.map((rate) => choice('rates', `${rate}×`, 'Speed (↑ ↓)', () => this.setRate(rate)));
     this.cameraButtons = cameraModes.map((mode) => choice('cameras', mode, 'Camera (C)', () => this.setCamera(mode)));
     window.addEventListener('resize', () => this.resize());
+    byId('view').addEventListener('webglcontextrestored', () => { this.stale = true; });
     window.addEventListener('keydown', (event) => this.#key(event));
     this.#showControls();
   }
@@ -196,9 +197,16 @@ function fail(text) {
 try {
   const replay = new Replay(new Flight(JSON.parse(byId('flight').textContent)));
   window.replay = replay; // for the browser test, and for whoever opens the console
-  const start = /[#&]t=([0-9.]+)/.exec(location.hash); // page.html#t=12.5 opens at that moment, standing still
-  if (start) replay.seek(Number(start[1]));
-  else replay.play();
+  const openAtAddress = () => {
+    const start = /[#&]t=(\d+(?:\.\d+)?)/.exec(location.hash); // page.html#t=12.5 opens at that moment, standing still
+    if (start) {
+      replay.pause();
+      replay.seek(Number(start[1]));
+    }
+    return Boolean(start);
+  };
+  window.addEventListener('hashchange', openAtAddress);
+  if (!openAtAddress()) replay.play();
 } catch (error) {
   fail(`This flight cannot be shown: ${error.message}. The page needs a browser with WebGL 2.`);
   throw error;

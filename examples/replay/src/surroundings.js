@@ -7,8 +7,8 @@ import {
 } from 'three';
 
 // as the screen shows them: these shaders write display colours
-const horizon = new Color().setHex(0x5b7da6, '');
-const zenith = new Color().setHex(0x0c1a30, '');
+const horizon = new Color().setHex(0x7f9fc4, '');
+const zenith = new Color().setHex(0x10233f, '');
 const soil = new Color().setHex(0x1b2a35, '');
 
 /** Ground and sky are drawn behind everything and keep no depth: nothing flies below or beyond them. */
@@ -28,7 +28,7 @@ export function buildSky() {
       varying vec3 direction;
       void main() {
         float height = max(normalize(direction).y, 0.0);
-        gl_FragColor = vec4(mix(horizon, zenith, 1.0 - exp(-4.2 * height)), 1.0);
+        gl_FragColor = vec4(mix(horizon, zenith, 1.0 - exp(-5.5 * height)), 1.0);
       }`,
   }));
   sky.frustumCulled = false;
@@ -65,10 +65,10 @@ export function buildGround(groundZ) {
       void main() {
         float distance = length(toEye);
         vec3 colour = soil;
-        colour = mix(colour, vec3(0.56, 0.68, 0.80), 0.13 * grid(1.0, 0.6));
-        colour = mix(colour, vec3(0.56, 0.68, 0.80), 0.27 * grid(10.0, 0.7));
-        colour = mix(colour, vec3(0.64, 0.78, 0.92), 0.45 * grid(100.0, 1.0));
-        gl_FragColor = vec4(mix(horizon, colour, exp(-distance / 420.0)), 1.0);
+        colour = mix(colour, vec3(0.56, 0.68, 0.80), 0.12 * exp(-distance / 28.0) * grid(1.0, 0.6));
+        colour = mix(colour, vec3(0.56, 0.68, 0.80), 0.25 * exp(-distance / 320.0) * grid(10.0, 0.7));
+        colour = mix(colour, vec3(0.64, 0.78, 0.92), 0.42 * grid(100.0, 0.9));
+        gl_FragColor = vec4(mix(horizon, colour, exp(-distance / 360.0)), 1.0);
       }`,
   }));
   ground.position.z = groundZ;

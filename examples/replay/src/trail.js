@@ -47,8 +47,8 @@ const fragmentShader = `
 
 /** What the trail shows: seconds behind the vehicle, and how visible the rest of the path is. */
 export const trailModes = [
-  { name: 'last 30 s', tail: 30, rest: 0.07 },
-  { name: 'whole', tail: 1e9, rest: 0.07 },
+  { name: 'last 30 s', tail: 30, rest: 0.06 },
+  { name: 'whole', tail: 1e9, rest: 0.14 },
   { name: 'none', tail: 1e-9, rest: 0 },
 ];
 

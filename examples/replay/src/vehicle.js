@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The quadrotor, built to scale from the airframe's rotor places, in its own axes: x forward, y right, z down (FRD).
 import {
-  BoxGeometry, CircleGeometry, Color, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial, SphereGeometry, Vector3,
+  BoxGeometry, CanvasTexture, CircleGeometry, Color, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh,
+  MeshBasicMaterial, MeshStandardMaterial, SphereGeometry, Sprite, SpriteMaterial, Vector3,
 } from 'three';
 
-const colours = { shell: 0x26313f, metal: 0x8d99a8, front: 0xff9d2e, rear: 0xdfe6ef, blade: 0x141a22, thrust: 0x57d0ff, limit: 0xff4256 };
+const colours = { shell: 0x4a5b70, metal: 0xaab6c4, front: 0xff9d2e, rear: 0xdfe6ef, blade: 0x141a22, thrust: 0x57d0ff, limit: 0xff4256 };
 const up = -1; // of z
 
 /** A rod between two points. three's cylinders lie along y. */
@@ -27,6 +27,8 @@ export class Vehicle {
     const reach = Math.max(...flight.rotors.map((rotor) => Math.hypot(rotor.x_m, rotor.y_m)));
     this.span = 2 * reach + flight.propellerDiameter;
     this.#buildBody(reach);
+    this.marker = buildMarker();
+    this.group.add(this.marker);
     this.rotors = flight.rotors.map((rotor) => this.#buildRotor(rotor, reach, flight.propellerDiameter / 2));
   }
 
@@ -35,11 +37,11 @@ export class Vehicle {
     const hub = new Mesh(new CylinderGeometry(0.3 * reach, 0.24 * reach, 0.16 * reach, 6), shell);
     hub.rotation.x = -Math.PI / 2; // cylinder axis y -> body -z
     hub.scale.set(1, 1, 0.82);
-    const canopy = new Mesh(new SphereGeometry(0.22 * reach, 28, 14, 0, 2 * Math.PI, 0, Math.PI / 2), standard(0x3c4d63, 0.25, 0.4));
+    const canopy = new Mesh(new SphereGeometry(0.22 * reach, 28, 14, 0, 2 * Math.PI, 0, Math.PI / 2), standard(0x6f88a6, 0.3, 0.3));
     canopy.rotation.x = -Math.PI / 2;
     canopy.scale.set(1.25, 0.62, 0.95);
     canopy.position.z = up * 0.07 * reach;
-    const battery = new Mesh(new BoxGeometry(0.52 * reach, 0.24 * reach, 0.13 * reach), standard(0x151b24, 0.8));
+    const battery = new Mesh(new BoxGeometry(0.52 * reach, 0.24 * reach, 0.13 * reach), standard(0x222c39, 0.8));
     battery.position.z = 0.14 * reach;
     // the front: a wedge that no one can mistake for the tail
     const nose = new Mesh(new ConeGeometry(0.12 * reach, 0.34 * reach, 4), standard(colours.front, 0.45));
@@ -111,10 +113,27 @@ export class Vehicle {
     });
   }
 
-  /** Keeps the model at least `pixels` wide. */
-  keepVisible(metresPerPixel, pixels = 34) {
-    this.model.scale.setScalar(Math.max(1, (metresPerPixel * pixels) / this.span));
+  /** Keeps the model at least `pixels` wide; a circle comes up around it while it is enlarged. */
+  keepVisible(metresPerPixel, pixels = 40) {
+    const needed = (metresPerPixel * pixels) / this.span;
+    this.model.scale.setScalar(Math.max(1, needed));
+    this.marker.scale.setScalar(metresPerPixel * pixels * 1.7);
+    this.marker.material.opacity = Math.min(Math.max((needed - 1) / 2, 0), 0.85);
+    this.marker.visible = needed > 1;
   }
+}
+
+/** A thin circle that faces the camera. */
+function buildMarker() {
+  const canvas = document.createElement('canvas');
+  canvas.width = canvas.height = 128;
+  const pen = canvas.getContext('2d');
+  pen.strokeStyle = '#ffffff';
+  pen.lineWidth = 3;
+  pen.beginPath();
+  pen.arc(64, 64, 61, 0, 2 * Math.PI);
+  pen.stroke();
+  return new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), transparent: true, depthTest: false, depthWrite: false }));
 }
 
 /** At 0 or at 1, to the resolution of the page's commands. */
