@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # Installs the locked packages beside the page and runs bundle.mjs. Run by the target replay_bundle with
-# NODE, NPM, SOURCE, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice: the build goes on without a page.
+# NODE, NPM, SOURCE, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice, and there is no page.
 get_filename_component(folder "${PAGE}" DIRECTORY)
 file(MAKE_DIRECTORY "${folder}")
 

@@ -22,7 +22,11 @@ const script = buildSync({
   charset: 'utf8',
   legalComments: 'none', // the licence is in the page as a whole, for its reader
 }).outputFiles[0].text;
-const style = transformSync(readFileSync(join(source, 'style.css'), 'utf8'), { loader: 'css', minify: true, legalComments: 'none' }).code;
+const style = transformSync(readFileSync(join(source, 'style.css'), 'utf8'), {
+  loader: 'css',
+  minify: true,
+  legalComments: 'none',
+}).code;
 const licence = readFileSync(join(packages, 'node_modules/three/LICENSE'), 'utf8');
 const escaped = licence.replace(/&/g, '&amp;').replace(/</g, '&lt;');
 
@@ -30,7 +34,10 @@ if (/<\/script|<!--/i.test(script)) throw new Error('the script would end its ow
 if (!/Permission is hereby granted/.test(licence)) throw new Error('three.js came without its licence');
 
 const parts = { STYLE: style.trim(), LICENCE: escaped.trim(), SCRIPT: script.trim() };
-const page = readFileSync(join(source, 'page.html'), 'utf8').replace(/@PINNQUAD_(\w+)@/g, (marker, name) => parts[name] ?? marker);
+const page = readFileSync(join(source, 'page.html'), 'utf8').replace(
+  /@PINNQUAD_(\w+)@/g,
+  (marker, name) => parts[name] ?? marker,
+);
 for (const marker of ['@PINNQUAD_TITLE@', '@PINNQUAD_FLIGHT@']) {
   if (page.split(marker).length !== 2) throw new Error(`${marker} must be in the page once`);
 }

@@ -68,7 +68,8 @@ export class Camera {
     const right = new Vector3(Math.cos(heading), 0, Math.sin(heading));
     const sideways = this.mode === 'chase' ? 0 : 0.5;
     this.controls.target.copy(place);
-    this.camera.position.copy(place)
+    this.camera.position
+      .copy(place)
       .addScaledVector(behind, 2.4 * this.span)
       .addScaledVector(right, 2.4 * this.span * sideways)
       .addScaledVector(up, 0.92 * this.span);

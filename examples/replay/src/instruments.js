@@ -25,7 +25,8 @@ export class Instruments {
   constructor(flight, scale) {
     this.flight = flight;
     byId('title').textContent = document.title;
-    byId('facts').textContent = `${flight.rows.toLocaleString('en')} rows, ${(flight.end - flight.begin).toFixed(1)} s, ` +
+    byId('facts').textContent =
+      `${flight.rows.toLocaleString('en')} rows, ${(flight.end - flight.begin).toFixed(1)} s, ` +
       `up to ${flight.maxSpeed.toFixed(1)} m/s`;
     byId('duration').textContent = flight.end.toFixed(2);
     this.#buildLadder();
@@ -60,7 +61,20 @@ export class Instruments {
     const place = (rotor) => [(40 * rotor.y_m) / reach, (-32 * rotor.x_m) / reach];
     for (const rotor of this.flight.rotors) {
       const [x, y] = place(rotor);
-      svg('line', { x1: 0, y1: 0, x2: x * 0.62, y2: y * 0.5, stroke: rotor.x_m > 0 ? '#ff9d2e' : '#dfe6ef', 'stroke-width': 3, 'stroke-linecap': 'round', opacity: 0.8 }, map);
+      svg(
+        'line',
+        {
+          x1: 0,
+          y1: 0,
+          x2: x * 0.62,
+          y2: y * 0.5,
+          stroke: rotor.x_m > 0 ? '#ff9d2e' : '#dfe6ef',
+          'stroke-width': 3,
+          'stroke-linecap': 'round',
+          opacity: 0.8,
+        },
+        map,
+      );
     }
     svg('path', { d: 'M0 -17L-6 -6H6Z', fill: '#ff9d2e' }, map);
     svg('circle', { r: 7, fill: '#26313f', stroke: '#94b0d6', 'stroke-width': 1 }, map);
@@ -68,7 +82,11 @@ export class Instruments {
       const [x, y] = place(rotor);
       const height = 42;
       const base = y + height / 2 - 3;
-      svg('rect', { x: x - 7, y: base - height, width: 14, height, rx: 3, fill: '#94b0d626', stroke: '#94b0d655' }, map);
+      svg(
+        'rect',
+        { x: x - 7, y: base - height, width: 14, height, rx: 3, fill: '#94b0d626', stroke: '#94b0d655' },
+        map,
+      );
       const fill = svg('rect', { x: x - 7, y: base, width: 14, height: 0, rx: 3, fill: '#57d0ff' }, map);
       const side = x > 0 ? 1 : -1;
       const turn = rotor.spin > 0 ? '\u21ba' : '\u21bb';
@@ -115,7 +133,9 @@ export function drawProfile(flight, speedEnd) {
   pen.fillStyle = '#94b0d61a';
   pen.fillRect(0, 0, width, height);
   for (let x = 0; x < width; ++x) {
-    const [first, last] = [x, x + 1].map((edge) => flight.rowAt(flight.begin + ((flight.end - flight.begin) * edge) / width));
+    const [first, last] = [x, x + 1].map((edge) =>
+      flight.rowAt(flight.begin + ((flight.end - flight.begin) * edge) / width),
+    );
     let [altitude, speed] = [0, 0];
     for (let row = first; row <= last; ++row) {
       altitude += flight.altitude(row) / (last - first + 1);

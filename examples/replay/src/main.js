@@ -37,7 +37,13 @@ class Replay {
     this.vehicle = new Vehicle(flight);
     this.trail = new Trail(flight, scale.end);
     this.plumb = new Plumb(flight.groundZ, 0.5 * this.vehicle.span);
-    this.world.add(buildGround(flight.groundZ), buildNorthMark(flight.groundZ), this.trail.mesh, this.plumb.group, this.vehicle.group);
+    this.world.add(
+      buildGround(flight.groundZ),
+      buildNorthMark(flight.groundZ),
+      this.trail.mesh,
+      this.plumb.group,
+      this.vehicle.group,
+    );
     this.scene.add(buildSky(), buildLight(), this.world);
 
     const bounds = new Box3().setFromArray(flight.positions).applyMatrix4(this.world.matrixWorld);
@@ -138,7 +144,9 @@ class Replay {
     this.rateButtons = rates.map((rate) => choice('rates', `${rate}×`, 'Speed (↑ ↓)', () => this.setRate(rate)));
     this.cameraButtons = cameraModes.map((mode) => choice('cameras', mode, 'Camera (C)', () => this.setCamera(mode)));
     window.addEventListener('resize', () => this.resize());
-    byId('view').addEventListener('webglcontextrestored', () => { this.stale = true; });
+    byId('view').addEventListener('webglcontextrestored', () => {
+      this.stale = true;
+    });
     window.addEventListener('keydown', (event) => this.#key(event));
     this.#showControls();
   }

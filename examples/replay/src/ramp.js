@@ -2,7 +2,14 @@
 // Speed as a colour: the trail, the profile and the legend share this one ramp. Its stops brighten and turn from cold
 // to warm, so that fast parts stand out on the dark ground.
 
-const stops = [[52, 88, 224], [28, 160, 222], [66, 204, 150], [242, 201, 76], [255, 128, 60], [255, 66, 86]];
+const stops = [
+  [52, 88, 224],
+  [28, 160, 222],
+  [66, 204, 150],
+  [242, 201, 76],
+  [255, 128, 60],
+  [255, 66, 86],
+];
 
 /** Colour at `share` of the range (0 to 1) as [r, g, b], each 0 to 255. */
 export function rampColour(share) {

@@ -1,8 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Sky, ground with its grid, north mark, and the vehicle's shadow with the plumb line that tells its place.
 import {
-  BackSide, BufferAttribute, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight, DoubleSide, Group,
-  HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, PlaneGeometry, ShaderMaterial, SphereGeometry,
+  BackSide,
+  BufferAttribute,
+  BufferGeometry,
+  CanvasTexture,
+  CircleGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  Group,
+  HemisphereLight,
+  Line,
+  LineBasicMaterial,
+  Mesh,
+  MeshBasicMaterial,
+  PlaneGeometry,
+  ShaderMaterial,
+  SphereGeometry,
   SRGBColorSpace,
 } from 'three';
 
@@ -13,16 +28,20 @@ const soil = new Color().setHex(0x1b2a35, '');
 
 /** Ground and sky are drawn behind everything and keep no depth: nothing flies below or beyond them. */
 export function buildSky() {
-  const sky = new Mesh(new SphereGeometry(1, 32, 16), new ShaderMaterial({
-    side: BackSide, depthWrite: false, depthTest: false,
-    uniforms: { horizon: { value: horizon }, zenith: { value: zenith } },
-    vertexShader: `
+  const sky = new Mesh(
+    new SphereGeometry(1, 32, 16),
+    new ShaderMaterial({
+      side: BackSide,
+      depthWrite: false,
+      depthTest: false,
+      uniforms: { horizon: { value: horizon }, zenith: { value: zenith } },
+      vertexShader: `
       varying vec3 direction;
       void main() {
         direction = position;
         gl_Position = projectionMatrix * vec4(mat3(modelViewMatrix) * position * 10.0, 1.0);
       }`,
-    fragmentShader: `
+      fragmentShader: `
       uniform vec3 horizon;
       uniform vec3 zenith;
       varying vec3 direction;
@@ -30,7 +49,8 @@ export function buildSky() {
         float height = max(normalize(direction).y, 0.0);
         gl_FragColor = vec4(mix(horizon, zenith, 1.0 - exp(-5.5 * height)), 1.0);
       }`,
-  }));
+    }),
+  );
   sky.frustumCulled = false;
   sky.renderOrder = -3;
   return sky;
@@ -38,10 +58,13 @@ export function buildSky() {
 
 /** A plane in NED x and y at the ground's z. Grid of 1, 10 and 100 m; each fades where its lines would crowd. */
 export function buildGround(groundZ) {
-  const ground = new Mesh(new PlaneGeometry(6000, 6000), new ShaderMaterial({
-    side: DoubleSide, depthWrite: false,
-    uniforms: { horizon: { value: horizon }, soil: { value: soil } },
-    vertexShader: `
+  const ground = new Mesh(
+    new PlaneGeometry(6000, 6000),
+    new ShaderMaterial({
+      side: DoubleSide,
+      depthWrite: false,
+      uniforms: { horizon: { value: horizon }, soil: { value: soil } },
+      vertexShader: `
       varying vec2 place;
       varying vec3 toEye;
       void main() {
@@ -50,7 +73,7 @@ export function buildGround(groundZ) {
         toEye = view.xyz;
         gl_Position = projectionMatrix * view;
       }`,
-    fragmentShader: `
+      fragmentShader: `
       uniform vec3 horizon;
       uniform vec3 soil;
       varying vec2 place;
@@ -70,7 +93,8 @@ export function buildGround(groundZ) {
         colour = mix(colour, vec3(0.64, 0.78, 0.92), 0.42 * grid(100.0, 0.9));
         gl_FragColor = vec4(mix(horizon, colour, exp(-distance / 360.0)), 1.0);
       }`,
-  }));
+    }),
+  );
   ground.position.z = groundZ;
   ground.renderOrder = -2;
   return ground;
@@ -97,9 +121,16 @@ export function buildNorthMark(groundZ) {
   pen.fillText('N', 128, 186);
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
-  const mark = new Mesh(new PlaneGeometry(6, 6), new MeshBasicMaterial({
-    map: texture, transparent: true, opacity: 0.75, depthWrite: false, side: DoubleSide,
-  }));
+  const mark = new Mesh(
+    new PlaneGeometry(6, 6),
+    new MeshBasicMaterial({
+      map: texture,
+      transparent: true,
+      opacity: 0.75,
+      depthWrite: false,
+      side: DoubleSide,
+    }),
+  );
   mark.position.z = groundZ;
   mark.rotation.set(Math.PI, 0, Math.PI / 2); // the picture's up is x (north), its face is up (-z)
   mark.renderOrder = -1;
@@ -119,18 +150,29 @@ export class Plumb {
   constructor(groundZ, radius) {
     this.groundZ = groundZ;
     this.group = new Group();
-    const shadow = new Mesh(new CircleGeometry(1, 40), new ShaderMaterial({
-      transparent: true, depthWrite: false, side: DoubleSide,
-      vertexShader: 'varying vec2 p; void main() { p = position.xy; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
-      fragmentShader: 'varying vec2 p; void main() { gl_FragColor = vec4(0.0, 0.0, 0.0, 0.6 * smoothstep(1.0, 0.35, length(p))); }',
-    }));
+    const shadow = new Mesh(
+      new CircleGeometry(1, 40),
+      new ShaderMaterial({
+        transparent: true,
+        depthWrite: false,
+        side: DoubleSide,
+        vertexShader:
+          'varying vec2 p; void main() { p = position.xy; ' +
+          'gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
+        fragmentShader:
+          'varying vec2 p; void main() { gl_FragColor = vec4(0.0, 0.0, 0.0, 0.6 * smoothstep(1.0, 0.35, length(p))); }',
+      }),
+    );
     shadow.renderOrder = -1;
     this.shadow = shadow;
     this.radius = radius;
     const geometry = new BufferGeometry();
     this.ends = new BufferAttribute(new Float32Array(6), 3);
     geometry.setAttribute('position', this.ends);
-    const line = new Line(geometry, new LineBasicMaterial({ color: 0xcfe2ff, transparent: true, opacity: 0.35, depthWrite: false }));
+    const line = new Line(
+      geometry,
+      new LineBasicMaterial({ color: 0xcfe2ff, transparent: true, opacity: 0.35, depthWrite: false }),
+    );
     line.frustumCulled = false;
     this.group.add(shadow, line);
   }

@@ -91,9 +91,17 @@ export class Trail {
       tail: { value: 30 },
       rest: { value: 0 },
     };
-    this.mesh = new Mesh(geometry, new ShaderMaterial({
-      vertexShader, fragmentShader, uniforms: this.uniforms, transparent: true, depthWrite: false, side: 2,
-    }));
+    this.mesh = new Mesh(
+      geometry,
+      new ShaderMaterial({
+        vertexShader,
+        fragmentShader,
+        uniforms: this.uniforms,
+        transparent: true,
+        depthWrite: false,
+        side: 2,
+      }),
+    );
     this.mesh.frustumCulled = false; // its width is not in the bounding sphere
     this.mode = flight.end - flight.begin > 90 ? 0 : 1;
     this.setMode(this.mode);

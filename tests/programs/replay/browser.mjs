@@ -9,10 +9,14 @@ import { pathToFileURL } from 'node:url';
 import { Chromium, readPng } from './chromium.mjs';
 
 const [program, page, csv, title, folder] = process.argv.slice(2);
-const rows = readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => {
-  const [t, north, east, down, vNorth, vEast, vDown, w, x, y, z, ...commands] = line.split(',').map(Number);
-  return { t, north, east, down, velocity: [vNorth, vEast, vDown], q: [w, x, y, z], commands };
-});
+const rows = readFileSync(csv, 'utf8')
+  .trim()
+  .split('\n')
+  .slice(1)
+  .map((line) => {
+    const [t, north, east, down, vNorth, vEast, vDown, w, x, y, z, ...commands] = line.split(',').map(Number);
+    return { t, north, east, down, velocity: [vNorth, vEast, vDown], q: [w, x, y, z], commands };
+  });
 
 let failures = 0;
 let checks = 0;
@@ -30,26 +34,40 @@ const requests = [];
 const url = pathToFileURL(resolve(page)).href;
 const chromium = new Chromium(program);
 chromium.on((method, p) => {
-  if (method === 'Runtime.exceptionThrown') complaints.push(p.exceptionDetails.exception?.description ?? p.exceptionDetails.text);
-  if (method === 'Runtime.consoleAPICalled' && ['error', 'assert'].includes(p.type)) complaints.push(p.args.map((a) => a.value ?? a.description).join(' '));
+  if (method === 'Runtime.exceptionThrown')
+    complaints.push(p.exceptionDetails.exception?.description ?? p.exceptionDetails.text);
+  if (method === 'Runtime.consoleAPICalled' && ['error', 'assert'].includes(p.type))
+    complaints.push(p.args.map((a) => a.value ?? a.description).join(' '));
   if (method === 'Log.entryAdded' && p.entry.level === 'error') complaints.push(`${p.entry.text} ${p.entry.url ?? ''}`);
   if (method === 'Network.requestWillBeSent') requests.push(p.request.url);
   if (method === 'Network.webSocketCreated') requests.push(p.url);
 });
 
 const evaluate = (expression) => chromium.evaluate(expression);
-const figure = async (id) => Number((await evaluate(`document.getElementById('${id}').textContent`)).replace('\u2212', '-'));
+const figure = async (id) =>
+  Number((await evaluate(`document.getElementById('${id}').textContent`)).replace('\u2212', '-'));
 /** Two frames on, whatever was asked for has been drawn. */
-const drawn = () => evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))');
+const drawn = () =>
+  evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))');
 async function press(key, code = key, modifiers = 0) {
-  for (const type of ['keyDown', 'keyUp']) await chromium.send('Input.dispatchKeyEvent', { type, key, code, modifiers });
+  for (const type of ['keyDown', 'keyUp'])
+    await chromium.send('Input.dispatchKeyEvent', { type, key, code, modifiers });
   await drawn();
 }
 async function mouse(type, x, y, button = 'left') {
-  await chromium.send('Input.dispatchMouseEvent', { type, x, y, button, buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1 });
+  await chromium.send('Input.dispatchMouseEvent', {
+    type,
+    x,
+    y,
+    button,
+    buttons: type === 'mouseReleased' ? 0 : 1,
+    clickCount: 1,
+  });
 }
 async function click(selector, share = 0.5) {
-  const box = await evaluate(`(({ x, y, width, height }) => ({ x, y, width, height }))(document.querySelector('${selector}').getBoundingClientRect())`);
+  const box = await evaluate(
+    `document.querySelector('${selector}').getBoundingClientRect().toJSON()`,
+  );
   const [x, y] = [box.x + share * box.width, box.y + box.height / 2];
   await mouse('mouseMoved', x, y);
   await mouse('mousePressed', x, y);
@@ -57,7 +75,9 @@ async function click(selector, share = 0.5) {
   await drawn();
 }
 const slide = async (time) => {
-  await evaluate(`{ const s = document.getElementById('slider'); s.value = ${time}; s.dispatchEvent(new Event('input')); }`);
+  await evaluate(
+    `{ const s = document.getElementById('slider'); s.value = ${time}; s.dispatchEvent(new Event('input')); }`,
+  );
   await drawn();
 };
 async function screenshot(name) {
@@ -82,8 +102,18 @@ const toPage = ([north, east, down]) => [east, -down, -north];
 async function pageOpens() {
   await chromium.attach();
   for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await chromium.send(`${domain}.enable`);
-  await chromium.send('Network.emulateNetworkConditions', { offline: true, latency: 0, downloadThroughput: 0, uploadThroughput: 0 });
-  await chromium.send('Emulation.setDeviceMetricsOverride', { width: 1280, height: 800, deviceScaleFactor: 1, mobile: false });
+  await chromium.send('Network.emulateNetworkConditions', {
+    offline: true,
+    latency: 0,
+    downloadThroughput: 0,
+    uploadThroughput: 0,
+  });
+  await chromium.send('Emulation.setDeviceMetricsOverride', {
+    width: 1280,
+    height: 800,
+    deviceScaleFactor: 1,
+    mobile: false,
+  });
   await chromium.send('Page.navigate', { url });
   let opened = false;
   for (let i = 0; i < 100 && !opened && complaints.length === 0; ++i) {
@@ -130,7 +160,11 @@ async function timePasses() {
   check('End', near(await figure('time'), rows[rows.length - 1].t, 0.006));
   const last = rows[rows.length - 1].t;
   await click('#slider', 0.5);
-  check('a click in the middle of the slider', near(await figure('time'), (rows[0].t + last) / 2, 0.02 * last), `${await figure('time')} s`);
+  check(
+    'a click in the middle of the slider',
+    near(await figure('time'), (rows[0].t + last) / 2, 0.02 * last),
+    `${await figure('time')} s`,
+  );
 }
 
 async function posesAreTheFlights() {
@@ -139,14 +173,25 @@ async function posesAreTheFlights() {
     await slide(row.t);
     const matrix = await evaluate('replay.vehicle.group.matrixWorld.elements.slice()');
     const where = `row ${i + 1}`;
-    check(`position of ${where}`, distance(matrix.slice(12, 15), toPage([row.north, row.east, row.down])) < 1e-3, matrix.slice(12, 15));
+    check(
+      `position of ${where}`,
+      distance(matrix.slice(12, 15), toPage([row.north, row.east, row.down])) < 1e-3,
+      matrix.slice(12, 15),
+    );
     for (const axis of [0, 1, 2]) {
       const expected = toPage(bodyAxis(row.q, axis));
-      check(`body axis ${'xyz'[axis]} of ${where}`, distance(matrix.slice(4 * axis, 4 * axis + 3), expected) < 3e-4, matrix.slice(4 * axis, 4 * axis + 3));
+      check(
+        `body axis ${'xyz'[axis]} of ${where}`,
+        distance(matrix.slice(4 * axis, 4 * axis + 3), expected) < 3e-4,
+        matrix.slice(4 * axis, 4 * axis + 3),
+      );
     }
     check(`speed of ${where}`, near(await figure('speed'), Math.hypot(...row.velocity), 0.052));
     check(`climb of ${where}`, near(await figure('climb'), -row.velocity[2], 0.052));
-    check(`altitude of ${where}`, near(await figure('altitude'), (await evaluate('replay.flight.groundZ')) - row.down, 0.052));
+    check(
+      `altitude of ${where}`,
+      near(await figure('altitude'), (await evaluate('replay.flight.groundZ')) - row.down, 0.052),
+    );
     const nose = bodyAxis(row.q, 0);
     check(`pitch of ${where}`, near(await figure('pitch'), (180 / Math.PI) * Math.asin(-nose[2]), 0.06));
     const turn = (await figure('heading')) - (180 / Math.PI) * Math.atan2(nose[1], nose[0]);
@@ -156,15 +201,27 @@ async function posesAreTheFlights() {
     for (const [rotor, command] of row.commands.entries()) {
       const shown = Math.min(Math.max(command, 0), 1);
       check(`command ${rotor + 1} of ${where}`, near(await figure(`u${rotor + 1}`), shown, 0.0052));
-      check(`arrow ${rotor + 1} of ${where}`, near(await evaluate(`replay.vehicle.rotors[${rotor}].shaft.scale.y / replay.vehicle.rotors[${rotor}].fullLength`), shown, 1e-3));
+      check(
+        `arrow ${rotor + 1} of ${where}`,
+        near(
+          await evaluate(`replay.vehicle.rotors[${rotor}].shaft.scale.y / replay.vehicle.rotors[${rotor}].fullLength`),
+          shown,
+          1e-3,
+        ),
+      );
     }
-    const seen = await evaluate('replay.world.localToWorld(replay.vehicle.group.position.clone()).project(replay.camera.camera).toArray()');
+    const seen = await evaluate(
+      'replay.world.localToWorld(replay.vehicle.group.position.clone()).project(replay.camera.camera).toArray()',
+    );
     check(`the camera follows to ${where}`, Math.hypot(seen[0], seen[1]) < 0.3 && seen[2] < 1, seen);
   }
   const [a, b] = [rows[10], rows[11]];
   await slide((a.t + b.t) / 2);
   const between = await evaluate('replay.vehicle.group.matrixWorld.elements.slice(12, 15)');
-  check('between two rows', distance(between, toPage([a.north + b.north, a.east + b.east, a.down + b.down].map((v) => v / 2))) < 1e-3);
+  check(
+    'between two rows',
+    distance(between, toPage([a.north + b.north, a.east + b.east, a.down + b.down].map((v) => v / 2))) < 1e-3,
+  );
 }
 
 /** Distinct colours and how many pixels `rule(r, g, b)` holds for, within a box given as shares of the picture. */
@@ -214,7 +271,12 @@ async function picturesShowIt() {
   }
   const trail = differing(trails[1], trails[2]);
   check('the whole trail covers pixels', trail > 1000, `${trail} pixels`);
-  await screenshot('replay_free.png');
+  const vivid = (r, g, b) => Math.max(r, g, b) - Math.min(r, g, b) > 110;
+  await press('Home');
+  const atFirst = statistics(await screenshot('replay_free.png'), vivid, view).count;
+  await press('End');
+  const atLast = statistics(await screenshot('replay_free.png'), vivid, view).count;
+  check('the trail grows with the flight', atLast > 1000 && atLast > 5 * atFirst, `${atFirst} pixels, then ${atLast}`);
   await press('h', 'KeyH');
 }
 
@@ -234,19 +296,34 @@ async function cameraObeys() {
   check('C goes on to the first mode', (await evaluate('replay.camera.mode')) === 'follow');
   await press('c', 'KeyC');
   await slide(rows[Math.floor(rows.length / 2)].t);
-  const behind = await evaluate(`(() => { const v = replay.vehicle.group.matrixWorld.elements, c = replay.camera.camera.position;
+  const behind =
+    await evaluate(`(() => { const v = replay.vehicle.group.matrixWorld.elements, c = replay.camera.camera.position;
     return (c.x - v[12]) * v[0] + (c.z - v[14]) * v[2]; })()`);
   check('the chasing camera is behind the nose', behind < -0.5, `${behind} m along the nose`);
 }
 
 async function restWorks() {
-  await chromium.send('Emulation.setDeviceMetricsOverride', { width: 700, height: 480, deviceScaleFactor: 2, mobile: false });
+  await chromium.send('Emulation.setDeviceMetricsOverride', {
+    width: 700,
+    height: 480,
+    deviceScaleFactor: 2,
+    mobile: false,
+  });
   await sleep(0.3);
   await drawn();
-  check('the canvas takes the new size', (await evaluate('[replay.renderer.domElement.width, replay.renderer.domElement.height].join()')) === '1400,960');
+  check(
+    'the canvas takes the new size',
+    (await evaluate('[replay.renderer.domElement.width, replay.renderer.domElement.height].join()')) === '1400,960',
+  );
   check('the aspect too', near(await evaluate('replay.camera.camera.aspect'), 700 / 480, 1e-6));
   await press('?', 'Slash');
-  check('? shows keys and licence', await evaluate('document.getElementById("help").open && /Permission is hereby granted/.test(document.querySelector("#help pre").innerText)'));
+  check(
+    '? shows keys and licence',
+    await evaluate(
+      `document.getElementById('help').open &&
+        /Permission is hereby granted/.test(document.querySelector('#help pre').innerText)`,
+    ),
+  );
   check('nothing failed on the page', await evaluate('document.getElementById("failure").hidden'));
   check('no resource was asked for', (await evaluate('performance.getEntriesByType("resource").length')) === 0);
   const foreign = requests.filter((request) => request !== url && !request.startsWith('data:'));
@@ -269,5 +346,7 @@ try {
 } finally {
   await chromium.close();
 }
-console.log(`browser: ${checks - failures} of ${checks} checks passed in ${((Date.now() - begin) / 1000).toFixed(1)} s`);
+console.log(
+  `browser: ${checks - failures} of ${checks} checks passed in ${((Date.now() - begin) / 1000).toFixed(1)} s`,
+);
 process.exitCode = failures === 0 ? 0 : 1;

@@ -16,14 +16,32 @@ export class Chromium {
   constructor(program) {
     this.profile = mkdtempSync(join(tmpdir(), 'pinnquad-browser-'));
     const root = process.getuid?.() === 0; // Chromium's sandbox refuses root
-    this.process = spawn(program, [
-      '--headless=new', '--remote-debugging-pipe', `--user-data-dir=${this.profile}`, ...(root ? ['--no-sandbox'] : []),
-      '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage',
-      '--no-first-run', '--disable-extensions', '--disable-background-networking', '--disable-component-update',
-      '--host-resolver-rules=MAP * ~NOTFOUND', '--window-size=1280,800', '--hide-scrollbars', 'about:blank',
-    ], { stdio: ['ignore', 'ignore', 'pipe', 'pipe', 'pipe'] });
+    this.process = spawn(
+      program,
+      [
+        '--headless=new',
+        '--remote-debugging-pipe',
+        `--user-data-dir=${this.profile}`,
+        ...(root ? ['--no-sandbox'] : []),
+        '--use-gl=angle',
+        '--use-angle=swiftshader',
+        '--enable-unsafe-swiftshader',
+        '--disable-dev-shm-usage',
+        '--no-first-run',
+        '--disable-extensions',
+        '--disable-background-networking',
+        '--disable-component-update',
+        '--host-resolver-rules=MAP * ~NOTFOUND',
+        '--window-size=1280,800',
+        '--hide-scrollbars',
+        'about:blank',
+      ],
+      { stdio: ['ignore', 'ignore', 'pipe', 'pipe', 'pipe'] },
+    );
     this.stderr = '';
-    this.process.stderr.on('data', (text) => { this.stderr = (this.stderr + text).slice(-4000); });
+    this.process.stderr.on('data', (text) => {
+      this.stderr = (this.stderr + text).slice(-4000);
+    });
     this.process.stdio[4].on('data', (data) => this.#receive(data));
     this.process.stdio[3].on('error', () => {}); // the exit says it better
     this.exited = new Promise((resolve) => this.process.once('close', resolve));
@@ -54,14 +72,20 @@ export class Chromium {
 
   /** The value of an expression in the page. */
   async evaluate(expression) {
-    const { result, exceptionDetails } = await this.send('Runtime.evaluate', { expression, returnByValue: true, awaitPromise: true });
-    if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description ?? exceptionDetails.text}`);
+    const { result, exceptionDetails } = await this.send('Runtime.evaluate', {
+      expression,
+      returnByValue: true,
+      awaitPromise: true,
+    });
+    if (exceptionDetails)
+      throw new Error(`${expression}: ${exceptionDetails.exception?.description ?? exceptionDetails.text}`);
     return result.value;
   }
 
   async close() {
     const late = setTimeout(() => this.process.kill('SIGKILL'), 5000);
-    if (this.process.exitCode === null) await this.send('Browser.close', {}, undefined).catch(() => this.process.kill('SIGKILL'));
+    if (this.process.exitCode === null)
+      await this.send('Browser.close', {}, undefined).catch(() => this.process.kill('SIGKILL'));
     await this.exited;
     clearTimeout(late);
     rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
+# shellcheck shell=bash
 # ReplayPage without a browser: what it refuses, that text cannot leave its element, and that the page holds the flight.
 #   page.sh <replay_driver> <work folder>
 driver=$1
 source "$(dirname "$0")/../common.sh" "$driver" - - "$2" - -
 
 # without the bundle: one line, before anything flies or is written
-expect_line 2 'cannot write page_out\.html: the replay page is not built.*replay_bundle' "$driver" page_out.html rows.csv
+expect_line 2 'cannot write out\.html: the replay page is not built.*replay_bundle' "$driver" out.html rows.csv
 [ ! -e rows.csv ] || fail "it flew although the page is not built"
 
 printf '<title>@PINNQUAD_TITLE@</title>\n@PINNQUAD_FLIGHT@\nend\n' >page.html
@@ -23,14 +24,16 @@ sed -n 2p out.html >flight.json
 
 # field <name> <od type> <columns>: an array of the page as text, one row per line
 field() {
-  sed -n "s/.*\"$1\":\"\([^\"]*\)\".*/\1/p" flight.json | base64 -d | od -An -v -w"$(($3 * ${2#?}))" -t "$2" --endian=little
+  sed -n "s/.*\"$1\":\"\([^\"]*\)\".*/\1/p" flight.json | base64 -d |
+    od -An -v -w"$(($3 * ${2#?}))" -t "$2" --endian=little
 }
 # same <name> <od type> <columns> <first column of rows.csv> <unit> <tolerance in SI>
 same() {
-  field "$1" "$2" "$3" | paste -d' ' - <(tail -n +2 rows.csv | tr ',' ' ') >both.txt
+  tail -n +2 rows.csv | tr ',' ' ' >flown.txt
+  field "$1" "$2" "$3" | paste -d' ' - flown.txt >both.txt
   awk -v n="$3" -v first="$4" -v unit="$5" -v tolerance="$6" '
-    { for (i = 0; i < n; ++i) { d = $(1 + i) * unit - $(n + first + i); if (d > tolerance || d < -tolerance) bad++ } rows++ }
-    END { if (bad || rows != 200) { print bad + 0 " values of " rows " rows differ"; exit 1 } }' both.txt ||
+    { for (i = 0; i < n; ++i) { d = $(1 + i) * unit - $(n + first + i); if (d * d > tolerance ^ 2) bad++ } }
+    END { if (bad || NR != 200) { print bad + 0 " values of " NR " rows differ"; exit 1 } }' both.txt ||
     fail "$1 of the page is not what was flown"
 }
 unit=$(sed -n 's/.*"velocity_unit_m_s":\([^,]*\),.*/\1/p' flight.json)
