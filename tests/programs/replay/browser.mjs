@@ -65,9 +65,7 @@ async function mouse(type, x, y, button = 'left') {
   });
 }
 async function click(selector, share = 0.5) {
-  const box = await evaluate(
-    `document.querySelector('${selector}').getBoundingClientRect().toJSON()`,
-  );
+  const box = await evaluate(`document.querySelector('${selector}').getBoundingClientRect().toJSON()`);
   const [x, y] = [box.x + share * box.width, box.y + box.height / 2];
   await mouse('mouseMoved', x, y);
   await mouse('mousePressed', x, y);
@@ -127,11 +125,18 @@ async function pageOpens() {
   check('every row has arrived', (await evaluate('replay.flight.rows')) === rows.length);
 }
 
-async function timePasses() {
+/** Whether the clock goes on by that many seconds; patient, because software draws few frames on a busy machine. */
+async function timeAdvances(seconds) {
   const first = await figure('time');
-  await sleep(1.5);
-  const second = await figure('time');
-  check('it plays when opened', second > first + 0.2, `${first} s, then ${second} s`);
+  for (let i = 0; i < 100; ++i) {
+    if ((await figure('time')) >= first + seconds) return true;
+    await sleep(0.1);
+  }
+  return false;
+}
+
+async function timePasses() {
+  check('it plays when opened', await timeAdvances(0.5));
   await press(' ', 'Space');
   const stopped = await figure('time');
   await sleep(0.4);
@@ -146,8 +151,7 @@ async function timePasses() {
   await click('#rates button:nth-child(2)');
   check('the button 1x sets the speed', (await evaluate('replay.rate')) === 1);
   await click('#play');
-  await sleep(1);
-  check('the play button plays', (await figure('time')) > stopped + 0.1, `${await figure('time')} s`);
+  check('the play button plays', await timeAdvances(0.3));
   await click('#play');
   const paused = await figure('time');
   await sleep(0.4);
