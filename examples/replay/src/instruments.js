@@ -25,9 +25,9 @@ export class Instruments {
   constructor(flight, scale) {
     this.flight = flight;
     byId('title').textContent = document.title;
+    const duration = ((flight.end - flight.begin) * flight.rows) / Math.max(1, flight.rows - 1); // a row ends a period
     byId('facts').textContent =
-      `${flight.rows.toLocaleString('en')} rows, ${(flight.end - flight.begin).toFixed(1)} s, ` +
-      `up to ${flight.maxSpeed.toFixed(1)} m/s`;
+      `${flight.rows.toLocaleString('en')} rows, ${duration.toFixed(1)} s, up to ${flight.maxSpeed.toFixed(1)} m/s`;
     byId('duration').textContent = flight.end.toFixed(2);
     this.#buildLadder();
     this.#buildLegend(scale);
