@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+#
+# Installs the locked packages beside the page and runs bundle.mjs. Run by the target replay_bundle with
+# NODE, NPM, SOURCE, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice, and there is no page.
+get_filename_component(folder "${PAGE}" DIRECTORY)
+file(MAKE_DIRECTORY "${folder}")
+
+macro(give_up what output)
+  file(REMOVE "${PAGE}") # a page of older sources would be a lie
+  if(REQUIRED STREQUAL "AUTO")
+    message(NOTICE "pinnquad: ${what}; fly --replay is not available. It said:\n${output}")
+    return()
+  endif()
+  message(FATAL_ERROR "pinnquad: ${what}. It said:\n${output}")
+endmacro()
+
+# npm only when the lock file has changed since it last succeeded
+file(SHA256 "${SOURCE}/package-lock.json" lock)
+set(stamp "${folder}/node_modules/.pinnquad-lock-${lock}")
+if(NOT EXISTS "${stamp}")
+  file(COPY "${SOURCE}/package.json" "${SOURCE}/package-lock.json" DESTINATION "${folder}")
+  # --ignore-scripts: no package runs code of its own while it is installed
+  execute_process(
+    COMMAND "${NPM}" ci --ignore-scripts --no-audit --no-fund --no-update-notifier --loglevel=error --fetch-retries=1
+    WORKING_DIRECTORY "${folder}" RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 300)
+  if(NOT code EQUAL 0)
+    give_up("npm could not install the packages of the replay page" "${output}")
+  endif()
+  file(WRITE "${stamp}" "")
+endif()
+
+execute_process(
+  COMMAND "${NODE}" "${SOURCE}/bundle.mjs" "${folder}" "${PAGE}"
+  RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 120)
+if(NOT code EQUAL 0)
+  give_up("the replay page could not be bundled" "${output}")
+endif()
+message(NOTICE "${output}")
