@@ -1,39 +1,33 @@
 // SPDX-License-Identifier: MIT
-// An aerodynamic effect of one's own: linear rotor drag, which a spinning rotor feels along its disc.
-// The vehicle takes it because it has wrench(); simulator and inverse then both fly with it.
+// An aerodynamic effect of one's own: a thermal, a column of rising air.
+// The vehicle takes it because it has surroundings(); simulator and inverse then both fly through it.
+#include <cmath>
 #include <cstdio>
 
 #include "pinnquad/flight.hpp"
 
 using namespace pinnquad;
 
-/// F = -k_r T (v_x, v_y, 0), T the rotors' thrust, v the air-relative body velocity.
-struct LinearRotorDrag {
-  static constexpr bool uses_rotor_wrench = true;
-  double coefficient_s_m = 0.02;
+/// Rises with w exp(-(d / R)^2) at a distance d from its axis.
+struct Thermal {
+  double north_m = 40, east_m = 0, radius_m = 15, climb_m_s = 3;
 
   template <class Scalar>
-  Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition, const Airframe<Scalar>&) const noexcept {
-    const Scalar thrust = -condition.rotors.force_N[2];
-    Wrench<Scalar> result;
-    for (int i = 0; i < 2; ++i) {
-      result.force_N[i] = -Scalar(coefficient_s_m) * thrust * condition.air_relative_velocity_m_s[i];
-    }
-    return result;
+  void surroundings(Surroundings<Scalar>& air) const noexcept {
+    using std::exp;
+    const Scalar north = air.position_m[0] - Scalar(north_m), east = air.position_m[1] - Scalar(east_m);
+    const Scalar share = (north * north + east * east) / Scalar(radius_m * radius_m);
+    air.wind_m_s[2] -= Scalar(climb_m_s) * exp(-share);  // NED: up is negative
   }
 };
 
 int main() {
-  const Quadrotor<double, QuadraticDrag, LinearRotorDrag> quadrotor(airframe_value<PaperQuadrotor, double>());
-  VehicleState<double> state;
-  state.body.velocity_m_s[0] = 8;
-  const Accelerations<double> level{};
-  if (inverse_commands(quadrotor, state.body, level, 0.0, state.rotors) != Status::ok) return 1;
-  const Commands<double> hover = state.rotors;
-  for (int second = 0; second <= 3; ++second) {
-    std::printf("t = %.1f s: %.3f m/s forward\n", state.time_s, state.body.velocity_m_s[0]);
-    for (int i = 0; i < 1000; ++i) {
-      if (quadrotor.step(state, hover, 0.001) != Status::ok) return 1;
-    }
+  const Quadrotor<double, Thermal, QuadraticDrag> quadrotor(airframe_value<PaperQuadrotor, double>());
+  State<double> state;
+  for (double north_m = 0; north_m <= 80; north_m += 20) {
+    state.position_m = {north_m, 0, -50};
+    Commands<double> hover{};
+    if (inverse_commands(quadrotor, state, Accelerations<double>{}, 0.0, hover) != Status::ok) return 1;
+    std::printf("%2.0f m north: hovers at command %.4f\n", north_m, hover[0]);
   }
 }
