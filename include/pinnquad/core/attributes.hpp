@@ -18,6 +18,13 @@
 #define PINNQUAD_INLINE_LAMBDA
 #endif
 
+/// Keeps a function out of line: where its code would cost a hot caller registers.
+#if defined(__GNUC__) || defined(__clang__)
+#define PINNQUAD_NOINLINE __attribute__((noinline))
+#else
+#define PINNQUAD_NOINLINE
+#endif
+
 /// Inlines all that a function calls: for a hot function made of many small ones.
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(__SANITIZE_ADDRESS__)
 #define PINNQUAD_FLATTEN __attribute__((flatten))
