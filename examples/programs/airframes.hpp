@@ -48,6 +48,25 @@ bool with_airframe(const std::string& name, const Function& function) {
   return found;
 }
 
+namespace detail {
+template <class Vehicle, class = void>
+struct SaysSource : std::false_type {};
+template <class Vehicle>
+struct SaysSource<Vehicle, std::void_t<decltype(Vehicle::source)>> : std::true_type {};
+}  // namespace detail
+
+/// Where an airframe's values are from, in one line.
+template <class Vehicle>
+constexpr const char* airframe_source() {
+  if constexpr (detail::SaysSource<Vehicle>::value) {
+    return Vehicle::source;
+  } else if constexpr (std::is_same_v<Vehicle, pinnquad::PaperQuadrotor>) {
+    return "Table 1 of the paper; rotor speed limit ours (8,500 rpm hovers at u = 0.50); lag, drag: its simulator";
+  } else {
+    return "the paper's simulator, as its running program prints them";
+  }
+}
+
 /// "paper_quadrotor, reference_1.0kg, ...": for messages and help.
 inline std::string airframe_names() {
   std::string names;

@@ -120,10 +120,21 @@ typename PaperFlight::Vehicle flight_vehicle(const Airframe<double>& airframe) {
   return typename PaperFlight::Vehicle(airframe, paper_site<double>());
 }
 
+namespace detail {
+template <class Vehicle>
+struct WithDefaultEffects;
+template <class... Effects>
+struct WithDefaultEffects<SwitchableQuadrotor<Effects...>> {
+  static SwitchableQuadrotor<Effects...> made(const Airframe<double>& airframe) {
+    return SwitchableQuadrotor<Effects...>(airframe, paper_site<double>(), Effects{}...);
+  }
+};
+}  // namespace detail
+
 /// The same with a ground effect of one's choice.
 template <class PaperFlight>
 typename PaperFlight::SwitchableVehicle flight_vehicle(const Airframe<double>& airframe, GroundEffectModel model) {
-  typename PaperFlight::SwitchableVehicle vehicle(airframe, paper_site<double>());
+  auto vehicle = detail::WithDefaultEffects<typename PaperFlight::SwitchableVehicle>::made(airframe);
   vehicle.set_ground_effect(model);
   return vehicle;
 }
