@@ -5,10 +5,11 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/atomic_file.hpp"
 
 namespace programs {
 
@@ -38,19 +39,42 @@ inline std::string gnuplot_head(const std::string& svg, int width, int height) {
   return out.str();
 }
 
-/// Draws a picture; the file appears whole or not at all. `script` is what follows gnuplot_head. False as in run_gnuplot.
-/// Throws OutputError where the file cannot be put in its place.
-inline bool draw_svg(const std::string& svg, int width, int height, const std::string& script) {
-  const std::string partial = svg + ".partial";
-  std::signal(SIGPIPE, SIG_IGN);  // a gnuplot that is not there is an error to report, not an end without a word
-  const bool drawn = run_gnuplot(gnuplot_head(partial, width, height) + script);
-  std::error_code error;
-  if (drawn) std::filesystem::rename(partial, svg, error);
-  if (!drawn || error) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
+namespace detail {
+/// gnuplot opens a group for every tic and label and leaves half of them empty: a third of a small picture.
+inline std::string without_empty_groups(const std::string& svg) {
+  const std::string start = "<g fill=\"none\"", end = ">\n</g>\n";
+  std::string result;
+  std::size_t at = 0;
+  for (std::size_t group = svg.find(start); group != std::string::npos; group = svg.find(start, at)) {
+    const std::size_t close = svg.find('>', group);
+    result.append(svg, at, group - at);
+    at = group;
+    if (close != std::string::npos && svg.compare(close, end.size(), end) == 0) {
+      at = close + end.size();
+    } else {
+      result.append(start);
+      at += start.size();
+    }
   }
-  if (error) throw pinnquad::OutputError(svg, error.message());
+  return result.append(svg, at, std::string::npos);
+}
+}  // namespace detail
+
+/// Draws a picture; the file appears whole or not at all. `script` is what follows gnuplot_head. False as in run_gnuplot.
+/// Throws OutputError where the file cannot be written.
+inline bool draw_svg(const std::string& svg, int width, int height, const std::string& script) {
+  pinnquad::AtomicFile file(svg);
+  std::signal(SIGPIPE, SIG_IGN);  // a gnuplot that is not there is an error to report, not an end without a word
+  const std::string drawing = svg + ".drawing";
+  const bool drawn = run_gnuplot(gnuplot_head(drawing, width, height) + script);
+  std::ostringstream text;
+  if (drawn) text << std::ifstream(drawing, std::ios::binary).rdbuf();
+  std::error_code ignored;
+  std::filesystem::remove(drawing, ignored);
+  if (drawn) {
+    file.stream() << detail::without_empty_groups(text.str());
+    file.commit();
+  }
   return drawn;
 }
 

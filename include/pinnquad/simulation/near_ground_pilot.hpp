@@ -91,8 +91,7 @@ class NearGroundPilot {
     switch (phase_) {
       case NearGroundPhase::stay:
         legs_left_ = 1 + static_cast<int>(uniform_index(engine_, static_cast<std::uint64_t>(style_.max_legs)));
-        change_height(NearGroundPhase::take_off, uniform(engine_, style_.lowest_flight_m, style_.highest_m),
-                      style_.max_climb_m_s);
+        change_height(NearGroundPhase::take_off, flight_height_m(), style_.max_climb_m_s);
         drift(style_.hover_speed_m_s);
         return;
       case NearGroundPhase::landing:
@@ -122,7 +121,7 @@ class NearGroundPilot {
       drift(style_.hover_speed_m_s);
       return;
     }
-    const double height_m = uniform(engine_, style_.lowest_flight_m, style_.highest_m);
+    const double height_m = flight_height_m();
     const double limit_m_s = height_m < to_m_ ? style_.max_descent_m_s : style_.max_climb_m_s;
     const double least_s = steepest * std::abs(height_m - to_m_) / limit_m_s;
     start_phase(NearGroundPhase::traverse, height_m, hold_s > least_s ? hold_s : least_s);
@@ -134,6 +133,12 @@ class NearGroundPilot {
       if (there > border) target_velocity_m_s_[i] = -std::abs(target_velocity_m_s_[i]);
       if (there < -border) target_velocity_m_s_[i] = std::abs(target_velocity_m_s_[i]);
     }
+  }
+
+  /// Heights of hovers and traverses: low ones, where the ground effect acts, more often.
+  double flight_height_m() {
+    const double share = uniform_01(engine_);
+    return style_.lowest_flight_m + (style_.highest_m - style_.lowest_flight_m) * share * std::sqrt(share);
   }
 
   /// A phase that goes to a height, at a steepness drawn up to the limit.
