@@ -180,7 +180,7 @@ inline bool plot_correlation(const std::string& svg, const pinnquad::Flight& fli
         << "stats $series using 2 nooutput\nm = 1.1*(abs(STATS_min) > STATS_max ? abs(STATS_min) : STATS_max)\n"
         << "set yrange [-m:m]\n"
         << "stats $series using 3 nooutput\nm = 1.1*(abs(STATS_min) > STATS_max ? abs(STATS_min) : STATS_max)\n"
-        << "set y2range [-m:m]\nset xrange [" << flight[first].time_s << ":" << flight[last - 1].time_s << "]\n"
+        << "set y2range [-m:m]\nset xtics 2\nset xrange [" << flight[first].time_s << ":" << flight[last - 1].time_s << "]\n"
         << "plot $series using 1:2 w l lw 3.2 lc rgb '#8fbce6', $series using 1:3 axes x1y2 w l lw 1.2 lc rgb '#d1541a'\n"
         << detail::panel(0.755, 0.975, top, bottom);
     char label[120];
@@ -188,7 +188,7 @@ inline bool plot_correlation(const std::string& svg, const pinnquad::Flight& fli
                   "set label 'PCC %.3f' at graph 0.05, graph 0.90 left font ',13' tc rgb '#303030' front boxed\n",
                   pinnquad::pearson_correlation(accelerations, sums));
     out << "set style textbox opaque noborder fillcolor rgb '#f0f0f0' margins 0.8,0.5\n" << label
-        << "set title ''\nunset y2label\nunset y2tics\nset ytics mirror tc rgb '#303030'\nset autoscale\n"
+        << "set title ''\nset xtics autofreq\nunset y2label\nunset y2tics\nset ytics mirror tc rgb '#303030'\nset autoscale\n"
         << "set xlabel '" << rates[axis] << ", rad/s^2' offset 0,0.4\nset ylabel 'S' tc rgb '#303030' offset 1.2,0\n"
         << "plot $cloud w l lw 2.2 lc rgb '#4f7cac'\n";
   }
