@@ -18,6 +18,17 @@
 
 namespace pinnquad {
 
+/// Share of its thrust that an airframe needs to hover at a place; NaN if the inverse gives no answer. Above the share
+/// that the controller asks for at most (0.97, flight_limits) it cannot stay up.
+template <class AnyVehicle>
+double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) {
+  return with_quadrotor(vehicle, [&](const auto& quadrotor) {
+    HoverTrim<double> hover;
+    const Status status = hover_trim(quadrotor, place_m, hover);
+    return status == Status::ok ? hover.commands[0] : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
 /// The agile pilot, fitted to a vehicle at the place where a flight starts (pilot_style).
 template <class AnyVehicle, class Engine>
 RandomPilot<Engine> agile_pilot(const AnyVehicle& vehicle, const Engine& engine, const Vector3<double>& start_m,
@@ -28,7 +39,8 @@ RandomPilot<Engine> agile_pilot(const AnyVehicle& vehicle, const Engine& engine,
 }
 
 /// The near-ground style, fitted to what the vehicle can do: no climb or descent, no stick and no turn beyond those of
-/// pilot_style, traverses calmed as its changes of velocity are.
+/// pilot_style, traverses calmed as its changes of velocity are, heights changed with a third of the acceleration that
+/// the thrust above hover gives.
 template <class... Effects>
 NearGroundStyle near_ground_style(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m,
                                   double max_speed_m_s = NearGroundStyle{}.max_speed_m_s) {
@@ -44,6 +56,9 @@ NearGroundStyle near_ground_style(const Quadrotor<double, Effects...>& quadrotor
   lower(style.max_yaw_rate_rad_s, agile.max_yaw_rate_rad_s);
   lower(style.thumbs.roll_pitch_spread_rad_s, agile.roll_pitch_stick_rad_s);
   lower(style.thumbs.yaw_spread_rad_s, agile.yaw_stick_rad_s);
+  constexpr double reserve_share = 1.0 / 3;
+  const double hover = hover_command(quadrotor, place_m);
+  lower(style.max_vertical_acceleration_m_s2, reserve_share * (1 / hover - 1) * quadrotor.site().gravity_m_s2);
   style.velocity_lag_s *= agile.velocity_lag_s / PilotStyle{}.velocity_lag_s;
   return style;
 }
@@ -120,21 +135,10 @@ typename PaperFlight::Vehicle flight_vehicle(const Airframe<double>& airframe) {
   return typename PaperFlight::Vehicle(airframe, paper_site<double>());
 }
 
-namespace detail {
-template <class Vehicle>
-struct WithDefaultEffects;
-template <class... Effects>
-struct WithDefaultEffects<SwitchableQuadrotor<Effects...>> {
-  static SwitchableQuadrotor<Effects...> made(const Airframe<double>& airframe) {
-    return SwitchableQuadrotor<Effects...>(airframe, paper_site<double>(), Effects{}...);
-  }
-};
-}  // namespace detail
-
 /// The same with a ground effect of one's choice.
 template <class PaperFlight>
 typename PaperFlight::SwitchableVehicle flight_vehicle(const Airframe<double>& airframe, GroundEffectModel model) {
-  auto vehicle = detail::WithDefaultEffects<typename PaperFlight::SwitchableVehicle>::made(airframe);
+  typename PaperFlight::SwitchableVehicle vehicle(airframe, paper_site<double>());
   vehicle.set_ground_effect(model);
   return vehicle;
 }
@@ -144,17 +148,6 @@ template <class PaperFlight, class Engine>
 RecordedFlight fly(const Airframe<double>& airframe, const Engine& engine) {
   const typename PaperFlight::Vehicle vehicle = flight_vehicle<PaperFlight>(airframe);
   return fly(vehicle, PaperFlight::pilot(vehicle, engine), PaperFlight::plan());
-}
-
-/// Share of its thrust that an airframe needs to hover at a place; NaN if the inverse gives no answer. Above the share
-/// that the controller asks for at most (0.97, flight_limits) it cannot stay up.
-template <class AnyVehicle>
-double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) {
-  return with_quadrotor(vehicle, [&](const auto& quadrotor) {
-    HoverTrim<double> hover;
-    const Status status = hover_trim(quadrotor, place_m, hover);
-    return status == Status::ok ? hover.commands[0] : std::numeric_limits<double>::quiet_NaN();
-  });
 }
 
 }  // namespace pinnquad

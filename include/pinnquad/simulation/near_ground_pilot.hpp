@@ -23,6 +23,7 @@ struct NearGroundStyle {
   double hover_speed_m_s{0.4};  ///< a hover drifts up to this
   double max_climb_m_s{1.6};  ///< at the steepest of a take-off
   double max_descent_m_s{1.2};
+  double max_vertical_acceleration_m_s2{3};  ///< of the height profile
   double min_hold_s{1.2};  ///< a hover, a traverse, a stay on the ground takes between these two
   double max_hold_s{3.4};
   int max_legs{5};             ///< hovers and traverses between a take-off and its landing, at least one
@@ -122,8 +123,7 @@ class NearGroundPilot {
       return;
     }
     const double height_m = flight_height_m();
-    const double limit_m_s = height_m < to_m_ ? style_.max_descent_m_s : style_.max_climb_m_s;
-    const double least_s = steepest * std::abs(height_m - to_m_) / limit_m_s;
+    const double least_s = shortest_s(height_m, height_m < to_m_ ? style_.max_descent_m_s : style_.max_climb_m_s);
     start_phase(NearGroundPhase::traverse, height_m, hold_s > least_s ? hold_s : least_s);
     constexpr double overshoot = 0.95;  // asked for, so that what is flown stays near the limit
     drift(overshoot * style_.max_speed_m_s);
@@ -144,10 +144,20 @@ class NearGroundPilot {
   /// A phase that goes to a height, at a steepness drawn up to the limit.
   void change_height(NearGroundPhase phase, double to_m, double limit_m_s) {
     constexpr double gentlest = 0.4;  // of the limit
-    constexpr double least_s = 0.8;
     const double steepest_m_s = limit_m_s * uniform(engine_, gentlest, 1);
-    const double duration_s = steepest * std::abs(to_m - to_m_) / steepest_m_s;
-    start_phase(phase, to_m, duration_s > least_s ? duration_s : least_s);
+    start_phase(phase, to_m, shortest_s(to_m, steepest_m_s));
+  }
+
+  /// Time that the profile to a height takes at least: steepest slope 15/8 of the mean, greatest acceleration
+  /// 10 / sqrt(3) of the rise over the square of the time.
+  double shortest_s(double to_m, double steepest_m_s) const {
+    constexpr double slope = 1.875, bend = 5.773502691896258;
+    const double rise_m = std::abs(to_m - to_m_);
+    const double by_slope_s = slope * rise_m / steepest_m_s;
+    const double by_bend_s = std::sqrt(bend * rise_m / style_.max_vertical_acceleration_m_s2);
+    const double longer_s = by_slope_s > by_bend_s ? by_slope_s : by_bend_s;
+    constexpr double least_s = 0.5;
+    return longer_s > least_s ? longer_s : least_s;
   }
 
   /// A new target velocity of any course and up to a speed, and a new yaw rate.
@@ -170,8 +180,6 @@ class NearGroundPilot {
     const double rate_change_m_s2 = rise_m / (duration_s * duration_s) * 60 * x * (1 + x * (-3 + 2 * x));
     return rate_m_s + style_.lead_s * rate_change_m_s2 + style_.height_gain_1_s * (profile_m - height_m);
   }
-
-  static constexpr double steepest = 1.875;  ///< greatest slope of the profile over its mean slope
 
   Engine engine_;
   NearGroundStyle style_;
