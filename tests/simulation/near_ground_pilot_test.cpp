@@ -98,6 +98,27 @@ TEST_CASE("phases follow each other as sorties do") {
   CHECK(legs >= sorties);
 }
 
+TEST_CASE("the profile alone, without correction, leads from height to height") {
+  NearGroundStyle style;
+  style.height_gain_1_s = 0;
+  for (const double lead_s : {0.0, 0.33}) {
+    CAPTURE(lead_s);
+    style.lead_s = lead_s;  // its share of a phase is zero: the profile ends with the slope it began with
+    Pilot pilot(std::mt19937_64(6), style, ground_z_m);
+    IdealVehicle vehicle;
+    NearGroundPhase before = NearGroundPhase::stay;
+    for (int i = 0; i < 100000; ++i) {
+      vehicle.fly(pilot(vehicle.state, i * tick_s));
+      if (pilot.phase() == NearGroundPhase::stay && before == NearGroundPhase::landing) {
+        constexpr double sums_m = 0.02;  // of all phases so far: ticks instead of an integral
+        CHECK(vehicle.height_m() > style.lowest_m - sums_m);
+        CHECK(vehicle.height_m() < style.lowest_stay_m + sums_m);
+      }
+      before = pilot.phase();
+    }
+  }
+}
+
 TEST_CASE("low heights are asked for more often than high ones") {
   Pilot pilot(std::mt19937_64(4), {}, ground_z_m);
   IdealVehicle vehicle;

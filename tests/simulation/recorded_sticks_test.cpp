@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <fstream>
 #include <random>
 #include <string>
@@ -42,6 +43,8 @@ TEST_CASE("linear between rows, the first before them, a hover after them") {
   CHECK(pilot(anywhere, 4).velocity_m_s[0] == 0);
   CHECK(pilot(anywhere, 4.1).velocity_m_s.norm() == 0);
   CHECK(pilot.duration_s() == 4);
+  RecordedSticks negative_zero({row_of(0, -0.0), row_of(1, 3)});  // -0 + 3 * 0 would be 0
+  CHECK(std::signbit(negative_zero(anywhere, 0).velocity_m_s[0]));
   CHECK(RecordedSticks({})(anywhere, 1).velocity_m_s.norm() == 0);
 }
 
