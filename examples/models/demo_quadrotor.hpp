@@ -6,7 +6,7 @@
 
 struct DemoQuadModel {
   using Scalar = float;
-  using Network = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4> >;
+  using Network = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4>>;
   using Features = pinnquad::PaperFeatures;
   using Outputs = pinnquad::CommandOutputs;
   using Vehicle = pinnquad::PaperQuadrotor;

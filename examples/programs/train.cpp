@@ -244,7 +244,9 @@ int main(int argument_count, char** arguments) {
       ->capture_default_str();
   app.add_option("--out", options.out, "folder for results, pictures and the exported header")->capture_default_str();
   app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
-  app.add_option("--seeds", options.seeds, "networks per kind")->capture_default_str()->check(CLI::Range(1, 1000));
+  app.add_option("--seeds", options.seeds, "networks per kind")
+      ->capture_default_str()
+      ->check(CLI::Range(1, static_cast<int>(pinnquad::most_pairs)));
   app.add_option("--epochs", options.epochs, "training epochs")->capture_default_str()->check(CLI::Range(1, 100000));
   app.add_option("--seed", options.seed, "first seed (initialisation and batch order)")->capture_default_str();
   app.add_option("--threads", options.threads, "trainings at once (default: all cores)")->check(CLI::Range(1u, 1024u));

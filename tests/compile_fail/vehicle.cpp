@@ -5,6 +5,8 @@
 // CASE AIRFRAME_CANNOT_HOVER: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
 // CASE AIRFRAME_WITHOUT_MASS: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
 // CASE IMPOSSIBLE_INERTIA: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
+// CASE ROTORS_IN_A_LINE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
+// CASE ALL_SPIN_ALIKE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
@@ -34,6 +36,10 @@ struct Changed {
     airframe.mass_kg = Scalar(0);
 #elif defined(IMPOSSIBLE_INERTIA)
     airframe.inertia_kg_m2[2] = Scalar(0.1);  // more than Jx + Jy: no body has it
+#elif defined(ROTORS_IN_A_LINE)
+    for (auto& rotor : airframe.rotors) rotor.y_m = Scalar(0);
+#elif defined(ALL_SPIN_ALIKE)
+    for (auto& rotor : airframe.rotors) rotor.spin = pinnquad::Spin::clockwise;
 #else
     airframe.mass_kg = Scalar(2);
 #endif

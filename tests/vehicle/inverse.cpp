@@ -9,6 +9,8 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/rotor_drag.hpp"
+#include "pinnquad/aero/rotor_ground_effect.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "support/random_states.hpp"
@@ -44,9 +46,9 @@ NearGround<Scalar> near_ground() {
                             pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{}, pinnquad::ConyersGroundEffect{});
 }
 
-/// The thrust equation with ground effect is solved to 1e-6 of the thrust; a loop gain of up to 1/2 doubles what is left.
+/// The thrust equation is solved in closed form; where its branches meet, either may be taken within the rounding.
 template <class Scalar>
-inline constexpr double ground_effect_tolerance = 1e-5;
+inline constexpr double ground_effect_tolerance = pinnquad::test::rounding<Scalar>(500);
 
 /// Motions as in flight: accelerations of 100 rad/s^2 times 1 / T_max, and the velocity's transport term.
 template <class Scalar>
@@ -230,5 +232,100 @@ TEST_CASE_TEMPLATE("almost without thrust in ground effect there still is a solu
     state.attitude = {};
     const Scalar u = random.scalar<Scalar>(0.0, 1e-3);
     CHECK(round_trip<Scalar>(vehicle, state, {u, u, u, u}, Scalar(0)) <= ground_effect_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("commands -> motion -> commands, rotor by rotor: ground effect with torque, rotor drag", Scalar, float,
+                   double) {
+  using Vehicle = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::RotorDrag,
+                            pinnquad::ConyersRotorGroundEffect>;
+  RandomStates random(107);
+  const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {}, {});
+  for (int draw = 0; draw < draws; ++draw) {
+    State<Scalar> state = random.state<Scalar>();
+    state.position_m[2] = Scalar(0.877) - random.scalar<Scalar>(0.3, 1.5);
+    CHECK(round_trip(vehicle, state, random.commands<Scalar>(), Scalar(0)) <= ground_effect_tolerance<Scalar>);
+  }
+}
+
+TEST_CASE_TEMPLATE("rotor drag tilts what ground effect sees: the two together still have one exact inverse", Scalar, float,
+                   double) {
+  using Vehicle = Quadrotor<Scalar, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::ConyersGroundEffect>;
+  RandomStates random(108);
+  const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {});
+  for (int draw = 0; draw < draws; ++draw) {
+    State<Scalar> state = random.state<Scalar>();
+    state.position_m[2] = Scalar(0.877) - random.scalar<Scalar>(0.05, 1.5);
+    CHECK(round_trip(vehicle, state, random.commands<Scalar>(), Scalar(0)) <= ground_effect_tolerance<Scalar>);
+  }
+}
+
+namespace {
+/// Sinking fast right above the pole: drag holds more than the rotors, so both branches can be flown.
+struct BesideThePole {
+  State<double> state;
+  NearGroundCheesemanBennett<double> vehicle;
+  double ratio;
+
+  BesideThePole()
+      : vehicle(pinnquad::PaperQuadrotor::value<double>(), pinnquad::paper_site<double>(), pinnquad::StandardAtmosphere{},
+                pinnquad::QuadraticDrag{}, pinnquad::CheesemanBennettGroundEffect{}),
+        ratio(pinnquad::CheesemanBennett{}.thrust_ratio(0.30, vehicle.airframe())) {
+    state.position_m[2] = 0.877 - 0.30 * 0.1143;
+    state.velocity_m_s[2] = -9.0;  // climbing: drag pushes down
+  }
+};
+}  // namespace
+
+TEST_CASE("beyond the gain of 1 a wanted force has two solutions: the one with the greater thrust is returned") {
+  const BesideThePole point;
+  REQUIRE(point.ratio > 2.0);
+  // little thrust: drag (down) outweighs it, |F_z| falls as thrust grows: the lower branch
+  const Commands<double> little{0.05, 0.05, 0.05, 0.05};
+  const Accelerations<double> motion = point.vehicle.evaluate(point.state, little, 0.0).motion;
+  Commands<double> u{};
+  REQUIRE(pinnquad::inverse_commands(point.vehicle, point.state, motion, 0.0, u) == Status::ok);
+  CHECK(u[0] > 0.1);  // another solution, and
+  const Accelerations<double> again = point.vehicle.evaluate(point.state, u, 0.0).motion;
+  CHECK(again.linear_m_s2[2] == doctest::Approx(motion.linear_m_s2[2]).epsilon(1e-12));  // as right a one
+  // on the upper branch the commands themselves come back
+  const Commands<double> much{0.8, 0.7, 0.75, 0.85};
+  CHECK(round_trip(point.vehicle, point.state, much, 0.0) <= ground_effect_tolerance<double>);
+}
+
+TEST_CASE("beyond the gain of 1 there is a least force: less has no solution, and the commands stay") {
+  const BesideThePole point;
+  // where |F_z| is 0 the force is least: thrust equals drag, and gravity and drag remain
+  const double drag_N = 0.1099301 * point.vehicle.surroundings(point.state, 0.0).air_density_kg_m3 * 81.0;
+  Accelerations<double> least;
+  least.linear_m_s2[2] = 9.80665 + (drag_N - drag_N) / 1.5;
+  Commands<double> u{};
+  CHECK(pinnquad::inverse_commands(point.vehicle, point.state, least, 0.0, u) == Status::ok);
+  const Commands<double> before = u;
+  least.linear_m_s2[2] += 0.5;
+  CHECK(pinnquad::inverse_commands(point.vehicle, point.state, least, 0.0, u) == Status::no_solution);
+  CHECK(u == before);
+}
+
+namespace {
+/// Lift that grows with the square of thrust: no affine effect, but a mild one.
+struct Quadratic {
+  static constexpr bool uses_rotor_wrench = true;
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+                                  const pinnquad::Airframe<Scalar>&) const noexcept {
+    pinnquad::Wrench<Scalar> result;
+    result.force_N[2] = Scalar(-0.005) * condition.rotors.force_N[2] * condition.rotors.force_N[2];
+    return result;
+  }
+};
+}  // namespace
+
+TEST_CASE_TEMPLATE("an effect that is only nearly affine is iterated to the same end", Scalar, float, double) {
+  const Quadrotor<Scalar, Quadratic> vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::Site<Scalar>{}, {});
+  RandomStates random(109);
+  for (int draw = 0; draw < draws; ++draw) {
+    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), Scalar(0)) <=
+          10 * ground_effect_tolerance<Scalar>);
   }
 }

@@ -5,8 +5,11 @@
 // All `surroundings` run first, then the rotors, then each `wrench` in the order of the vehicle's effects.
 // Optional: `template <class Scalar> auto bound(const Airframe<Scalar>&) const noexcept;` returns the effect that a vehicle
 // keeps in its place, with what follows from the airframe worked out once.
+// An effect whose wrench depends on the rotors says so, see `uses_rotor_wrench` and `has_thrust_branches`.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -40,8 +43,16 @@ struct AeroCondition {
   Scalar height_above_ground_m{0};
   Scalar air_density_kg_m3{0};
   Scalar time_s{0};
-  Wrench<Scalar> rotors;       ///< body wrench of the rotors, without effects; zero unless the effect `uses_rotor_wrench`
+  /// Of the rotors, without effects. These two are zero unless the effect `uses_rotor_wrench`.
+  Wrench<Scalar> rotors;                                  ///< body wrench of all four
+  std::array<Scalar, rotor_count> rotor_thrust_N{};       ///< of each, along body -z
   Wrench<Scalar> aerodynamic;  ///< sum of the effects before this one, body frame
+};
+
+/// Where an effect takes the absolute value of a force that the thrust can turn round, its wrench has two branches.
+enum class ThrustBranch : std::uint8_t {
+  upper,  ///< more thrust makes more of the force: the branch of ordinary flight
+  lower,  ///< more thrust makes less of it, until the force is zero and the upper branch begins
 };
 
 namespace detail {
@@ -73,6 +84,12 @@ template <class Effect, class = void>
 struct UsesRotors : std::false_type {};
 template <class Effect>
 struct UsesRotors<Effect, std::enable_if_t<Effect::uses_rotor_wrench>> : std::true_type {};
+template <class Effect, class = void>
+struct HasBranches : std::false_type {};
+template <class Effect>
+struct HasBranches<Effect, std::void_t<decltype(std::declval<const Effect&>().wrench_on(
+                               ThrustBranch::upper, EffectProbe::condition(), EffectProbe::airframe()))>>
+    : std::true_type {};
 }  // namespace detail
 
 template <class Effect>
@@ -98,9 +115,16 @@ auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexce
   }
 }
 
-/// An effect whose wrench depends on the rotors' says `static constexpr bool uses_rotor_wrench = true;`: only then does the
-/// inverse have to iterate.
+/// An effect whose wrench depends on the rotors' says `static constexpr bool uses_rotor_wrench = true;`. Its wrench should
+/// be affine in the rotors' thrusts, as most are: then the inverse (vehicle/rotor_equation.hpp) is exact in one round.
 template <class Effect>
 inline constexpr bool uses_rotor_wrench = detail::UsesRotors<Effect>::value;
+
+/// An effect that is affine on each of two branches only also has
+///   template <class Scalar>
+///   Wrench<Scalar> wrench_on(ThrustBranch, const AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
+/// its wrench as if the condition lay on that branch.
+template <class Effect>
+inline constexpr bool has_thrust_branches = detail::HasBranches<Effect>::value;
 
 }  // namespace pinnquad

@@ -76,19 +76,18 @@ struct GroundEffect {
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
-    const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
-    const Scalar r = ratio.thrust_ratio(condition.height_above_ground_m * per_radius_1_m, airframe);
-    const auto force = [&](int axis) noexcept {
-      return condition.rotors.force_N[axis] + condition.aerodynamic.force_N[axis];
-    };
+    const Scalar vertical = vertical_force(condition);
+    return lift(condition, airframe, vertical < Scalar(0) ? -vertical : vertical);
+  }
+
+  /// F_z has the sign of -R_zz where thrust outweighs drag: there, on the upper branch, |F_z| grows with thrust.
+  template <class Scalar>
+  Wrench<Scalar> wrench_on(ThrustBranch branch, const AeroCondition<Scalar>& condition,
+                           const Airframe<Scalar>& airframe) const noexcept {
     const Quaternion<Scalar>& q = condition.attitude;
-    const Scalar one(1), x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
-    // the world-vertical part: third row of R times the body force
-    const Scalar vertical = (q.x * z2 - q.w * y2) * force(0) + (q.y * z2 + q.w * x2) * force(1) +
-                            (one - (q.x * x2 + q.y * y2)) * force(2);
-    Wrench<Scalar> result;
-    result.force_N[2] = -(r - one) * (vertical < Scalar(0) ? -vertical : vertical);
-    return result;
+    const bool upright = q.w * q.w + q.z * q.z >= q.x * q.x + q.y * q.y;
+    const Scalar vertical = vertical_force(condition);
+    return lift(condition, airframe, upright == (branch == ThrustBranch::upper) ? -vertical : vertical);
   }
 
   template <class Scalar>
@@ -98,6 +97,28 @@ struct GroundEffect {
     } else {
       return *this;
     }
+  }
+
+ private:
+  /// World-vertical part of rotor and previous aerodynamic force, N, down: third row of R times the body force.
+  template <class Scalar>
+  PINNQUAD_ALWAYS_INLINE static Scalar vertical_force(const AeroCondition<Scalar>& condition) noexcept {
+    const auto force = [&](int axis) noexcept {
+      return condition.rotors.force_N[axis] + condition.aerodynamic.force_N[axis];
+    };
+    const Quaternion<Scalar>& q = condition.attitude;
+    const Scalar one(1), x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+    return (q.x * z2 - q.w * y2) * force(0) + (q.y * z2 + q.w * x2) * force(1) + (one - (q.x * x2 + q.y * y2)) * force(2);
+  }
+
+  template <class Scalar>
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> lift(const AeroCondition<Scalar>& condition, const Airframe<Scalar>& airframe,
+                                             Scalar magnitude) const noexcept {
+    const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
+    const Scalar r = ratio.thrust_ratio(condition.height_above_ground_m * per_radius_1_m, airframe);
+    Wrench<Scalar> result;
+    result.force_N[2] = -(r - Scalar(1)) * magnitude;
+    return result;
   }
 };
 

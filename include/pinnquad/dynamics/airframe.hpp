@@ -113,20 +113,4 @@ struct IsAirframe<T, std::void_t<decltype(T::name), decltype(T::template value<d
 template <class T>
 inline constexpr bool is_airframe = detail::IsAirframe<T>::value;
 
-/// The airframe's value; refuses, at compile time and by rule, what is no airframe or cannot hover.
-template <class Vehicle, class Scalar>
-constexpr Airframe<Scalar> airframe_value() noexcept {
-  static_assert(is_airframe<Vehicle>,
-                "pinnquad: an airframe needs `static constexpr const char* name` and `template <class Scalar> static "
-                "constexpr Airframe<Scalar> value()` (dynamics/airframe.hpp)");
-  if constexpr (is_airframe<Vehicle>) {
-    static_assert(check_airframe(Vehicle::template value<double>()) == Status::ok,
-                  "pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover "
-                  "(dynamics/airframe.hpp)");
-    return Vehicle::template value<Scalar>();
-  } else {
-    return {};
-  }
-}
-
 }  // namespace pinnquad

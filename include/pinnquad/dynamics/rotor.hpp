@@ -158,6 +158,13 @@ class Rotors {
     return result;
   }
 
+  /// Thrust of each rotor, N, for commands (not clipped) at a density ratio.
+  constexpr std::array<Scalar, rotor_count> thrusts(const Commands<Scalar>& u, Scalar density_ratio) const noexcept {
+    std::array<Scalar, rotor_count> result{};
+    for (std::size_t i = 0; i < rotor_count; ++i) result[i] = allocation_[0][i] * u[i] * density_ratio;
+    return result;
+  }
+
   /// Commands (not clipped) that make a thrust and a torque; the lateral force of a wrench can't be made and is ignored.
   Commands<Scalar> commands(const Wrench<Scalar>& wrench, Scalar density_ratio) const noexcept {
     const Scalar scale = Scalar(1) / density_ratio;

@@ -68,13 +68,15 @@ inline double signed_rank_cdf(const std::vector<std::size_t>& ranks, std::size_t
 
 }  // namespace detail
 
+/// Most pairs that compare_paired() takes: the exact distribution costs n^3 steps.
+inline constexpr std::size_t most_pairs = 500;
+
 /// Compares the models pair by pair. p = min(1, 2 P(W <= min(win_rank_sum, loss_rank_sum))) under the hypothesis that
 /// the sign of every d_i is a fair coin. Equal |d| means equal to the last bit. With n decided pairs p is never below
 /// 2^(1-n): five seeds cannot reach 0.05.
 /// Throws std::invalid_argument for series of different length, none or more than 500 pairs, NaN or Inf.
 /// Source: Wilcoxon, Individual comparisons by ranking methods (1945); Kerby, The simple difference formula (2014).
 inline PairedComparison compare_paired(const std::vector<double>& candidate, const std::vector<double>& baseline) {
-  constexpr std::size_t most_pairs = 500;  // the exact distribution costs n^3 steps
   detail::require_equal_length("compare_paired", candidate.size(), baseline.size());
   if (candidate.empty() || candidate.size() > most_pairs) {
     throw std::invalid_argument("compare_paired: expected 1 to " + std::to_string(most_pairs) + " pairs, found " +

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/inference/model.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"

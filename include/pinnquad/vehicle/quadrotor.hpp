@@ -2,6 +2,7 @@
 // A quadrotor: airframe, rotors and aerodynamic effects composed by type. Forward dynamics and one step in time.
 #pragma once
 
+#include <array>
 #include <tuple>
 #include <utility>
 
@@ -72,33 +73,32 @@ class Quadrotor {
     return air;
   }
 
-  /// Body wrench of all effects for a given wrench of the rotors.
+  /// Body wrench of all effects for given commands of the rotors (settled, not clipped).
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench(const State<Scalar>& state, const Surroundings<Scalar>& air,
-                                                           const Wrench<Scalar>& rotors) const noexcept {
-    AeroCondition<Scalar> condition;
-    condition.air_relative_velocity_m_s =
-        Axes(state.attitude).to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
-                                     state.velocity_m_s[2] - air.wind_m_s[2]);
-    condition.body_rates_rad_s = state.body_rates_rad_s;
-    condition.attitude = state.attitude;
-    condition.height_above_ground_m = site_.ground_z_m - state.position_m[2];
-    condition.air_density_kg_m3 = air.air_density_kg_m3;
-    condition.time_s = air.time_s;
-    each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
-      using Effect = std::decay_t<decltype(effect)>;
-      if constexpr (makes_wrench<Effect>) {
-        condition.rotors = uses_rotor_wrench<Effect> ? rotors : Wrench<Scalar>{};
-        condition.aerodynamic = condition.aerodynamic + effect.wrench(condition, airframe_);
+                                                           const Commands<Scalar>& rotor_commands) const noexcept {
+    return sum_of_effects(state, air, rotor_commands, [this](const auto& effect, const auto& condition)
+                                                          PINNQUAD_INLINE_LAMBDA {
+      return effect.wrench(condition, airframe_);
+    });
+  }
+
+  /// The same with every effect that has branches on this one, whether the condition lies on it or not.
+  Wrench<Scalar> aerodynamic_wrench_on(ThrustBranch branch, const State<Scalar>& state, const Surroundings<Scalar>& air,
+                                       const Commands<Scalar>& rotor_commands) const noexcept {
+    return sum_of_effects(state, air, rotor_commands, [this, branch](const auto& effect, const auto& condition) noexcept {
+      if constexpr (has_thrust_branches<std::decay_t<decltype(effect)>>) {
+        return effect.wrench_on(branch, condition, airframe_);
+      } else {
+        return effect.wrench(condition, airframe_);
       }
     });
-    return condition.aerodynamic;
   }
 
   /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag.
   Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                               Scalar time_s) const noexcept {
     Evaluation<Scalar> result = loads(state, rotor_commands, time_s);
-    result.motion = accelerations(airframe_, state, result.rotors + result.aerodynamic, site_.gravity_m_s2);
+    result.motion = accelerations(airframe_, state, total(result), site_.gravity_m_s2);
     return result;
   }
 
@@ -156,13 +156,49 @@ class Quadrotor {
     }
   };
 
+  /// Folds the effects in their order; `wrench_of(effect, condition)` evaluates one.
+  template <class WrenchOf>
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
+                                                       const Commands<Scalar>& rotor_commands,
+                                                       const WrenchOf& wrench_of) const noexcept {
+    AeroCondition<Scalar> condition;
+    condition.air_relative_velocity_m_s =
+        Axes(state.attitude).to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
+                                     state.velocity_m_s[2] - air.wind_m_s[2]);
+    condition.body_rates_rad_s = state.body_rates_rad_s;
+    condition.attitude = state.attitude;
+    condition.height_above_ground_m = site_.ground_z_m - state.position_m[2];
+    condition.air_density_kg_m3 = air.air_density_kg_m3;
+    condition.time_s = air.time_s;
+    each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
+      using Effect = std::decay_t<decltype(effect)>;
+      if constexpr (makes_wrench<Effect>) {
+        condition.rotors = uses_rotor_wrench<Effect> ? rotors_.wrench(rotor_commands, density_ratio(air)) : Wrench<Scalar>{};
+        condition.rotor_thrust_N = uses_rotor_wrench<Effect> ? rotors_.thrusts(rotor_commands, density_ratio(air))
+                                                             : std::array<Scalar, rotor_count>{};
+        condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
+      }
+    });
+    return condition.aerodynamic;
+  }
+
+  /// Adding no effects is no addition: the compiler may not leave out x + 0.
+  static PINNQUAD_ALWAYS_INLINE Wrench<Scalar> total(const Evaluation<Scalar>& e) noexcept {
+    if constexpr ((makes_wrench<Effects> || ...)) {
+      return e.rotors + e.aerodynamic;
+    } else {
+      return e.rotors;
+    }
+  }
+
   /// An evaluation up to the wrenches.
   PINNQUAD_ALWAYS_INLINE Evaluation<Scalar> loads(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                                                   Scalar time_s) const noexcept {
     Evaluation<Scalar> result;
     result.surroundings = surroundings(state, time_s);
-    result.rotors = rotors_.wrench(clipped(rotor_commands), density_ratio(result.surroundings));
-    result.aerodynamic = aerodynamic_wrench(state, result.surroundings, result.rotors);
+    const Commands<Scalar> turning = clipped(rotor_commands);
+    result.rotors = rotors_.wrench(turning, density_ratio(result.surroundings));
+    result.aerodynamic = aerodynamic_wrench(state, result.surroundings, turning);
     return result;
   }
 
@@ -172,7 +208,7 @@ class Quadrotor {
                                                                 const Commands<Scalar>& rotor_commands,
                                                                 Scalar time_s) const noexcept {
     const Evaluation<Scalar> e = loads(state, rotor_commands, time_s);
-    const Wrench<Scalar> wrench = e.rotors + e.aerodynamic;
+    const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
     d.acceleration_m_s2 =

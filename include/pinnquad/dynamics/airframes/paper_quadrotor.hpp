@@ -3,7 +3,7 @@
 // Table 1 gives no rotor speed limit; the simulator's 6396.667 rpm leaves a thrust-to-weight ratio of 1.14.
 #pragma once
 
-#include "pinnquad/dynamics/airframe.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
 
 namespace pinnquad {
 

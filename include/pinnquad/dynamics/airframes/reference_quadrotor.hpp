@@ -3,7 +3,7 @@
 // Source: values printed by that running simulator (AirSim's physics in the paper's fork).
 #pragma once
 
-#include "pinnquad/dynamics/airframe.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
 
 namespace pinnquad {
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Ground effect rotor by rotor: a tilted vehicle's low side lifts more than its high side and turns it level.
+#pragma once
+
+#include "pinnquad/aero/ground_effect.hpp"
+
+namespace pinnquad {
+
+/// dT_i = (r(Z_i / R) - 1) |R_zz| T_i along body -z at rotor i, with Z_i the height of its hub above ground and |R_zz| the
+/// vertical share of its thrust: an alternative to GroundEffect, which applies one ratio at the vehicle's centre and makes
+/// no torque. Level and without drag both give the same force. `ThrustRatio` as in GroundEffect.
+template <class ThrustRatio>
+struct RotorGroundEffect {
+  static constexpr bool uses_rotor_wrench = true;
+  ThrustRatio ratio{};
+
+  template <class Scalar>
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition,
+                                               const Airframe<Scalar>& airframe) const noexcept {
+    const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
+    const Quaternion<Scalar>& q = condition.attitude;
+    const Scalar two(2);  // third row of R: how far down each body axis points
+    const Scalar zx = two * (q.x * q.z - q.w * q.y), zy = two * (q.y * q.z + q.w * q.x);
+    const Scalar zz = Scalar(1) - two * (q.x * q.x + q.y * q.y);
+    const Scalar share = zz < Scalar(0) ? -zz : zz;
+    Wrench<Scalar> result;
+    for (std::size_t i = 0; i < rotor_count; ++i) {
+      const RotorMount<Scalar>& hub = airframe.rotors[i];
+      const Scalar height_m = condition.height_above_ground_m - (zx * hub.x_m + zy * hub.y_m);
+      const Scalar r = ratio.thrust_ratio(height_m * per_radius_1_m, airframe);
+      const Scalar lift = (r - Scalar(1)) * share * condition.rotor_thrust_N[i];
+      result.force_N[2] -= lift;
+      result.torque_N_m[0] -= hub.y_m * lift;
+      result.torque_N_m[1] += hub.x_m * lift;
+    }
+    return result;
+  }
+
+  template <class Scalar>
+  auto bound(const Airframe<Scalar>& airframe) const noexcept {
+    if constexpr (is_bindable<ThrustRatio, Scalar>) {
+      return RotorGroundEffect<decltype(ratio.bound(airframe))>{ratio.bound(airframe)};
+    } else {
+      return *this;
+    }
+  }
+};
+
+using CheesemanBennettRotorGroundEffect = RotorGroundEffect<CheesemanBennett>;
+using ConyersRotorGroundEffect = RotorGroundEffect<Conyers>;
+
+}  // namespace pinnquad

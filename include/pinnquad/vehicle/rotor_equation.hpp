@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// The commands whose rotors, together with the effects that depend on them, make a wanted thrust and torque.
+#pragma once
+
+#include "pinnquad/vehicle/quadrotor.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+
+/// The four components that rotors command: -F_z, tau_x, tau_y, tau_z, body.
+template <class Scalar>
+std::array<Scalar, 4> commanded_part(const Wrench<Scalar>& w) noexcept {
+  return {-w.force_N[2], w.torque_N_m[0], w.torque_N_m[1], w.torque_N_m[2]};
+}
+
+template <class Scalar>
+Scalar largest_magnitude(const Commands<Scalar>& values) noexcept {
+  Scalar largest(0);
+  for (const Scalar value : values) {
+    const Scalar magnitude = value < Scalar(0) ? -value : value;
+    if (!(magnitude <= largest)) largest = magnitude;  // NaN stays
+  }
+  return largest;
+}
+
+/// The rounding of one evaluation in commands: some thousand operations' worth, as torque is a small difference of thrusts.
+template <class Scalar>
+inline constexpr Scalar settled = Scalar(5000) * std::numeric_limits<Scalar>::epsilon();
+
+/// So close that no other branch need be looked at.
+template <class Scalar>
+inline constexpr Scalar certainly_met = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+
+/// What rotors and effects make of commands on one branch, and the commands that make a given wrench.
+template <class Scalar, class... Effects>
+class RotorEquation {
+ public:
+  RotorEquation(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
+                const Surroundings<Scalar>& air) noexcept
+      : quadrotor_(quadrotor), state_(state), air_(air), density_ratio_(quadrotor.density_ratio(air)) {}
+
+  /// A solution on one branch, and how far the true equation, with the branch as it lies, is from met there: in commands.
+  struct Solution {
+    Status status{Status::no_solution};
+    Commands<Scalar> commands{};
+    Scalar mismatch{0};
+    Scalar size{1};  ///< 1 + largest command, by which mismatch is to be judged
+  };
+
+  Solution solve(ThrustBranch branch, const std::array<Scalar, 4>& wanted) const noexcept {
+    Solution solution;
+    const auto made = [&](const Commands<Scalar>& u) noexcept {
+      return total(u, quadrotor_.aerodynamic_wrench_on(branch, state_, air_, u));
+    };
+    AllocationMatrix<Scalar> matrix{}, inverse{};
+    const std::array<Scalar, 4> at_rest = made({});
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      Commands<Scalar> unit{};
+      unit[rotor] = Scalar(1);
+      const std::array<Scalar, 4> column = made(unit);
+      for (std::size_t row = 0; row < 4; ++row) matrix[row][rotor] = column[row] - at_rest[row];
+    }
+    if (invert_allocation(matrix, inverse) != Status::ok) return solution;
+
+    constexpr int rounds = 40;  // an affine equation takes one, the next one confirms it
+    Commands<Scalar>& u = solution.commands;
+    for (int round = 0; round < rounds && solution.status != Status::ok; ++round) {
+      const Commands<Scalar> change = product(inverse, difference(wanted, made(u)));
+      for (std::size_t i = 0; i < rotor_count; ++i) u[i] += change[i];
+      solution.size = Scalar(1) + largest_magnitude(u);
+      if (largest_magnitude(change) <= settled<Scalar> * solution.size) solution.status = Status::ok;
+    }
+    const std::array<Scalar, 4> truly = total(u, quadrotor_.aerodynamic_wrench(state_, air_, u));
+    solution.mismatch = largest_magnitude(product(inverse, difference(wanted, truly)));
+    return solution;
+  }
+
+ private:
+  std::array<Scalar, 4> total(const Commands<Scalar>& u, const Wrench<Scalar>& effects) const noexcept {
+    return commanded_part(quadrotor_.rotors().wrench(u, density_ratio_) + effects);
+  }
+  static std::array<Scalar, 4> difference(const std::array<Scalar, 4>& a, const std::array<Scalar, 4>& b) noexcept {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
+  }
+  static Commands<Scalar> product(const AllocationMatrix<Scalar>& m, const std::array<Scalar, 4>& v) noexcept {
+    Commands<Scalar> result{};
+    for (std::size_t row = 0; row < 4; ++row) {
+      result[row] = m[row][0] * v[0] + m[row][1] * v[1] + m[row][2] * v[2] + m[row][3] * v[3];
+    }
+    return result;
+  }
+  const Quadrotor<Scalar, Effects...>& quadrotor_;
+  const State<Scalar>& state_;
+  const Surroundings<Scalar>& air_;
+  Scalar density_ratio_;
+};
+
+}  // namespace detail
+
+/// Commands (not clipped) with rotors(u) + effects(u) = required in thrust and torque.
+/// Without effects that use the rotors' wrench: u = A^-1 (required - effects). With them the equation is affine in u on each
+/// ThrustBranch: its matrix is read off at u = 0 and at the four unit commands and inverted, so that one round is exact.
+/// Ground effect by |F_z|: with k = (r - 1) |R_zz|, more thrust always lifts more while k < 1 and there is one solution.
+/// Beyond (Cheeseman-Bennett below Z/R = 0.354, next to its pole) a wanted force has two solutions, of which the upper
+/// branch's, with the greater thrust, is returned, or none (`no_solution`).
+/// An effect that is only nearly affine is iterated, at most 40 rounds; `no_solution` if they don't settle.
+template <class Scalar, class... Effects>
+Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
+                           const Surroundings<Scalar>& air, const Wrench<Scalar>& required,
+                           Commands<Scalar>& commands) noexcept {
+  if constexpr (!(uses_rotor_wrench<Effects> || ...)) {
+    const Wrench<Scalar> effects = quadrotor.aerodynamic_wrench(state, air, {});
+    commands = quadrotor.rotors().commands(required - effects, quadrotor.density_ratio(air));
+    return Status::ok;
+  } else {
+    const detail::RotorEquation<Scalar, Effects...> equation(quadrotor, state, air);
+    const std::array<Scalar, 4> wanted = detail::commanded_part(required);
+    auto best = equation.solve(ThrustBranch::upper, wanted);
+    if constexpr ((has_thrust_branches<Effects> || ...)) {
+      // where the branches meet, rounding may call both right: the better one is
+      if (best.status != Status::ok || !(best.mismatch <= detail::certainly_met<Scalar> * best.size)) {
+        const auto lower = equation.solve(ThrustBranch::lower, wanted);
+        const bool better = best.status != Status::ok || lower.mismatch < best.mismatch;
+        if (lower.status == Status::ok && better) best = lower;
+      }
+    }
+    if (best.status != Status::ok) return best.status;
+    if (!(best.mismatch <= detail::settled<Scalar> * best.size)) return Status::no_solution;
+    commands = best.commands;
+    return Status::ok;
+  }
+}
+
+}  // namespace pinnquad

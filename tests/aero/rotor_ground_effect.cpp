@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/aero/rotor_ground_effect.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/plain_dynamics.hpp"
+#include "support/random_states.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::AeroCondition;
+using pinnquad::CheesemanBennettRotorGroundEffect;
+using pinnquad::ConyersRotorGroundEffect;
+using pinnquad::Vector3;
+using pinnquad::test::RandomStates;
+using pinnquad::test::rounding;
+
+namespace {
+template <class Scalar>
+AeroCondition<Scalar> hovering(Scalar height_m, Scalar thrust_N) {
+  AeroCondition<Scalar> c;
+  c.height_above_ground_m = height_m;
+  c.rotor_thrust_N = {thrust_N, thrust_N, thrust_N, thrust_N};
+  c.rotors.force_N[2] = Scalar(-4) * thrust_N;
+  return c;
+}
+}  // namespace
+
+TEST_CASE_TEMPLATE("level and still: the force of the one-ratio model, no torque", Scalar, float, double) {
+  const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  for (int i = 1; i < 40; ++i) {
+    const auto c = hovering<Scalar>(Scalar(0.05 * i), Scalar(3.7));
+    const auto per_rotor = ConyersRotorGroundEffect{}.wrench(c, airframe);
+    const auto whole = pinnquad::ConyersGroundEffect{}.wrench(c, airframe);
+    CHECK(std::fabs(static_cast<double>(per_rotor.force_N[2] - whole.force_N[2])) <= rounding<Scalar>(50));
+    CHECK(pinnquad::test::norm(per_rotor.torque_N_m) <= rounding<Scalar>(50));
+  }
+}
+
+TEST_CASE_TEMPLATE("tilted near the ground: the low side lifts more and turns the vehicle level", Scalar, float,
+                   double) {
+  const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  for (const double tilt : {0.1, 0.3}) {
+    for (const double sign : {-1.0, 1.0}) {
+      auto c = hovering<Scalar>(Scalar(0.2), Scalar(3.7));
+      c.attitude = pinnquad::from_euler<Scalar>({Scalar(sign * tilt), Scalar(0), Scalar(1)});
+      CHECK(static_cast<double>(CheesemanBennettRotorGroundEffect{}.wrench(c, airframe).torque_N_m[0]) * sign < -1e-3);
+      c.attitude = pinnquad::from_euler<Scalar>({Scalar(0), Scalar(sign * tilt), Scalar(1)});
+      CHECK(static_cast<double>(CheesemanBennettRotorGroundEffect{}.wrench(c, airframe).torque_N_m[1]) * sign < -1e-3);
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("each rotor's height is its hub's, by rotating the hub into the world", Scalar, float, double) {
+  const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  RandomStates random(130);
+  for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
+    auto c = hovering<Scalar>(random.scalar<Scalar>(0.6, 1.5), Scalar(0));
+    for (Scalar& thrust : c.rotor_thrust_N) thrust = random.scalar<Scalar>(0.0, 8.0);
+    c.attitude = random.attitude<Scalar>();
+    double force = 0.0, roll = 0.0, pitch = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& hub = airframe.rotors[i];
+      const Vector3<Scalar> world = pinnquad::body_to_world<Scalar>(c.attitude, {hub.x_m, hub.y_m, Scalar(0)});
+      const Vector3<Scalar> axis = pinnquad::body_to_world<Scalar>(c.attitude, {Scalar(0), Scalar(0), Scalar(1)});
+      const double height = static_cast<double>(c.height_above_ground_m - world[2]);
+      const double lift = (plain::cheeseman_bennett(height / 0.1143) - 1.0) * std::fabs(static_cast<double>(axis[2])) *
+                          static_cast<double>(c.rotor_thrust_N[i]);
+      force -= lift;
+      roll -= static_cast<double>(hub.y_m) * lift;
+      pitch += static_cast<double>(hub.x_m) * lift;
+    }
+    const auto w = CheesemanBennettRotorGroundEffect{}.wrench(c, airframe);
+    const double tolerance = rounding<Scalar>(1000);  // the ratio is steep where a hub is low
+    CHECK(std::fabs(static_cast<double>(w.force_N[2]) - force) <= tolerance);
+    CHECK(std::fabs(static_cast<double>(w.torque_N_m[0]) - roll) <= tolerance);
+    CHECK(std::fabs(static_cast<double>(w.torque_N_m[1]) - pitch) <= tolerance);
+    CHECK(w.torque_N_m[2] == Scalar(0));
+  }
+}
+
+TEST_CASE("bound to an airframe it gives the same wrench, bit by bit, and tells the inverse that it uses the rotors") {
+  const auto airframe = pinnquad::PaperQuadrotor::value<double>();
+  const auto bound = pinnquad::bound_effect(ConyersRotorGroundEffect{}, airframe);
+  const auto c = hovering<double>(0.3, 4.0);
+  CHECK(bound.wrench(c, airframe).force_N == ConyersRotorGroundEffect{}.wrench(c, airframe).force_N);
+  static_assert(pinnquad::uses_rotor_wrench<std::decay_t<decltype(bound)>>);
+  static_assert(!pinnquad::has_thrust_branches<ConyersRotorGroundEffect>);
+  static_assert(pinnquad::has_thrust_branches<pinnquad::ConyersGroundEffect>);
+}
