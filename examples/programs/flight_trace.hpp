@@ -38,7 +38,7 @@ TraceRow trace_row(const Vehicle& vehicle, const Without& without, const pinnqua
     Surroundings<double> still = e.surroundings;
     still.wind_m_s = Vector3<double>::Zero();
     return detail::TraceForces{e.rotors.force_N, e.aerodynamic.force_N,
-                               quadrotor.aerodynamic_wrench(body, still, e.rotors).force_N};
+                               quadrotor.aerodynamic_wrench(body, still, clipped(state.rotors)).force_N};
   };
   const auto with = with_quadrotor(vehicle, forces);
   const auto out_of = with_quadrotor(without, forces);

@@ -59,7 +59,7 @@ void list_airframes() {
     constexpr Airframe<double> airframe = airframe_value<Vehicle, double>();
     std::printf("%-16s %6.3f kg, rotors up to %5.0f rpm, thrust-to-weight %.3f\n%18s%s\n", Vehicle::name,
                 airframe.mass_kg, 60 * airframe.max_rotor_speed_rev_s, airframe.thrust_to_weight(), "",
-                programs::airframe_source<Vehicle>());
+                programs::airframe_source(tag));
   });
 }
 

@@ -107,6 +107,7 @@ TEST_CASE("the profile alone, without correction, leads from height to height") 
     Pilot pilot(std::mt19937_64(6), style, ground_z_m);
     IdealVehicle vehicle;
     NearGroundPhase before = NearGroundPhase::stay;
+    double highest_m = 0;
     for (int i = 0; i < 100000; ++i) {
       vehicle.fly(pilot(vehicle.state, i * tick_s));
       if (pilot.phase() == NearGroundPhase::stay && before == NearGroundPhase::landing) {
@@ -115,7 +116,9 @@ TEST_CASE("the profile alone, without correction, leads from height to height") 
         CHECK(vehicle.height_m() < style.lowest_stay_m + sums_m);
       }
       before = pilot.phase();
+      highest_m = std::max(highest_m, vehicle.height_m());
     }
+    CHECK(highest_m > 1.5);
   }
 }
 
