@@ -23,8 +23,8 @@ template <class... Vehicles>
 struct AirframeList {};
 
 /// The airframes that programs know by name; a new one is added here.
-using Airframes = AirframeList<pinnquad::PaperQuadrotor, pinnquad::ReferenceQuadrotor10,
-                               pinnquad::ReferenceQuadrotor15, pinnquad::Crazyflie, pinnquad::Racer5Inch>;
+using Airframes = AirframeList<pinnquad::PaperQuadrotor, pinnquad::ReferenceQuadrotor10, pinnquad::ReferenceQuadrotor15,
+                               pinnquad::Crazyflie, pinnquad::Racer5Inch>;
 
 template <class Function, class... Vehicles>
 void each_airframe(const Function& function, AirframeList<Vehicles...> /*list*/) {

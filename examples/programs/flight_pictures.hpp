@@ -66,8 +66,8 @@ inline std::string speed_colour(double share) {
   struct Stop {
     double at, red, green, blue;
   };
-  constexpr std::array<Stop, 4> stops = {{{0, 0x2b, 0x3a, 0x8c}, {0.3, 0x2a, 0x9d, 0x8f}, {0.6, 0xe9, 0xb4, 0x4c},
-                                          {1, 0xb3, 0x26, 0x1e}}};
+  constexpr std::array<Stop, 4> stops = {
+      {{0, 0x2b, 0x3a, 0x8c}, {0.3, 0x2a, 0x9d, 0x8f}, {0.6, 0xe9, 0xb4, 0x4c}, {1, 0xb3, 0x26, 0x1e}}};
   std::size_t i = 1;
   while (i + 1 < stops.size() && share > stops[i].at) ++i;
   const Stop &a = stops[i - 1], &b = stops[i];
@@ -94,7 +94,7 @@ inline bool plot_trajectory(const std::string& svg, const std::vector<TraceRow>&
     return static_cast<int>((trace[i].speed_m_s + trace[i + stride].speed_m_s) / 2 / step_m_s);
   };
   std::ostringstream out;
-  for (int step = 0; step < steps; ++step) {  // one line per colour, broken where another begins: a small file
+  for (int step = 0; step < steps; ++step) {          // one line per colour, broken where another begins: a small file
     out << "$speed" << step << " << EOD\n0 0 NaN\n";  // a colour that nobody flew is no error
     const auto place = [&](std::size_t i) {
       const TraceRow& row = trace[i];
@@ -114,14 +114,14 @@ inline bool plot_trajectory(const std::string& svg, const std::vector<TraceRow>&
     }
     out << "EOD\n";
   }
-  out << "set palette maxcolors " << steps
-      << " defined (0 '#2b3a8c', 0.3 '#2a9d8f', 0.6 '#e9b44c', 1 '#b3261e')\n"
+  out << "set palette maxcolors " << steps << " defined (0 '#2b3a8c', 0.3 '#2a9d8f', 0.6 '#e9b44c', 1 '#b3261e')\n"
       << "set cbrange [0:" << steps * step_m_s << "]\nset cbtics 1 scale 0.5\nset cblabel 'speed, m/s' offset 0.3,0\n"
       << "set colorbox user origin 0.915,0.24 size 0.02,0.52\n"
       << "set xlabel 'east, m' offset 0,-0.8\nset ylabel 'north, m' offset 1.2,-0.8\n"
       << "set zlabel 'height, m' rotate offset 0.5,0\nset xtics offset -0.3,-0.4\nset ytics offset 0.6,-0.3\n"
       << "set xyplane at 0\nset zrange [0:*]\nset view 62,35,1.0,1.08\nset origin -0.03,-0.01\nset size 0.99,1.02\n"
-      << "set border 4095 lc rgb '#c8c8c8'\nset tics tc rgb '#303030'\nset grid x y z lc rgb '#e4e4e4'\nunset key\nsplot ";
+      << "set border 4095 lc rgb '#c8c8c8'\nset tics tc rgb '#303030'\nset grid x y z lc rgb '#e4e4e4'\nunset "
+         "key\nsplot ";
   for (int step = 0; step < steps; ++step) {
     out << (step > 0 ? ", " : "") << "$speed" << step << " using 1:2:3 with lines lw 1.1 lc rgb '"
         << detail::speed_colour((step + 0.5) / steps) << "'";
@@ -180,15 +180,19 @@ inline bool plot_correlation(const std::string& svg, const pinnquad::Flight& fli
         << "stats $series using 2 nooutput\nm = 1.1*(abs(STATS_min) > STATS_max ? abs(STATS_min) : STATS_max)\n"
         << "set yrange [-m:m]\n"
         << "stats $series using 3 nooutput\nm = 1.1*(abs(STATS_min) > STATS_max ? abs(STATS_min) : STATS_max)\n"
-        << "set y2range [-m:m]\nset xtics 2\nset xrange [" << flight[first].time_s << ":" << flight[last - 1].time_s << "]\n"
-        << "plot $series using 1:2 w l lw 3.2 lc rgb '#8fbce6', $series using 1:3 axes x1y2 w l lw 1.2 lc rgb '#d1541a'\n"
+        << "set y2range [-m:m]\nset xtics 2\nset xrange [" << flight[first].time_s << ":" << flight[last - 1].time_s
+        << "]\n"
+        << "plot $series using 1:2 w l lw 3.2 lc rgb '#8fbce6', $series using 1:3 axes x1y2 w l lw 1.2 lc rgb "
+           "'#d1541a'\n"
         << detail::panel(0.755, 0.975, top, bottom);
     char label[120];
     std::snprintf(label, sizeof label,
                   "set label 'PCC %.3f' at graph 0.05, graph 0.90 left font ',13' tc rgb '#303030' front boxed\n",
                   pinnquad::pearson_correlation(accelerations, sums));
-    out << "set style textbox opaque noborder fillcolor rgb '#f0f0f0' margins 0.8,0.5\n" << label
-        << "set title ''\nset xtics autofreq\nunset y2label\nunset y2tics\nset ytics mirror tc rgb '#303030'\nset autoscale\n"
+    out << "set style textbox opaque noborder fillcolor rgb '#f0f0f0' margins 0.8,0.5\n"
+        << label
+        << "set title ''\nset xtics autofreq\nunset y2label\nunset y2tics\nset ytics mirror tc rgb '#303030'\nset "
+           "autoscale\n"
         << "set xlabel '" << rates[axis] << ", rad/s^2' offset 0,0.4\nset ylabel 'S' tc rgb '#303030' offset 1.2,0\n"
         << "plot $cloud w l lw 2.2 lc rgb '#4f7cac'\n";
   }
@@ -229,7 +233,8 @@ inline bool plot_ground_effect(const std::string& svg, const std::vector<TraceRo
   std::vector<double> time_s;
   for (const TraceRow& row : trace) time_s.push_back(row.time_s);
   out << "EOD\nset multiplot\n"
-      << detail::panel(0.075, 0.975, 0.965, 0.58) << "set xrange [0:" << last_ratio << "]\nset xlabel 'Z / R' offset 0,0.4\n"
+      << detail::panel(0.075, 0.975, 0.965, 0.58) << "set xrange [0:" << last_ratio
+      << "]\nset xlabel 'Z / R' offset 0,0.4\n"
       << "set ylabel 'thrust in / out of ground effect' offset 1,0\nset key top right spacing 1.2\n"
       << "plot $curves using 1:2 w l lw 1.8 dt 2 lc rgb '#7a7a7a' t 'Cheeseman-Bennett', "
       << "$curves using 1:3 w l lw 1.8 lc rgb '#1f6fb2' t 'Conyers', "
@@ -238,7 +243,8 @@ inline bool plot_ground_effect(const std::string& svg, const std::vector<TraceRo
       << detail::shaded_split(time_s, true) << detail::panel(0.075, 0.975, 0.465, 0.29)
       << "set ylabel 'height, m'\nset yrange [0:*]\nset ytics 0.5\nplot $series using 1:2 w l lw 1.3 lc rgb '#303030'\n"
       << detail::no_labels() << detail::panel(0.075, 0.975, 0.265, 0.09)
-      << "set format x '%g'\nset xlabel 'time, s' offset 0,0.4\nset ylabel 'ground effect, N'\nset autoscale y\nset ytics autofreq\n"
+      << "set format x '%g'\nset xlabel 'time, s' offset 0,0.4\nset ylabel 'ground effect, N'\nset autoscale y\nset "
+         "ytics autofreq\n"
       << "plot $series using 1:3 w l lw 1.3 lc rgb '#d1541a'\nunset multiplot\n";
   return draw_svg(svg, 1000, 760, out.str());
 }
@@ -259,10 +265,12 @@ inline bool plot_wind(const std::string& svg, const std::vector<TraceRow>& trace
   std::vector<double> time_s;
   for (const TraceRow& row : trace) time_s.push_back(row.time_s);
   out << "EOD\nset multiplot\nset xrange [0:" << time_s.back() << "]\nset format x ''\n"
-      << "set format y '%5.1f'\n" << detail::shaded_split(time_s, false);
+      << "set format y '%5.1f'\n"
+      << detail::shaded_split(time_s, false);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double top = first_top - static_cast<double>(axis) * (panel_height + gap);
-    out << detail::panel(0.085, 0.975, top, top - panel_height) << "set ylabel 'force, body " << axes[axis] << ", N' offset 1,0\n"
+    out << detail::panel(0.085, 0.975, top, top - panel_height) << "set ylabel 'force, body " << axes[axis]
+        << ", N' offset 1,0\n"
         << (axis == 0 ? "set key top right outside horizontal at screen 0.975, screen 0.99\n" : "unset key\n")
         << "plot $series using 1:" << 2 + 2 * axis << " w l lw 1.2 lc rgb '#1f6fb2' t 'drag as in still air', "
         << "$series using 1:" << 3 + 2 * axis << " w l lw 1.2 lc rgb '#d1541a' t 'added by the wind'\n";

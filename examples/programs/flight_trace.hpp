@@ -14,11 +14,11 @@ struct TraceRow {
   double time_s = 0;
   pinnquad::Vector3<double> position_m = pinnquad::Vector3<double>::Zero();  ///< NED
   double speed_m_s = 0;
-  double height_m = 0;                                                          ///< above ground
-  pinnquad::Vector3<double> drag_N = pinnquad::Vector3<double>::Zero();         ///< as in still air
-  pinnquad::Vector3<double> wind_N = pinnquad::Vector3<double>::Zero();         ///< what the wind adds
-  double wind_m_s = 0;                                                          ///< towards north
-  double ground_effect_N = 0;                                                   ///< up along the body's axis
+  double height_m = 0;                                                   ///< above ground
+  pinnquad::Vector3<double> drag_N = pinnquad::Vector3<double>::Zero();  ///< as in still air
+  pinnquad::Vector3<double> wind_N = pinnquad::Vector3<double>::Zero();  ///< what the wind adds
+  double wind_m_s = 0;                                                   ///< towards north
+  double ground_effect_N = 0;                                            ///< up along the body's axis
   double thrust_ratio = 1;  ///< lift in over lift out of ground effect, world vertical
 };
 

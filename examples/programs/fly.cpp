@@ -130,7 +130,8 @@ class Campaign {
     constexpr double most = 0.97;  // of its thrust: flight_limits
     if (hover < most) return;
     char text[200];
-    std::snprintf(text, sizeof text, "%s cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
+    std::snprintf(text, sizeof text,
+                  "%s cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
                   options_.airframe.c_str(), PaperFlight::name, 100 * hover, 100 * most);
     throw std::invalid_argument(text);
   }
@@ -157,7 +158,8 @@ class Campaign {
     errors.command_latency_s = options_.latency_ms / 1000;
     errors.command_jitter_s = options_.jitter_ms / 1000;
     constexpr std::uint64_t another = 0x9e3779b97f4a7c15u;  // not the pilot's numbers again
-    return fly(vehicle_, pilot, plan_, watched, NoisyRecorder<std::mt19937_64>(std::mt19937_64(seed ^ another), errors));
+    return fly(vehicle_, pilot, plan_, watched,
+               NoisyRecorder<std::mt19937_64>(std::mt19937_64(seed ^ another), errors));
   }
 
   std::string why_it_ended(const FlightReport& report) const {
@@ -211,9 +213,8 @@ class Campaign {
     std::printf("correlation of angular acceleration and command sum: roll %.3f, pitch %.3f, yaw %.3f\n", pcc[0],
                 pcc[1], pcc[2]);
     if (sticks_) return;
-    const double climb_m_s = with_quadrotor(vehicle_, [&](const auto& quadrotor) {
-      return pilot_style(quadrotor, plan_.start_m).max_climb_m_s;
-    });
+    const double climb_m_s = with_quadrotor(
+        vehicle_, [&](const auto& quadrotor) { return pilot_style(quadrotor, plan_.start_m).max_climb_m_s; });
     if (climb_m_s < PilotStyle{}.max_climb_m_s) {
       std::printf("note        this airframe's thrust allows the pilot %.1f m/s of climb at most\n", climb_m_s);
     }
@@ -257,9 +258,8 @@ void with_all_choices(const Options& options, const Function& function) {
                                 "'; known: none, cheeseman-bennett, conyers");
   }
   std::optional<Airframe<double>> airframe;
-  programs::with_airframe(options.airframe, [&airframe](auto tag) {
-    airframe = airframe_value<typename decltype(tag)::type, double>();
-  });
+  programs::with_airframe(options.airframe,
+                          [&airframe](auto tag) { airframe = airframe_value<typename decltype(tag)::type, double>(); });
   if (!airframe) {
     throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
   }
@@ -281,21 +281,22 @@ int main(int argument_count, char** arguments) {
   programs::each_flight([&flights](auto tag) {
     flights += std::string("\n") + decltype(tag)::type::name + ": " + decltype(tag)::type::summary;
   });
-  CLI::App app{"Flies a simulated quadrotor on one of the paper's three flights and records it as CSV.\n"
-               "  fly d1 --seed 1 --out d1.csv\n"
-               "  fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
-               "  fly d3 --statistics 20",
-               "fly"};
+  CLI::App app{
+      "Flies a simulated quadrotor on one of the paper's three flights and records it as CSV.\n"
+      "  fly d1 --seed 1 --out d1.csv\n"
+      "  fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
+      "  fly d3 --statistics 20",
+      "fly"};
   app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3")->capture_default_str();
   app.add_option("--out", options.out, "the flight, or with --statistics the table")->type_name("FILE.csv");
   app.add_option("--seed", options.seed, "seed of pilot and recorder noise; the same seed gives the same flight")
       ->capture_default_str();
-  app.add_option("--samples", options.samples,
-                 "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)")
+  app.add_option(
+         "--samples", options.samples,
+         "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{10000000}));
   app.add_option("--airframe", options.airframe, "one of: " + programs::airframe_names())->capture_default_str();
-  app.add_option("--max-speed", options.max_speed_m_s,
-                 "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)")
+  app.add_option("--max-speed", options.max_speed_m_s, "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)")
       ->check(CLI::Range(0.5, 8.0));
   app.add_option("--ground-effect", options.ground_effect,
                  "none, cheeseman-bennett or conyers (default: d2 conyers, else none)");
@@ -314,7 +315,8 @@ int main(int argument_count, char** arguments) {
   app.add_option("--statistics", options.statistics, "fly this many seeds from --seed on, and print what they reach")
       ->type_name("N")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000}));
-  app.add_option("--pictures", options.pictures, "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)")
+  app.add_option("--pictures", options.pictures,
+                 "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)")
       ->type_name("DIR");
   app.add_flag("--list-airframes", list, "print the airframes and where their values are from, and stop");
   try {

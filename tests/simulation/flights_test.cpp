@@ -20,7 +20,7 @@ namespace {
 
 using namespace pinnquad;
 
-constexpr std::uint64_t last_seed = 3;     // `fly d1 --statistics 200` flies the others
+constexpr std::uint64_t last_seed = 3;       // `fly d1 --statistics 200` flies the others
 constexpr std::uint64_t fastest_seed = 167;  // of 1 to 200 in D1: 8.29 m/s if the pilot did not ease off
 
 template <class PaperFlight>

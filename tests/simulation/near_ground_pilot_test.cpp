@@ -60,7 +60,8 @@ TEST_CASE("an ideal vehicle keeps within the heights of the style, through all p
     CHECK(highest_m > 1.4);
     CHECK(lowest_m < style.lowest_stay_m);
     CHECK(farthest_m < style.farthest_m);
-    for (const int count : ticks) CHECK(count > 7500);  // 5 % of the time each: stay, take-off, hover, traverse, landing
+    for (const int count : ticks)
+      CHECK(count > 7500);  // 5 % of the time each: stay, take-off, hover, traverse, landing
   }
 }
 

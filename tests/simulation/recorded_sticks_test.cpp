@@ -72,9 +72,9 @@ TEST_CASE("a recording of every 20 ms flies nearly the same") {
   plan.samples = 400;
   StickRecording written;
   const auto observe_nothing = [](const FlightRow&) {};
-  const Flight first = fly(vehicle, written_down(AgileFlight::pilot(vehicle, std::mt19937_64(6)), written, 0.02), plan,
-                           observe_nothing)
-                           .flight;
+  const Flight first =
+      fly(vehicle, written_down(AgileFlight::pilot(vehicle, std::mt19937_64(6)), written, 0.02), plan, observe_nothing)
+          .flight;
   CHECK(written.size() == 1000);
   const Flight again = fly(vehicle, RecordedSticks(written), plan).flight;
   constexpr double velocity_m_s = 0.15;  // of up to 8: stick frames between the rows are lost

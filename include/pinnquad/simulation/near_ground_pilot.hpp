@@ -19,15 +19,15 @@ struct NearGroundStyle {
   double lowest_stay_m{0.22};
   double lowest_flight_m{0.3};  ///< hovers and traverses keep between these two
   double highest_m{1.9};
-  double max_speed_m_s{4};    ///< of a traverse; 95 % of it is asked for
+  double max_speed_m_s{4};      ///< of a traverse; 95 % of it is asked for
   double hover_speed_m_s{0.4};  ///< a hover drifts up to this
-  double max_climb_m_s{1.6};  ///< at the steepest of a take-off
+  double max_climb_m_s{1.6};    ///< at the steepest of a take-off
   double max_descent_m_s{1.2};
   double max_vertical_acceleration_m_s2{3};  ///< of the height profile
-  double min_hold_s{1.2};  ///< a hover, a traverse, a stay on the ground takes between these two
+  double min_hold_s{1.2};                    ///< a hover, a traverse, a stay on the ground takes between these two
   double max_hold_s{3.4};
-  int max_legs{5};             ///< hovers and traverses between a take-off and its landing, at least one
-  double velocity_lag_s{0.5};  ///< the velocity asked for follows its target with this lag
+  int max_legs{5};              ///< hovers and traverses between a take-off and its landing, at least one
+  double velocity_lag_s{0.5};   ///< the velocity asked for follows its target with this lag
   double height_gain_1_s{1.5};  ///< climb asked for per height error
   double lead_s{0.33};          ///< climb asked for ahead of the profile: what the vehicle needs to follow
   double max_yaw_rate_rad_s{1.0};

@@ -13,11 +13,11 @@ namespace pinnquad {
 
 /// How the random pilot flies.
 struct PilotStyle {
-  double max_speed_m_s{8};    ///< of what is flown; 95 % of it is asked for, and less as soon as `easing_share` is passed
+  double max_speed_m_s{8};  ///< of what is flown; 95 % of it is asked for, and less as soon as `easing_share` is passed
   double easing_share{0.993};  ///< of max_speed_m_s: flown faster than this, the velocity asked for shrinks
-  double max_climb_m_s{8};    ///< what a heavy vehicle cannot climb is not asked for (pilot_style)
-  double max_descent_m_s{8};  ///< nor a fall that leaves the rotors nothing to do
-  double min_hold_s{0.8};     ///< a target velocity is held between these two times
+  double max_climb_m_s{8};     ///< what a heavy vehicle cannot climb is not asked for (pilot_style)
+  double max_descent_m_s{8};   ///< nor a fall that leaves the rotors nothing to do
+  double min_hold_s{0.8};      ///< a target velocity is held between these two times
   double max_hold_s{2.6};
   double velocity_lag_s{0.45};  ///< the velocity asked for follows its target with this lag
   double max_yaw_rate_rad_s{1.0};
@@ -44,8 +44,8 @@ class RandomPilot {
       : engine_(engine),
         style_(style),
         ground_z_m_(ground_z_m),
-        thumbs_({style.stick_frame_s, style.stick_bandwidth_rad_s, style.roll_pitch_stick_rad_s,
-                 style.yaw_stick_rad_s}) {}
+        thumbs_(
+            {style.stick_frame_s, style.stick_bandwidth_rad_s, style.roll_pitch_stick_rad_s, style.yaw_stick_rad_s}) {}
 
   SetPoint<double> operator()(const State<double>& state, double time_s) {
     const double elapsed_s = time_s - time_s_;

@@ -27,9 +27,9 @@ using StickRecording = std::vector<StickRow>;
 ///   yaw_rate_rad_s                          about world down, positive to the right
 ///   stick_roll_rad_s, _pitch_, _yaw_        added to the body rates wanted, FRD
 inline const std::vector<std::string>& stick_columns() {
-  static const std::vector<std::string> columns = {"time_s",           "v_north_m_s",       "v_east_m_s",
-                                                   "v_down_m_s",       "yaw_rate_rad_s",    "stick_roll_rad_s",
-                                                   "stick_pitch_rad_s", "stick_yaw_rad_s"};
+  static const std::vector<std::string> columns = {
+      "time_s",         "v_north_m_s",      "v_east_m_s",        "v_down_m_s",
+      "yaw_rate_rad_s", "stick_roll_rad_s", "stick_pitch_rad_s", "stick_yaw_rad_s"};
   return columns;
 }
 

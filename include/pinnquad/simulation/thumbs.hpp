@@ -11,8 +11,8 @@ namespace pinnquad {
 
 /// How the thumbs move.
 struct ThumbStyle {
-  double frame_s{0.004};                ///< the sticks arrive in frames, as over a 250 Hz radio link
-  double bandwidth_rad_s{14};           ///< of a first-order random process
+  double frame_s{0.004};                 ///< the sticks arrive in frames, as over a 250 Hz radio link
+  double bandwidth_rad_s{14};            ///< of a first-order random process
   double roll_pitch_spread_rad_s{0.21};  ///< its standard deviation
   double yaw_spread_rad_s{0.062};
 };
