@@ -158,10 +158,12 @@ TEST_CASE("what ends a flight ends it for good, with time and state") {
     CHECK_FALSE(simulator.tick());
   }
   SUBCASE("clocks that do not run") {
-    SimulationSettings no_steps, no_ticks;
+    SimulationSettings no_time, backwards, no_steps, no_ticks;
+    no_time.physics_step_s = 0;
+    backwards.physics_step_s = -0.001;
     no_steps.steps_per_control = 0;
     no_ticks.controls_per_sample = 0;
-    for (const SimulationSettings& settings : {no_steps, no_ticks}) {
+    for (const SimulationSettings& settings : {no_time, backwards, no_steps, no_ticks}) {
       Simulator<Vehicle, SteadyPilot> simulator(vehicle(), SteadyPilot{}, settings);
       CHECK(simulator.status() == Status::out_of_range);
       CHECK_FALSE(simulator.advance(1));

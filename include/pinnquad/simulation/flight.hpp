@@ -83,8 +83,8 @@ struct FlightRow {
   const Sample& sample;
 };
 
-/// Flies and records. `observer(const FlightRow&)` is called after each row. A Status that isn't ok, or the ground, ends
-/// the flight (simulation/simulator.hpp); the rows up to there are kept and the report says where.
+/// Flies and records. `observer(const FlightRow&)` is called after each row. A Status that isn't ok, or the ground,
+/// ends the flight (simulation/simulator.hpp); the rows up to there are kept and the report says where.
 template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder>
 RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan, Observer observer,
                    const Recorder& recorder = Recorder{}) {

@@ -3,7 +3,6 @@
 // stamps are late. For the question of how much of it a training stands.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <deque>
 
@@ -22,13 +21,13 @@ struct RecorderErrors {
   double attitude_noise_rad{0};         ///< standard deviation of a turn about each body axis, white
 };
 
-/// The paper's Fig. 2 states a correlation of 0.67 between roll acceleration and signed command sum; exact rows have 0.98.
-/// Two errors that bring the default random pilot's flights there; the paper's own cause is unknown. Measured over
-/// 15,000 rows, flight seeds 1, 2, 3 (docs/simulator.md has more settings):
+/// The paper's Fig. 2 states a correlation of 0.67 between roll acceleration and signed command sum; exact rows have
+/// 0.98. Two errors that bring the default random pilot's flights there; the paper's own cause is unknown. Measured
+/// over 15,000 rows, flight seeds 1, 2, 3 (docs/simulator.md has more settings):
 ///   noisy_gyro_errors      roll 0.67 0.69 0.64   pitch 0.67 0.67 0.67   yaw 0.11 0.11 0.11
 ///   late_command_errors    roll 0.68 0.69 0.67   pitch 0.68 0.68 0.68   yaw 0.83 0.83 0.84
-/// The first drowns yaw, whose accelerations are eight times smaller; the paper calls yaw strongly correlated too, which
-/// speaks for the second.
+/// The first drowns yaw, whose accelerations are eight times smaller; the paper calls yaw strongly correlated too,
+/// which speaks for the second.
 constexpr RecorderErrors noisy_gyro_errors() noexcept {
   RecorderErrors errors;
   errors.gyro_noise_rad_s = 0.05;  // over 10 ms: 7.1 rad/s^2 in the acceleration, whose own spread is 6.6 in roll

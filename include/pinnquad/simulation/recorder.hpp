@@ -38,11 +38,12 @@ struct MakesRows<Recorder, std::void_t<decltype(std::declval<Recorder&>()(std::d
 template <class Recorder>
 inline constexpr bool is_recorder = detail::Holds<Recorder>::value&& detail::MakesRows<Recorder>::value;
 
-/// The vehicle's row at its present time, without error. Accelerations come from the dynamics (NOTES #14) with the rotors
-/// as they turn now, behind their lag, not from differences. Commands are what was held up to this instant, clipped as
-/// the rotors clip it: the command, not the lag-filtered thrust, because that is what a flight log has and what the
-/// paper's network is to give. Behind a 5 ms lag the rotors differ from it by about 5 ms times its rate of change, some
-/// 1e-2 in agile flight: motion and command determine each other that well and no better. Altitude is above ground.
+/// The vehicle's row at its present time, without error. Accelerations come from the dynamics (NOTES #14) with the
+/// rotors as they turn now, behind their lag, not from differences. Commands are what was held up to this instant,
+/// clipped as the rotors clip it: the command, not the lag-filtered thrust, because that is what a flight log has and
+/// what the paper's network is to give. Behind a 5 ms lag the rotors differ from it by about 5 ms times its rate of
+/// change, some 1e-2 in agile flight: motion and command determine each other that well and no better. Altitude is
+/// above ground.
 struct ExactRecorder {
   void hold(const Commands<double>& /*commands*/, double /*time_s*/) const noexcept {}
 

@@ -57,9 +57,9 @@ struct HasGroundEffectSwitch<Vehicle, Model,
 /// A tick: the pilot's set point, the controller's demand, the inverse's commands, torque before thrust, and physics
 /// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
 /// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
-/// start; `out_of_range` for settings without ticks or steps; not_finite, output_not_finite and no_solution on the way),
-/// or when a row finds the vehicle at the ground; vehicle() keeps time and state of that moment, and what was recorded
-/// stays.
+/// start; `out_of_range` for clocks that do not run; not_finite, output_not_finite and no_solution on the
+/// way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that moment, and what was
+/// recorded stays.
 template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
 class Simulator {
   static_assert(is_pilot<Pilot>, "pinnquad: this type is no pilot (simulation/pilot.hpp)");
@@ -72,19 +72,21 @@ class Simulator {
                      Recorder recorder = Recorder{})
       : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
     vehicle_.body.position_m = settings.start_m;
-    const bool clocks_run = settings.steps_per_control > 0 && settings.controls_per_sample > 0;
-    const Status status = clocks_run ? with_quadrotor(quadrotor_, [this](const auto& actual) { return start(actual); })
-                                     : Status::out_of_range;
+    const bool clocks_run =
+        settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
+    const Status status = clocks_run
+                              ? with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); })
+                              : Status::out_of_range;
     if (status != Status::ok) decline(status);
   }
 
   /// One control tick. True while the vehicle flies on; false, and nothing is done, once the flight has ended.
   bool tick() {
-    return tick_with([this](const auto& actual) { return ask_pilot(actual); });
+    return tick_with([this](const auto& actual) { return this->ask_pilot(actual); });
   }
 
-  /// One control tick with these motor commands, not clipped, instead of the pilot's; else as tick(). NaN among them ends
-  /// the flight.
+  /// One control tick with these motor commands, not clipped, instead of the pilot's; else as tick(). NaN among them
+  /// ends the flight.
   bool tick(const Commands<double>& commands) {
     return tick_with([&](const auto& /*actual*/) {
       commands_ = commands;
@@ -99,7 +101,7 @@ class Simulator {
     return goes_on;
   }
 
-  /// Flies on for a duration, rounded to control ticks; none for a negative one or NaN. True while the vehicle flies on.
+  /// Flies on for a duration, rounded to control ticks; none for a negative one or NaN. True while the vehicle flies.
   bool advance(double duration_s) {
     const double ticks = std::floor(duration_s / settings_.control_period_s() + 0.5);
     for (double done = 0; done < ticks && flying(); ++done) tick();
@@ -113,7 +115,7 @@ class Simulator {
   const VehicleState<double>& vehicle() const noexcept { return vehicle_; }
   double time_s() const noexcept { return vehicle_.time_s; }
   double altitude_m() const {  ///< above ground
-    return with_quadrotor(quadrotor_, [this](const auto& actual) { return above_ground(actual); });
+    return with_quadrotor(quadrotor_, [this](const auto& actual) { return this->above_ground(actual); });
   }
   /// What the motors were last told, not clipped.
   const Commands<double>& commands() const noexcept { return commands_; }
