@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,10 @@ class Campaign {
       if (plan_.samples == 0) plan_.samples = 1;
     }
     if (options.samples) plan_.samples = *options.samples;
+    constexpr std::size_t fewest_drawn = 20;  // three blocks and a line in each
+    if (!options.pictures.empty() && plan_.samples < fewest_drawn) {
+      throw std::invalid_argument("--pictures needs " + std::to_string(fewest_drawn) + " rows or more");
+    }
     require_thrust();
   }
 
