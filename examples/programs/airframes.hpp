@@ -5,7 +5,9 @@
 #include <string>
 #include <type_traits>
 
+#include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 
 namespace programs {
@@ -21,8 +23,8 @@ template <class... Vehicles>
 struct AirframeList {};
 
 /// The airframes that programs know by name; a new one is added here.
-using Airframes =
-    AirframeList<pinnquad::PaperQuadrotor, pinnquad::ReferenceQuadrotor10, pinnquad::ReferenceQuadrotor15>;
+using Airframes = AirframeList<pinnquad::PaperQuadrotor, pinnquad::ReferenceQuadrotor10, pinnquad::ReferenceQuadrotor15,
+                               pinnquad::Crazyflie, pinnquad::Racer5Inch>;
 
 template <class Function, class... Vehicles>
 void each_airframe(const Function& function, AirframeList<Vehicles...> /*list*/) {
@@ -46,6 +48,23 @@ bool with_airframe(const std::string& name, const Function& function) {
     }
   });
   return found;
+}
+
+/// Where an airframe's values are from, in one line; its header has the source of each value.
+constexpr const char* airframe_source(AirframeTag<pinnquad::PaperQuadrotor> /*tag*/) {
+  return "Table 1 of the paper; rotor speed limit ours (hovers at u = 0.50); lag and drag of its simulator";
+}
+constexpr const char* airframe_source(AirframeTag<pinnquad::ReferenceQuadrotor10> /*tag*/) {
+  return "the paper's simulator at 1 kg, as its running program prints them";
+}
+constexpr const char* airframe_source(AirframeTag<pinnquad::ReferenceQuadrotor15> /*tag*/) {
+  return "the paper's simulator at 1.5 kg, as its running program prints them";
+}
+constexpr const char* airframe_source(AirframeTag<pinnquad::Crazyflie> /*tag*/) {
+  return "Bitcraze's data sheet; Landry 2015, Luis and Le Ny 2016, Foerster 2015, Panerati et al. 2021";
+}
+constexpr const char* airframe_source(AirframeTag<pinnquad::Racer5Inch> /*tag*/) {
+  return "Song et al. 2020 (Flightmare), Foehn et al. 2022 (Agilicious)";
 }
 
 /// "paper_quadrotor, reference_1.0kg, ...": for messages and help.

@@ -1,94 +1,280 @@
 // SPDX-License-Identifier: MIT
-// Flies a simulated quadrotor under a random pilot and writes the recorded flight as CSV.
-//   fly --out flight.csv --seed 1
+// Flies a simulated quadrotor on one of the paper's flights and writes the recorded flight as CSV.
+//   fly d1 --out flight.csv --seed 1
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "airframes.hpp"
-#include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/drag.hpp"
+#include "flight_choice.hpp"
+#include "flight_pictures.hpp"
+#include "flight_statistics.hpp"
+#include "flight_trace.hpp"
+#include "interrupt.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/noisy_recorder.hpp"
+#include "pinnquad/simulation/recorded_sticks.hpp"
 #include "progress_line.hpp"
 
 namespace {
+
+using namespace pinnquad;
 
 constexpr int exit_flight_failed = 1;
 constexpr int exit_bad_input = 2;
 constexpr double degrees = 57.295779513082323;
 
 struct Options {
+  std::string flight = AgileFlight::name;
   std::string out;
   std::uint64_t seed = 1;
-  std::size_t samples = pinnquad::FlightPlan{}.samples;
-  std::string airframe = pinnquad::PaperQuadrotor::name;
-  double max_speed_m_s = pinnquad::PilotStyle{}.max_speed_m_s;
+  std::optional<std::size_t> samples;
+  std::string airframe = PaperQuadrotor::name;
+  std::optional<double> max_speed_m_s;
+  std::string ground_effect;  ///< empty: the flight's own
+  double gyro_noise_rad_s = 0;
+  double latency_ms = 0;
+  double jitter_ms = 0;
+  std::string sticks;
+  std::string record_sticks;
+  double stick_interval_ms = 0;
+  std::size_t statistics = 0;
+  std::string pictures;
 };
+
+/// Thrown out of a flight by Ctrl-C; nothing is written then.
+struct Interrupted {};
 
 void list_airframes() {
   programs::each_airframe([](auto tag) {
     using Vehicle = typename decltype(tag)::type;
-    constexpr pinnquad::Airframe<double> airframe = pinnquad::airframe_value<Vehicle, double>();
-    std::printf("%-16s %.3f kg, rotors up to %.0f rpm, thrust-to-weight %.3f\n", Vehicle::name, airframe.mass_kg,
-                60 * airframe.max_rotor_speed_rev_s, airframe.thrust_to_weight());
+    constexpr Airframe<double> airframe = airframe_value<Vehicle, double>();
+    std::printf("%-16s %6.3f kg, rotors up to %5.0f rpm, thrust-to-weight %.3f\n%18s%s\n", Vehicle::name,
+                airframe.mass_kg, 60 * airframe.max_rotor_speed_rev_s, airframe.thrust_to_weight(), "",
+                programs::airframe_source(tag));
   });
 }
 
-/// The folder of the output must exist before minutes are spent on what goes there.
+/// The folder of an output must exist before minutes are spent on what goes there.
 void require_folder(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::error_code ignored;
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
-    throw pinnquad::OutputError(path, "its folder does not exist");
+    throw OutputError(path, "its folder does not exist");
   }
 }
 
-void print_summary(const Options& options, const pinnquad::Airframe<double>& airframe,
-                   const pinnquad::PilotStyle& style, const pinnquad::FlightReport& report, double period_s) {
-  std::printf("airframe    %s: %.3f kg, rotor speed limit %.0f rpm, thrust-to-weight %.3f\n", options.airframe.c_str(),
-              airframe.mass_kg, 60 * airframe.max_rotor_speed_rev_s, airframe.thrust_to_weight());
-  std::printf("flight      seed %llu, %zu rows at %.3g s, %.1f s\n", static_cast<unsigned long long>(options.seed),
-              report.rows, period_s, static_cast<double>(report.rows) * period_s);
-  std::printf("speed       up to %.2f m/s; tilt up to %.1f deg\n", report.max_speed_m_s, degrees * report.max_tilt_rad);
-  std::printf("altitude    %.1f to %.1f m above ground\n", report.min_altitude_m, report.max_altitude_m);
-  std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
-  if (style.max_climb_m_s < style.max_speed_m_s) {
-    std::printf("note        this airframe's thrust allows the pilot %.1f m/s of climb at most\n", style.max_climb_m_s);
-  }
+/// The folder for pictures, made if its own folder is there.
+void make_folder(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return;
+  std::filesystem::create_directory(path, error);
+  if (error) throw OutputError(path, error.message());
 }
 
-template <class Vehicle>
-int fly_and_write(const Options& options) {
-  using namespace pinnquad;
-  const Quadrotor<double, StandardAtmosphere, QuadraticDrag> quadrotor(airframe_value<Vehicle, double>(),
-                                                                       paper_site<double>(), {}, {});
-  FlightPlan plan;
-  plan.samples = options.samples;
-  const PilotStyle style = pilot_style(quadrotor, plan.start_m, options.max_speed_m_s);
-  const RandomPilot<std::mt19937_64> pilot(std::mt19937_64(options.seed), style, quadrotor.site().ground_z_m);
-  programs::ProgressLine progress("flying");
-  const RecordedFlight recorded = fly(quadrotor, pilot, plan, [&progress](const FlightRow& row) {
-    progress.update(static_cast<double>(row.rows_done) / static_cast<double>(row.rows));
-  });
-  progress.clear();
+/// A flight with all choices made, whatever its vehicle.
+template <class PaperFlight>
+class Campaign {
+ public:
+  Campaign(const Options& options, const Airframe<double>& airframe, GroundEffectModel ground_effect)
+      : options_(options),
+        ground_effect_(ground_effect),
+        vehicle_(flight_vehicle<PaperFlight>(airframe, ground_effect)),
+        without_(flight_vehicle<PaperFlight>(airframe, GroundEffectModel::none)),
+        airframe_(airframe),
+        plan_(PaperFlight::plan()) {
+    if (!options.sticks.empty()) {
+      sticks_ = RecordedSticks(read_sticks_csv(options.sticks));
+      constexpr double rounding = 1e-6;
+      plan_.samples = static_cast<std::size_t>(std::ceil(sticks_->duration_s() / plan_.sample_period_s() - rounding));
+      if (plan_.samples == 0) plan_.samples = 1;
+    }
+    if (options.samples) plan_.samples = *options.samples;
+    constexpr std::size_t fewest_drawn = 20;  // three blocks and a line in each
+    if (!options.pictures.empty() && plan_.samples < fewest_drawn) {
+      throw std::invalid_argument("--pictures needs " + std::to_string(fewest_drawn) + " rows or more");
+    }
+    require_thrust();
+  }
 
-  const FlightReport& report = recorded.report;
-  if (report.end != FlightEnd::completed) {
+  int run() {
+    if (options_.statistics > 0) return run_statistics();
+    StickRecording sticks;
+    std::vector<programs::TraceRow> trace;
+    programs::AnyPilot pilot = pilot_of(options_.seed);
+    if (!options_.record_sticks.empty()) pilot = written_down(pilot, sticks, options_.stick_interval_ms / 1000);
+    programs::ProgressLine progress("flying");
+    const RecordedFlight recorded = flown(options_.seed, pilot, [&](const FlightRow& row) {
+      progress.update(static_cast<double>(row.rows_done) / static_cast<double>(row.rows));
+      if (!options_.pictures.empty()) trace.push_back(programs::trace_row(vehicle_, without_, row.vehicle));
+    });
+    progress.clear();
+    if (recorded.report.end != FlightEnd::completed) {
+      std::fprintf(stderr, "fly: %s\n", why_it_ended(recorded.report).c_str());
+      return exit_flight_failed;
+    }
+    if (!options_.out.empty()) write_flight_csv(options_.out, recorded.flight);
+    if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
+    print_summary(recorded);
+    return options_.pictures.empty() || draw(recorded, trace) ? 0 : exit_flight_failed;
+  }
+
+ private:
+  /// An airframe that the controller can't hold up here is refused before it flies.
+  void require_thrust() const {
+    const double hover = hover_command(vehicle_, plan_.start_m);
+    constexpr double most = 0.97;  // of its thrust: flight_limits
+    if (hover < most) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "%s cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
+                  options_.airframe.c_str(), PaperFlight::name, 100 * hover, 100 * most);
+    throw std::invalid_argument(text);
+  }
+
+  programs::AnyPilot pilot_of(std::uint64_t seed) const {
+    if (sticks_) return *sticks_;
+    const std::mt19937_64 engine(seed);
+    return options_.max_speed_m_s ? PaperFlight::pilot(vehicle_, engine, *options_.max_speed_m_s)
+                                  : PaperFlight::pilot(vehicle_, engine);
+  }
+
+  bool exact() const { return options_.gyro_noise_rad_s == 0 && options_.latency_ms == 0 && options_.jitter_ms == 0; }
+
+  /// `observer` sees each row; Ctrl-C ends the flight by an exception.
+  template <class Observer>
+  RecordedFlight flown(std::uint64_t seed, const programs::AnyPilot& pilot, const Observer& observer) const {
+    const auto watched = [&observer](const FlightRow& row) {
+      if (programs::interrupted()) throw Interrupted{};
+      observer(row);
+    };
+    if (exact()) return fly(vehicle_, pilot, plan_, watched);
+    RecorderErrors errors;
+    errors.gyro_noise_rad_s = options_.gyro_noise_rad_s;
+    errors.command_latency_s = options_.latency_ms / 1000;
+    errors.command_jitter_s = options_.jitter_ms / 1000;
+    constexpr std::uint64_t another = 0x9e3779b97f4a7c15u;  // not the pilot's numbers again
+    return fly(vehicle_, pilot, plan_, watched,
+               NoisyRecorder<std::mt19937_64>(std::mt19937_64(seed ^ another), errors));
+  }
+
+  std::string why_it_ended(const FlightReport& report) const {
     const Vector3<double>& p = report.last.body.position_m;
-    std::fprintf(stderr, "fly: the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground: %s\n",
-                 report.last.time_s, p[0], p[1], quadrotor.site().ground_z_m - p[2],
-                 report.end == FlightEnd::ground ? "it came down to the ground" : to_string(report.status));
-    return exit_flight_failed;
+    char text[240];
+    std::snprintf(text, sizeof text, "the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground: %s",
+                  report.last.time_s, p[0], p[1], paper_site<double>().ground_z_m - p[2],
+                  report.end == FlightEnd::ground ? "it came down to the ground" : to_string(report.status));
+    return text;
   }
-  write_flight_csv(options.out, recorded.flight);
-  print_summary(options, quadrotor.airframe(), style, report, plan.sample_period_s());
-  return 0;
+
+  int run_statistics() {
+    const auto one = [this](std::uint64_t seed, std::atomic<std::size_t>& rows_done) {
+      const RecordedFlight recorded =
+          flown(seed, pilot_of(seed), [&rows_done](const FlightRow&) { rows_done.fetch_add(1); });
+      return programs::FlightFigures{seed, recorded.report, programs::axis_correlations(recorded.flight, airframe_)};
+    };
+    const std::vector<programs::FlightFigures> figures =
+        programs::fly_seeds(PaperFlight::name, options_.seed, options_.statistics, plan_.samples, one);
+    if (programs::interrupted()) throw Interrupted{};
+    if (!options_.out.empty()) programs::write_flight_table(options_.out, figures);
+    programs::print_flight_table(figures);
+    for (const programs::FlightFigures& f : figures) {
+      if (f.report.end == FlightEnd::completed) continue;
+      std::fprintf(stderr, "fly: seed %llu: %s\n", static_cast<unsigned long long>(f.seed),
+                   why_it_ended(f.report).c_str());
+      return exit_flight_failed;
+    }
+    return 0;
+  }
+
+  void print_summary(const RecordedFlight& recorded) const {
+    const FlightReport& report = recorded.report;
+    std::printf("airframe    %s: %.3f kg, rotor speed limit %.0f rpm, thrust-to-weight %.3f\n",
+                options_.airframe.c_str(), airframe_.mass_kg, 60 * airframe_.max_rotor_speed_rev_s,
+                airframe_.thrust_to_weight());
+    std::printf("flight      %s, ground effect %s, ", PaperFlight::name, programs::name_of(ground_effect_));
+    if (sticks_) {
+      std::printf("sticks %s", options_.sticks.c_str());
+    } else {
+      std::printf("seed %llu", static_cast<unsigned long long>(options_.seed));
+    }
+    std::printf(", %zu rows at %.3g s, %.1f s\n", report.rows, plan_.sample_period_s(),
+                static_cast<double>(report.rows) * plan_.sample_period_s());
+    std::printf("speed       up to %.2f m/s; tilt up to %.1f deg\n", report.max_speed_m_s,
+                degrees * report.max_tilt_rad);
+    std::printf("altitude    %.*f to %.*f m above ground\n", report.max_altitude_m < 5 ? 2 : 1, report.min_altitude_m,
+                report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
+    std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
+    const std::array<double, 3> pcc = programs::axis_correlations(recorded.flight, airframe_);
+    std::printf("correlation of angular acceleration and command sum: roll %.3f, pitch %.3f, yaw %.3f\n", pcc[0],
+                pcc[1], pcc[2]);
+    if (sticks_) return;
+    const double climb_m_s = with_quadrotor(
+        vehicle_, [&](const auto& quadrotor) { return pilot_style(quadrotor, plan_.start_m).max_climb_m_s; });
+    if (climb_m_s < PilotStyle{}.max_climb_m_s) {
+      std::printf("note        this airframe's thrust allows the pilot %.1f m/s of climb at most\n", climb_m_s);
+    }
+  }
+
+  bool draw(const RecordedFlight& recorded, const std::vector<programs::TraceRow>& trace) const {
+    const std::string folder = options_.pictures + "/";
+    bool drawn = programs::plot_trajectory(folder + "trajectory.svg", trace) &&
+                 programs::plot_correlation(folder + "correlation.svg", recorded.flight, airframe_);
+    if (drawn && ground_effect_ != GroundEffectModel::none) {
+      drawn = programs::plot_ground_effect(folder + "ground_effect.svg", trace, airframe_);
+    }
+    if (drawn && std::is_same_v<PaperFlight, WindyFlight>) drawn = programs::plot_wind(folder + "wind.svg", trace);
+    return drawn;
+  }
+
+  const Options& options_;
+  GroundEffectModel ground_effect_;
+  typename PaperFlight::SwitchableVehicle vehicle_;
+  typename PaperFlight::SwitchableVehicle without_;
+  Airframe<double> airframe_;
+  FlightPlan plan_;
+  std::optional<RecordedSticks> sticks_;
+};
+
+/// What contradicts itself; empty if nothing does.
+std::string contradiction(const Options& o) {
+  const bool single_output = !o.record_sticks.empty() || !o.pictures.empty();
+  if (o.out.empty() && !single_output && o.statistics == 0) return "--out FILE.csv is needed (see --help)";
+  if (o.statistics > 0 && !o.sticks.empty()) return "--statistics flies seeds, --sticks a recording: one of them";
+  if (o.statistics > 0 && single_output) return "--statistics goes with neither --record-sticks nor --pictures";
+  if (!o.sticks.empty() && o.max_speed_m_s) return "--max-speed is the random pilot's, --sticks has no use for it";
+  return {};
+}
+
+template <class Function>
+void with_all_choices(const Options& options, const Function& function) {
+  GroundEffectModel model = GroundEffectModel::none;
+  if (!options.ground_effect.empty() && !programs::ground_effect_of(options.ground_effect, model)) {
+    throw std::invalid_argument("no ground effect named '" + options.ground_effect +
+                                "'; known: none, cheeseman-bennett, conyers");
+  }
+  std::optional<Airframe<double>> airframe;
+  programs::with_airframe(options.airframe,
+                          [&airframe](auto tag) { airframe = airframe_value<typename decltype(tag)::type, double>(); });
+  if (!airframe) {
+    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
+  }
+  const bool known = programs::with_flight(options.flight, [&](auto tag) {
+    using PaperFlight = typename decltype(tag)::type;
+    function(tag, *airframe, options.ground_effect.empty() ? PaperFlight::ground_effect : model);
+  });
+  if (!known) {
+    throw std::invalid_argument("no flight named '" + options.flight + "'; known: " + programs::flight_names());
+  }
 }
 
 }  // namespace
@@ -96,19 +282,48 @@ int fly_and_write(const Options& options) {
 int main(int argument_count, char** arguments) {
   Options options;
   bool list = false;
-  CLI::App app{"Flies a simulated quadrotor under a random pilot, up to 8 m/s with drag, and records it as CSV.",
-               "fly"};
-  app.add_option("--out", options.out, "CSV file to write")->type_name("FILE.csv");
-  app.add_option("--seed", options.seed, "seed of the pilot; the same seed gives the same flight")
+  std::string flights = "the flight";
+  programs::each_flight([&flights](auto tag) {
+    flights += std::string("\n") + decltype(tag)::type::name + ": " + decltype(tag)::type::summary;
+  });
+  CLI::App app{
+      "Flies a simulated quadrotor on one of the paper's three flights and records it as CSV.\n"
+      "  fly d1 --seed 1 --out d1.csv\n"
+      "  fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
+      "  fly d3 --statistics 20",
+      "fly"};
+  app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3")->capture_default_str();
+  app.add_option("--out", options.out, "the flight, or with --statistics the table")->type_name("FILE.csv");
+  app.add_option("--seed", options.seed, "seed of pilot and recorder noise; the same seed gives the same flight")
       ->capture_default_str();
-  app.add_option("--samples", options.samples, "rows to record, one every 0.05 s")
-      ->capture_default_str()
+  app.add_option(
+         "--samples", options.samples,
+         "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{10000000}));
   app.add_option("--airframe", options.airframe, "one of: " + programs::airframe_names())->capture_default_str();
-  app.add_option("--max-speed", options.max_speed_m_s, "fastest velocity the pilot asks for, m/s")
-      ->capture_default_str()
+  app.add_option("--max-speed", options.max_speed_m_s, "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)")
       ->check(CLI::Range(0.5, 8.0));
-  app.add_flag("--list-airframes", list, "print the airframes and stop");
+  app.add_option("--ground-effect", options.ground_effect,
+                 "none, cheeseman-bennett or conyers (default: d2 conyers, else none)");
+  app.add_option("--gyro-noise", options.gyro_noise_rad_s, "of the recording, standard deviation, rad/s")
+      ->check(CLI::Range(0.0, 10.0));
+  app.add_option("--latency", options.latency_ms, "of the recorded commands, ms")->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--jitter", options.jitter_ms, "up to this much more latency, uniform, row by row, ms")
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--sticks", options.sticks, "fly this stick recording instead of the random pilot (docs/flights.md)")
+      ->type_name("FILE.csv");
+  app.add_option("--record-sticks", options.record_sticks, "write down what the pilot asks for")->type_name("FILE.csv");
+  app.add_option("--stick-interval", options.stick_interval_ms,
+                 "a row of it at most this often, ms; 0: every control tick, which flies the same flight again")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--statistics", options.statistics, "fly this many seeds from --seed on, and print what they reach")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100000}));
+  app.add_option("--pictures", options.pictures,
+                 "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)")
+      ->type_name("DIR");
+  app.add_flag("--list-airframes", list, "print the airframes and where their values are from, and stop");
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -120,21 +335,22 @@ int main(int argument_count, char** arguments) {
     list_airframes();
     return 0;
   }
-  if (options.out.empty()) {
-    std::fprintf(stderr, "fly: --out FILE.csv is needed (see --help)\n");
-    return exit_bad_input;
-  }
   try {
-    require_folder(options.out);
+    const std::string fault = contradiction(options);
+    if (!fault.empty()) throw std::invalid_argument(fault);
     int code = exit_bad_input;
-    const bool known = programs::with_airframe(
-        options.airframe, [&](auto tag) { code = fly_and_write<typename decltype(tag)::type>(options); });
-    if (!known) {
-      std::fprintf(stderr, "fly: no airframe named '%s'; known: %s\n", options.airframe.c_str(),
-                   programs::airframe_names().c_str());
-    }
+    with_all_choices(options, [&](auto tag, const Airframe<double>& airframe, GroundEffectModel ground_effect) {
+      Campaign<typename decltype(tag)::type> campaign(options, airframe, ground_effect);
+      for (const std::string& file : {options.out, options.record_sticks}) require_folder(file);
+      if (!options.pictures.empty()) make_folder(options.pictures);
+      programs::catch_interrupt();
+      code = campaign.run();
+    });
     return code;
-  } catch (const std::exception& error) {  // InputError, OutputError: one line
+  } catch (const Interrupted&) {
+    std::fprintf(stderr, "fly: interrupted; nothing was written\n");
+    return programs::exit_interrupted;
+  } catch (const std::exception& error) {  // InputError, OutputError, contradictions: one line
     std::fprintf(stderr, "fly: %s\n", error.what());
     return exit_bad_input;
   }

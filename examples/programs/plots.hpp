@@ -7,36 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "gnuplot.hpp"
 #include "judgement.hpp"
 #include "pinnquad/evaluation/confidence_ellipse.hpp"
 
 namespace programs {
-
-/// Runs gnuplot on a script. False, after one line on stderr, if gnuplot is missing or refuses it.
-inline bool run_gnuplot(const std::string& script) {
-  std::FILE* pipe = popen("gnuplot 2>/dev/null", "w");
-  if (pipe == nullptr) return false;
-  const bool written = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
-  const int code = pclose(pipe);
-  if (!written || code != 0) std::fprintf(stderr, "plots: gnuplot is missing or failed (Debian: gnuplot-nox)\n");
-  return written && code == 0;
-}
-
-/// A path for gnuplot's single quotes.
-inline std::string gnuplot_quoted(const std::string& path) {
-  std::string result = "'";
-  for (const char c : path) result += c == '\'' ? "''" : std::string(1, c);
-  return result + "'";
-}
-
-/// The common look: light grid, named colours for target and prediction.
-inline std::string gnuplot_head(const std::string& svg, int width, int height) {
-  std::ostringstream out;
-  out << "set terminal svg size " << width << "," << height << " font 'Helvetica,13' background rgb 'white'\n"
-      << "set output " << gnuplot_quoted(svg) << "\n"
-      << "set grid lc rgb '#e0e0e0'\nset border lc rgb '#707070'\nset key textcolor rgb '#303030'\n";
-  return out.str();
-}
 
 /// Fig. 8: signed command sum over angular acceleration, standardised by the target's spread; dots target, plus signs
 /// prediction, 3-sigma ellipses with their major axis. One row of panels per model.

@@ -92,3 +92,25 @@ TEST_CASE("the same engine state, the same set points") {
   }
   CHECK(differs);
 }
+
+TEST_CASE("past the easing speed less velocity is asked for, at the greatest speed none") {
+  const PilotStyle style;
+  const double easing_m_s = style.easing_share * style.max_speed_m_s;
+  const auto asked_at = [&](double speed_m_s) {
+    Pilot pilot(std::mt19937_64(1), style);
+    State<double> state;
+    state.position_m[2] = -35;
+    constexpr int ticks = 390;  // 0.78 s: within the first hold
+    for (int i = 0; i < ticks; ++i) pilot(state, i * tick_s);
+    state.velocity_m_s[0] = speed_m_s;
+    return pilot(state, ticks * tick_s);
+  };
+  const SetPoint<double> full = asked_at(easing_m_s);
+  REQUIRE(full.velocity_m_s.norm() > 1);
+  CHECK((asked_at(3).velocity_m_s - full.velocity_m_s).norm() == 0);
+  CHECK((asked_at((easing_m_s + style.max_speed_m_s) / 2).velocity_m_s - full.velocity_m_s / 2).norm() < 1e-9);
+  CHECK(asked_at(style.max_speed_m_s).velocity_m_s.norm() == doctest::Approx(0));
+  CHECK(asked_at(20).velocity_m_s.norm() == 0);
+  CHECK((asked_at(20).stick_rad_s - full.stick_rad_s).norm() == 0);
+  CHECK(asked_at(20).yaw_rate_rad_s == full.yaw_rate_rad_s);
+}

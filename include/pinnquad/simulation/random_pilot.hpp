@@ -7,15 +7,17 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/simulation/pilot.hpp"
+#include "pinnquad/simulation/thumbs.hpp"
 
 namespace pinnquad {
 
 /// How the random pilot flies.
 struct PilotStyle {
-  double max_speed_m_s{8};    ///< of what is flown; 95 % of it is asked for
-  double max_climb_m_s{8};    ///< what a heavy vehicle cannot climb is not asked for (pilot_style)
-  double max_descent_m_s{8};  ///< nor a fall that leaves the rotors nothing to do
-  double min_hold_s{0.8};     ///< a target velocity is held between these two times
+  double max_speed_m_s{8};  ///< of what is flown; 95 % of it is asked for, and less as soon as `easing_share` is passed
+  double easing_share{0.993};  ///< of max_speed_m_s: flown faster than this, the velocity asked for shrinks
+  double max_climb_m_s{8};     ///< what a heavy vehicle cannot climb is not asked for (pilot_style)
+  double max_descent_m_s{8};   ///< nor a fall that leaves the rotors nothing to do
+  double min_hold_s{0.8};      ///< a target velocity is held between these two times
   double max_hold_s{2.6};
   double velocity_lag_s{0.45};  ///< the velocity asked for follows its target with this lag
   double max_yaw_rate_rad_s{1.0};
@@ -32,7 +34,8 @@ struct PilotStyle {
 
 /// Draws a target velocity (any direction; the greatest speed and the vertical more often), holds it for a random time,
 /// and asks for it with a lag. A component that would lead out of the box before its time is up is turned round. Yaw
-/// rate targets change with it; stick noise goes on all the time.
+/// rate targets change with it; stick noise goes on all the time. A turn against the thrust limits can carry the vehicle
+/// past what was asked for: beyond easing_share the velocity is asked for less, by the ramp in `eased`.
 template <class Engine>
 class RandomPilot {
  public:
@@ -41,8 +44,8 @@ class RandomPilot {
       : engine_(engine),
         style_(style),
         ground_z_m_(ground_z_m),
-        stick_memory_(std::exp(-style.stick_frame_s * style.stick_bandwidth_rad_s)),
-        stick_drive_(std::sqrt(1 - stick_memory_ * stick_memory_)) {}
+        thumbs_(
+            {style.stick_frame_s, style.stick_bandwidth_rad_s, style.roll_pitch_stick_rad_s, style.yaw_stick_rad_s}) {}
 
   SetPoint<double> operator()(const State<double>& state, double time_s) {
     const double elapsed_s = time_s - time_s_;
@@ -55,12 +58,8 @@ class RandomPilot {
     const double yaw_share = elapsed_s / (style_.yaw_rate_lag_s + elapsed_s);
     wanted_.velocity_m_s += (target_velocity_m_s_ - wanted_.velocity_m_s) * velocity_share;
     wanted_.yaw_rate_rad_s += (target_yaw_rate_rad_s_ - wanted_.yaw_rate_rad_s) * yaw_share;
-    constexpr double early = 1e-6;  // a frame is due on a tick although both times are rounded
-    if (time_s >= next_frame_s_ - early) {
-      next_frame_s_ += style_.stick_frame_s;
-      move_sticks();
-    }
-    return wanted_;
+    thumbs_.move(engine_, time_s, wanted_.stick_rad_s);
+    return eased(state.velocity_m_s.norm());
   }
 
   const PilotStyle& style() const noexcept { return style_; }
@@ -93,22 +92,24 @@ class RandomPilot {
 
   static double within(double value, double most) { return value > most ? most : (value < -most ? -most : value); }
 
-  void move_sticks() {
-    const double spread[3] = {style_.roll_pitch_stick_rad_s, style_.roll_pitch_stick_rad_s, style_.yaw_stick_rad_s};
-    for (int i = 0; i < 3; ++i) {
-      wanted_.stick_rad_s[i] =
-          stick_memory_ * wanted_.stick_rad_s[i] + stick_drive_ * spread[i] * standard_normal(engine_);
+  /// What is wanted, with the velocity shrunk by (v - easing) / (max - easing), v the speed flown: all of it at
+  /// easing_share, none at the greatest speed.
+  SetPoint<double> eased(double speed_m_s) const {
+    const double easing_m_s = style_.easing_share * style_.max_speed_m_s;
+    SetPoint<double> result = wanted_;
+    if (speed_m_s > easing_m_s) {
+      const double past = (speed_m_s - easing_m_s) / (style_.max_speed_m_s - easing_m_s);
+      result.velocity_m_s *= past < 1 ? 1 - past : 0;
     }
+    return result;
   }
 
   Engine engine_;
   PilotStyle style_;
   double ground_z_m_;
-  double stick_memory_;
-  double stick_drive_;
+  Thumbs thumbs_;
   double time_s_{0};
   double next_target_s_{0};
-  double next_frame_s_{0};
   Vector3<double> target_velocity_m_s_ = Vector3<double>::Zero();
   double target_yaw_rate_rad_s_{0};
   SetPoint<double> wanted_{};
