@@ -24,6 +24,7 @@
 #include "pinnquad/simulation/noisy_recorder.hpp"
 #include "pinnquad/simulation/recorded_sticks.hpp"
 #include "progress_line.hpp"
+#include "replay_page.hpp"
 
 namespace {
 
@@ -49,6 +50,7 @@ struct Options {
   double stick_interval_ms = 0;
   std::size_t statistics = 0;
   std::string pictures;
+  std::string replay;
 };
 
 /// Thrown out of a flight by Ctrl-C; nothing is written then.
@@ -112,10 +114,12 @@ class Campaign {
     std::vector<programs::TraceRow> trace;
     programs::AnyPilot pilot = pilot_of(options_.seed);
     if (!options_.record_sticks.empty()) pilot = written_down(pilot, sticks, options_.stick_interval_ms / 1000);
+    programs::ReplayPage replay(title(), airframe_, paper_site<double>().ground_z_m);
     programs::ProgressLine progress("flying");
     const RecordedFlight recorded = flown(options_.seed, pilot, [&](const FlightRow& row) {
       progress.update(static_cast<double>(row.rows_done) / static_cast<double>(row.rows));
       if (!options_.pictures.empty()) trace.push_back(programs::trace_row(vehicle_, without_, row.vehicle));
+      if (!options_.replay.empty()) replay.add(row.vehicle, row.sample.commands);
     });
     progress.clear();
     if (recorded.report.end != FlightEnd::completed) {
@@ -124,6 +128,7 @@ class Campaign {
     }
     if (!options_.out.empty()) write_flight_csv(options_.out, recorded.flight);
     if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
+    if (!options_.replay.empty()) replay.write(options_.replay);
     print_summary(recorded);
     return options_.pictures.empty() || draw(recorded, trace) ? 0 : exit_flight_failed;
   }
@@ -146,6 +151,12 @@ class Campaign {
     const std::mt19937_64 engine(seed);
     return options_.max_speed_m_s ? PaperFlight::pilot(vehicle_, engine, *options_.max_speed_m_s)
                                   : PaperFlight::pilot(vehicle_, engine);
+  }
+
+  /// "paper_quadrotor, d1, seed 1"
+  std::string title() const {
+    const std::string flown = sticks_ ? "sticks " + options_.sticks : "seed " + std::to_string(options_.seed);
+    return options_.airframe + ", " + PaperFlight::name + ", " + flown;
   }
 
   bool exact() const { return options_.gyro_noise_rad_s == 0 && options_.latency_ms == 0 && options_.jitter_ms == 0; }
@@ -247,10 +258,10 @@ class Campaign {
 
 /// What contradicts itself; empty if nothing does.
 std::string contradiction(const Options& o) {
-  const bool single_output = !o.record_sticks.empty() || !o.pictures.empty();
+  const bool single_output = !o.record_sticks.empty() || !o.pictures.empty() || !o.replay.empty();
   if (o.out.empty() && !single_output && o.statistics == 0) return "--out FILE.csv is needed (see --help)";
   if (o.statistics > 0 && !o.sticks.empty()) return "--statistics flies seeds, --sticks a recording: one of them";
-  if (o.statistics > 0 && single_output) return "--statistics goes with neither --record-sticks nor --pictures";
+  if (o.statistics > 0 && single_output) return "--statistics goes with none of --record-sticks, --pictures, --replay";
   if (!o.sticks.empty() && o.max_speed_m_s) return "--max-speed is the random pilot's, --sticks has no use for it";
   return {};
 }
@@ -323,6 +334,8 @@ int main(int argument_count, char** arguments) {
   app.add_option("--pictures", options.pictures,
                  "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)")
       ->type_name("DIR");
+  app.add_option("--replay", options.replay, "page that replays the flight in 3D in a browser (docs/replay.md)")
+      ->type_name("FILE.html");
   app.add_flag("--list-airframes", list, "print the airframes and where their values are from, and stop");
   try {
     app.parse(argument_count, arguments);
@@ -341,7 +354,8 @@ int main(int argument_count, char** arguments) {
     int code = exit_bad_input;
     with_all_choices(options, [&](auto tag, const Airframe<double>& airframe, GroundEffectModel ground_effect) {
       Campaign<typename decltype(tag)::type> campaign(options, airframe, ground_effect);
-      for (const std::string& file : {options.out, options.record_sticks}) require_folder(file);
+      for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_folder(file);
+      if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);
       if (!options.pictures.empty()) make_folder(options.pictures);
       programs::catch_interrupt();
       code = campaign.run();

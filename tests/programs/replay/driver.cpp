@@ -16,65 +16,34 @@
 
 namespace {
 
-using pinnquad::Commands;
-using pinnquad::Status;
-using pinnquad::VehicleState;
-
-/// The rows of a flight as pinnquad::fly() has them, handed to `each_row(vehicle, commands)`: state and command.
-template <class EachRow>
-Status fly_rows(std::size_t samples, const EachRow& each_row) {
-  using namespace pinnquad;
-  const Quadrotor<double, StandardAtmosphere, QuadraticDrag> quadrotor(airframe_value<PaperQuadrotor, double>(),
-                                                                       paper_site<double>(), {}, {});
-  const FlightPlan plan;
-  RandomPilot<std::mt19937_64> pilot(std::mt19937_64(7), pilot_style(quadrotor, plan.start_m),
-                                     quadrotor.site().ground_z_m);
-  VehicleState<double> vehicle;
-  vehicle.body.position_m = plan.start_m;
-  HoverTrim<double> hover;
-  Status status = hover_trim(quadrotor, plan.start_m, hover);
-  vehicle.rotors = hover.commands;
-  Commands<double> commands = hover.commands;
-  const double density_ratio = quadrotor.density_ratio(quadrotor.surroundings(vehicle.body, 0.0));
-  const FlightController<double> controller(plan.gains, flight_limits(quadrotor.airframe(), density_ratio, plan.gains),
-                                            quadrotor.site().gravity_m_s2);
-  for (std::size_t row = 0; row < samples; ++row) {
-    for (int tick = 0; tick < plan.controls_per_sample && status == Status::ok; ++tick) {
-      Accelerations<double> demand;
-      status = controller(vehicle.body, pilot(vehicle.body, vehicle.time_s), demand);
-      if (status == Status::ok) status = inverse_commands(quadrotor, vehicle.body, demand, vehicle.time_s, commands);
-      if (status == Status::ok) commands = keep_torque(commands);
-      for (int i = 0; i < plan.steps_per_control && status == Status::ok; ++i) {
-        status = quadrotor.step(vehicle, commands, plan.physics_step_s);
-      }
-    }
-    if (status != Status::ok) return status;
-    vehicle.time_s = static_cast<double>(row + 1) * plan.sample_period_s();
-    each_row(vehicle, commands);
-  }
-  return status;
-}
+using namespace pinnquad;
 
 int run(const std::string& html, const std::string& csv, std::size_t samples, const std::string& title) {
   programs::ReplayPage::require_available(html);
-  programs::ReplayPage page(title, pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>(),
-                            pinnquad::paper_site<double>().ground_z_m);
+  programs::ReplayPage page(title, airframe_value<PaperQuadrotor, double>(),
+                            paper_site<double>().ground_z_m);
   std::ofstream rows(csv);
   rows.precision(17);
   rows << "t,north,east,down,v_north,v_east,v_down,qw,qx,qy,qz,u1,u2,u3,u4\n";
-  const Status status = fly_rows(samples, [&](const VehicleState<double>& vehicle, const Commands<double>& commands) {
-    page.add(vehicle, commands);
-    const pinnquad::State<double>& body = vehicle.body;
-    rows << vehicle.time_s;
+  const Quadrotor<double, StandardAtmosphere, QuadraticDrag> quadrotor(airframe_value<PaperQuadrotor, double>(),
+                                                                       paper_site<double>(), {}, {});
+  FlightPlan plan;
+  plan.samples = samples;
+  const RandomPilot<std::mt19937_64> pilot(std::mt19937_64(7), pilot_style(quadrotor, plan.start_m),
+                                           quadrotor.site().ground_z_m);
+  const FlightReport report = fly(quadrotor, pilot, plan, [&](const FlightRow& row) {
+    page.add(row.vehicle, row.sample.commands);
+    const State<double>& body = row.vehicle.body;
+    rows << row.vehicle.time_s;
     for (int i = 0; i < 3; ++i) rows << ',' << body.position_m[i];
     for (int i = 0; i < 3; ++i) rows << ',' << body.velocity_m_s[i];
     rows << ',' << body.attitude.w << ',' << body.attitude.x << ',' << body.attitude.y << ',' << body.attitude.z;
-    for (const double command : commands) rows << ',' << command;
+    for (const double command : row.sample.commands) rows << ',' << command;
     rows << '\n';
-  });
+  }).report;
   rows.close();
-  if (status != Status::ok || !rows) {
-    std::fprintf(stderr, "replay_driver: the flight or its rows failed: %s\n", to_string(status));
+  if (report.end != FlightEnd::completed || !rows) {
+    std::fprintf(stderr, "replay_driver: the flight or its rows failed: %s\n", to_string(report.status));
     return 1;
   }
   page.write(html);
