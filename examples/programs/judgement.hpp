@@ -10,10 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/split.hpp"
+#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
 
 namespace programs {
 
