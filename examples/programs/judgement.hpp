@@ -16,7 +16,6 @@
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
-#include "pinnquad/loss/local_monotonicity.hpp"
 
 namespace programs {
 

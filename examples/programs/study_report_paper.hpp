@@ -29,7 +29,7 @@ enum class PhysicsTerm { none, constant, annealed };
 /// A line of Table 2. NOTES #16: models 7-10 are printed alike; the caption of Fig. 7 tells them apart.
 struct PaperModel {
   int id;
-  const char* network;  ///< as the caption of Fig. 7 names the loss
+  const char* network;
   bool batch_norm;
   PhysicsTerm term;
   const char* data;
@@ -54,6 +54,16 @@ inline constexpr std::array<PaperModel, study_models> table2 = {{
 }};
 
 inline const PaperModel& paper_model(int id) { return table2[static_cast<std::size_t>(id - 1)]; }
+
+/// As the caption of Fig. 7 tells the losses apart.
+inline const char* loss_words(int model) {
+  switch (paper_model(model).term) {
+    case PhysicsTerm::constant: return "constant weight";
+    case PhysicsTerm::annealed: return "annealed";
+    case PhysicsTerm::none: break;
+  }
+  return "vanilla";
+}
 
 /// An entry of Table 3 in the units of rows.csv; the deviation is 0 for model 1, which has none.
 struct PaperEntry {

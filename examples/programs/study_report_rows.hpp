@@ -93,7 +93,9 @@ inline std::vector<std::string> study_columns() {
 
 /// Reads rows.csv; columns by name, in any order, others ignored. Throws InputError with file, line and column: no
 /// readable file, a missing column, a row of other length, a cell that is not what its column holds, a training twice.
-inline std::vector<StudyRow> read_study_rows(const std::string& path) {
+/// A last line without an end (a run was killed while it wrote) is left out and counted in `cut_rows` if it is not whole.
+inline std::vector<StudyRow> read_study_rows(const std::string& path, std::size_t& cut_rows) {
+  cut_rows = 0;
   constexpr std::uint64_t most = ~std::uint64_t{0};
   const std::string text = pinnquad::detail::file_text(path);
   const std::vector<std::string> columns = study_columns();
@@ -106,7 +108,8 @@ inline std::vector<StudyRow> read_study_rows(const std::string& path) {
   for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
     const std::size_t end = rest.find('\n');
     std::string_view line = rest.substr(0, end);
-    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+    const bool ended = end != std::string_view::npos;
+    rest = ended ? rest.substr(end + 1) : std::string_view();
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty() && rest.empty()) break;
     pinnquad::detail::split_fields(line, cells);
@@ -114,6 +117,10 @@ inline std::vector<StudyRow> read_study_rows(const std::string& path) {
       fields = pinnquad::detail::locate_columns(path, cells, columns);
       width = cells.size();
       continue;
+    }
+    if (cells.size() != width && !ended) {
+      ++cut_rows;
+      break;
     }
     if (cells.size() != width) {
       throw pinnquad::InputError(path, line_number, std::min(cells.size(), width) + 1,
@@ -145,6 +152,7 @@ inline std::vector<StudyRow> read_study_rows(const std::string& path) {
 /// The rows of a study with the choices that make a report: the flight each model is judged on first, and which weights.
 struct Study {
   std::vector<StudyRow> rows;
+  std::size_t cut_rows = 0;
   std::vector<StudyFlight> flights;     ///< in the order of study.json, then of the rows
   std::string weights = "final";        ///< judged where a model has them
   std::map<int, StudyFlight> first;     ///< model -> its first flight
