@@ -66,10 +66,10 @@ inline std::string pair_text(const ModelPair& pair) {
   return std::to_string(pair.candidate) + " against " + std::to_string(pair.baseline);
 }
 
-/// A mean in the unit shown, with four figures whatever its size.
+/// A mean in the unit shown, with the decimals of Table 3.
 inline std::string measure_text(std::size_t measure, double value) {
   const Measure& m = table3_measures[measure];
-  return format("%.4g", m.scale * value) + (measure == 0 ? "e-3" : " deg");
+  return format("%.3f", m.scale * value) + (measure == 0 ? "e-3" : " deg");
 }
 
 inline std::string percent(double share) { return format("%+.1f %%", 100 * share); }
@@ -291,7 +291,7 @@ inline Judged judge_degradation(const Study& study) {
 /// Every claim of Discussions 1-5 that figures can decide, in the paper's order.
 inline std::vector<Claim> paper_claims() {
   const std::string cells = detail::cells_rule;
-  const std::string all_hold = "reproduced: every condition holds. In part: some do. Else not reproduced";
+  const std::string all_hold = "Reproduced: every condition holds. In part: some do. Else not reproduced";
   return {
       {"1.1", 1,
        "Every network, vanilla or physics-informed, predicts commands at least ten times better than the linearized "

@@ -223,7 +223,7 @@ inline std::string correlation_figure(const StudySeries& series) {
       acceleration.to(x(series.time_s[i]), y(std::clamp(s.angular_acceleration[i] / spread.x, -4.0, 4.0)));
       sum.to(x(series.time_s[i]), y(std::clamp(s.target[i] / spread.y, -4.0, 4.0)));
     }
-    text += html::horizontal_axis(x, y0, y0 + height, 8, axis == 2 ? "time, s" : "") +
+    text += html::horizontal_axis(x, y0, y0 + height, 8, axis == 2 ? "time, s" : "", axis == 2) +
             html::vertical_axis(y, left, right, 4, axis == 1 ? "in spreads" : "") +
             html::path(acceleration.d(), "thick") + html::path(sum.d(), "thin") +
             html::label(left, y0 - 8, std::string(axis_names[axis]) + ": " + rates[axis] + " and its command sum",

@@ -38,6 +38,19 @@ inline std::string number(double value, int decimals, bool plus = false) {
   return result[0] == '-' ? "&minus;" + result.substr(1) : result;
 }
 
+/// A figure with its unit as text, such as "-4.1e-3" or "3.2 deg", in the page's signs.
+inline std::string quantity(const std::string& text) {
+  std::string result = escaped(text);
+  if (!result.empty() && result[0] == '-') result = "&minus;" + result.substr(1);
+  const auto replace = [&result](const std::string& what, const std::string& with) {
+    const std::size_t at = result.find(what);
+    if (at != std::string::npos) result.replace(at, what.size(), with);
+  };
+  replace("e-3", "&times;10<sup>&minus;3</sup>");
+  replace(" deg", "&#176;");
+  return result;
+}
+
 /// Two significant figures; powers of ten below a thousandth.
 inline std::string p_value(double p) {
   char text[64];
@@ -163,13 +176,14 @@ struct Axis {
 };
 
 /// Grid, ticks and frame of a panel with a horizontal axis below; the vertical one is left out where it names things.
-inline std::string horizontal_axis(const Axis& x, double top, double bottom, int wanted, const std::string& name) {
+inline std::string horizontal_axis(const Axis& x, double top, double bottom, int wanted, const std::string& name,
+                                   bool numbered = true) {
   std::string text;
   for (const double tick : x.ticks(wanted)) {
     text += line(x(tick), top, x(tick), bottom, "grid");
-    text += label(x(tick), bottom + 16, x.text(tick, wanted), "tick middle");
+    if (numbered) text += label(x(tick), bottom + 16, x.text(tick, wanted), "tick middle");
   }
-  return text + label((x.from + x.to) / 2, bottom + 34, name, "name middle");
+  return name.empty() ? text : text + label((x.from + x.to) / 2, bottom + 34, name, "name middle");
 }
 
 inline std::string vertical_axis(const Axis& y, double left, double right, int wanted, const std::string& name) {
@@ -245,6 +259,9 @@ table.plain{width:auto;min-width:50%}
 .claim .id{color:var(--faint);font-variant-numeric:tabular-nums}
 .claim .statement{font-weight:600;max-width:44em}
 .claim .rest{grid-column:2/4}
+.claim .rule::first-letter{text-transform:uppercase}
+.claim table{table-layout:fixed;min-width:700px}.claim th:first-child{width:30%}.claim th:last-child{width:22%;}
+table.overview td{padding-top:7px;padding-bottom:7px;font-size:1.08em}table.overview .badge{font-size:.86em}
 .claim .rule{color:var(--soft);font-size:.84em;margin:.15em 0 .5em;max-width:56em}
 .claim .wide{margin:.3em 0 .8em}.claim table{font-size:.74em}.claim th{border-bottom-width:1px;border-color:var(--faint)}
 .gap{background:var(--panel);border-left:4px solid var(--amber);padding:12px 18px;font-size:.85em;border-radius:0 6px 6px 0;margin:1.2em 0}
@@ -253,6 +270,7 @@ nav{font-size:.84em;display:flex;flex-wrap:wrap;gap:4px 20px;margin:1.4em 0 0;co
 figure{margin:1.6em 0 2.2em}figure svg,figure img{display:block;width:100%;height:auto}
 figure img{background:#fff;border-radius:4px}
 figcaption{font-size:.8em;color:var(--soft);margin-top:.5em;max-width:70em;line-height:1.45}
+sup,sub{line-height:0;font-size:.75em}
 svg text{fill:var(--ink);font-size:12px}svg .tick{fill:var(--soft);font-size:11.5px;font-variant-numeric:tabular-nums}
 svg .name{fill:var(--soft)}svg .title{font-weight:600;font-size:13px}svg .small{font-size:11px;fill:var(--soft)}
 svg .middle{text-anchor:middle}svg .end{text-anchor:end}

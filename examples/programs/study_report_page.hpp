@@ -108,44 +108,46 @@ inline std::string figures_section(const ReportInput& input) {
   std::uint64_t epochs = 0;
   for (const StudyRow& row : study.rows) epochs = std::max(epochs, row.epochs);
   constexpr std::uint64_t paper_epochs = 300;
-  std::string text = html::figure(
-      schedule_figure(input.settings.annealing, static_cast<int>(epochs > 0 ? epochs : paper_epochs)),
-      "<b>Fig. 3.</b> Cyclical annealing, Eq. (6): M = " + std::to_string(input.settings.annealing.cycles) +
-          ", R = " + html::number(input.settings.annealing.hold, 2) +
-          ", &#955;<sub>max</sub> = " + html::number(input.settings.annealing.maximum, 2) +
-          ", T = " + std::to_string(epochs > 0 ? epochs : paper_epochs) + " (the paper: 5, 0.5, 0.1, 300).");
-  const std::string reading =
-      " Bars: mean over the seeds; whiskers: standard deviation; pale bars are vanilla. Diamonds: the paper&rsquo;s "
-      "Table "
-      "3, whose flights were never released: the order can be compared, the length cannot.";
-  text +=
-      html::figure(errors_figure(study, {2, 3, 4, 5, 6, 7, 8, 9, 10}),
-                   "<b>Fig. 7.</b> Test error on D1. Red: without batch norm; green: with; yellow and orange: reduced "
-                   "sets with batch norm." +
-                       reading);
-  text += html::figure(errors_figure(study, {11, 12}), "<b>Fig. 9, upper.</b> Test error on D2 (ground effect).");
-  text += html::figure(errors_figure(study, {13, 14}), "<b>Fig. 9, lower.</b> Test error on D3 (periodic wind).");
+  if (epochs == 0) epochs = paper_epochs;
   std::vector<int> models;
   std::vector<StudySeries> series;
   for (const auto& [model, one] : input.series) {
     models.push_back(model);
     series.push_back(one);
   }
-  std::string left_out;
+  std::string text, left_out;
   if (models.empty()) {
-    left_out = "Fig. 8 and Fig. 2 over some seconds (no series/model2.csv, series/model4.csv)";
+    left_out = "Fig. 2 over some seconds and Fig. 8 (no series/model2.csv, series/model4.csv)";
   } else {
-    text += html::figure(
-        ellipses_figure(models, series),
-        "<b>Fig. 8.</b> Signed command sum over angular acceleration on the test block, one seed, both axes in units "
-        "of "
-        "the target&rsquo;s spread. Dots and blue: target; plus signs and orange: prediction; ellipses at 3 &sigma;, "
-        "dashed their major axes. The angle between the axes is &Delta;m of Table 3.");
     text +=
         html::figure(correlation_figure(series.front()),
                      "<b>Fig. 2.</b> Angular acceleration (broad) and signed sum of the flown commands (thin) at the "
                      "start of the test block, each in its spread; PCC: Pearson correlation.");
   }
+  const pinnquad::CyclicalAnnealing& annealing = input.settings.annealing;
+  text += html::figure(schedule_figure(annealing, static_cast<int>(epochs)),
+                       "<b>Fig. 3.</b> Cyclical annealing, Eq. (6): M = " + std::to_string(annealing.cycles) +
+                           ", R = " + html::number(annealing.hold, 2) +
+                           ", &#955;<sub>max</sub> = " + html::number(annealing.maximum, 3) +
+                           ", T = " + std::to_string(epochs) + " (the paper: 5, 0.5, 0.1, 300).");
+  text +=
+      html::figure(errors_figure(study, {2, 3, 4, 5, 6, 7, 8, 9, 10}),
+                   "<b>Fig. 7.</b> Test error on D1. Red: without batch norm; green: with; yellow and orange: reduced "
+                   "sets with batch norm. Bars: mean over the seeds; whiskers: standard deviation; pale: vanilla. "
+                   "Diamonds: the paper&rsquo;s Table 3. Its flights were never released: the order can be compared, "
+                   "the length cannot.");
+  if (!models.empty()) {
+    text += html::figure(
+        ellipses_figure(models, series),
+        "<b>Fig. 8.</b> Signed command sum over angular acceleration on the test block, one seed, both axes in units "
+        "of "
+        "the target&rsquo;s spread. Dots and blue: target; plus signs and orange: prediction; ellipses at 3 &sigma;, "
+        "dashed their major axes. The angle between those axes is &Delta;m of Table 3.");
+  }
+  text +=
+      html::figure(errors_figure(study, {11, 12}) + errors_figure(study, {13, 14}),
+                   "<b>Fig. 9.</b> Test error on D2 with ground effect (upper) and on D3 with periodic wind (lower), "
+                   "drawn as Fig. 7.");
   text += flight_pictures(input.folder, left_out);
   if (!left_out.empty()) text += note("Left out, because the folder does not hold what they show: " + left_out + ".");
   return text;
@@ -187,7 +189,7 @@ inline std::string report_page(const ReportInput& input, const std::vector<Compa
                ? note("With fewer than six seeds no p-value can fall below 0.05: &ldquo;in part&rdquo; is "
                       "then the most that a paired claim can reach.")
                : "") +
-          claims_section(claims));
+          claims_overview(claims) + claims_section(claims));
   page +=
       section("table3", "Table 3",
               table3_section(study) +
@@ -207,7 +209,7 @@ inline std::string report_page(const ReportInput& input, const std::vector<Compa
           note("p: exact two-sided Wilcoxon signed-rank test. Effect size: matched-pairs rank biserial, +1 if the "
                "candidate is lower for every seed, &minus;1 if for none. p-values are not corrected for the " +
                std::to_string(tests) +
-               " comparisons of this page; at 0.05 one in twenty without any effect counts as one.") +
+               " comparisons of this page: of those without any effect one in twenty still falls below 0.05.") +
           other_weights(study));
   const std::string limits = paragraph(
       "<b>Seeds vary the training, not the data:</b> a seed sets initial weights and batch order on one flight, so "

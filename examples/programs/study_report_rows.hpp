@@ -203,6 +203,7 @@ struct Study {
         found.push_back(flight);
       }
     }
+    std::sort(found.begin(), found.end());
     return found;
   }
 };

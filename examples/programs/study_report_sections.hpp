@@ -77,6 +77,26 @@ inline std::vector<std::string> missing_lines(const Study& study, const StudySet
   return lines;
 }
 
+inline std::string badge(Verdict verdict) {
+  static constexpr std::array<const char*, 4> kinds = {"reproduced", "part", "not", "open"};
+  return "<span class=\"badge " + std::string(kinds[static_cast<std::size_t>(verdict)]) + "\">" +
+         verdict_name(verdict) + "</span>";
+}
+
+/// Every claim with its verdict, one line each.
+inline std::string claims_overview(const JudgedClaims& claims) {
+  std::string body;
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    const auto& [claim, judged] = claims[i];
+    const bool closes = i + 1 == claims.size() || claims[i + 1].first.discussion != claim.discussion;
+    body += html::row({{"<a href=\"#claim-" + claim.id + "\">" + claim.id + "</a>", "key"},
+                       {html::escaped(claim.statement), ""},
+                       {badge(judged.verdict), "key"}},
+                      closes ? "group" : "");
+  }
+  return html::table(html::row({{"", ""}, {"claim", ""}, {"verdict", ""}}, "", true), body, "overview");
+}
+
 inline std::string claims_section(const JudgedClaims& claims) {
   std::string text;
   int discussion = 0;
@@ -89,27 +109,25 @@ inline std::string claims_section(const JudgedClaims& claims) {
       text += html::tag(
           "h3", "Discussion " + std::to_string(discussion) + ": " + titles[static_cast<std::size_t>(discussion - 1)]);
     }
-    const std::array<const char*, 4> kinds = {"reproduced", "part", "not", "open"};
     std::string body;
     for (const Evidence& e : judged.evidence) {
       body += html::row({{html::escaped(e.what), ""},
-                         {html::escaped(e.from), "n"},
-                         {html::escaped(e.to), "n"},
-                         {html::escaped(e.change), "n"},
+                         {html::quantity(e.from), "n"},
+                         {html::quantity(e.to), "n"},
+                         {html::quantity(e.change), "n"},
                          {html::escaped(e.wins), "n"},
                          {e.p_value.empty() ? "" : html::p_value(std::stod(e.p_value)), "n"},
-                         {html::escaped(e.paper), "n paper"},
+                         {html::quantity(e.paper), "n paper"},
                          {html::escaped(e.says), e.says == "better" || e.says == "holds"          ? "good"
                                                  : e.says == "worse" || e.says == "does not hold" ? "bad"
                                                                                                   : "mild"}});
     }
-    text += "<div class=\"claim\"><div class=\"id\">" + claim.id + "</div><div class=\"statement\">" +
-            html::escaped(claim.statement) + "</div><div><span class=\"badge " +
-            kinds[static_cast<std::size_t>(judged.verdict)] + "\">" + verdict_name(judged.verdict) +
-            "</span></div><div class=\"rest\"><div class=\"rule\">" + html::escaped(claim.rule) + ".</div>" +
+    text += "<div class=\"claim\" id=\"claim-" + claim.id + "\"><div class=\"id\">" + claim.id +
+            "</div><div class=\"statement\">" + html::escaped(claim.statement) + "</div><div>" + badge(judged.verdict) +
+            "</div><div class=\"rest\"><div class=\"rule\">" + html::escaped(claim.rule) + ".</div>" +
             html::table(html::row({{"compared", ""},
-                                   {"from", "n"},
-                                   {"to", "n"},
+                                   {"baseline", "n"},
+                                   {"candidate", "n"},
                                    {"change", "n"},
                                    {"lower in", "n"},
                                    {"p", "n"},
@@ -255,17 +273,18 @@ inline std::string comparisons_section(const std::vector<Comparison>& comparison
 inline std::string flights_table(const std::vector<FlightsComparison>& all, const Study& study) {
   std::string body;
   for (const FlightsComparison& f : all) {
-    const std::string pair = detail::pair_text(f.pair);
+    bool opens = true;
     const auto line = [&](const std::string& flight, const pinnquad::PairedComparison& result, bool absolute,
                           const std::string& kind) {
       const double scale = table3_measures[f.measure].scale;
-      body += html::row(detail::joined({{pair, "key"},
-                                        {table3_measures[f.measure].label, "key"},
+      body += html::row(detail::joined({{opens ? detail::pair_text(f.pair) : "", "key"},
+                                        {opens ? table3_measures[f.measure].label : "", "key"},
                                         {flight, "key"},
                                         {absolute ? html::number(scale * result.baseline_mean, 3) : "", "n"},
                                         {absolute ? html::number(scale * result.candidate_mean, 3) : "", "n"}},
                                        detail::result_cells(result)),
                         kind);
+      opens = false;
     };
     if (const std::optional<Comparison> first = compare(study, f.pair, f.measure)) {
       line(html::escaped(first->flight.name) + ", seed " + std::to_string(first->flight.seed) + " (Table 2&rsquo;s)",
