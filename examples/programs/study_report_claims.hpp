@@ -91,7 +91,7 @@ inline Evidence evidence(const Comparison& c) {
   return e;
 }
 
-inline constexpr const char* suspect_words = "does not count: the paper's entry is suspect";
+inline constexpr const char* suspect_words = "suspect in the paper: not counted";
 
 /// A line that only says something.
 inline Evidence remark(const std::string& what, const std::string& says) {

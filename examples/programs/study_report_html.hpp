@@ -48,6 +48,7 @@ inline std::string quantity(const std::string& text) {
   };
   replace("e-3", "&times;10<sup>&minus;3</sup>");
   replace(" deg", "&#176;");
+  replace(" %", "&#160;%");
   return result;
 }
 
@@ -260,7 +261,7 @@ table.plain{width:auto;min-width:50%}
 .claim .statement{font-weight:600;max-width:44em}
 .claim .rest{grid-column:2/4}
 .claim .rule::first-letter{text-transform:uppercase}
-.claim table{table-layout:fixed;min-width:700px}.claim th:first-child{width:30%}.claim th:last-child{width:22%;}
+.claim table{table-layout:fixed;min-width:700px}.claim th:first-child{width:25%}.claim th:last-child{width:21%}
 table.overview td{padding-top:7px;padding-bottom:7px;font-size:1.08em}table.overview .badge{font-size:.86em}
 .claim .rule{color:var(--soft);font-size:.84em;margin:.15em 0 .5em;max-width:56em}
 .claim .wide{margin:.3em 0 .8em}.claim table{font-size:.74em}.claim th{border-bottom-width:1px;border-color:var(--faint)}

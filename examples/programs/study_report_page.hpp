@@ -57,17 +57,17 @@ inline std::string summary(const std::vector<Comparison>& comparisons, const std
     text +=
         paragraph("The main comparison, annealed physics-informed loss against vanilla (model 4 against 2, flight " +
                   html::escaped(main.flight.name) + "): the mean absolute error changes by <b>" +
-                  html::number(100 * main.result.relative_difference, 1, true) + " %</b>, lower in " +
+                  html::number(100 * main.result.relative_difference, 1, true) + "&#160;%</b>, lower in " +
                   std::to_string(main.result.wins) + " of " + std::to_string(main.result.pairs) +
                   " seeds, p = " + html::p_value(main.result.p_value) + ". The paper&rsquo;s means change by " +
-                  html::number(100 * *paper_change(main.pair, 0), 1, true) + " %.");
+                  html::number(100 * *paper_change(main.pair, 0), 1, true) + "&#160;%.");
   }
   for (const FlightsComparison& f : flights) {
     if (f.pair.baseline != 2 || f.pair.candidate != 4 || f.measure != 0) continue;
     text +=
         paragraph("On " + std::to_string(f.flights.size()) + " further flight" + (f.flights.size() == 1 ? "" : "s") +
                   " the same comparison gives " + html::number(100 * f.of_means.relative_difference, 1, true) +
-                  " % on average, lower on " + std::to_string(f.of_means.wins) + ".");
+                  "&#160;% on average, lower on " + std::to_string(f.of_means.wins) + ".");
   }
   return text;
 }

@@ -33,20 +33,20 @@ struct PaperModel {
   bool batch_norm;
   PhysicsTerm term;
   const char* data;
-  const char* split;  ///< training / validation / test, % of the flight
+  const char* split;  ///< training / validation / test, % of the flight, as HTML
 };
 
 inline constexpr std::array<PaperModel, study_models> table2 = {{
-    {1, "linearized model, Eq. (3)", false, PhysicsTerm::none, "D1", "- / - / 20"},
+    {1, "linearized model, Eq. (3)", false, PhysicsTerm::none, "D1", "&ndash; / &ndash; / 20"},
     {2, "vanilla", false, PhysicsTerm::none, "D1", "60 / 20 / 20"},
     {3, "physics-informed", false, PhysicsTerm::constant, "D1", "60 / 20 / 20"},
     {4, "physics-informed", false, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
     {5, "vanilla", true, PhysicsTerm::none, "D1", "60 / 20 / 20"},
     {6, "physics-informed", true, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
-    {7, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / - / 40"},
-    {8, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / - / 40"},
-    {9, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / - / 80"},
-    {10, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / - / 80"},
+    {7, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / &ndash; / 40"},
+    {8, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / &ndash; / 40"},
+    {9, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / &ndash; / 80"},
+    {10, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / &ndash; / 80"},
     {11, "vanilla", true, PhysicsTerm::none, "D2", "60 / 20 / 20"},
     {12, "physics-informed", true, PhysicsTerm::annealed, "D2", "60 / 20 / 20"},
     {13, "vanilla", true, PhysicsTerm::none, "D3", "60 / 20 / 20"},
