@@ -74,7 +74,7 @@ inline const char* bar_colour(int model) {
 /// Figs. 7 and 9: mean absolute errors as bars, deviations over the seeds as whiskers, the paper's values as diamonds.
 /// Models without rows leave an empty line.
 inline std::string errors_figure(const Study& study, const std::vector<int>& models) {
-  constexpr double row_height = 27, top = 8, left = 200, right = 1020;
+  constexpr double row_height = 33, top = 8, left = 200, right = 1020;
   double most = 0;
   for (const int model : models) {
     const pinnquad::Summary ours = pinnquad::summarize(study.values(model, "mae"));
@@ -89,27 +89,27 @@ inline std::string errors_figure(const Study& study, const std::vector<int>& mod
     const int model = models[i];
     const double middle = top + row_height * (static_cast<double>(i) + 0.5);
     const pinnquad::Summary ours = pinnquad::summarize(study.values(model, "mae"));
-    text += html::label(16, middle + 4, "M" + std::to_string(model), "title") +
-            html::label(58, middle + 4, std::string(loss_words(model)) + (paper_model(model).batch_norm ? ", BN" : ""),
+    text += html::label(16, middle, "M" + std::to_string(model), "title") +
+            html::label(58, middle, std::string(loss_words(model)) + (paper_model(model).batch_norm ? ", BN" : ""),
                         "name");
     if (ours.count == 0) {
-      text += html::label(left + 8, middle + 4, "not in this study", "small");
+      text += html::label(left + 8, middle, "not in this study", "small");
     } else {
       const bool vanilla = paper_model(model).term == PhysicsTerm::none;
-      text += html::rectangle(left, middle - 9, x(1e3 * ours.mean) - left, 18,
+      text += html::rectangle(left, middle - 13, x(1e3 * ours.mean) - left, 17,
                               std::string(detail::bar_colour(model)) + (vanilla ? " vanilla" : ""));
       if (ours.count > 1) {
-        const double from = x(1e3 * (ours.mean - ours.deviation)), to = x(1e3 * (ours.mean + ours.deviation));
-        text += html::line(from, middle, to, middle, "deviation") +
-                html::line(from, middle - 4, from, middle + 4, "deviation") +
-                html::line(to, middle - 4, to, middle + 4, "deviation");
+        const double bar = middle - 4.5, from = x(1e3 * (ours.mean - ours.deviation)), to = x(1e3 * (ours.mean + ours.deviation));
+        text += html::line(from, bar, to, bar, "deviation") +
+                html::line(from, bar - 4, from, bar + 4, "deviation") +
+                html::line(to, bar - 4, to, bar + 4, "deviation");
       }
     }
     const PaperEntry& paper = paper_entry(model, 0);
-    const double at_paper = x(1e3 * paper.mean);
-    text += html::line(x(1e3 * (paper.mean - paper.deviation)), middle, x(1e3 * (paper.mean + paper.deviation)), middle,
+    const double at_paper = x(1e3 * paper.mean), below = middle + 10;
+    text += html::line(x(1e3 * (paper.mean - paper.deviation)), below, x(1e3 * (paper.mean + paper.deviation)), below,
                        "reference-line") +
-            html::path("M" + html::at(at_paper - 5) + " " + html::at(middle) + "l5 -5l5 5l-5 5z", "reference");
+            html::path("M" + html::at(at_paper - 5) + " " + html::at(below) + "l5 -5l5 5l-5 5z", "reference");
   }
   text += html::line(left, top, left, bottom, "axis");
   return html::svg(1060, bottom + 44, text, "mean absolute errors by model");

@@ -244,6 +244,12 @@ inline std::vector<html::Cell> joined(std::vector<html::Cell> first, const std::
 
 }  // namespace detail
 
+/// A measure with its unit, as HTML.
+inline std::string measure_name(std::size_t measure) {
+  const Measure& m = table3_measures[measure];
+  return std::string(m.label) + (m.scale > 1 ? ", 10<sup>&minus;3</sup>" : ", &#176;");
+}
+
 inline std::string comparisons_section(const std::vector<Comparison>& comparisons) {
   std::string body;
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
@@ -256,7 +262,7 @@ inline std::string comparisons_section(const std::vector<Comparison>& comparison
     const std::optional<double> paper = paper_change(c.pair, c.measure);
     body += html::row(
         detail::joined({{opens ? detail::pair_text(c.pair) : "", "key"},
-                        {std::string(table3_measures[c.measure].label), "key"},
+                        {measure_name(c.measure), "key"},
                         {html::number(scale * c.result.baseline_mean, 3), "n"},
                         {html::number(scale * c.result.candidate_mean, 3), "n"}},
                        detail::joined(detail::result_cells(c.result),
@@ -278,7 +284,7 @@ inline std::string flights_table(const std::vector<FlightsComparison>& all, cons
                           const std::string& kind) {
       const double scale = table3_measures[f.measure].scale;
       body += html::row(detail::joined({{opens ? detail::pair_text(f.pair) : "", "key"},
-                                        {opens ? table3_measures[f.measure].label : "", "key"},
+                                        {opens ? measure_name(f.measure) : "", "key"},
                                         {flight, "key"},
                                         {absolute ? html::number(scale * result.baseline_mean, 3) : "", "n"},
                                         {absolute ? html::number(scale * result.candidate_mean, 3) : "", "n"}},
