@@ -228,8 +228,7 @@ inline const char* style() {
 @media (prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e4e6e8;--soft:#a6adb5;--faint:#7d858e;--rule:#343a41;
 --panel:#1d2126;--blue:#79b0e6;--pale:#3f6a94;--orange:#ee9560;--green:#76c596;--amber:#e0b354;--red:#ef8a80;--purple:#b39ce0}}
 @media print{:root{--paper:#fff;--ink:#000;--soft:#444;--faint:#666;--rule:#bbb;--panel:#f6f6f6;--blue:#1f5f9e;--pale:#9cc0e2;
---orange:#c8561b;--green:#2f7d4f;--amber:#9a6a00;--red:#b0322b;--purple:#6b4fa0}
-body{font-size:10.5pt}main{max-width:none;padding:0}figure,tr{break-inside:avoid}h2{break-after:avoid}}
+--orange:#c8561b;--green:#2f7d4f;--amber:#9a6a00;--red:#b0322b;--purple:#6b4fa0}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);font:17px/1.58 Charter,"Bitstream Charter","Source Serif 4",Georgia,serif}
 main{max-width:1120px;margin:0 auto;padding:56px 36px 96px}
@@ -286,6 +285,11 @@ svg .mean{stroke:var(--ink);stroke-width:2.4}svg .deviation{stroke:var(--ink);st
 svg .reference{fill:var(--paper);stroke:var(--orange);stroke-width:1.8}svg .reference-line{stroke:var(--orange);stroke-width:1.1;opacity:.7}
 svg .red{fill:#c65a50}svg .green{fill:#4f9c6c}svg .yellow{fill:#d3a83f}svg .orange{fill:#d98243}svg .violet{fill:#8a76b8}svg .blue{fill:#5b8fc0}
 svg .vanilla{opacity:.62}
+@page{size:A4;margin:15mm 14mm}
+@media print{body{font-size:10pt}main{max-width:none;padding:0}nav{display:none}
+figure,tr,.claim,.gap{break-inside:avoid}h2,h3{break-after:avoid}h2{margin-top:1.6em}
+.wide{overflow:visible}table{font-size:7.1pt}th,td{padding:2.5px 4px}.claim table{min-width:0;font-size:6.9pt}
+.claim{grid-template-columns:2em 1fr auto}.badge{font-size:7pt;padding:1px 6px}table.overview td{font-size:8pt}}
 )css";
 }
 

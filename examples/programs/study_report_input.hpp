@@ -58,7 +58,7 @@ inline std::string flight_pictures(const std::string& folder, std::string& left_
        {"wind.svg", "Fig. 6", "D3: drag and what the wind adds along the body&rsquo;s axes; below, the wind."}}};
   std::vector<std::filesystem::path> files;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/flights", error))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder + "/flights", error))
     files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::string text;

@@ -67,7 +67,7 @@ inline std::string summary(const std::vector<Comparison>& comparisons, const std
     text +=
         paragraph("On " + std::to_string(f.flights.size()) + " further flight" + (f.flights.size() == 1 ? "" : "s") +
                   " the same comparison gives " + html::number(100 * f.of_means.relative_difference, 1, true) +
-                  "&#160;% on average, lower on " + std::to_string(f.of_means.wins) + ".");
+                  "&#160;% on average, lower on " + std::to_string(f.of_means.wins) + " of " + std::to_string(f.of_means.pairs) + ".");
   }
   return text;
 }
@@ -163,9 +163,9 @@ inline std::string report_page(const ReportInput& input, const std::vector<Compa
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
       "<meta name=\"color-scheme\" content=\"light dark\"/>"
-      "<title>Physics-informed quadrotor dynamics: the study, reproduced</title>\n<style>";
+      "<title>Physics-informed quadrotor dynamics: the paper&rsquo;s study, run again</title>\n<style>";
   page += html::style();
-  page += "</style></head>\n<body><main>\n<h1>Physics-informed quadrotor dynamics: the study, reproduced</h1>\n";
+  page += "</style></head>\n<body><main>\n<h1>Physics-informed quadrotor dynamics: the paper&rsquo;s study, run again</h1>\n";
   page +=
       "<p class=\"lead\">The models of Table 2 of Gu, Primatesta and Rizzo, <i>Physics-informed Neural Network for "
       "Quadrotor Dynamical Modeling</i> (Robotics and Autonomous Systems 171, 2024), trained and judged by pinnquad on "

@@ -76,6 +76,14 @@ rm -r edited/series
 verdict edited 2.1 "not judged"
 grep -q 'no series/model2.csv' edited/report.html || fail "the page does not say which figures are left out"
 look edited
+grep -q 'hold what they show: .*Fig. 5, Fig. 6' edited/report.html || fail "the page does not say that Figs. 5 and 6 are left out"
+edit '{ print }' # pictures of flights, as fly --pictures leaves them
+mkdir -p edited/flights/d2 edited/flights/d3
+for picture in d2/ground_effect d3/wind; do echo "<svg>$picture</svg>" >"edited/flights/$picture.svg"; done
+"$driver" report edited
+grep -q "base64,$(base64 -w 0 edited/flights/d2/ground_effect.svg)\"" edited/report.html || fail "Fig. 5 is not in the page"
+grep -q "base64,$(base64 -w 0 edited/flights/d3/wind.svg)\"" edited/report.html || fail "Fig. 6 is not in the page"
+look edited
 edit '{ print }'
 tail -n 1 planted/rows.csv | cut -c1-40 | tr -d '\n' >>edited/rows.csv # a run that was killed while it wrote
 "$driver" report edited
