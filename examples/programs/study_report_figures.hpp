@@ -19,7 +19,7 @@
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "study_report_comparisons.hpp"
-#include "study_report_html.hpp"
+#include "study_report_drawing.hpp"
 
 namespace programs {
 
@@ -89,9 +89,9 @@ inline std::string errors_figure(const Study& study, const std::vector<int>& mod
     const int model = models[i];
     const double middle = top + row_height * (static_cast<double>(i) + 0.5);
     const pinnquad::Summary ours = pinnquad::summarize(study.values(model, "mae"));
-    text += html::label(16, middle, "M" + std::to_string(model), "title") +
-            html::label(58, middle, std::string(loss_words(model)) + (paper_model(model).batch_norm ? ", BN" : ""),
-                        "name");
+    text +=
+        html::label(16, middle, "M" + std::to_string(model), "title") +
+        html::label(58, middle, std::string(loss_words(model)) + (paper_model(model).batch_norm ? ", BN" : ""), "name");
     if (ours.count == 0) {
       text += html::label(left + 8, middle, "not in this study", "small");
     } else {
@@ -99,9 +99,9 @@ inline std::string errors_figure(const Study& study, const std::vector<int>& mod
       text += html::rectangle(left, middle - 13, x(1e3 * ours.mean) - left, 17,
                               std::string(detail::bar_colour(model)) + (vanilla ? " vanilla" : ""));
       if (ours.count > 1) {
-        const double bar = middle - 4.5, from = x(1e3 * (ours.mean - ours.deviation)), to = x(1e3 * (ours.mean + ours.deviation));
-        text += html::line(from, bar, to, bar, "deviation") +
-                html::line(from, bar - 4, from, bar + 4, "deviation") +
+        const double bar = middle - 4.5, from = x(1e3 * (ours.mean - ours.deviation)),
+                     to = x(1e3 * (ours.mean + ours.deviation));
+        text += html::line(from, bar, to, bar, "deviation") + html::line(from, bar - 4, from, bar + 4, "deviation") +
                 html::line(to, bar - 4, to, bar + 4, "deviation");
       }
     }

@@ -13,6 +13,7 @@
 #include "study_report_figures.hpp"
 #include "study_report_input.hpp"
 #include "study_report_sections.hpp"
+#include "study_report_style.hpp"
 
 namespace programs {
 namespace detail {
@@ -64,10 +65,10 @@ inline std::string summary(const std::vector<Comparison>& comparisons, const std
   }
   for (const FlightsComparison& f : flights) {
     if (f.pair.baseline != 2 || f.pair.candidate != 4 || f.measure != 0) continue;
-    text +=
-        paragraph("On " + std::to_string(f.flights.size()) + " further flight" + (f.flights.size() == 1 ? "" : "s") +
-                  " the same comparison gives " + html::number(100 * f.of_means.relative_difference, 1, true) +
-                  "&#160;% on average, lower on " + std::to_string(f.of_means.wins) + " of " + std::to_string(f.of_means.pairs) + ".");
+    text += paragraph("On " + std::to_string(f.flights.size()) + " further flight" +
+                      (f.flights.size() == 1 ? "" : "s") + " the same comparison gives " +
+                      html::number(100 * f.of_means.relative_difference, 1, true) + "&#160;% on average, lower on " +
+                      std::to_string(f.of_means.wins) + " of " + std::to_string(f.of_means.pairs) + ".");
   }
   return text;
 }
@@ -165,7 +166,9 @@ inline std::string report_page(const ReportInput& input, const std::vector<Compa
       "<meta name=\"color-scheme\" content=\"light dark\"/>"
       "<title>Physics-informed quadrotor dynamics: the paper&rsquo;s study, run again</title>\n<style>";
   page += html::style();
-  page += "</style></head>\n<body><main>\n<h1>Physics-informed quadrotor dynamics: the paper&rsquo;s study, run again</h1>\n";
+  page +=
+      "</style></head>\n<body><main>\n<h1>Physics-informed quadrotor dynamics: the paper&rsquo;s study, run "
+      "again</h1>\n";
   page +=
       "<p class=\"lead\">The models of Table 2 of Gu, Primatesta and Rizzo, <i>Physics-informed Neural Network for "
       "Quadrotor Dynamical Modeling</i> (Robotics and Autonomous Systems 171, 2024), trained and judged by pinnquad on "
@@ -184,7 +187,9 @@ inline std::string report_page(const ReportInput& input, const std::vector<Compa
       "claims", "The paper&rsquo;s claims",
       paragraph(
           "What Discussions 1 to 5 claim, in our words, each with the rule that decides and the figures it decides "
-          "on. A comparison is paired over seeds; &ldquo;better&rdquo; needs a lower mean and p &lt; 0.05.") +
+          "on. A comparison is paired over seeds; &ldquo;better&rdquo; needs a lower mean and p &lt; 0.05. &ldquo;In "
+          "part&rdquo; may rest on lower means "
+          "alone, which chance can make: the lines below then say &ldquo;unsure&rdquo;.") +
           (seeds < few_seeds
                ? note("With fewer than six seeds no p-value can fall below 0.05: &ldquo;in part&rdquo; is "
                       "then the most that a paired claim can reach.")
@@ -240,8 +245,11 @@ inline std::string report_page(const ReportInput& input, const std::vector<Compa
       "table2", "Table 2 as run",
       table2_section(study, input.settings) +
           note("Weights: those after the last epoch (final) or those of the lowest validation error (best). The "
-               "reduced sets are always judged by their final weights: models 9 and 10 leave no rows to "
-               "validate with."));
+               "reduced sets are judged by their final weights where there are any: models 9 and 10 leave no rows to "
+               "validate with." +
+               (input.settings.all.contains("patience")
+                    ? " Early stopping: patience " + json_text(input.settings.all["patience"]) + " epochs."
+                    : std::string(" Early stopping: none named in study.json."))));
   page += section("settings", "Settings", settings_section(input.settings));
   return page + "</main></body></html>\n";
 }
