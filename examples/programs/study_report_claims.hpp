@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <optional>
@@ -57,6 +58,7 @@ struct Claim {
 namespace detail {
 
 inline std::string format(const char* pattern, double value) {
+  if (!std::isfinite(value)) return "-";  // a change of nothing
   char text[64];
   std::snprintf(text, sizeof text, pattern, value);
   return text;

@@ -96,7 +96,7 @@ inline std::vector<std::string> study_columns() {
 /// A last line without an end (a run was killed while it wrote) is left out and counted in `cut_rows` if it is not whole.
 inline std::vector<StudyRow> read_study_rows(const std::string& path, std::size_t& cut_rows) {
   cut_rows = 0;
-  constexpr std::uint64_t most = ~std::uint64_t{0};
+  constexpr std::uint64_t most = ~std::uint64_t{0}, most_epochs = 1000000;
   const std::string text = pinnquad::detail::file_text(path);
   const std::vector<std::string> columns = study_columns();
   std::string_view rest = text;
@@ -133,7 +133,7 @@ inline std::vector<StudyRow> read_study_rows(const std::string& path, std::size_
     if (row.flight.name.empty()) at.refuse(1, "a flight's name");
     row.flight.seed = at.count(2, 0, most, "a seed");
     row.seed = at.count(3, 0, most, "a seed");
-    row.epochs = at.count(4, 0, most, "a number of epochs");
+    row.epochs = at.count(4, 0, most_epochs, "a number of epochs");
     row.weights = std::string(at.text(5));
     if (row.weights != "final" && row.weights != "best") at.refuse(5, "final or best");
     for (std::size_t column = 6; column < columns.size(); ++column) row.figures[columns[column]] = at.number(column);

@@ -97,13 +97,14 @@ inline StudySettings read_study_settings(const std::string& path) {
   }
   const nlohmann::json recipe = find("recipe");
   if (recipe.is_object()) {
-    const auto number = [&](const char* key, double otherwise) {
-      return recipe.contains(key) && recipe[key].is_number() ? recipe[key].get<double>() : otherwise;
+    const auto number = [&](const char* key, double least, double most, double otherwise) {
+      const double value = recipe.contains(key) && recipe[key].is_number() ? recipe[key].get<double>() : otherwise;
+      return value >= least && value <= most ? value : otherwise;
     };
     pinnquad::CyclicalAnnealing& annealing = settings.annealing;
-    annealing = {number("lambda_max", annealing.maximum), static_cast<int>(number("cycles", annealing.cycles)),
-                 number("hold", annealing.hold)};
-    if (!(annealing.maximum > 0) || annealing.cycles < 1) annealing = {};
+    annealing.maximum = number("lambda_max", 1e-9, 1e9, annealing.maximum);
+    annealing.cycles = static_cast<int>(number("cycles", 1, 1e6, annealing.cycles));
+    annealing.hold = number("hold", 0, 1, annealing.hold);
   }
   return settings;
 }
