@@ -3,8 +3,10 @@
 #   check.py DIR
 import csv
 import itertools
+import json
 import math
 import re
+import statistics
 import sys
 from html.parser import HTMLParser
 
@@ -99,4 +101,15 @@ for line in csv.DictReader(open(folder + "/comparisons.csv")):
     require(abs(float(line["rank_biserial"]) - effect) < 1e-12, f"{where}: effect size")
     require(not baseline or abs(float(line["relative_difference"]) - change) < 1e-9, f"{where}: change is {change}")
     checked += 1
+settings = json.load(open(folder + "/study.json"))
+for line in csv.DictReader(open(folder + "/table3.csv")):
+    model, measure = line["model"], line["measure"]
+    flight = "d1" if int(model) <= 10 else "d2" if int(model) <= 12 else "d3"
+    values = list(column(model, flight, str(settings.get("flight_seed")), measure).values())
+    if not values or "flight_seed" not in settings:
+        continue
+    require(int(line["seeds"]) == len(values), f"table3.csv, model {model}: seeds")
+    require(math.isclose(float(line["mean"]), statistics.fmean(values), rel_tol=1e-12), f"table3.csv, model {model}, {measure}: mean")
+    if len(values) > 1:
+        require(math.isclose(float(line["deviation"]), statistics.stdev(values), rel_tol=1e-9), f"table3.csv, model {model}, {measure}: deviation")
 print(f"the page is well-formed and alone; {checked} comparisons are as the rows say")
