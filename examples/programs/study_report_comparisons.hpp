@@ -128,8 +128,9 @@ struct FlightsComparison {
   ModelPair pair{};
   std::size_t measure = 0;
   std::vector<Comparison> flights;
-  pinnquad::PairedComparison trainings;  ///< all of them; each divided by its flight's baseline mean
-  pinnquad::PairedComparison of_means;   ///< one pair per flight: its mean over the seeds, divided likewise
+  /// All of them, each divided by its flight's baseline mean; nothing if they are more than the exact test takes.
+  std::optional<pinnquad::PairedComparison> trainings;
+  pinnquad::PairedComparison of_means;  ///< one pair per flight: its mean over the seeds, divided likewise
 };
 
 inline std::optional<FlightsComparison> compare_flights(const Study& study, const ModelPair& pair,
@@ -149,8 +150,8 @@ inline std::optional<FlightsComparison> compare_flights(const Study& study, cons
     baseline_means.push_back(1);
     all.flights.push_back(std::move(*one));
   }
-  if (all.flights.empty() || candidate.size() > pinnquad::most_pairs) return std::nullopt;
-  all.trainings = pinnquad::compare_paired(candidate, baseline);
+  if (all.flights.empty() || all.flights.size() > pinnquad::most_pairs) return std::nullopt;
+  if (candidate.size() <= pinnquad::most_pairs) all.trainings = pinnquad::compare_paired(candidate, baseline);
   all.of_means = pinnquad::compare_paired(candidate_means, baseline_means);
   return all;
 }

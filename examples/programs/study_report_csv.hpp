@@ -67,7 +67,7 @@ inline std::string comparisons_csv(const std::vector<Comparison>& comparisons,
     for (const Comparison& c : f.flights) {
       line(c.pair, c.measure, c.flight.name, std::to_string(c.flight.seed), c.result);
     }
-    line(f.pair, f.measure, "further flights, trainings", "", f.trainings);
+    if (f.trainings) line(f.pair, f.measure, "further flights, trainings", "", *f.trainings);
     line(f.pair, f.measure, "further flights, means", "", f.of_means);
   }
   return text;

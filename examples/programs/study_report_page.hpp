@@ -228,7 +228,9 @@ inline std::string report_page(const ReportInput& input, const std::vector<Compa
                            "give.")
                : flights_table(flights, study) +
                      note("&ldquo;All trainings&rdquo; divides each training by its flight&rsquo;s baseline mean and "
-                          "takes all of them as independent, which those of one flight are not. &ldquo;Means&rdquo; "
+                          "takes all of them as independent, which those of one flight are not; it is left out above " +
+                          std::to_string(pinnquad::most_pairs) +
+                          " trainings. &ldquo;Means&rdquo; "
                           "has one pair per flight; with n flights its p is never below 2<sup>1&minus;n</sup>. The "
                           "flight of Table 2 is in neither.")));
   page += section("figures", "Figures", figures_section(input));

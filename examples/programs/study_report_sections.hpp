@@ -299,7 +299,7 @@ inline std::string flights_table(const std::vector<FlightsComparison>& all, cons
     for (const Comparison& c : f.flights) {
       line(html::escaped(c.flight.name) + ", seed " + std::to_string(c.flight.seed), c.result, true, "");
     }
-    line("all trainings on further flights", f.trainings, false, "");
+    if (f.trainings) line("all trainings on further flights", *f.trainings, false, "");
     line("means of the further flights", f.of_means, false, "group");
   }
   return html::table(
