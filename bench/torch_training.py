@@ -7,9 +7,9 @@
 
 Four rows: the plain network and the one with batch norm, each with the mean squared error alone and with the local monotonicity
 loss. The network is traced and Adam takes all tensors at once (foreach), the fastest that PyTorch 1.13 was found to do here;
---eager trains as most people write it. Batches are cut from one shuffled index tensor, which is the fastest way; --data-loader takes them from
-torch.utils.data.DataLoader, as the paper's Algorithm 1 names it. The median of the epochs is printed after one that warms up,
-with the fastest and the slowest. Needs Debian's python3-torch.
+--eager trains as most people write it. Batches are cut from one shuffled index tensor, which is the fastest way;
+--data-loader takes them from torch.utils.data.DataLoader, as the paper's Algorithm 1 names it. The median of the epochs is
+printed after one that warms up, with the fastest and the slowest. Needs Debian's python3-torch.
 """
 import argparse
 import statistics
