@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/split.hpp"
+#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
