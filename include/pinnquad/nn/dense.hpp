@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fully connected layer: y = W x + b.
+// Fully connected layer: y = W x + b, or y = W x where a batch norm that follows would subtract b again.
 // Parameters: W row-major (row = output, column = input), then b. This layout holds from training to flash.
 #pragma once
 
@@ -26,6 +26,25 @@ template <int Out>
 struct Dense {
   template <class Scalar, int In>
   using Bind = DenseLayer<Scalar, In, Out>;
+};
+
+template <class ScalarType, int In, int Out>
+struct DenseWithoutBiasLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = In;
+  static constexpr int outputs = Out;
+  static constexpr int parameter_count = Out * In;
+
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    multiply_row_major<Out, In>(parameters, x, y);
+  }
+};
+
+/// `Out` neurons without bias: what stands before a BatchNorm.
+template <int Out>
+struct DenseWithoutBias {
+  template <class Scalar, int In>
+  using Bind = DenseWithoutBiasLayer<Scalar, In, Out>;
 };
 
 }  // namespace pinnquad

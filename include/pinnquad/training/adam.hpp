@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Adam with coupled weight decay (Kingma and Ba 2015; PyTorch's `Adam(weight_decay=...)`).
-// Contract of an optimiser: `Step begin(long step)` once per batch, `update<Pack>(step, p, g, first, second, count)` per layer.
+// The contract of an optimiser: training/optimizer.hpp.
 #pragma once
 
 #include <cmath>

@@ -19,6 +19,7 @@ struct BatchLayer {
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = false;
   static constexpr bool needs_output = true;  ///< backward() looks at y, so nobody may overwrite it
+  static constexpr bool couples_samples = false;  ///< outputs depend on the other samples of the batch (batch_norm.hpp)
   static constexpr int size = padded<Pack>(Layer::parameter_count);
   static constexpr int x_stride = padded<Pack>(Layer::inputs);
   static constexpr int y_stride = padded<Pack>(Layer::outputs);
@@ -51,14 +52,17 @@ struct BatchLayer {
   }
 };
 
-/// Dense: weights stand input by input, each row padded, the bias as last row; a transposed copy serves dX.
-template <class Scalar, int In, int Out, class Pack, int BatchSize>
-struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> {
+namespace detail {
+
+/// Dense: weights stand input by input, each row padded, the bias (if any) as last row; a transposed copy serves dX.
+template <class Scalar, int In, int Out, bool HasBias, class Pack>
+struct BatchDense {
   static constexpr bool in_place = false;
   static constexpr bool needs_output = false;
+  static constexpr bool couples_samples = false;
   static constexpr int x_stride = padded<Pack>(In);
   static constexpr int y_stride = padded<Pack>(Out);
-  static constexpr int size = (In + 1) * y_stride;
+  static constexpr int size = (In + (HasBias ? 1 : 0)) * y_stride;
 
   alignas(64) Scalar stored[size] = {};           // [input][output], then the bias
   alignas(64) Scalar gradient[size] = {};
@@ -67,7 +71,7 @@ struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> {
   void load(const Scalar* parameters) noexcept {
     for (int out = 0; out < Out; ++out) {
       for (int in = 0; in < In; ++in) stored[in * y_stride + out] = parameters[out * In + in];
-      stored[In * y_stride + out] = parameters[Out * In + out];
+      if constexpr (HasBias) stored[In * y_stride + out] = parameters[Out * In + out];
     }
     refresh();
   }
@@ -81,19 +85,21 @@ struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> {
   }
 
   void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
-    multiply_batch<Pack, x_stride, y_stride>(x, stored, In, stored + In * y_stride, y, samples);
+    multiply_batch<Pack, x_stride, y_stride>(x, stored, In, HasBias ? stored + In * y_stride : nullptr, y, samples);
   }
   void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous, int samples) noexcept {
     multiply_transposed<Pack, In, x_stride, y_stride>(x, delta, samples, gradient);
-    constexpr int vectors = y_stride / Pack::width;
-    Pack sum[vectors];
-    for (Pack& s : sum) s = Pack::broadcast(Scalar(0));
-    for (int i = 0; i < samples; ++i) {
-      unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-        sum[v] = sum[v] + Pack::load(delta + i * y_stride + v * Pack::width);
-      });
+    if constexpr (HasBias) {
+      constexpr int vectors = y_stride / Pack::width;
+      Pack sum[vectors];
+      for (Pack& s : sum) s = Pack::broadcast(Scalar(0));
+      for (int i = 0; i < samples; ++i) {
+        unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
+          sum[v] = sum[v] + Pack::load(delta + i * y_stride + v * Pack::width);
+        });
+      }
+      for (int v = 0; v < vectors; ++v) sum[v].store(gradient + In * y_stride + v * Pack::width);
     }
-    for (int v = 0; v < vectors; ++v) sum[v].store(gradient + In * y_stride + v * Pack::width);
     if (previous != nullptr) {
       multiply_batch<Pack, y_stride, x_stride>(delta, by_output, Out, nullptr, previous, samples);
     }
@@ -103,10 +109,19 @@ struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> {
   static void gather(const Scalar* from, Scalar* parameters) noexcept {
     for (int out = 0; out < Out; ++out) {
       for (int in = 0; in < In; ++in) parameters[out * In + in] = from[in * y_stride + out];
-      parameters[Out * In + out] = from[In * y_stride + out];
+      if constexpr (HasBias) parameters[Out * In + out] = from[In * y_stride + out];
     }
   }
 };
+
+}  // namespace detail
+
+template <class Scalar, int In, int Out, class Pack, int BatchSize>
+struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> : detail::BatchDense<Scalar, In, Out, true, Pack> {};
+
+template <class Scalar, int In, int Out, class Pack, int BatchSize>
+struct BatchLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, BatchSize, void>
+    : detail::BatchDense<Scalar, In, Out, false, Pack> {};
 
 /// Element-wise: forward works on its own buffer or on that of the layer before, dx overwrites dy. The padding of y may hold anything finite; that of dy stays zero.
 template <class Layer, class Pack, int BatchSize>
@@ -116,6 +131,7 @@ struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = true;  ///< if the layer before does not need its output
   static constexpr bool needs_output = true;
+  static constexpr bool couples_samples = false;
   static constexpr int size = 0;
   static constexpr int stride = padded<Pack>(Layer::outputs);
 

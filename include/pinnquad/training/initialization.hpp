@@ -19,6 +19,11 @@ struct XavierUniform {
     for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
     for (int i = 0; i < Out; ++i) parameters[Out * In + i] = Scalar(0);
   }
+  template <class Scalar, int In, int Out, class Engine>
+  void initialise(DenseWithoutBiasLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
+    const double limit = std::sqrt(6.0 / (In + Out));
+    for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
+  }
   template <class Layer, class Scalar, class Engine>
   void initialise(Layer, Scalar* parameters, Engine& engine) const {
     if constexpr (brings_own<Layer, Scalar, Engine>(0)) {

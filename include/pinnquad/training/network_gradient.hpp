@@ -6,6 +6,7 @@
 
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/training/batch_layer.hpp"
+#include "pinnquad/training/batch_norm.hpp"
 
 namespace pinnquad {
 
@@ -58,19 +59,28 @@ class NetworkGradient {
   /// dL/dy of one sample; the whole row up to output_stride is the network's, entries past `outputs` stay zero.
   Scalar* output_delta(int sample) noexcept { return delta_[0] + sample * output_stride; }
 
-  /// Outputs of the first `samples` inputs.
+  /// Outputs of the first `samples` inputs, batch norm by the statistics of these samples.
   /// Rows past `samples` are cleared first: what a larger batch left there, even NaN, must not reach the gradient.
   void forward(int samples) noexcept {
-    const int rows = tiled(samples);
-    for (int i = samples * input_stride; i < rows * input_stride; ++i) input_[i] = Scalar(0);
-    forward_from<0>(rows);
+    const int rows = clear_inputs_past(samples);
+    forward_from<0, true>(rows, samples);
+  }
+
+  /// The same with batch norm's running statistics: outputs of the network as it will fly. backward() does not fit this pass.
+  void predict(int samples) noexcept { forward_from<0, false>(clear_inputs_past(samples), samples); }
+
+  /// Running statistics follow the batch of the last forward().
+  void follow_statistics() noexcept {
+    each([&](auto& layer, auto) {
+      if constexpr (std::decay_t<decltype(layer)>::couples_samples) layer.follow_statistics();
+    });
   }
 
   /// Gradients of all layers. Rows of output_delta() past `samples` are cleared first.
   void backward(int samples) noexcept {
     const int rows = tiled(samples);
     for (int i = samples * output_stride; i < rows * output_stride; ++i) delta_[0][i] = Scalar(0);
-    backward_from<last>(delta_[0], delta_[1], rows);
+    backward_from<last>(delta_[0], delta_[1], rows, samples);
   }
 
   /// function(layer, integral_constant<index>) for every layer.
@@ -114,6 +124,12 @@ class NetworkGradient {
     return (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows;
   }
 
+  int clear_inputs_past(int samples) noexcept {
+    const int rows = tiled(samples);
+    for (int i = samples * input_stride; i < rows * input_stride; ++i) input_[i] = Scalar(0);
+    return rows;
+  }
+
   /// Where a layer's output stands: its own buffer, or that of the layer it works in.
   template <int Index>
   Scalar* activations() noexcept {
@@ -126,8 +142,8 @@ class NetworkGradient {
     }
   }
 
-  template <int Index>
-  void forward_from(int rows) noexcept {
+  template <int Index, bool Training>
+  void forward_from(int rows, int samples) noexcept {
     if constexpr (Index < layer_count) {
       auto& layer = std::get<Index>(layers_);
       if constexpr (Layer<Index>::in_place) {
@@ -137,23 +153,34 @@ class NetworkGradient {
           for (int i = 0; i < rows * stride<Index>; ++i) values[i] = before[i];
         }
         layer.forward(values, rows);
+      } else if constexpr (Layer<Index>::couples_samples) {
+        if constexpr (Training) {
+          layer.forward(activations<Index - 1>(), activations<Index>(), rows, samples);
+        } else {
+          layer.predict(activations<Index - 1>(), activations<Index>(), rows, samples);
+        }
       } else {
         layer.forward(activations<Index - 1>(), activations<Index>(), rows);
       }
-      forward_from<Index + 1>(rows);
+      forward_from<Index + 1, Training>(rows, samples);
     }
   }
 
   template <int Index>
-  void backward_from(Scalar* delta, Scalar* other, int rows) noexcept {
+  void backward_from(Scalar* delta, Scalar* other, int rows, int samples) noexcept {
     if constexpr (Index >= 0) {
       auto& layer = std::get<Index>(layers_);
       if constexpr (Layer<Index>::in_place) {
         layer.backward(activations<Index>(), delta, rows);
-        backward_from<Index - 1>(delta, other, rows);
+        backward_from<Index - 1>(delta, other, rows, samples);
       } else {
-        layer.backward(activations<Index - 1>(), activations<Index>(), delta, Index > 0 ? other : nullptr, rows);
-        backward_from<Index - 1>(other, delta, rows);
+        Scalar* previous = Index > 0 ? other : nullptr;
+        if constexpr (Layer<Index>::couples_samples) {
+          layer.backward(activations<Index - 1>(), delta, previous, rows, samples);
+        } else {
+          layer.backward(activations<Index - 1>(), activations<Index>(), delta, previous, rows);
+        }
+        backward_from<Index - 1>(other, delta, rows, samples);
       }
     }
   }

@@ -10,6 +10,7 @@
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/network.hpp"
+#include "pinnquad/training/folding.hpp"
 
 namespace pinnquad {
 
@@ -52,14 +53,15 @@ inline constexpr double envelope_margin = 0.1;
 /// bit that matters, but their products would be denormal and cost a hundred times an ordinary operation in flight.
 inline constexpr double negligible_weight = 1e-20;
 
-/// Joins a network with the scalers of its context and the envelope of its training rows.
+/// Joins a network with the scalers of its context and the envelope of its training rows. Batch norm is folded away: what is
+/// judged and exported is the network that flies.
 template <class NetworkType, class ContextType>
-TrainedModel<NetworkType, ContextType> make_trained_model(const NetworkType& network, const ContextType& context,
-                                                          const Flight& flight, const IndexRange& training) {
-  using Model = TrainedModel<NetworkType, ContextType>;
+TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network, const ContextType& context,
+                                                                  const Flight& flight, const IndexRange& training) {
+  using Model = TrainedModel<Folded<NetworkType>, ContextType>;
   using Scalar = typename Model::Scalar;
   Model model;
-  model.network = network;
+  model.network = folded(network);
   for (Scalar& weight : model.network.parameters) {
     if (std::abs(static_cast<double>(weight)) < negligible_weight) weight = Scalar(0);
   }

@@ -2,6 +2,7 @@
 // Trains a network: shuffled mini-batches, forward, loss, backward, optimiser step. Composition by type.
 #pragma once
 
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/flush_denormals.hpp"
 #include "pinnquad/training/network_gradient.hpp"
+#include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
@@ -28,6 +30,12 @@ struct TimeOrderedBatches {
   void arrange(std::vector<int>&, Engine&) const {}
 };
 
+/// Errors of a network on rows that it is not trained on; batch norm by its running statistics.
+struct ValidationErrors {
+  double mean_squared = 0;   ///< over rows and outputs, standardised: what Mse is on these rows
+  double mean_absolute = 0;  ///< over rows and outputs, in the unit of the output schema
+};
+
 /// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.5 MB for the paper's network:
 /// put it on the heap or a large stack).
 template <class NetworkType, class LossType, class OptimizerType, class ContextType, class Order = ShuffledBatches,
@@ -36,6 +44,9 @@ class Trainer {
   static_assert(is_network<NetworkType>, "pinnquad: Trainer's first argument is not a Network (nn/network.hpp)");
   static_assert(is_loss<LossType>,
                 "pinnquad: Trainer's second argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+  static_assert(is_optimizer<OptimizerType>,
+                "pinnquad: Trainer's third argument is not an optimiser; it needs begin() and update() "
+                "(training/optimizer.hpp)");
   static_assert(NetworkType::inputs == ContextType::Features::size,
                 "pinnquad: the network's input count differs from the feature set's size");
   static_assert(NetworkType::outputs == rotor_count, "pinnquad: the network's output count differs from the rotor count");
@@ -63,16 +74,21 @@ class Trainer {
     double sum = 0;
     for (int first = 0; first < data.size(); first += BatchSize) {
       const int size = data.size() - first < BatchSize ? data.size() - first : BatchSize;
+      batch_of_epoch_ = first / BatchSize;
+      batches_per_epoch_ = (data.size() + BatchSize - 1) / BatchSize;
       sum += size * static_cast<double>(batch(data, order_.data() + first, size));
     }
+    batch_of_epoch_ = 0;
     return data.size() > 0 ? sum / data.size() : 0.0;
   }
 
-  /// Loss of these rows and one optimiser step down its gradient.
+  /// Loss of these rows and one optimiser step down its gradient. Outside epoch(), a rate policy sees the beginning of the epoch
+  /// that was trained last.
   Scalar batch(const Data& data, const int* rows, int size) {
     const FlushDenormals flush;
     const Scalar value = differentiate(data, rows, size);
-    const auto step = optimizer_.begin(++steps_);
+    gradient_.follow_statistics();
+    const auto step = begin_step();
     gradient_.each([&](auto& layer, auto index) {
       if constexpr (std::decay_t<decltype(layer)>::size > 0) {
         auto& moments = std::get<decltype(index)::value>(moments_);
@@ -109,7 +125,33 @@ class Trainer {
     return value;
   }
 
-  /// The network as trained so far.
+  /// Errors of the network as trained so far on other rows, standardised by the same context; nothing is changed.
+  ValidationErrors validate(const Data& data) {
+    const FlushDenormals flush;
+    double squared = 0, absolute = 0;
+    for (int first = 0; first < data.size(); first += BatchSize) {
+      const int size = data.size() - first < BatchSize ? data.size() - first : BatchSize;
+      for (int i = 0; i < size; ++i) {
+        const Scalar* x = data.features_of(first + i);
+        Scalar* input = gradient_.input(i);
+        for (int k = 0; k < Network::inputs; ++k) input[k] = x[k];
+      }
+      gradient_.predict(size);
+      for (int i = 0; i < size; ++i) {
+        const Scalar* output = gradient_.output(i);
+        const Scalar* y = data.outputs_of(first + i);
+        for (std::size_t k = 0; k < rotor_count; ++k) {
+          const double difference = static_cast<double>(output[k]) - static_cast<double>(y[k]);
+          squared += difference * difference;
+          absolute += std::abs(difference) * context_.output.spread[k];
+        }
+      }
+    }
+    const double count = data.size() > 0 ? static_cast<double>(data.size()) * rotor_count : 1.0;
+    return {squared / count, absolute / count};
+  }
+
+  /// The network as trained so far, running statistics of batch norm included.
   Network network() const {
     Network result;
     gradient_.store(result.parameters);
@@ -142,6 +184,17 @@ class Trainer {
     using type = std::tuple<Moments<BatchLayer<Layers, Pack, BatchSize>::size>...>;
   };
 
+  auto begin_step() {
+    ++steps_;
+    if constexpr (follows_progress<OptimizerType>) {
+      const double epochs = context_.progress.epochs > 0 ? context_.progress.epochs : 1;
+      const double within = static_cast<double>(batch_of_epoch_) / batches_per_epoch_;
+      return optimizer_.begin(steps_, (context_.progress.epoch + within) / epochs);
+    } else {
+      return optimizer_.begin(steps_);
+    }
+  }
+
   LossType loss_;
   OptimizerType optimizer_;
   ContextType context_;
@@ -152,6 +205,8 @@ class Trainer {
   typename Batch::Gradient output_gradient_{};
   std::vector<int> order_;
   long steps_ = 0;
+  int batch_of_epoch_ = 0;
+  int batches_per_epoch_ = 1;
 };
 
 }  // namespace pinnquad

@@ -42,4 +42,16 @@ PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scala
   }
 }
 
+/// y = W x.
+template <int Rows, int Columns, class Scalar>
+PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* x, Scalar* y) noexcept {
+  for (int row = 0; row < Rows; ++row) {
+    Scalar sum(0);
+    for (int column = 0; column < Columns; ++column) {
+      sum = multiply_add(weight[row * Columns + column], x[column], sum);
+    }
+    y[row] = sum;
+  }
+}
+
 }  // namespace pinnquad

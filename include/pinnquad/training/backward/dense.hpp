@@ -23,4 +23,18 @@ struct BackwardRule<DenseLayer<Scalar, In, Out>> {
   }
 };
 
+template <class Scalar, int In, int Out>
+struct BackwardRule<DenseWithoutBiasLayer<Scalar, In, Out>> {
+  static void backward(const Scalar* parameters, const Scalar* x, const Scalar*, const Scalar* dy, Scalar* dx,
+                       Scalar* parameter_gradient) noexcept {
+    for (int column = 0; column < In; ++column) dx[column] = Scalar(0);
+    for (int row = 0; row < Out; ++row) {
+      for (int column = 0; column < In; ++column) {
+        dx[column] += parameters[row * In + column] * dy[row];
+        parameter_gradient[row * In + column] += dy[row] * x[column];
+      }
+    }
+  }
+};
+
 }  // namespace pinnquad

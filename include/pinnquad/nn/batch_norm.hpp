@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Batch normalisation (Ioffe and Szegedy 2015) with running statistics, and the paper's network with it.
+// Training by batch statistics: training/batch_norm.hpp. An exported network has none left: training/folding.hpp.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/nn/network.hpp"
+
+namespace pinnquad {
+
+/// Added to a variance before its root is taken (PyTorch's `eps`).
+inline constexpr double batch_norm_epsilon = 1e-5;
+
+/// y_i = gamma_i (x_i - mean_i) / sqrt(variance_i + 1e-5) + beta_i.
+/// Parameters: gamma, beta, running mean, running variance, `Size` each. Training moves gamma and beta down the gradient and
+/// lets the other two follow the batches.
+template <class ScalarType, int Size>
+struct BatchNormLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = Size;
+  static constexpr int outputs = Size;
+  static constexpr int parameter_count = 4 * Size;
+
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    using std::sqrt;
+    const Scalar* gamma = parameters;
+    const Scalar* beta = parameters + Size;
+    const Scalar* mean = parameters + 2 * Size;
+    const Scalar* variance = parameters + 3 * Size;
+    for (int i = 0; i < Size; ++i) {
+      y[i] = gamma[i] * ((x[i] - mean[i]) / sqrt(variance[i] + Scalar(batch_norm_epsilon))) + beta[i];
+    }
+  }
+
+  /// gamma 1, beta 0, mean 0, variance 1: nearly the identity. Draws nothing.
+  template <class Engine>
+  static void initialise(Scalar* parameters, Engine&) noexcept {
+    for (int i = 0; i < Size; ++i) {
+      parameters[i] = Scalar(1);
+      parameters[Size + i] = Scalar(0);
+      parameters[2 * Size + i] = Scalar(0);
+      parameters[3 * Size + i] = Scalar(1);
+    }
+  }
+};
+
+struct BatchNorm {
+  template <class Scalar, int In>
+  using Bind = BatchNormLayer<Scalar, In>;
+};
+
+namespace detail {
+template <class Scalar, class InputSize, int Count, int Width, int Out, class Activation, class... Specs>
+struct MakeBatchNormMlp : MakeBatchNormMlp<Scalar, InputSize, Count - 1, Width, Out, Activation, DenseWithoutBias<Width>,
+                                           BatchNorm, Activation, Specs...> {};
+template <class Scalar, class InputSize, int Width, int Out, class Activation, class... Specs>
+struct MakeBatchNormMlp<Scalar, InputSize, 0, Width, Out, Activation, Specs...> {
+  using type = Network<Scalar, InputSize, Specs..., Dense<Out>>;
+};
+template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
+struct BatchNormMlp;
+template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
+struct BatchNormMlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
+    : MakeBatchNormMlp<Scalar, InputSize, Count, Width, OutputSize::size, Activation> {};
+}  // namespace detail
+
+/// The paper's network with batch norm between Dense and activation (NOTES #15):
+/// `BatchNormMlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>`.
+template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
+using BatchNormMlp = typename detail::BatchNormMlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
+
+}  // namespace pinnquad
