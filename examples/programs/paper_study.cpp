@@ -26,11 +26,13 @@ struct Options {
   std::string out;
   std::string models;
   std::string shard = "1/1";
+  std::string weights = "final";
   std::vector<std::string> parts;
   int seeds = 20;
   int epochs = 300;
   int flights = 4;
   std::uint64_t flight_seed = 1;
+  int patience = 0;
   unsigned threads = 0;
 };
 
@@ -43,6 +45,14 @@ void add_campaign_options(CLI::App& app, Options& options) {
       ->check(CLI::Range(1, 100000));
   app.add_option("--flight-seed", options.flight_seed, "seed of the flights d1, d2, d3; further flights count on from it")
       ->capture_default_str();
+  app.add_option("--weights", options.weights,
+                 "final: judge the weights after the last epoch; best: those of the least validation error")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"final", "best"}));
+  app.add_option("--patience", options.patience,
+                 "end a training after this many epochs without a lesser validation error; 0: never")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100000));
   app.add_option("--threads", options.threads, "trainings at once (default: all cores)")->check(CLI::Range(1u, 1024u));
   app.add_option("--shard", options.shard, "run part i of n only, for job arrays (docs/study.md)")
       ->type_name("i/n")
@@ -56,6 +66,8 @@ int run_campaign(const Options& options, const char* kind, std::vector<study::Co
   plan.seeds = options.seeds;
   plan.epochs = options.epochs;
   plan.flights = options.flights;
+  plan.best_weights = options.weights == "best";
+  plan.patience = options.patience;
   plan.flight_seed = options.flight_seed;
   plan.shard = study::parse_shard(options.shard);
   programs::catch_interrupt();

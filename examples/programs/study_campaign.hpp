@@ -36,11 +36,12 @@ inline std::vector<Job> all_jobs(const Plan& plan) {
   for (const Contender& contender : plan.contenders) {
     for (const std::uint64_t flight_seed : flight_seeds(plan, contender)) {
       if (!contender.trained) {
-        jobs.push_back({&contender, {flight_seed, 0, 0}});
+        jobs.push_back({&contender, {flight_seed}});
         continue;
       }
       for (int i = 0; i < plan.seeds; ++i) {
-        jobs.push_back({&contender, {flight_seed, first_seed + static_cast<std::uint64_t>(i), plan.epochs}});
+        jobs.push_back({&contender, {flight_seed, first_seed + static_cast<std::uint64_t>(i), plan.epochs, plan.best_weights,
+                                     plan.patience}});
       }
     }
   }

@@ -25,26 +25,6 @@ inline const std::set<std::string>& run_facts() {
   return names;
 }
 
-inline nlohmann::json recipe_description(int epochs) {
-  const Optimizer adam = optimizer(epochs);
-  return {{"batch", batch_size},
-          {"batch_order", "shuffled"},
-          {"optimizer", optimizer_name},
-          {"learning_rate", adam.learning_rate},
-          {"learning_rate_schedule", learning_rate_schedule_name},
-          {"beta_1", adam.beta_1},
-          {"beta_2", adam.beta_2},
-          {"weight_decay", adam.weight_decay},
-          {"lambda_max", lambda_max},
-          {"cycles", annealing_cycles},
-          {"hold", annealing_hold},
-          {"step", "tanh"},
-          {"step_gain", step_gain},
-          {"series", "standardised by their spread in the training rows"},
-          {"inputs_and_outputs", "z-scored by the training rows"},
-          {"initialisation", "Xavier uniform"}};
-}
-
 /// What decides the rows. `kind` is "table 2" or "ablation".
 struct Plan {
   std::string kind;
@@ -53,6 +33,8 @@ struct Plan {
   int epochs = 300;
   std::uint64_t flight_seed = 1;
   int flights = 4;  ///< of the main comparison
+  bool best_weights = false;  ///< judged are the weights of the least validation error, where a data set validates
+  int patience = 0;  ///< epochs without a lesser validation error after which a training ends; 0: none does
   Shard shard;
 };
 
@@ -87,8 +69,9 @@ inline nlohmann::json configuration(const Plan& plan, const Flights& flights) {
           {"shard", std::to_string(plan.shard.index) + "/" + std::to_string(plan.shard.count)},
           {"airframe", Airframe::name},
           {"network", "10 x 25 ReLU"},
-          {"weights", weights_name},
-          {"recipe", recipe_description(plan.epochs)},
+          {"weights", weights_name(plan.best_weights)},
+          {"patience", plan.patience},
+          {"recipe", recipe_description()},
           {"models", models},
           {"flights", flown},
           {"compiler", programs::compiler_name()},

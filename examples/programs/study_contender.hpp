@@ -18,6 +18,7 @@
 #include "interrupt.hpp"
 #include "judgement.hpp"
 #include "model_predictions.hpp"
+#include "pinnquad/training/checkpoint.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
@@ -38,12 +39,14 @@ struct Material {
       : flight(rows),
         split(pinnquad::split_contiguous(rows.size(), DataSet::shares)),
         context(pinnquad::make_context<Context>(rows, split.train)),
-        data(pinnquad::standardised<float>(context, rows, split.train)) {}
+        data(pinnquad::standardised<float>(context, rows, split.train)),
+        validation(pinnquad::standardised<float>(context, rows, split.validation)) {}
 
   const pinnquad::Flight& flight;
   pinnquad::DatasetSplit split;
   Context context;
   pinnquad::TrainingData<float, Features::size, pinnquad::rotor_count> data;
+  pinnquad::TrainingData<float, Features::size, pinnquad::rotor_count> validation;
 };
 
 /// Made once per flight, when the first training asks.
@@ -92,6 +95,8 @@ struct Assignment {
   std::uint64_t flight_seed = 0;
   std::uint64_t seed = 0;
   int epochs = 0;
+  bool best_weights = false;
+  int patience = 0;
 };
 
 /// What came of it.
@@ -99,6 +104,7 @@ struct Outcome {
   programs::Judgement test;
   double validation_mae = std::numeric_limits<double>::quiet_NaN();  ///< NaN where nothing is left to validate with
   double training_s = 0;
+  bool best_weights = false;  ///< which weights were judged
   pinnquad::IndexRange test_rows;
   programs::Predictions predictions;  ///< of the test rows
 };
@@ -166,27 +172,30 @@ Contender linear_contender(const std::string& id, nlohmann::json description) {
 }
 
 /// A network of one type under one loss. A seed gives initial weights and batch order, alike for every contender.
-template <class DataSet, class Network, class Order, class Loss, class OptimizerOf>
+template <class DataSet, class Network, class Order, class Loss, class OptimizerType>
 Contender trained_contender(const std::string& id, nlohmann::json description, const Loss& loss,
-                            const OptimizerOf& optimizer_of) {
+                            const OptimizerType& optimizer_used) {
   Contender result = contender<DataSet>(id, std::move(description));
-  result.run = [loss, optimizer_of](Workshop& workshop, const Assignment& assignment, Outcome& outcome) {
-    using Context = typename Material<DataSet>::Context;
+  result.run = [loss, optimizer_used](Workshop& workshop, const Assignment& assignment, Outcome& outcome) {
+    using Trainer = pinnquad::Trainer<Network, Loss, OptimizerType, typename Material<DataSet>::Context, Order, batch_size>;
     const Material<DataSet>& material = workshop.material<DataSet>(assignment.flight_seed);
-    const auto optimizer = optimizer_of(assignment.epochs);
-    using Trainer = pinnquad::Trainer<Network, Loss, std::decay_t<decltype(optimizer)>, Context, Order, batch_size>;
     const auto start = std::chrono::steady_clock::now();
     std::mt19937_64 engine(assignment.seed);
-    const auto trainer = std::make_unique<Trainer>(pinnquad::initialised<Network>(engine), loss, optimizer,
-                                                   material.context);
-    for (int epoch = 0; epoch < assignment.epochs; ++epoch) {
+    const auto trainer =
+        std::make_unique<Trainer>(pinnquad::initialised<Network>(engine), loss, optimizer_used, material.context);
+    const bool chooses = DataSet::chooses_weights && (assignment.best_weights || assignment.patience > 0);
+    const auto best = std::make_unique<pinnquad::Checkpoint<Network>>();
+    const pinnquad::EarlyStopping stopping{chooses ? assignment.patience : 0};
+    for (int epoch = 0; epoch < assignment.epochs && !stopping.reached(*best, epoch); ++epoch) {
       if (workshop.stopped()) return false;
       trainer->epoch(material.data, {epoch, assignment.epochs}, engine);
+      if (chooses) best->offer(epoch, trainer->validate(material.validation).mean_absolute, *trainer);
       workshop.count(material.data.size());
     }
+    outcome.best_weights = chooses && assignment.best_weights && !best->empty();
     outcome.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto model = pinnquad::make_trained_model(flight_ready(trainer->network()), material.context,
-                                                    material.flight, material.split.train);
+    const auto model = pinnquad::make_trained_model(outcome.best_weights ? best->network() : trainer->network(),
+                                                    material.context, material.flight, material.split.train);
     judge(
         material,
         [&](const pinnquad::IndexRange& range) {

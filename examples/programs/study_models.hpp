@@ -22,33 +22,40 @@ struct NoTerms { static constexpr const char* name = "none"; };
 struct ConstantLambda { static constexpr const char* name = "constant"; };
 struct CyclicLambda { static constexpr const char* name = "cyclical annealing"; };
 
-/// Data set: which flight, which features, which share of the rows trains, validates and tests. Contiguous blocks.
+/// Data set: which flight, which features, which share of the rows trains, validates and tests. Contiguous blocks. `chooses_weights`: its validation rows may choose
+/// between the weights of a training's epochs.
 struct D1 {
   static constexpr const char* name = "D1";
+  static constexpr bool chooses_weights = true;
   using Flight = pinnquad::AgileFlight;
   using Features = pinnquad::PaperFeatures;
   static constexpr pinnquad::SplitShares shares{};
 };
 struct D2 {
   static constexpr const char* name = "D2";
+  static constexpr bool chooses_weights = true;
   using Flight = pinnquad::NearGroundFlight;
   using Features = pinnquad::PaperFeaturesWithAltitude;
   static constexpr pinnquad::SplitShares shares{};
 };
 struct D3 {
   static constexpr const char* name = "D3";
+  static constexpr bool chooses_weights = true;
   using Flight = pinnquad::WindyFlight;
   using Features = pinnquad::PaperFeatures;
   static constexpr pinnquad::SplitShares shares{};
 };
-/// NOTES #16, Fig. 7: the first 20 % of D1 train, the last 40 % test; what lies between stands in for validation.
+/// NOTES #16, Fig. 7: the first 20 % of D1 train, the last 40 % test; what lies between is judged as validation, and
+/// chooses nothing.
 struct D1Test40 : D1 {
   static constexpr const char* name = "D1, 20 % / 40 %";
+  static constexpr bool chooses_weights = false;
   static constexpr pinnquad::SplitShares shares{0.2, 0.4, 0.4};
 };
 /// The first 20 % of D1 train, all others test; nothing is left to validate with.
 struct D1Test80 : D1 {
   static constexpr const char* name = "D1, 20 % / 80 %";
+  static constexpr bool chooses_weights = false;
   static constexpr pinnquad::SplitShares shares{0.2, 0.0, 0.8};
 };
 

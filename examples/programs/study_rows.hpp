@@ -40,8 +40,8 @@ inline std::string to_string(const RowId& id) {
          std::to_string(id.seed);
 }
 
-/// Which weights are judged: those after the last epoch.
-inline constexpr const char* weights_name = "final";
+/// Which weights were judged: those after the last epoch, or those of the least validation error.
+inline const char* weights_name(bool best) { return best ? "best" : "final"; }
 
 inline std::string rows_header() {
   std::string header = "model,flight,flight_seed,seed,epochs,weights";
@@ -53,7 +53,7 @@ inline std::string rows_header() {
 inline std::string row_text(const RowId& id, int epochs, const Outcome& outcome) {
   using pinnquad::detail::number_text;
   std::string text = id.model + "," + id.flight + "," + std::to_string(id.flight_seed) + "," + std::to_string(id.seed) +
-                     "," + std::to_string(epochs) + "," + weights_name;
+                     "," + std::to_string(epochs) + "," + weights_name(outcome.best_weights);
   for (const programs::Figure& figure : programs::figures()) text += "," + number_text(figure.of(outcome.test, figure.index));
   return text + "," + number_text(outcome.validation_mae) + "," + number_text(outcome.training_s);
 }
@@ -73,7 +73,7 @@ inline bool parse_row(const std::string& line, std::size_t columns, RowId& id) {
   std::vector<std::string_view> fields;
   pinnquad::detail::split_fields(line, fields);
   constexpr std::size_t first_number = 6;
-  if (fields.size() != columns || fields[0].empty() || fields[5] != weights_name) return false;
+  if (fields.size() != columns || fields[0].empty() || (fields[5] != weights_name(false) && fields[5] != weights_name(true))) return false;
   for (std::size_t i = first_number; i < fields.size(); ++i) {
     double value = 0;
     const auto read = std::from_chars(fields[i].data(), fields[i].data() + fields[i].size(), value);

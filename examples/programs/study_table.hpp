@@ -20,7 +20,7 @@ Contender table_contender(ModelType /*row*/) {
   using Lambda = typename ModelType::Lambda;
   using DataSet = typename ModelType::DataSet;
   using BatchNorm = typename ModelType::BatchNorm;
-  using Network = typename PaperNetwork<typename DataSet::Features, BatchNorm>::type;
+  using Network = PaperNetwork<typename DataSet::Features, BatchNorm>;
   using Order = pinnquad::ShuffledBatches;
   const std::string id = std::to_string(ModelType::id);
   const nlohmann::json description = {
@@ -29,11 +29,11 @@ Contender table_contender(ModelType /*row*/) {
   if constexpr (std::is_same_v<Structure, Linearized>) {
     result = linear_contender<DataSet>(id, description);
   } else if constexpr (std::is_same_v<Structure, Vanilla>) {
-    result = trained_contender<DataSet, Network, Order>(id, description, pinnquad::Mse{}, optimizer);
+    result = trained_contender<DataSet, Network, Order>(id, description, pinnquad::Mse{}, optimizer());
   } else if constexpr (std::is_same_v<Lambda, ConstantLambda>) {
-    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(constant_weight()), optimizer);
+    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(constant_weight()), optimizer());
   } else {
-    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(annealed_weight()), optimizer);
+    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(annealed_weight()), optimizer());
   }
   result.more_flights = ModelType::more_flights;
   return result;
