@@ -2,6 +2,7 @@
 // study.json: all that decides a study's rows, so that rows of two studies are never mixed; and how long it took.
 #pragma once
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -90,10 +91,13 @@ inline std::string difference(const nlohmann::json& there, const nlohmann::json&
     return configuration;
   };
   const nlohmann::json a = deciding(there), b = deciding(here);
-  std::set<std::string> names;
+  std::set<std::string> unordered;
   for (const auto* configuration : {&a, &b}) {
-    for (const auto& entry : configuration->items()) names.insert(entry.key());
+    for (const auto& entry : configuration->items()) unordered.insert(entry.key());
   }
+  std::vector<std::string> names(unordered.begin(), unordered.end());
+  // the flights follow from the rest: whatever else differs says more
+  std::stable_partition(names.begin(), names.end(), [](const std::string& name) { return name != "flights"; });
   const auto told = [](const nlohmann::json& configuration, const nlohmann::json::json_pointer& at) {
     return configuration.contains(at) ? configuration.at(at).dump() : std::string("absent");
   };

@@ -145,15 +145,20 @@ class RowAppender {
   void append(const std::string& row) {
     const std::string line = row + '\n';
     const off_t before = ::lseek(file_, 0, SEEK_END);
+    std::size_t written = 0;
     errno = 0;
-    const ssize_t written = ::write(file_, line.data(), line.size());
-    const bool whole = written == static_cast<ssize_t>(line.size());
-    if (whole && ::fsync(file_) == 0) return;
-    const int reason = errno;
-    if (before >= 0 && ::ftruncate(file_, before) != 0) {
-      // the next start finds the cut row and runs its training again
+    while (written < line.size()) {  // one write, but for a disk that fills up: the next one tells the reason
+      const ssize_t count = ::write(file_, line.data() + written, line.size() - written);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) break;
+      written += static_cast<std::size_t>(count);
     }
-    throw pinnquad::OutputError(path_, pinnquad::detail::system_reason(reason, whole ? "it is not on the disk" : "the disk is full"));
+    if (written == line.size() && ::fsync(file_) == 0) return;
+    const int reason = errno;
+    // if this fails too, the next start finds the cut row and runs its training again
+    const bool taken_back = before >= 0 && ::ftruncate(file_, before) == 0;
+    throw pinnquad::OutputError(path_, pinnquad::detail::system_reason(reason, "writing failed") +
+                                           (taken_back ? "" : "; its last row may be cut"));
   }
 
  private:
