@@ -20,6 +20,7 @@
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/inference/self_test.hpp"
+#include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/vehicle/inverse.hpp"

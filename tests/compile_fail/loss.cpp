@@ -7,7 +7,9 @@
 // CASE CONTEXT_NOT_A_FEATURE_SET: pinnquad: Context's first argument is not a feature set
 // CASE CONTEXT_NOT_AN_AIRFRAME: pinnquad: Context's second argument is not an airframe
 // CASE CONTEXT_NOT_A_SCHEMA: pinnquad: Context's third argument is not an output schema
-// CASE NO_ANGULAR_ACCELERATION: pinnquad: LocalMonotonicity needs a feature set that holds the angular accelerations
+// CASE FORM_AS_STEP: pinnquad: LocalMonotonicity's second argument is not a step function
+// CASE NOT_A_FORM: pinnquad: LocalMonotonicity's third argument is not a form
+// CASE NO_ANGULAR_ACCELERATION: pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/schedule/constant.hpp"
@@ -39,6 +41,10 @@ using Loss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, Nothing>>;
 using Loss = PhysicsInformed<Nothing, Weighted<LocalMonotonicity<Roll>, Constant>>;
 #elif defined(TERM_NOT_WEIGHTED)
 using Loss = PhysicsInformed<Mse, LocalMonotonicity<Roll>>;
+#elif defined(FORM_AS_STEP)
+using Loss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, pinnquad::Literal>, Constant>>;
+#elif defined(NOT_A_FORM)
+using Loss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, pinnquad::TanhStep, Nothing>, Constant>>;
 #elif defined(ARGUMENTS_SWAPPED)
 using Loss = PhysicsInformed<Mse, Weighted<Constant, LocalMonotonicity<Roll>>>;
 #else

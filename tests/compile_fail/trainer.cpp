@@ -5,11 +5,20 @@
 // CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
 // CASE NO_BACKWARD_RULE: pinnquad: this layer cannot be trained; specialise BackwardRule
 // CASE NO_SLOPE: pinnquad: this layer cannot be trained; BackwardRule needs slope
+// CASE NOT_AN_OPTIMIZER: pinnquad: Trainer's third argument is not an optimiser
+// CASE SCHEDULED_NOT_AN_OPTIMIZER: pinnquad: Scheduled's first argument is not an optimiser
+// CASE SCHEDULED_NOT_A_RATE: pinnquad: Scheduled's second argument is not a rate
+// CASE BATCH_NORM_OF_ONE: pinnquad: batch norm can't be trained in batches of one sample
+// CASE BATCH_NORM_BEHIND_ACTIVATION: pinnquad: a BatchNorm that does not follow a Dense can't be folded
 #include "pinnquad/training/trainer.hpp"
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/cosine_decay.hpp"
+#include "pinnquad/training/scheduled.hpp"
+#include "pinnquad/training/trained_model.hpp"
 
 namespace {
 
@@ -47,6 +56,10 @@ using Net = Network<float, Inputs<16>, Dense<8>, Relu, Dense<3>>;
 using Net = Network<float, Inputs<16>, Dense<8>, Reverse, Dense<4>>;
 #elif defined(NO_SLOPE)
 using Net = Network<float, Inputs<16>, Dense<8>, Square, Dense<4>>;
+#elif defined(BATCH_NORM_OF_ONE)
+using Net = Network<float, Inputs<16>, pinnquad::DenseWithoutBias<8>, pinnquad::BatchNorm, Relu, Dense<4>>;
+#elif defined(BATCH_NORM_BEHIND_ACTIVATION)
+using Net = Network<float, Inputs<16>, Dense<8>, Relu, pinnquad::BatchNorm, Dense<4>>;
 #elif defined(NOT_A_NETWORK)
 using Net = Dense<4>;
 #else
@@ -60,10 +73,27 @@ using Loss = pinnquad::Mse;
 #endif
 
 using Knowledge = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::PaperQuadrotor>;
-using Trainer = pinnquad::Trainer<Net, Loss, pinnquad::Adam, Knowledge>;
+#if defined(NOT_AN_OPTIMIZER)
+using Optimizer = Nothing;
+#elif defined(SCHEDULED_NOT_AN_OPTIMIZER)
+using Optimizer = pinnquad::Scheduled<Nothing, pinnquad::CosineDecay>;
+#elif defined(SCHEDULED_NOT_A_RATE)
+using Optimizer = pinnquad::Scheduled<pinnquad::Adam, pinnquad::Constant>;
+#else
+using Optimizer = pinnquad::Adam;
+#endif
+
+#if defined(BATCH_NORM_OF_ONE)
+constexpr int batch_size = 1;
+#else
+constexpr int batch_size = 64;
+#endif
+
+using Trainer = pinnquad::Trainer<Net, Loss, Optimizer, Knowledge, pinnquad::ShuffledBatches, batch_size>;
 
 }  // namespace
 
 int main() {
-  return static_cast<int>(sizeof(Trainer) + sizeof(Nothing) + sizeof(Reverse) + sizeof(Square)) > 0 ? 0 : 1;
+  using Model = decltype(pinnquad::make_trained_model(Net{}, Knowledge{}, {}, {}));
+  return static_cast<int>(sizeof(Trainer) + sizeof(Model) + sizeof(Nothing) + sizeof(Reverse) + sizeof(Square)) > 0 ? 0 : 1;
 }

@@ -15,7 +15,9 @@ using pinnquad::CommandOutputs;
 using pinnquad::Constant;
 using pinnquad::Context;
 using pinnquad::CyclicalAnnealing;
+using pinnquad::Literal;
 using pinnquad::LocalMonotonicity;
+using pinnquad::Match;
 using pinnquad::Mse;
 using pinnquad::PaperFeatures;
 using pinnquad::PaperLoss;
@@ -103,7 +105,9 @@ void check_gradient(const Loss& loss, ContextType context) {
 }  // namespace
 
 TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>, LocalMonotonicity<Pitch>,
-                   LocalMonotonicity<Yaw>, PaperLoss<CyclicalAnnealing>, PaperLoss<Constant>, Wide,
+                   LocalMonotonicity<Yaw>, LocalMonotonicity<Roll, TanhStep, Literal>,
+                   LocalMonotonicity<Pitch, TanhStep, Match>, PaperLoss<Constant, TanhStep, Match>,
+                   PaperLoss<Constant, TanhStep, Literal>, PaperLoss<CyclicalAnnealing>, PaperLoss<Constant>, Wide,
                    PhysicsInformed<Mse>, QuarticFirstOutput) {
   SUBCASE("commands") {
     check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, CommandOutputs>>());

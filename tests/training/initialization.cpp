@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "support/own_layers.hpp"
 
@@ -79,4 +80,15 @@ TEST_CASE("a layer that brings its own initial values uses them") {
     CHECK(net.parameters[i] >= 0.9);
     CHECK(net.parameters[i] < 1.1);
   }
+}
+
+TEST_CASE("batch norm begins near the identity and draws nothing: weights are those of the network without it") {
+  using Normed = pinnquad::BatchNormMlp<double, Inputs<16>, Hidden<2, 9>, Outputs<4>, Relu>;
+  std::mt19937_64 engine(113), again(113);
+  const auto normed = initialised<Normed>(engine);
+  const auto plain = initialised<Mlp<double, Inputs<16>, Hidden<2, 9>, Outputs<4>, Relu>>(again);
+  CHECK(engine() == again());
+  for (std::size_t i = 0; i < 144; ++i) CHECK(normed.parameters[i] == plain.parameters[i]);
+  for (std::size_t i = 0; i < 81; ++i) CHECK(normed.parameters[144 + 36 + i] == plain.parameters[144 + 9 + i]);
+  for (std::size_t i = 0; i < 36; ++i) CHECK(normed.parameters[144 + i] == (i < 9 || i >= 27 ? 1.0 : 0.0));
 }

@@ -15,6 +15,7 @@
 #include "support/random_network.hpp"
 
 using pinnquad::Dense;
+using pinnquad::DenseWithoutBias;
 using pinnquad::GenericPack;
 using pinnquad::Inputs;
 using pinnquad::Network;
@@ -114,6 +115,7 @@ using Packs3 = GenericPack<double, 3>;
 TEST_CASE_TEMPLATE("gradient of the library's layers in every order", Net, Network<double, Inputs<3>, Dense<2>>,
                    Network<double, Inputs<5>, Dense<6>, Relu, Dense<7>, Relu, Dense<4>>,
                    Network<double, Inputs<5>, Dense<6>, Tanh, Dense<9>, Relu, Dense<2>>,
+                   Network<double, Inputs<5>, DenseWithoutBias<6>, Tanh, DenseWithoutBias<9>, Dense<2>>,
                    Network<double, Inputs<4>, Tanh, Dense<5>, Dense<3>, Tanh>) {
   SUBCASE("packs of 4") { check_network<Net, Packs4>(); }
   SUBCASE("packs of 3") { check_network<Net, Packs3>(); }

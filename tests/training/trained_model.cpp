@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <type_traits>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/training_data.hpp"
+#include "support/batch_norm_networks.hpp"
 #include "support/plain_network.hpp"
 #include "support/training_sets.hpp"
 
@@ -95,4 +97,25 @@ TEST_CASE("weights that weigh nothing are exported as 0, no others") {
   CHECK(model.network.parameters[1] == 0.0F);
   CHECK(model.network.parameters[2] == 1e-19F);
   CHECK(model.network.parameters[3] == -0.25F);
+}
+
+TEST_CASE("batch norm is folded: the model holds plain layers and predicts what the trained network does") {
+  using Normed = pinnquad::BatchNormMlp<float, Inputs<16>, Hidden<1, 7>, Outputs<4>, Relu>;
+  const Flight flight = random_flight_rows(60, 156);
+  std::mt19937_64 engine(157);
+  const auto context = make_context<PaperContext>(flight, {0, 60});
+  const auto net = pinnquad::test::random_batch_norm_network<Normed>(engine);
+  const auto model = make_trained_model(net, context, flight, {0, 60});
+  CHECK((std::is_same_v<std::decay_t<decltype(model)>::Network, Small<float>>));
+  for (const auto& sample : flight) {
+    const auto x = pinnquad::sample_features<PaperFeatures, float>(sample);
+    std::array<float, 16> z{};
+    std::array<float, 4> y{};
+    model.input.standardise(x.data(), z.data());
+    net.forward(z.data(), y.data());
+    const auto commands = model.predict(sample);
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK(std::fabs(commands[i] - (y[i] * model.output.spread[i] + model.output.mean[i])) <= float(float_tolerance));
+    }
+  }
 }

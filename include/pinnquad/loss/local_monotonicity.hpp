@@ -3,8 +3,9 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
-#include "pinnquad/loss/loss.hpp"
+#include "pinnquad/loss/signed_command_sum.hpp"
 
 namespace pinnquad {
 
@@ -57,43 +58,111 @@ typename Array::Scalar local_monotonicity(const Step& step, const Array& m, cons
   return (Scalar(1) - step_m * step_n).sum() / Scalar(pairs);
 }
 
+/// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It asks for equal
+/// steps, not only for steps to the same side. Adds weight * d/dm to `gradient`.
+template <class Step, class Array>
+typename Array::Scalar monotonicity_match(const Step& step, const Array& m, const Array& n,
+                                          typename Array::Scalar weight, Array& gradient) {
+  using Scalar = typename Array::Scalar;
+  const Eigen::Index pairs = m.size() - 1;
+  if (pairs < 1) return Scalar(0);
+  Array step_m = m.tail(pairs) - m.head(pairs);
+  Array step_n = n.tail(pairs) - n.head(pairs);
+  step.apply(step_m);
+  step.apply(step_n);
+  const Array slope = (Scalar(2) * weight / Scalar(pairs)) * (step_m - step_n) * step.slope(step_m);
+  gradient.tail(pairs) += slope;
+  gradient.head(pairs) -= slope;
+  return (step_m - step_n).square().sum() / Scalar(pairs);
+}
+
+/// Form of the loss, default: both series divided by their spread in the training set, mean over the pairs (NOTES #8, #9).
+struct Standardised {
+  static constexpr double gain = 3.0;  ///< of a TanhStep that is not set otherwise
+  static constexpr bool physical_units = false;
+  template <class Step, class Array>
+  static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
+                                        Array& gradient) {
+    return local_monotonicity(step, m, n, weight, gradient);
+  }
+};
+
+/// Form of the loss as Algorithm 1 prints it: tanh of the differences as they are (commands; rad/s^2), the N_b - 1 terms divided
+/// by N_b.
+struct Literal {
+  static constexpr double gain = 1.0;
+  static constexpr bool physical_units = true;
+  template <class Step, class Array>
+  static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
+                                        Array& gradient) {
+    using Scalar = typename Array::Scalar;
+    const Scalar share = m.size() > 0 ? Scalar(m.size() - 1) / Scalar(m.size()) : Scalar(0);
+    return share * local_monotonicity(step, m, n, share * weight, gradient);
+  }
+};
+
+/// Form of the loss that asks for equal steps, on standardised series (not in the paper).
+struct Match {
+  static constexpr double gain = 3.0;
+  static constexpr bool physical_units = false;
+  template <class Step, class Array>
+  static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
+                                        Array& gradient) {
+    return monotonicity_match(step, m, n, weight, gradient);
+  }
+};
+
+namespace detail {
+using ProbeArray = Eigen::Array<double, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), 8>;
+template <class T, class = void>
+struct IsStep : std::false_type {};
+template <class T>
+struct IsStep<T, std::void_t<decltype(std::declval<const T&>().apply(std::declval<ProbeArray&>())),
+                             decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>> : std::true_type {};
+template <class T, class = void>
+struct IsForm : std::false_type {};
+template <class T>
+struct IsForm<T, std::void_t<decltype(T::gain), decltype(T::physical_units),
+                             decltype(T::compare(std::declval<const TanhStep&>(), std::declval<const ProbeArray&>(),
+                                                 std::declval<const ProbeArray&>(), 1.0, std::declval<ProbeArray&>()))>>
+    : std::true_type {};
+
+template <class Step, class Form>
+constexpr Step initial_step() {
+  if constexpr (std::is_same_v<Step, TanhStep>) {
+    return TanhStep{Form::gain};
+  } else {
+    return Step{};
+  }
+}
+}  // namespace detail
+
 /// Local monotonicity about one axis (Roll, Pitch or Yaw): m = signed sum of predicted commands with the signs of the airframe's
-/// allocation, n = angular acceleration, each divided by its spread in the training set (NOTES #9).
-template <class Axis, class Step = TanhStep>
+/// allocation, n = angular acceleration, compared as the form says.
+template <class Axis, class Step = TanhStep, class Form = Standardised>
 struct LocalMonotonicity {
-  Step step{};
+  static_assert(detail::IsStep<Step>::value,
+                "pinnquad: LocalMonotonicity's second argument is not a step function; it needs apply() and slope(), as "
+                "TanhStep has");
+  static_assert(detail::IsForm<Form>::value,
+                "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
+                "Standardised has");
+  Step step = detail::initial_step<Step, Form>();
 
   template <class Context, class Batch, class Gradient>
   typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
                                   Gradient& gradient) const {
-    static_assert(Context::Features::angular_acceleration >= 0,
-                  "pinnquad: LocalMonotonicity needs a feature set that holds the angular accelerations");
     using Scalar = typename Batch::Scalar;
-    using Array = Eigen::Array<Scalar, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), Batch::max_size>;
-    constexpr Airframe<Scalar> airframe = airframe_value<typename Context::Vehicle, Scalar>();
-    constexpr std::array<Scalar, rotor_count> signs = allocation_signs(airframe, Axis::axis);
-    const Scalar spread = Scalar(context.signed_sum_spread[static_cast<std::size_t>(Axis::axis)]);
-    const Eigen::Index size = batch.prediction.cols();
-
-    Array m = Array::Zero(size);
-    Eigen::Array<Scalar, rotor_count, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), rotor_count,
-                 Batch::max_size>
-        slope(rotor_count, size);  // d m / d standardised prediction
-    for (Eigen::Index sample = 0; sample < size; ++sample) {
-      for (std::size_t i = 0; i < rotor_count; ++i) {
-        const Scalar scale = Scalar(context.output.spread[i]);
-        const Scalar output =
-            batch.prediction(static_cast<Eigen::Index>(i), sample) * scale + Scalar(context.output.mean[i]);
-        const Scalar sign = signs[i] / spread;
-        m[sample] += sign * Context::Outputs::command(output, airframe);
-        slope(static_cast<Eigen::Index>(i), sample) =
-            sign * scale * Context::Outputs::command_slope(output, airframe);
-      }
+    using Series = SignedCommandSum<Axis, Context, Batch>;
+    constexpr auto axis = static_cast<std::size_t>(Axis::axis);
+    Series series(context, batch, Form::physical_units ? Scalar(1) : Scalar(context.signed_sum_spread[axis]));
+    if constexpr (Form::physical_units) {
+      constexpr auto feature = static_cast<std::size_t>(Context::Features::angular_acceleration) + axis;
+      series.angular_acceleration *= Scalar(context.input.spread[feature]);  // differences: the mean drops out
     }
-    const Array n = batch.features.row(Context::Features::angular_acceleration + Axis::axis).transpose().array();
-    Array by_sum = Array::Zero(size);
-    const Scalar value = local_monotonicity(step, m, n, weight, by_sum);
-    gradient.array() += slope.rowwise() * by_sum.transpose();
+    typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
+    const Scalar value = Form::compare(step, series.commands, series.angular_acceleration, weight, by_commands);
+    series.add_gradient(by_commands, gradient);
     return value;
   }
 };

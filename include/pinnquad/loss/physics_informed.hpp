@@ -53,9 +53,9 @@ struct PhysicsInformed {
 };
 
 /// The paper's loss: Mse and local monotonicity about roll, pitch and yaw under one kind of schedule.
-template <class Schedule, class Step = TanhStep>
-using PaperLoss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, Step>, Schedule>,
-                                  Weighted<LocalMonotonicity<Pitch, Step>, Schedule>,
-                                  Weighted<LocalMonotonicity<Yaw, Step>, Schedule>>;
+template <class Schedule, class Step = TanhStep, class Form = Standardised>
+using PaperLoss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, Step, Form>, Schedule>,
+                                  Weighted<LocalMonotonicity<Pitch, Step, Form>, Schedule>,
+                                  Weighted<LocalMonotonicity<Yaw, Step, Form>, Schedule>>;
 
 }  // namespace pinnquad

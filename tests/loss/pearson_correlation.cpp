@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Pearson's correlation as a loss, and what the paper's footnote 2 says of it.
+#include "pinnquad/loss/pearson_correlation.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <random>
+
+#include "support/central_difference.hpp"
+#include "support/loss_batches.hpp"
+#include "support/tolerances.hpp"
+
+using pinnquad::Context;
+using pinnquad::PaperFeatures;
+using pinnquad::PaperQuadrotor;
+using pinnquad::PearsonCorrelation;
+using pinnquad::Roll;
+using pinnquad::RotorSpeedOutputs;
+using pinnquad::Yaw;
+using pinnquad::test::central_differences;
+using pinnquad::test::flight_context;
+using pinnquad::test::gradient_error;
+using pinnquad::test::gradient_tolerance;
+using pinnquad::test::PaperBatch;
+using pinnquad::test::random_batch;
+using pinnquad::test::rounding;
+
+namespace {
+
+using Array = Eigen::ArrayXd;
+using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
+
+Array array(std::initializer_list<double> values) {
+  Array result(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), result.data());
+  return result;
+}
+
+double value(const Array& m, const Array& n) {
+  Array gradient = Array::Zero(m.size());
+  return pinnquad::pearson_loss(m, n, 1.0, gradient);
+}
+
+}  // namespace
+
+TEST_CASE("footnote 2 of the paper: two different patterns, one correlation (NOTES #8)") {
+  const Array x = array({1, 2, 3, 4, 5});
+  CHECK(std::fabs(1.0 - value(array({1, -2, -3, 4, 5}), x) - 0.626099) <= 5e-7);
+  CHECK(std::fabs(1.0 - value(array({1, 2, 3, 1.9455, 2.5}), x) - 0.626096) <= 5e-7);
+}
+
+TEST_CASE("laws: 0 in proportion, 2 opposed, symmetric, without unit or offset") {
+  std::mt19937_64 engine(61);
+  for (int round = 0; round < 100; ++round) {
+    const auto size = static_cast<Eigen::Index>(3 + pinnquad::uniform_index(engine, 30));
+    Array m(size), n(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      m[i] = pinnquad::standard_normal(engine);
+      n[i] = pinnquad::standard_normal(engine);
+    }
+    CHECK(value(m, Array(2.0 * m + 1.0)) <= rounding<double>(100));
+    CHECK(std::fabs(value(m, Array(-m)) - 2.0) <= rounding<double>(100));
+    CHECK(value(m, n) == doctest::Approx(value(n, m)).epsilon(1e-12));
+    CHECK(value(m, n) == doctest::Approx(value(Array(0.01 * m - 4.0), Array(30.0 * n + 2.0))).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("gradient on two series against central differences; it is added, with its weight") {
+  std::mt19937_64 engine(62);
+  for (const Eigen::Index size : {3, 4, 5, 17, 64}) {
+    Array m(size), n(size), before(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      m[i] = pinnquad::standard_normal(engine);
+      n[i] = pinnquad::standard_normal(engine);
+      before[i] = pinnquad::standard_normal(engine);
+    }
+    Array gradient = before;
+    pinnquad::pearson_loss(m, n, -0.25, gradient);
+    const Array added = gradient - before;
+    const auto count = static_cast<std::size_t>(size);
+    auto numerical = central_differences([&] { return value(m, n); }, m.data(), count);
+    for (double& v : numerical) v *= -0.25;
+    CHECK(gradient_error(added.data(), numerical.data(), count) <= gradient_tolerance);
+  }
+}
+
+TEST_CASE_TEMPLATE("gradient by the predictions, in commands and in rotor speeds", ContextType, PaperContext,
+                   Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>) {
+  static_assert(pinnquad::is_loss<PearsonCorrelation<Roll>>);
+  std::mt19937_64 engine(63);
+  const auto context = flight_context<ContextType>();
+  const auto check = [&](const auto& loss) {
+    for (const int size : {3, 5, 40, 64}) {
+      auto batch = random_batch<double>(size, engine);
+      const auto evaluate = [&] {
+        PaperBatch<double>::Gradient unused;
+        unused.setZero(4, size);
+        return loss.evaluate(context, batch, 1.0, unused);
+      };
+      PaperBatch<double>::Gradient gradient;
+      gradient.setZero(4, size);
+      loss.evaluate(context, batch, 1.0, gradient);
+      const auto count = static_cast<std::size_t>(batch.prediction.size());
+      const auto numerical = central_differences(evaluate, batch.prediction.data(), count);
+      CHECK(gradient_error(gradient.data(), numerical.data(), count) <= gradient_tolerance);
+    }
+  };
+  check(PearsonCorrelation<Roll>{});
+  check(PearsonCorrelation<Yaw>{});
+}
+
+TEST_CASE("the sign is the allocation's: commands that turn the vehicle the measured way correlate") {
+  std::mt19937_64 engine(64);
+  auto batch = random_batch<double>(64, engine);
+  const auto context = flight_context<PaperContext>();
+  const double signs[4] = {-1, 1, 1, -1};  // Eq. (2), roll
+  for (int i = 0; i < 64; ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k) sum += signs[k] * batch.prediction(k, i) * context.output.spread[static_cast<std::size_t>(k)];
+    batch.features(3, i) = 40.0 * sum;
+  }
+  PaperBatch<double>::Gradient gradient;
+  gradient.setZero(4, 64);
+  CHECK(PearsonCorrelation<Roll>{}.evaluate(context, batch, 1.0, gradient) <= rounding<double>(1000));
+}
+
+TEST_CASE("no correlation, no gradient: a series that stands still, a single sample") {
+  Array gradient = array({5, 5, 5});
+  CHECK(pinnquad::pearson_loss(array({2, 2, 2}), array({1, 2, 3}), 1.0, gradient) == 1.0);
+  CHECK(pinnquad::pearson_loss(array({1, 2, 3}), array({2, 2, 2}), 1.0, gradient) == 1.0);
+  CHECK((gradient == 5.0).all());
+  Array one = array({5});
+  CHECK(pinnquad::pearson_loss(array({1}), array({2}), 1.0, one) == 0.0);
+  CHECK(one[0] == 5.0);
+}

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// AdamW and learning-rate policies against the published updates, written plainly.
+#include "pinnquad/training/adam_w.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/schedule/constant_rate.hpp"
+#include "pinnquad/schedule/cosine_decay.hpp"
+#include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/scheduled.hpp"
+#include "pinnquad/training/trainer.hpp"
+#include "support/random_network.hpp"
+#include "support/tolerances.hpp"
+#include "support/training_sets.hpp"
+
+using pinnquad::Adam;
+using pinnquad::AdamW;
+using pinnquad::ConstantRate;
+using pinnquad::CosineDecay;
+using pinnquad::GenericPack;
+using pinnquad::NativePack;
+using pinnquad::Progress;
+using pinnquad::Scheduled;
+using pinnquad::test::fill_uniform;
+using pinnquad::test::known_map;
+using pinnquad::test::rounding;
+
+namespace {
+
+/// torch.optim.AdamW for one parameter: its documentation's algorithm.
+struct PlainAdamW {
+  double beta_1, beta_2, epsilon, weight_decay;
+  double m = 0.0, v = 0.0;
+
+  double step(double p, double g, double rate, int t) {
+    p = p - rate * weight_decay * p;
+    m = beta_1 * m + (1 - beta_1) * g;
+    v = beta_2 * v + (1 - beta_2) * g * g;
+    const double m_hat = m / (1 - std::pow(beta_1, t));
+    const double v_hat = v / (1 - std::pow(beta_2, t));
+    return p - rate * m_hat / (std::sqrt(v_hat) + epsilon);
+  }
+};
+
+using Net = pinnquad::Mlp<double, pinnquad::Inputs<16>, pinnquad::Hidden<1, 9>, pinnquad::Outputs<4>, pinnquad::Relu>;
+using PaperContext = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::PaperQuadrotor>;
+
+/// Notes how far training was at each step; moves nothing.
+struct Notes {
+  double learning_rate = 1.0;
+  std::vector<double>* done;
+  int begin(long, double share) const {
+    done->push_back(share);
+    return 0;
+  }
+  template <class Pack, class Scalar>
+  void update(int, Scalar*, const Scalar*, Scalar*, Scalar*, int) const noexcept {}
+};
+
+template <class Optimizer>
+Net::Parameters trained(const Optimizer& optimizer, int epochs) {
+  const auto data = known_map<double>(100, 181);
+  std::mt19937_64 engine(182);
+  using Type = pinnquad::Trainer<Net, pinnquad::Mse, Optimizer, PaperContext>;
+  auto trainer = std::make_unique<Type>(pinnquad::initialised<Net>(engine), pinnquad::Mse{}, optimizer, PaperContext{});
+  for (int epoch = 0; epoch < epochs; ++epoch) trainer->epoch(data, Progress{epoch, epochs}, engine);
+  return trainer->network().parameters;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("two hundred steps as published, constant and along a cosine", Pack, GenericPack<double, 4>,
+                   NativePack<float>) {
+  using Scalar = typename Pack::Scalar;
+  constexpr std::size_t count = 2 * static_cast<std::size_t>(Pack::width);
+  constexpr int steps = 200;
+  const AdamW settings[] = {{}, {0.1, 0.8, 0.9, 1e-3, 0.0}, {0.01, 0.9, 0.999, 1e-8, 0.3}};
+  const auto run = [&](const AdamW& adam, const auto& begin, const auto& rate) {
+    std::mt19937_64 engine(183);
+    std::array<Scalar, count> p{}, g{}, first{}, second{};
+    std::array<PlainAdamW, count> plain{};
+    std::array<double, count> expected{};
+    fill_uniform(p, engine, 2.0);
+    for (std::size_t i = 0; i < count; ++i) {
+      expected[i] = static_cast<double>(p[i]);
+      plain[i] = {adam.beta_1, adam.beta_2, adam.epsilon, adam.weight_decay};
+    }
+    for (int t = 1; t <= steps; ++t) {
+      fill_uniform(g, engine, 0.5);
+      const double factor = rate((t - 1) / static_cast<double>(steps));
+      for (std::size_t i = 0; i < count; ++i) {
+        expected[i] = plain[i].step(expected[i], static_cast<double>(g[i]), adam.learning_rate * factor, t);
+      }
+      adam.update<Pack>(begin(t), p.data(), g.data(), first.data(), second.data(), static_cast<int>(count));
+      double worst = 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        worst = std::max(worst, std::fabs(static_cast<double>(p[i]) - expected[i]));
+      }
+      CHECK(worst <= rounding<Scalar>(20.0 * t));  // some ten roundings a step, of parameters up to 2
+    }
+  };
+  for (const AdamW& adam : settings) {
+    run(adam, [&](long t) { return adam.begin(t); }, [](double) { return 1.0; });
+    const Scheduled<AdamW, CosineDecay> scheduled{adam, {}};
+    run(adam, [&](long t) { return scheduled.begin(t, static_cast<double>(t - 1) / steps); },
+        [](double done) { return (1 + std::cos(std::acos(-1.0) * done)) / 2; });
+  }
+}
+
+TEST_CASE("decay is decoupled: without gradient a weight shrinks by rate * decay, whatever its size") {
+  using Pack = GenericPack<double, 4>;
+  std::array<double, 4> p = {1.0, -20.0, 0.003, 0.0}, g{}, first{}, second{};
+  const AdamW adam{0.1, 0.9, 0.999, 1e-8, 0.5};
+  adam.update<Pack>(adam.begin(1), p.data(), g.data(), first.data(), second.data(), 4);
+  CHECK(p[0] == doctest::Approx(0.95));
+  CHECK(p[1] == doctest::Approx(-19.0));
+  CHECK(p[2] == doctest::Approx(0.00285));
+  CHECK(p[3] == 0.0);
+  CHECK(first[0] == 0.0);  // nothing of it in the moments
+}
+
+TEST_CASE("what is an optimiser") {
+  CHECK(pinnquad::is_optimizer<Adam>);
+  CHECK(pinnquad::is_optimizer<AdamW>);
+  CHECK((pinnquad::is_optimizer<Scheduled<Adam, CosineDecay>>));
+  CHECK((pinnquad::follows_progress<Scheduled<Adam, CosineDecay>>));
+  CHECK_FALSE(pinnquad::follows_progress<Adam>);
+  CHECK_FALSE(pinnquad::is_optimizer<int>);
+}
+
+TEST_CASE("without decay AdamW is Adam, and a constant rate changes no bit") {
+  const Adam adam{3e-3, 0.9, 0.999, 1e-8, 0.0};
+  CHECK(trained(AdamW{3e-3, 0.9, 0.999, 1e-8, 0.0}, 3) == trained(adam, 3));
+  CHECK(trained(Scheduled<Adam, ConstantRate>{adam, {}}, 3) == trained(adam, 3));
+  CHECK(trained(Scheduled<Adam, CosineDecay>{adam, {}}, 3) != trained(adam, 3));
+}
+
+TEST_CASE("the trainer tells the share of steps taken: t / T over all batches of all epochs") {
+  std::vector<double> done;
+  trained(Notes{1.0, &done}, 3);  // 100 rows: two batches an epoch
+  REQUIRE(done.size() == 6);
+  for (std::size_t t = 0; t < 6; ++t) CHECK(done[t] == doctest::Approx(static_cast<double>(t) / 6.0));
+}
