@@ -28,6 +28,7 @@ struct Options {
   std::string shard = "1/1";
   std::string weights = "final";
   std::vector<std::string> parts;
+  std::vector<std::string> variants;
   int seeds = 20;
   int epochs = 300;
   int flights = 4;
@@ -108,6 +109,8 @@ int main(int argument_count, char** arguments) {
   ablation->add_option("--flights", ablation_flights, "flights d1, the seeds from --flight-seed on")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  ablation->add_option("--variants", options.variants, "some of the variants, by the names in rows.csv (default: all)")
+      ->delimiter(',');
   add_campaign_options(*ablation, options);
   try {
     app.parse(argument_count, arguments);
@@ -121,7 +124,7 @@ int main(int argument_count, char** arguments) {
     if (merge->parsed()) return study::merge(options.parts, options.out);
     if (!ablation->parsed()) return run_campaign(options, "table 2", study::chosen_models(options.models));
     options.flights = ablation_flights;
-    return run_campaign(options, "ablation", study::ablation());
+    return run_campaign(options, "ablation", study::chosen_variants(options.variants));
   } catch (const std::exception& error) {  // InputError, OutputError, contradictions: one line
     std::fprintf(stderr, "paper_study: %s\n", error.what());
     return exit_bad_input;

@@ -3,16 +3,24 @@
 // is that of models 2 to 4. Vanilla is given as many variants of its training as the physics-informed network.
 #pragma once
 
+#include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pinnquad/loss/pearson_correlation.hpp"
 #include "pinnquad/training/adam_w.hpp"
 #include "study_contender.hpp"
 
 namespace study {
 
 namespace detail {
+
+template <class Axis>
+using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnquad::CyclicalAnnealing>;
+using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
+                                              PearsonTerm<pinnquad::Yaw>>;
 
 /// A variant with the recipe's batch order, or another.
 template <class Order = pinnquad::ShuffledBatches, class Loss, class OptimizerType>
@@ -23,6 +31,13 @@ void add_variant(std::vector<Contender>& all, const std::string& id, const std::
   all.back().more_flights = true;
 }
 
+inline auto adam_w(double decay) {
+  pinnquad::Scheduled<pinnquad::AdamW, pinnquad::CosineDecay> result;
+  result.optimizer.learning_rate = learning_rate;
+  result.optimizer.weight_decay = decay;
+  return result;
+}
+
 /// A loss under other optimisers and another batch order; alike for vanilla and physics-informed.
 template <class Loss>
 void add_optimizers(std::vector<Contender>& all, const std::string& id, const Loss& loss) {
@@ -31,9 +46,10 @@ void add_optimizers(std::vector<Contender>& all, const std::string& id, const Lo
   add_variant(all, id + "_3e-3_constant", "learning rate", loss, adam(3e-3));
   add_variant(all, id + "_1e-3_cosine", "learning rate", loss, optimizer(1e-3));
   add_variant(all, id + "_6e-3_cosine", "learning rate", loss, optimizer(6e-3));
-  pinnquad::Scheduled<pinnquad::AdamW, pinnquad::CosineDecay> adam_w;
-  adam_w.optimizer.learning_rate = learning_rate;
-  add_variant(all, id + "_adamw", "decoupled weight decay 0.01", loss, adam_w);
+  for (const auto& [name, decay] : {std::pair<const char*, double>{"0", 0}, {"1e-5", 1e-5}, {"3e-5", 3e-5}, {"3e-4", 3e-4}, {"1e-3", 1e-3}}) {
+    add_variant(all, id + "_decay_" + name, "weight decay", loss, optimizer(learning_rate, decay));
+  }
+  add_variant(all, id + "_adamw_0.01", "decoupled weight decay", loss, adam_w(0.01));
   add_variant<pinnquad::TimeOrderedBatches>(all, id + "_time_ordered", "batch order", loss, optimizer());
 }
 
@@ -43,12 +59,12 @@ inline std::vector<Contender> ablation() {
   using detail::add_variant;
   std::vector<Contender> all;
   detail::add_optimizers(all, "vanilla", pinnquad::Mse{});
-  // the budget that goes into the physics terms below
-  for (const auto& [name, decay] : {std::pair<const char*, double>{"0", 0}, {"1e-6", 1e-6}, {"1e-4", 1e-4}}) {
-    add_variant(all, std::string("vanilla_decay_") + name, "weight decay", pinnquad::Mse{}, optimizer(learning_rate, decay));
-  }
+  // as many more as the physics terms are given below
   add_variant(all, "vanilla_2e-3_cosine", "learning rate", pinnquad::Mse{}, optimizer(2e-3));
   add_variant(all, "vanilla_4e-3_cosine", "learning rate", pinnquad::Mse{}, optimizer(4e-3));
+  add_variant(all, "vanilla_1e-2_cosine", "learning rate", pinnquad::Mse{}, optimizer(1e-2));
+  add_variant(all, "vanilla_adamw_0.001", "decoupled weight decay", pinnquad::Mse{}, detail::adam_w(0.001));
+  add_variant(all, "vanilla_adamw_0.1", "decoupled weight decay", pinnquad::Mse{}, detail::adam_w(0.1));
 
   detail::add_optimizers(all, "informed", physics_loss(annealed_weight()));
   for (const auto& [name, gain] : {std::pair<const char*, double>{"1", 1}, {"10", 10}}) {
@@ -58,7 +74,38 @@ inline std::vector<Contender> ablation() {
     add_variant(all, std::string("informed_lambda_") + name, "lambda", physics_loss(annealed_weight(lambda)), optimizer());
   }
   add_variant(all, "informed_constant", "lambda without annealing", physics_loss(constant_weight()), optimizer());
+
+  // other forms of the physics terms, each with the gain that is its own (loss/local_monotonicity.hpp)
+  add_variant(all, "literal_constant", "form as Algorithm 1 prints it, lambda without annealing",
+              with_schedule(pinnquad::PaperLoss<pinnquad::Constant, pinnquad::TanhStep, pinnquad::Literal>{}, constant_weight()),
+              optimizer());
+  add_variant(all, "literal", "form as Algorithm 1 prints it",
+              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Literal>{}, annealed_weight()),
+              optimizer());
+  add_variant(all, "match", "form that asks for equal steps",
+              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Match>{}, annealed_weight()),
+              optimizer());
+  add_variant(all, "pearson", "Pearson's correlation instead of local monotonicity",
+              with_schedule(detail::PearsonLoss{}, annealed_weight()), optimizer());
   return all;
+}
+
+/// The variants that a list such as "vanilla,informed" names; an empty list names all.
+/// Throws std::invalid_argument, one line, for a name that there is not.
+inline std::vector<Contender> chosen_variants(const std::vector<std::string>& names) {
+  std::vector<Contender> all = ablation();
+  if (names.empty()) return all;
+  std::vector<Contender> result;
+  for (Contender& contender : all) {
+    if (std::find(names.begin(), names.end(), contender.id) != names.end()) result.push_back(contender);
+  }
+  for (const std::string& name : names) {
+    if (std::any_of(all.begin(), all.end(), [&name](const Contender& c) { return c.id == name; })) continue;
+    std::string known;
+    for (const Contender& contender : all) known += (known.empty() ? "" : ", ") + contender.id;
+    throw std::invalid_argument("--variants: no variant '" + name + "'; known: " + known);
+  }
+  return result;
 }
 
 }  // namespace study

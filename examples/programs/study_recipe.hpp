@@ -31,7 +31,7 @@ using Optimizer = pinnquad::Scheduled<pinnquad::Adam, pinnquad::CosineDecay>;
 inline constexpr const char* optimizer_name = "Adam, coupled weight decay";
 inline constexpr const char* learning_rate_schedule_name = "cosine decay to 0";
 inline constexpr double learning_rate = 3e-3;
-inline constexpr double weight_decay = 1e-5;
+inline constexpr double weight_decay = 1e-4;
 
 inline pinnquad::Adam adam(double rate = learning_rate, double decay = weight_decay) {
   pinnquad::Adam adam;
