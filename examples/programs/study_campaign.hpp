@@ -83,6 +83,7 @@ class StudyFolder {
       ::close(lock_);
       throw pinnquad::OutputError(path, "another paper_study is at work in it");
     }
+    remove_partial_files();
   }
   StudyFolder(const StudyFolder&) = delete;
   StudyFolder& operator=(const StudyFolder&) = delete;
@@ -94,6 +95,19 @@ class StudyFolder {
   const std::string& path() const { return path_; }
 
  private:
+  /// What a killed run was writing: with the lock held, nobody still is.
+  void remove_partial_files() const {
+    std::error_code error;
+    for (const std::string& folder : {path_, path_ + "/series"}) {
+      for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (name.find(".csv.partial-") == std::string::npos && name.find(".json.partial-") == std::string::npos) continue;
+        std::error_code ignored;
+        std::filesystem::remove(entry.path(), ignored);
+      }
+    }
+  }
+
   std::string path_;
   int lock_ = -1;
 };

@@ -17,6 +17,24 @@ namespace study {
 
 namespace detail {
 
+/// The trainings of a study, from its settings: models in order, flights, seeds.
+inline std::vector<RowId> expected_rows(const nlohmann::json& configuration) {
+  std::vector<RowId> rows;
+  const auto first_flight = configuration.at("flight_seed").get<std::uint64_t>();
+  const auto first = configuration.at("first_seed").get<std::uint64_t>();
+  for (const nlohmann::json& model : configuration.at("models")) {
+    const auto flights = model.at("flights").get<std::uint64_t>();
+    const bool trained = model.at("trained").get<bool>();
+    const auto seeds = trained ? configuration.at("seeds").get<std::uint64_t>() : 1;
+    for (std::uint64_t flight = 0; flight < flights; ++flight) {
+      for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        rows.push_back({model.at("id"), model.at("flight"), first_flight + flight, trained ? first + seed : 0});
+      }
+    }
+  }
+  return rows;
+}
+
 /// A shard's folder as read.
 struct Part {
   std::string path;
@@ -28,6 +46,11 @@ inline Part read_part(const std::string& path) {
   Part part;
   part.path = path;
   part.configuration = read_configuration(path + "/study.json");
+  try {
+    expected_rows(part.configuration);
+  } catch (const nlohmann::json::exception&) {
+    throw pinnquad::InputError(path + "/study.json", 0, 0, "the settings of a study", "something else");
+  }
   part.stored = read_rows(path + "/rows.csv");
   if (part.stored.broken > 0) {
     std::fprintf(stderr, "paper_study: %s/rows.csv: %zu not whole; left out\n", path.c_str(), part.stored.broken);
@@ -60,24 +83,6 @@ inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
   joined["shard"] = "1/1";
   joined["parts"] = parts.size();
   return joined;
-}
-
-/// The trainings of a study, from its settings: models in order, flights, seeds.
-inline std::vector<RowId> expected_rows(const nlohmann::json& configuration) {
-  std::vector<RowId> rows;
-  const auto first_flight = configuration.at("flight_seed").get<std::uint64_t>();
-  const auto first = configuration.at("first_seed").get<std::uint64_t>();
-  for (const nlohmann::json& model : configuration.at("models")) {
-    const auto flights = model.at("flights").get<std::uint64_t>();
-    const bool trained = model.at("trained").get<bool>();
-    const auto seeds = trained ? configuration.at("seeds").get<std::uint64_t>() : 1;
-    for (std::uint64_t flight = 0; flight < flights; ++flight) {
-      for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        rows.push_back({model.at("id"), model.at("flight"), first_flight + flight, trained ? first + seed : 0});
-      }
-    }
-  }
-  return rows;
 }
 
 }  // namespace detail

@@ -26,20 +26,21 @@ inline constexpr double annealing_hold = 0.5;
 inline constexpr int batch_size = 64;
 inline constexpr std::uint64_t first_seed = 1;
 
-/// Adam with a learning rate and a coupled weight decay, the rate falling along a cosine.
+/// Adam with coupled weight decay, the learning rate falling along a cosine. Each loss has the decay that suits it best.
 using Optimizer = pinnquad::Scheduled<pinnquad::Adam, pinnquad::CosineDecay>;
 inline constexpr const char* optimizer_name = "Adam, coupled weight decay";
 inline constexpr const char* learning_rate_schedule_name = "cosine decay to 0";
 inline constexpr double learning_rate = 3e-3;
-inline constexpr double weight_decay = 1e-4;
+inline constexpr double vanilla_decay = 1e-4;
+inline constexpr double informed_decay = 3e-4;
 
-inline pinnquad::Adam adam(double rate = learning_rate, double decay = weight_decay) {
+inline pinnquad::Adam adam(double decay, double rate = learning_rate) {
   pinnquad::Adam adam;
   adam.learning_rate = rate;
   adam.weight_decay = decay;
   return adam;
 }
-inline Optimizer optimizer(double rate = learning_rate, double decay = weight_decay) { return {adam(rate, decay), {}}; }
+inline Optimizer optimizer(double decay, double rate = learning_rate) { return {adam(decay, rate), {}}; }
 
 /// Any physics-informed loss with terms about the three axes, all under one schedule.
 template <class Loss, class Schedule>
@@ -62,7 +63,7 @@ inline pinnquad::CyclicalAnnealing annealed_weight(double lambda = lambda_max) {
 }
 
 inline nlohmann::json recipe_description() {
-  const pinnquad::Adam used = adam();
+  const pinnquad::Adam used = adam(vanilla_decay);
   return {{"batch", batch_size},
           {"batch_order", "shuffled"},
           {"optimizer", optimizer_name},
@@ -70,7 +71,7 @@ inline nlohmann::json recipe_description() {
           {"learning_rate_schedule", learning_rate_schedule_name},
           {"beta_1", used.beta_1},
           {"beta_2", used.beta_2},
-          {"weight_decay", used.weight_decay},
+          {"weight_decay", {{"vanilla", vanilla_decay}, {"physics-informed", informed_decay}}},
           {"lambda_max", lambda_max},
           {"cycles", annealing_cycles},
           {"hold", annealing_hold},

@@ -29,11 +29,13 @@ Contender table_contender(ModelType /*row*/) {
   if constexpr (std::is_same_v<Structure, Linearized>) {
     result = linear_contender<DataSet>(id, description);
   } else if constexpr (std::is_same_v<Structure, Vanilla>) {
-    result = trained_contender<DataSet, Network, Order>(id, description, pinnquad::Mse{}, optimizer());
+    result = trained_contender<DataSet, Network, Order>(id, description, pinnquad::Mse{}, optimizer(vanilla_decay));
   } else if constexpr (std::is_same_v<Lambda, ConstantLambda>) {
-    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(constant_weight()), optimizer());
+    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(constant_weight()),
+                                                        optimizer(informed_decay));
   } else {
-    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(annealed_weight()), optimizer());
+    result = trained_contender<DataSet, Network, Order>(id, description, physics_loss(annealed_weight()),
+                                                        optimizer(informed_decay));
   }
   result.more_flights = ModelType::more_flights;
   return result;

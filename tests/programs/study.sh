@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+# shellcheck shell=bash disable=SC2054,SC2154
 # paper_study: killed and resumed, interrupted, sharded and merged, it gives the rows of an undisturbed run, bit for bit; what is
 # broken is run again, what is foreign is refused.
 source "$(dirname "$0")/common.sh" "$@"
@@ -51,9 +52,13 @@ kept=$(rows killed)
 "$study" "${options[@]}" --out killed >resumed.txt
 same whole killed
 grep -q "$trainings of $trainings trainings are in .*, [1-9][0-9]* of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
+[ -z "$(find killed -name '*.partial*')" ] || fail "a half-written file was left behind"
 cp -r killed again
+: >again/rows.csv.partial-1 # as a killed run leaves it
+: >again/series/model7.csv.partial-1
 "$study" "${options[@]}" --out again >resumed.txt
 grep -q ", $trainings of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
+[ -z "$(find again -name '*.partial*')" ] || fail "a half-written file was left behind"
 cmp killed/rows.csv again/rows.csv || fail "a run with nothing to do changed the rows"
 
 # Ctrl-C: the code of an interrupt, what is finished is kept
@@ -125,14 +130,16 @@ expect_line 2 "found 'x'" "$study" --models 2,x --out no
 expect_line 2 "found '8-5'" "$study" --models 8-5 --out no
 expect_line 2 'expected i/n' "$study" --shard 4/3 --out no
 expect_line 2 '--out DIR is needed' "$study" --seeds 1
+expect_line 2 "no variant .z.; known: vanilla, " "$study" ablation --variants vanilla,z --out no
 expect_line 2 '--seeds' "$study" --seeds 0 --out no
-[ ! -e no ] || fail "a refused command left $(ls -d no)"
 : >a_file
 expect_line 2 'a_file/out' "$study" "${options[@]}" --out a_file/out
 rm -rf garbage
 cp -r whole garbage
 echo garbage >garbage/study.json
 expect_line 2 'garbage/study.json: expected the settings of a study' "$study" "${options[@]}" --out garbage
+echo '{}' >garbage/study.json
+expect_line 2 'garbage/study.json: expected the settings of a study' "$study" merge garbage --out no
 rm garbage/study.json
 expect_line 2 'garbage/study.json: expected the settings of the rows beside it, found none' "$study" "${options[@]}" --out garbage
 cp whole/study.json garbage
@@ -151,3 +158,4 @@ exec 9<&-
 grep -q '^informed_lambda_0.3 ' ablation.txt || fail "said: $(cat ablation.txt)"
 "$study" --models 13 --seeds 1 --epochs 12 --weights best --patience 3 --out best >/dev/null
 grep -q '^13,d3,1,1,12,best,' best/rows.csv || fail "said: $(cat best/rows.csv)"
+[ ! -e no ] || fail "a refused command left the folder no"
