@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-// One epoch of training, 9,000 samples in batches of 64: the plain loss, the physics-informed one, and Eigen typed naively.
+// One epoch of training, 9,000 samples in batches of 64: the plain loss, the physics-informed one, both with batch norm, and Eigen
+// typed naively. bench/torch_training.py does the same in PyTorch.
 #include <benchmark/benchmark.h>
 
 #include <memory>
+#include <random>
+#include <type_traits>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "support/naive_eigen_trainer.hpp"
 #include "support/program.hpp"
@@ -17,15 +21,22 @@ using namespace pinnquad;
 using namespace pinnquad::bench;
 
 using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
-template <class Loss>
-using PaperTrainer = Trainer<PaperNetwork, Loss, Adam, PaperContext>;
+template <class Network, class Loss>
+using PaperTrainer = Trainer<Network, Loss, Adam, PaperContext>;
 using Vanilla = Mse;
 using PhysicsInformedLoss = PaperLoss<CyclicalAnnealing>;
 
 /// The trainers hold their work space: too large for a stack.
-template <class Loss>
-std::unique_ptr<PaperTrainer<Loss>> make_trainer() {
-  return std::make_unique<PaperTrainer<Loss>>(healthy_network(), Loss{}, Adam{}, PaperContext{});
+template <class Network, class Loss>
+std::unique_ptr<PaperTrainer<Network, Loss>> make_trainer() {
+  Network network;
+  if constexpr (std::is_same_v<Network, PaperNetwork>) {
+    network = healthy_network();
+  } else {  // batch norm keeps activations alive, whatever the weights
+    std::mt19937_64 engine(1);
+    network = initialised<Network>(engine);
+  }
+  return std::make_unique<PaperTrainer<Network, Loss>>(network, Loss{}, Adam{}, PaperContext{});
 }
 
 const PaperTrainingData& training_set() {
@@ -34,10 +45,10 @@ const PaperTrainingData& training_set() {
 }
 
 /// The schedule stands at its first epoch, where the weight of the physics-informed terms is largest.
-template <class Loss>
+template <class Network, class Loss>
 void train_epoch(benchmark::State& state) {
   const PaperTrainingData& data = training_set();
-  const auto trainer = make_trainer<Loss>();
+  const auto trainer = make_trainer<Network, Loss>();
   std::mt19937_64 engine(4);
   for (auto _ : state) benchmark::DoNotOptimize(trainer->epoch(data, Progress{0, 300}, engine));
   state.counters["samples_per_second"] =
@@ -55,7 +66,7 @@ void train_epoch_naive(benchmark::State& state) {
 
 /// The same seed must give both trainers the same losses, to what rounding becomes in three epochs.
 void require_same_training() {
-  const auto ours = make_trainer<Vanilla>();
+  const auto ours = make_trainer<PaperNetwork, Vanilla>();
   const auto naive = std::make_unique<NaiveEigenTrainer>(healthy_network(), Adam{});
   std::mt19937_64 our_engine(4), naive_engine(4);
   for (int epoch = 0; epoch < 3; ++epoch) {
@@ -69,8 +80,13 @@ void require_same_training() {
 
 int main(int argc, char** argv) {
   require_same_training();
-  benchmark::RegisterBenchmark("TrainEpoch/vanilla", train_epoch<Vanilla>)->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("TrainEpoch/physics_informed", train_epoch<PhysicsInformedLoss>)
+  benchmark::RegisterBenchmark("TrainEpoch/vanilla", train_epoch<PaperNetwork, Vanilla>)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("TrainEpoch/physics_informed", train_epoch<PaperNetwork, PhysicsInformedLoss>)
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("TrainEpoch/batch_norm", train_epoch<PaperBatchNormNetwork, Vanilla>)
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("TrainEpoch/batch_norm_physics_informed",
+                               train_epoch<PaperBatchNormNetwork, PhysicsInformedLoss>)
       ->Unit(benchmark::kMillisecond);
   benchmark::RegisterBenchmark("TrainEpoch/naive_eigen", train_epoch_naive)->Unit(benchmark::kMillisecond);
   return run_benchmarks(argc, argv);

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/relu.hpp"
@@ -15,6 +16,7 @@
 namespace pinnquad::bench {
 
 using PaperNetwork = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+using PaperBatchNormNetwork = BatchNormMlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
 using PaperInput = std::array<float, PaperNetwork::inputs>;
 using PaperOutput = std::array<float, PaperNetwork::outputs>;
 

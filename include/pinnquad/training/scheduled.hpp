@@ -11,7 +11,8 @@ namespace pinnquad {
 template <class Optimizer, class Rate>
 struct Scheduled {
   static_assert(is_optimizer<Optimizer>,
-                "pinnquad: Scheduled's first argument is not an optimiser; it needs begin() and update() (training/optimizer.hpp)");
+                "pinnquad: Scheduled's first argument is not an optimiser; it needs begin() and update() "
+                "(training/optimizer.hpp)");
   static_assert(is_rate<Rate>,
                 "pinnquad: Scheduled's second argument is not a rate; it needs factor(done) (schedule/rate.hpp)");
   Optimizer optimizer{};

@@ -65,6 +65,11 @@ class Trainer {
   /// One pass over the data; the last batch may be smaller. Returns the mean loss over the samples.
   template <class Engine>
   double epoch(const Data& data, const Progress& progress, Engine& engine) {
+    return epoch(data, progress, engine, [](const Trainer&) {});
+  }
+  /// The same; `after_batch(*this)` is called after each step.
+  template <class Engine, class Observer>
+  double epoch(const Data& data, const Progress& progress, Engine& engine, const Observer& after_batch) {
     context_.progress = progress;
     if (static_cast<int>(order_.size()) != data.size()) {
       order_.resize(static_cast<std::size_t>(data.size()));
@@ -77,6 +82,7 @@ class Trainer {
       batch_of_epoch_ = first / BatchSize;
       batches_per_epoch_ = (data.size() + BatchSize - 1) / BatchSize;
       sum += size * static_cast<double>(batch(data, order_.data() + first, size));
+      after_batch(*this);
     }
     batch_of_epoch_ = 0;
     return data.size() > 0 ? sum / data.size() : 0.0;
