@@ -23,10 +23,9 @@ Predictions linear_predictions(const pinnquad::Flight& flight, const pinnquad::I
   for (std::size_t row = range.begin; row < range.end; ++row) {
     const Sample& sample = flight[row];
     const double density = standard_atmosphere_density_kg_m3(site.elevation_m + sample.altitude_m);
-    result.push_back(linearized_commands(airframe, rotors,
-                                         Accelerations<double>{sample.linear_acceleration_m_s2,
-                                                               sample.angular_acceleration_rad_s2},
-                                         site.gravity_m_s2, density / standard_air_density_kg_m3<double>));
+    result.push_back(linearized_commands(
+        airframe, rotors, Accelerations<double>{sample.linear_acceleration_m_s2, sample.angular_acceleration_rad_s2},
+        site.gravity_m_s2, density / standard_air_density_kg_m3<double>));
   }
   return result;
 }
@@ -37,8 +36,8 @@ Predictions network_predictions(const Model& model, const pinnquad::Flight& flig
   Predictions result;
   for (std::size_t row = range.begin; row < range.end; ++row) {
     const auto u = model.predict(flight[row]);
-    result.push_back({static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]),
-                      static_cast<double>(u[3])});
+    result.push_back(
+        {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]), static_cast<double>(u[3])});
   }
   return result;
 }

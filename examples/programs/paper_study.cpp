@@ -32,7 +32,7 @@ struct Options {
   int seeds = 20;
   int epochs = 300;
   int flights = 4;
-  std::uint64_t flight_seed = 1;
+  std::uint64_t flight_seed = study::first_flight_seed;
   int patience = 0;
   unsigned threads = 0;
 };
@@ -44,7 +44,8 @@ void add_campaign_options(CLI::App& app, Options& options) {
   app.add_option("--epochs", options.epochs, "epochs of each training")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  app.add_option("--flight-seed", options.flight_seed, "seed of the flights d1, d2, d3; further flights count on from it")
+  app.add_option("--flight-seed", options.flight_seed,
+                 "seed of the flights d1, d2, d3; further flights count on from it")
       ->capture_default_str();
   app.add_option("--weights", options.weights,
                  "final: judge the weights after the last epoch; best: those of the least validation error")
@@ -89,7 +90,8 @@ int main(int argument_count, char** arguments) {
       "  paper_study --models 2,4,5-8 --epochs 100 --out part\n"
       "  paper_study --shard 2/8 --out study/2        part 2 of 8, for a job array\n"
       "  paper_study merge study/* --out study/all    joins such parts\n"
-      "The same command goes on where it was stopped or killed. Exit codes: 0; 1 a merge of parts that are not all there;\n"
+      "The same command goes on where it was stopped or killed. Exit codes: 0; 1 a merge of parts that are not all "
+      "there;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted.",
       "paper_study"};
   app.add_option("--out", options.out, "folder of rows.csv, study.json and series/")->type_name("DIR");
@@ -103,8 +105,11 @@ int main(int argument_count, char** arguments) {
   merge->add_option("parts", options.parts, "folders to join")->type_name("DIR...")->required();
   merge->add_option("--out", options.out, "folder to write")->type_name("DIR")->required();
   CLI::App* ablation = app.add_subcommand(
-      "ablation", "What decides: gain, lambda, batch order, learning rate, loss forms, and the same budget for vanilla");
-  ablation->add_option("--out", options.out, "folder of rows.csv, study.json and series/")->type_name("DIR")->required();
+      "ablation",
+      "What decides: gain, lambda, batch order, learning rate, loss forms, and the same budget for vanilla");
+  ablation->add_option("--out", options.out, "folder of rows.csv, study.json and series/")
+      ->type_name("DIR")
+      ->required();
   int ablation_flights = 1;
   ablation->add_option("--flights", ablation_flights, "flights d1, the seeds from --flight-seed on")
       ->capture_default_str()

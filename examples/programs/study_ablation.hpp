@@ -46,8 +46,12 @@ void add_trainings(std::vector<Contender>& all, const std::string& id, const Los
   add_variant(all, id + "_3e-3_constant", "learning rate", loss, adam(own_decay, 3e-3));
   add_variant(all, id + "_1e-3_cosine", "learning rate", loss, optimizer(own_decay, 1e-3));
   add_variant(all, id + "_6e-3_cosine", "learning rate", loss, optimizer(own_decay, 6e-3));
-  for (const auto& [name, decay] : {std::pair<const char*, double>{"0", 0}, {"1e-5", 1e-5}, {"3e-5", 3e-5},
-                                    {"1e-4", 1e-4}, {"3e-4", 3e-4}, {"1e-3", 1e-3}}) {
+  for (const auto& [name, decay] : {std::pair<const char*, double>{"0", 0},
+                                    {"1e-5", 1e-5},
+                                    {"3e-5", 3e-5},
+                                    {"1e-4", 1e-4},
+                                    {"3e-4", 3e-4},
+                                    {"1e-3", 1e-3}}) {
     if (decay != own_decay) add_variant(all, id + "_decay_" + name, "weight decay", loss, optimizer(decay));
     using Shuffled = pinnquad::ShuffledBatches;
     add_variant<Shuffled, With>(all, id + "_batch_norm_decay_" + name, "batch norm", loss, optimizer(decay));
@@ -82,13 +86,16 @@ inline std::vector<Contender> ablation() {
 
   // other forms of the physics terms, each with the gain that is its own (loss/local_monotonicity.hpp)
   add_variant(all, "literal_constant", "form as Algorithm 1 prints it, lambda without annealing",
-              with_schedule(pinnquad::PaperLoss<pinnquad::Constant, pinnquad::TanhStep, pinnquad::Literal>{}, constant_weight()),
+              with_schedule(pinnquad::PaperLoss<pinnquad::Constant, pinnquad::TanhStep, pinnquad::Literal>{},
+                            constant_weight()),
               informed);
   add_variant(all, "literal", "form as Algorithm 1 prints it",
-              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Literal>{}, annealed_weight()),
+              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Literal>{},
+                            annealed_weight()),
               informed);
   add_variant(all, "match", "form that asks for equal steps",
-              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Match>{}, annealed_weight()),
+              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Match>{},
+                            annealed_weight()),
               informed);
   add_variant(all, "pearson", "Pearson's correlation instead of local monotonicity",
               with_schedule(detail::PearsonLoss{}, annealed_weight()), informed);

@@ -40,8 +40,9 @@ inline std::vector<Job> all_jobs(const Plan& plan) {
         continue;
       }
       for (int i = 0; i < plan.seeds; ++i) {
-        jobs.push_back({&contender, {flight_seed, first_seed + static_cast<std::uint64_t>(i), plan.epochs, plan.best_weights,
-                                     plan.patience}});
+        jobs.push_back(
+            {&contender,
+             {flight_seed, first_seed + static_cast<std::uint64_t>(i), plan.epochs, plan.best_weights, plan.patience}});
       }
     }
   }
@@ -51,7 +52,8 @@ inline std::vector<Job> all_jobs(const Plan& plan) {
 /// Every n-th training from the i-th on: neighbours differ only by their seed, so that the parts take equally long.
 inline std::vector<Job> jobs_of_shard(const std::vector<Job>& jobs, const Shard& shard) {
   std::vector<Job> part;
-  for (auto i = static_cast<std::size_t>(shard.index - 1); i < jobs.size(); i += static_cast<std::size_t>(shard.count)) {
+  for (auto i = static_cast<std::size_t>(shard.index - 1); i < jobs.size();
+       i += static_cast<std::size_t>(shard.count)) {
     part.push_back(jobs[i]);
   }
   return part;
@@ -101,7 +103,8 @@ class StudyFolder {
     for (const std::string& folder : {path_, path_ + "/series"}) {
       for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
         const std::string name = entry.path().filename().string();
-        if (name.find(".csv.partial-") == std::string::npos && name.find(".json.partial-") == std::string::npos) continue;
+        if (name.find(".csv.partial-") == std::string::npos && name.find(".json.partial-") == std::string::npos)
+          continue;
         std::error_code ignored;
         std::filesystem::remove(entry.path(), ignored);
       }
@@ -152,8 +155,8 @@ class Campaign {
 
  private:
   int told_interrupted(std::size_t finished) const {
-    std::fprintf(stderr, "paper_study: interrupted; %zu of %zu trainings are in %s; the same command goes on\n", finished,
-                 jobs_.size(), folder_.rows().c_str());
+    std::fprintf(stderr, "paper_study: interrupted; %zu of %zu trainings are in %s; the same command goes on\n",
+                 finished, jobs_.size(), folder_.rows().c_str());
     return programs::exit_interrupted;
   }
 

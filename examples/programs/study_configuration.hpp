@@ -21,8 +21,8 @@ namespace study {
 
 /// Entries of study.json that decide no row.
 inline const std::set<std::string>& run_facts() {
-  static const std::set<std::string> names = {"cpu",     "threads",  "wall_s", "started",
-                                              "finished", "trainings", "trainings_finished", "parts"};
+  static const std::set<std::string> names = {
+      "cpu", "threads", "wall_s", "started", "finished", "trainings", "trainings_finished", "parts"};
   return names;
 }
 
@@ -32,10 +32,10 @@ struct Plan {
   std::vector<Contender> contenders;
   int seeds = 20;
   int epochs = 300;
-  std::uint64_t flight_seed = 1;
-  int flights = 4;  ///< of the main comparison
+  std::uint64_t flight_seed = first_flight_seed;
+  int flights = 4;            ///< of the main comparison
   bool best_weights = false;  ///< judged are the weights of the least validation error, where a data set validates
-  int patience = 0;  ///< epochs without a lesser validation error after which a training ends; 0: none does
+  int patience = 0;           ///< epochs without a lesser validation error after which a training ends; 0: none does
   Shard shard;
 };
 
@@ -103,11 +103,14 @@ inline std::string difference(const nlohmann::json& there, const nlohmann::json&
   };
   for (const std::string& name : names) {
     const nlohmann::json::json_pointer entry("/" + name);
-    const nlohmann::json in_a = a.contains(name) ? a.at(name) : nlohmann::json(), in_b = b.contains(name) ? b.at(name) : nlohmann::json();
+    const nlohmann::json in_a = a.contains(name) ? a.at(name) : nlohmann::json(),
+                         in_b = b.contains(name) ? b.at(name) : nlohmann::json();
     if (in_a == in_b) continue;
-    if (!in_a.is_structured() || !in_b.is_structured()) return name + " is " + told(a, entry) + " there and " + told(b, entry) + " here";
+    if (!in_a.is_structured() || !in_b.is_structured())
+      return name + " is " + told(a, entry) + " there and " + told(b, entry) + " here";
     if (in_a.size() != in_b.size()) {
-      return name + " has " + std::to_string(in_a.size()) + " entries there and " + std::to_string(in_b.size()) + " here";
+      return name + " has " + std::to_string(in_a.size()) + " entries there and " + std::to_string(in_b.size()) +
+             " here";
     }
     const nlohmann::json flat = nlohmann::json::diff(in_a, in_b);  // not empty: they differ
     const nlohmann::json::json_pointer at("/" + name + flat.front().at("path").get<std::string>());

@@ -111,9 +111,9 @@ struct Outcome {
 
 struct Contender {
   std::string id;
-  std::string flight;            ///< d1, d2 or d3
-  bool trained = true;           ///< false: a formula, the same for every seed
-  bool more_flights = false;     ///< part of the main comparison
+  std::string flight;             ///< d1, d2 or d3
+  bool trained = true;            ///< false: a formula, the same for every seed
+  bool more_flights = false;      ///< part of the main comparison
   std::size_t training_rows = 0;  ///< of the flight's plan: what an epoch costs
   nlohmann::json description;
   /// False if it was stopped.
@@ -148,9 +148,8 @@ void judge(const Material<DataSet>& material, const PredictionsOf& predictions_o
   outcome.predictions = predictions_of(split.test);
   outcome.test = programs::judge<Context>(material.flight, split.test, outcome.predictions);
   if (split.validation.empty()) return;
-  outcome.validation_mae =
-      programs::judge<Context>(material.flight, split.validation, predictions_of(split.validation))
-          .errors.mean.mean_absolute;
+  outcome.validation_mae = programs::judge<Context>(material.flight, split.validation, predictions_of(split.validation))
+                               .errors.mean.mean_absolute;
 }
 
 /// Model 1: Eq. (3) inverted.
@@ -177,7 +176,8 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
                             const OptimizerType& optimizer_used) {
   Contender result = contender<DataSet>(id, std::move(description));
   result.run = [loss, optimizer_used](Workshop& workshop, const Assignment& assignment, Outcome& outcome) {
-    using Trainer = pinnquad::Trainer<Network, Loss, OptimizerType, typename Material<DataSet>::Context, Order, batch_size>;
+    using Trainer =
+        pinnquad::Trainer<Network, Loss, OptimizerType, typename Material<DataSet>::Context, Order, batch_size>;
     const Material<DataSet>& material = workshop.material<DataSet>(assignment.flight_seed);
     const auto start = std::chrono::steady_clock::now();
     std::mt19937_64 engine(assignment.seed);
@@ -198,9 +198,7 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
                                                     material.context, material.flight, material.split.train);
     judge(
         material,
-        [&](const pinnquad::IndexRange& range) {
-          return programs::network_predictions(model, material.flight, range);
-        },
+        [&](const pinnquad::IndexRange& range) { return programs::network_predictions(model, material.flight, range); },
         outcome);
     return true;
   };

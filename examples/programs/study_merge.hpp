@@ -71,7 +71,8 @@ inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
     wall_s += c.value("wall_s", 0.0);
     threads += c.value("threads", 0);
     started = std::min(started, c.value("started", started));
-    if (c.contains("finished") && c["finished"].is_string()) finished = std::max(finished, c["finished"].get<std::string>());
+    if (c.contains("finished") && c["finished"].is_string())
+      finished = std::max(finished, c["finished"].get<std::string>());
   }
   std::string names;
   for (const std::string& name : processors) names += (names.empty() ? "" : "; ") + name;
@@ -93,7 +94,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   std::vector<detail::Part> parts;
   for (const std::string& path : paths) {
     std::error_code error;
-    if (std::filesystem::equivalent(path, out, error)) throw std::invalid_argument("merge: " + path + " is the folder to write");
+    if (std::filesystem::equivalent(path, out, error))
+      throw std::invalid_argument("merge: " + path + " is the folder to write");
     parts.push_back(detail::read_part(path));
     const std::string differs = difference(parts.front().configuration, parts.back().configuration, {"shard"});
     if (!differs.empty()) {
@@ -105,7 +107,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
     for (const auto& [id, row] : part.stored.rows) {
       const auto [known, is_new] = rows.emplace(id, row);
       if (!is_new && without_time(known->second) != without_time(row)) {
-        throw std::invalid_argument("merge: " + part.path + " has other figures than a part before for " + to_string(id));
+        throw std::invalid_argument("merge: " + part.path + " has other figures than a part before for " +
+                                    to_string(id));
       }
     }
   }
@@ -145,8 +148,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   std::printf("%zu of %zu trainings from %zu folders are in %s\n", lines.size(), expected.size(), parts.size(),
               folder.rows().c_str());
   if (missing == nullptr) return 0;
-  std::fprintf(stderr, "paper_study: merge: %zu trainings are missing, the first is %s\n", expected.size() - lines.size(),
-               to_string(*missing).c_str());
+  std::fprintf(stderr, "paper_study: merge: %zu trainings are missing, the first is %s\n",
+               expected.size() - lines.size(), to_string(*missing).c_str());
   return 1;
 }
 

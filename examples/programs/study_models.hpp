@@ -9,18 +9,34 @@
 namespace study {
 
 // Structure
-struct Linearized { static constexpr const char* name = "linearized"; };
-struct Vanilla { static constexpr const char* name = "vanilla"; };
-struct Informed { static constexpr const char* name = "physics-informed"; };
+struct Linearized {
+  static constexpr const char* name = "linearized";
+};
+struct Vanilla {
+  static constexpr const char* name = "vanilla";
+};
+struct Informed {
+  static constexpr const char* name = "physics-informed";
+};
 
 // Batch norm
-struct Without { static constexpr bool batch_norm = false; };
-struct With { static constexpr bool batch_norm = true; };
+struct Without {
+  static constexpr bool batch_norm = false;
+};
+struct With {
+  static constexpr bool batch_norm = true;
+};
 
 // Hyperparameter: the weight lambda of the physics terms
-struct NoTerms { static constexpr const char* name = "none"; };
-struct ConstantLambda { static constexpr const char* name = "constant"; };
-struct CyclicLambda { static constexpr const char* name = "cyclical annealing"; };
+struct NoTerms {
+  static constexpr const char* name = "none";
+};
+struct ConstantLambda {
+  static constexpr const char* name = "constant";
+};
+struct CyclicLambda {
+  static constexpr const char* name = "cyclical annealing";
+};
 
 /// Data set: which flight, which features, which share of the rows trains, validates and tests. Contiguous blocks. `chooses_weights`: its validation rows may choose
 /// between the weights of a training's epochs.

@@ -54,7 +54,8 @@ inline std::string row_text(const RowId& id, int epochs, const Outcome& outcome)
   using pinnquad::detail::number_text;
   std::string text = id.model + "," + id.flight + "," + std::to_string(id.flight_seed) + "," + std::to_string(id.seed) +
                      "," + std::to_string(epochs) + "," + weights_name(outcome.best_weights);
-  for (const programs::Figure& figure : programs::figures()) text += "," + number_text(figure.of(outcome.test, figure.index));
+  for (const programs::Figure& figure : programs::figures())
+    text += "," + number_text(figure.of(outcome.test, figure.index));
   return text + "," + number_text(outcome.validation_mae) + "," + number_text(outcome.training_s);
 }
 
@@ -73,7 +74,9 @@ inline bool parse_row(const std::string& line, std::size_t columns, RowId& id) {
   std::vector<std::string_view> fields;
   pinnquad::detail::split_fields(line, fields);
   constexpr std::size_t first_number = 6;
-  if (fields.size() != columns || fields[0].empty() || (fields[5] != weights_name(false) && fields[5] != weights_name(true))) return false;
+  if (fields.size() != columns || fields[0].empty() ||
+      (fields[5] != weights_name(false) && fields[5] != weights_name(true)))
+    return false;
   for (std::size_t i = first_number; i < fields.size(); ++i) {
     double value = 0;
     const auto read = std::from_chars(fields[i].data(), fields[i].data() + fields[i].size(), value);
@@ -134,7 +137,8 @@ inline void write_rows(const std::string& path, const std::vector<std::string>& 
 /// Appends rows to a rows.csv that ends with a whole line. One writer at a time.
 class RowAppender {
  public:
-  explicit RowAppender(const std::string& path) : path_(path), file_(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC)) {
+  explicit RowAppender(const std::string& path)
+      : path_(path), file_(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC)) {
     if (file_ < 0) throw pinnquad::OutputError(path, pinnquad::detail::system_reason(errno, "it does not open"));
   }
   RowAppender(const RowAppender&) = delete;

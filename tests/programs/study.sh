@@ -26,7 +26,7 @@ started() {
 
 "$study" "${options[@]}" --out whole >whole.txt
 [ "$(rows whole)" -eq $((trainings + 1)) ] || fail "rows.csv: a header and $trainings rows were expected"
-grep -q '^13 *d3/1 ' whole.txt || fail "no line of model 13: $(cat whole.txt)"
+grep -q '^13 *d3/101 ' whole.txt || fail "no line of model 13: $(cat whole.txt)"
 head -n 1 whole/rows.csv | grep -q '^model,flight,flight_seed,seed,epochs,weights,mae,.*,validation_mae,training_s$' ||
   fail "columns: $(head -n 1 whole/rows.csv)"
 for model in 1 7 9 13; do
@@ -78,7 +78,7 @@ for shard in 1 2 3; do "$study" "${options[@]}" --shard "$shard/3" --out "part$s
 code=0
 "$study" merge part1 part3 --out merged >stdout.txt 2>stderr.txt || code=$?
 [ "$code" -eq 1 ] || fail "exit code $code of a merge without part 2"
-grep -q '3 trainings are missing, the first is model 7, flight d1 of seed 1, seed 1' stderr.txt || fail "said: $(cat stderr.txt)"
+grep -q '3 trainings are missing, the first is model 7, flight d1 of seed 101, seed 1' stderr.txt || fail "said: $(cat stderr.txt)"
 "$study" merge part1 part2 part3 --out merged >/dev/null
 same whole merged
 "$study" "${options[@]}" --out merged >resumed.txt # a merged folder is a study like any other
@@ -157,5 +157,5 @@ exec 9<&-
 "$study" ablation --seeds 1 --epochs 1 --out ablation >ablation.txt
 grep -q '^informed_lambda_0.3 ' ablation.txt || fail "said: $(cat ablation.txt)"
 "$study" --models 13 --seeds 1 --epochs 12 --weights best --patience 3 --out best >/dev/null
-grep -q '^13,d3,1,1,12,best,' best/rows.csv || fail "said: $(cat best/rows.csv)"
+grep -q '^13,d3,101,1,12,best,' best/rows.csv || fail "said: $(cat best/rows.csv)"
 [ ! -e no ] || fail "a refused command left the folder no"
