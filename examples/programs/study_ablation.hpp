@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ablation: what of the recipe decides the outcome. A variant differs from the recipe in what its name says; the network
-// is that of models 2 to 4. Vanilla is given as many variants of its training as the physics-informed network.
+// The ablation: what of the recipe decides the outcome. A variant differs from the recipe in what its name says; the
+// network is that of models 2 to 4. Vanilla has as many variants of its training as the physics-informed network.
 #pragma once
 
 #include <algorithm>

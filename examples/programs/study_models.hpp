@@ -38,8 +38,8 @@ struct CyclicLambda {
   static constexpr const char* name = "cyclical annealing";
 };
 
-/// Data set: which flight, which features, which share of the rows trains, validates and tests. Contiguous blocks. `chooses_weights`: its validation rows may choose
-/// between the weights of a training's epochs.
+/// Data set: which flight, which features, which share of the rows trains, validates and tests, in contiguous blocks.
+/// `chooses_weights`: its validation rows may choose between the weights of a training's epochs.
 struct D1 {
   static constexpr const char* name = "D1";
   static constexpr bool chooses_weights = true;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
-// rows.csv of a study: one line per finished training, written whole and on the disk before the training counts as done.
+// rows.csv of a study: one line per finished training, written whole and on the disk before the training counts as
+// done.
 #pragma once
 
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 

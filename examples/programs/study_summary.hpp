@@ -2,8 +2,9 @@
 // Table 3 on the terminal, from the rows of a finished study.
 #pragma once
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,7 @@ inline std::vector<double> column(const StoredRows& stored, const Contender& con
 
 /// Rows are models and flights; mean and deviation over the seeds.
 inline void print_summary(const Plan& plan, const StoredRows& stored) {
-  const bool whole = plan.shard.count == 1;
-  if (!whole) return;  // a part says nothing
+  if (plan.shard.count > 1) return;  // a part says nothing
   std::printf("%-22s %-10s %18s %16s %16s %16s %18s\n", "model", "flight", "error, 1e-3", "roll, deg", "pitch, deg",
               "yaw, deg", "validation, 1e-3");
   for (const Contender& contender : plan.contenders) {

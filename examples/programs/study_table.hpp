@@ -2,6 +2,7 @@
 // Table 2 as contenders, and the choice of some of them on the command line.
 #pragma once
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <string>

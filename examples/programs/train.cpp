@@ -103,16 +103,18 @@ int train_judge_export(const Options& options, const Flight& flight) {
   predictions.push_back(programs::linear_predictions<Vehicle>(flight, split.test));
   results.back().test = programs::judge<Context>(flight, split.test, predictions.back());
   results.back().validation_error =
-      programs::judge<Context>(flight, split.validation, programs::linear_predictions<Vehicle>(flight, split.validation))
+      programs::judge<Context>(flight, split.validation,
+                               programs::linear_predictions<Vehicle>(flight, split.validation))
           .errors.mean.mean_absolute;
   for (const programs::Training& training : trainings) {
     models.push_back(make_trained_model(training.network, context, flight, split.train));
     predictions.push_back(programs::network_predictions(models.back(), flight, split.test));
     programs::Result result{programs::kind_name(training.kind), training.seed, {}, 0, training.training_s};
     result.test = programs::judge<Context>(flight, split.test, predictions.back());
-    result.validation_error = programs::judge<Context>(flight, split.validation,
-                                                       programs::network_predictions(models.back(), flight, split.validation))
-                                  .errors.mean.mean_absolute;
+    result.validation_error =
+        programs::judge<Context>(flight, split.validation,
+                                 programs::network_predictions(models.back(), flight, split.validation))
+            .errors.mean.mean_absolute;
     results.push_back(result);
   }
   const std::string folder = options.out + "/";
