@@ -65,7 +65,8 @@ Series physical_series(const std::array<double, 4>& signs, int axis, const Paper
   for (int sample = 0; sample < batch.size(); ++sample) {
     double sum = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
-      sum += signs[i] * (batch.prediction(static_cast<int>(i), sample) * context.output.spread[i] + context.output.mean[i]);
+      sum += signs[i] *
+             (batch.prediction(static_cast<int>(i), sample) * context.output.spread[i] + context.output.mean[i]);
     }
     series.m.push_back(sum);
     series.n.push_back(batch.features(3 + axis, sample) * context.input.spread[feature] + context.input.mean[feature]);
@@ -119,10 +120,12 @@ TEST_CASE("literal: raw commands and rad/s^2, N_b - 1 terms over N_b, in every a
       return total / static_cast<double>(s.m.size());
     };
     const double tolerance = rounding<double>(1000);  // differences of values near 10 within sums of 4
-    CHECK(std::fabs(value(LocalMonotonicity<Roll, TanhStep, Literal>{}, context, batch) - plain({-1, 1, 1, -1}, 0)) <= tolerance);
+    CHECK(std::fabs(value(LocalMonotonicity<Roll, TanhStep, Literal>{}, context, batch) - plain({-1, 1, 1, -1}, 0)) <=
+          tolerance);
     CHECK(std::fabs(value(LocalMonotonicity<Pitch, TanhStep, Literal>{}, context, batch) - plain({1, -1, 1, -1}, 1)) <=
           tolerance);
-    CHECK(std::fabs(value(LocalMonotonicity<Yaw, TanhStep, Literal>{}, context, batch) - plain({1, 1, -1, -1}, 2)) <= tolerance);
+    CHECK(std::fabs(value(LocalMonotonicity<Yaw, TanhStep, Literal>{}, context, batch) - plain({1, 1, -1, -1}, 2)) <=
+          tolerance);
   }
 }
 
@@ -139,7 +142,8 @@ TEST_CASE("match: squared difference of the steps of the standardised series, me
       total += difference * difference;
     }
     const double expected = size > 1 ? total / (size - 1) : 0.0;
-    CHECK(std::fabs(value(LocalMonotonicity<Pitch, TanhStep, Match>{}, context, batch) - expected) <= rounding<double>(1000));
+    CHECK(std::fabs(value(LocalMonotonicity<Pitch, TanhStep, Match>{}, context, batch) - expected) <=
+          rounding<double>(1000));
   }
 }
 

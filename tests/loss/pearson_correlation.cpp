@@ -119,7 +119,8 @@ TEST_CASE("the sign is the allocation's: commands that turn the vehicle the meas
   const double signs[4] = {-1, 1, 1, -1};  // Eq. (2), roll
   for (int i = 0; i < 64; ++i) {
     double sum = 0.0;
-    for (int k = 0; k < 4; ++k) sum += signs[k] * batch.prediction(k, i) * context.output.spread[static_cast<std::size_t>(k)];
+    for (int k = 0; k < 4; ++k)
+      sum += signs[k] * batch.prediction(k, i) * context.output.spread[static_cast<std::size_t>(k)];
     batch.features(3, i) = 40.0 * sum;
   }
   PaperBatch<double>::Gradient gradient;

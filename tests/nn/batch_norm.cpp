@@ -59,7 +59,8 @@ TEST_CASE("a Dense without bias is W x") {
 }
 
 TEST_CASE("the paper's network with batch norm: between Dense and activation, no bias before it") {
-  using Written = Network<float, Inputs<7>, DenseWithoutBias<6>, BatchNorm, Tanh, DenseWithoutBias<6>, BatchNorm, Tanh, Dense<2>>;
+  using Written =
+      Network<float, Inputs<7>, DenseWithoutBias<6>, BatchNorm, Tanh, DenseWithoutBias<6>, BatchNorm, Tanh, Dense<2>>;
   CHECK((std::is_same_v<BatchNormMlp<float, Inputs<7>, Hidden<2, 6>, Outputs<2>, Tanh>, Written>));
   using Paper = BatchNormMlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
   CHECK(Paper::parameter_count == 16 * 25 + 9 * 25 * 25 + 10 * 4 * 25 + 25 * 4 + 4);

@@ -74,7 +74,8 @@ void train(const std::string& folder, const Loss& loss, const Optimizer& optimiz
   const Data data = draw(rows, engine), unseen = draw(unseen_rows, engine);
   const Knowledge context = knowledge();
   Net network = initialised<Net>(engine);
-  for (double& p : network.parameters) p += uniform(engine, -0.05, 0.05);  // biases, gammas, betas: none at its neutral value
+  for (double& p : network.parameters)
+    p += uniform(engine, -0.05, 0.05);  // biases, gammas, betas: none at its neutral value
 
   std::vector<std::int32_t> order;
   std::vector<double> weights(network.parameters.begin(), network.parameters.end());
@@ -129,7 +130,8 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::string folder = arguments[1];
-  const bool normed = std::string(arguments[3]) == "batch_norm", decoupled = std::string(arguments[4]) == "adam_w_cosine";
+  const bool normed = std::string(arguments[3]) == "batch_norm",
+             decoupled = std::string(arguments[4]) == "adam_w_cosine";
   if (std::string(arguments[2]) == "paper") {
     CyclicalAnnealing annealing;
     annealing.cycles = 2;  // of five epochs: held for three, falling for two

@@ -108,9 +108,11 @@ TEST_CASE_TEMPLATE("two hundred steps as published, constant and along a cosine"
     }
   };
   for (const AdamW& adam : settings) {
-    run(adam, [&](long t) { return adam.begin(t); }, [](double) { return 1.0; });
+    run(
+        adam, [&](long t) { return adam.begin(t); }, [](double) { return 1.0; });
     const Scheduled<AdamW, CosineDecay> scheduled{adam, {}};
-    run(adam, [&](long t) { return scheduled.begin(t, static_cast<double>(t - 1) / steps); },
+    run(
+        adam, [&](long t) { return scheduled.begin(t, static_cast<double>(t - 1) / steps); },
         [](double done) { return (1 + std::cos(std::acos(-1.0) * done)) / 2; });
   }
 }

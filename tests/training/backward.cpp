@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pinnquad/training/batch_layer.hpp"
+#include "pinnquad/training/batch_norm.hpp"
 #include "support/central_difference.hpp"
 #include "support/own_layers.hpp"
 #include "support/random_network.hpp"
@@ -17,6 +18,7 @@
 using pinnquad::BackwardRule;
 using pinnquad::BatchLayer;
 using pinnquad::Dense;
+using pinnquad::DenseWithoutBias;
 using pinnquad::GenericPack;
 using pinnquad::is_elementwise;
 using pinnquad::is_trainable;
@@ -149,6 +151,7 @@ struct NoRule {
 }  // namespace
 
 TEST_CASE_TEMPLATE("backward rule of every layer", Layer, Bound<Dense<1>, 1>, Bound<Dense<5>, 3>, Bound<Dense<25>, 16>,
+                   Bound<DenseWithoutBias<1>, 1>, Bound<DenseWithoutBias<5>, 3>, Bound<DenseWithoutBias<25>, 16>,
                    Bound<Relu, 7>, Bound<Tanh, 6>, Bound<LeakyRelu, 5>, Bound<ChannelScale, 6>, Bound<Softmax, 5>) {
   SUBCASE("alone") { check_rule<Layer>(); }
   SUBCASE("mini-batch, packs of 4") { check_batch<Layer, GenericPack<double, 4>>(); }
@@ -167,6 +170,8 @@ TEST_CASE("the slope at the kink of ReLU is 0, on both forms") {
 
 TEST_CASE("what can be trained") {
   CHECK(is_trainable<Bound<Dense<2>, 3>>);
+  CHECK(is_trainable<Bound<DenseWithoutBias<2>, 3>>);
+  CHECK(is_trainable<Bound<pinnquad::BatchNorm, 3>>);
   CHECK(is_trainable<Bound<Relu, 3>>);
   CHECK(is_trainable<Bound<LeakyRelu, 3>>);
   CHECK(is_trainable<Bound<ChannelScale, 3>>);

@@ -196,7 +196,8 @@ TEST_CASE_TEMPLATE("running statistics: 0.9 old + 0.1 of the batch, variance wit
   std::mt19937_64 engine(162);
   Double expected = random_batch_norm_network<Double>(engine);
   Net net;
-  for (std::size_t i = 0; i < net.parameters.size(); ++i) net.parameters[i] = static_cast<Scalar>(expected.parameters[i]);
+  for (std::size_t i = 0; i < net.parameters.size(); ++i)
+    net.parameters[i] = static_cast<Scalar>(expected.parameters[i]);
   gradient->load(net.parameters);
   for (const int samples : {9, 2, 1, 7, 3}) {
     Rows x(static_cast<std::size_t>(samples), std::vector<double>(5));
@@ -280,7 +281,8 @@ TEST_CASE("the trainer: differentiate() changes nothing, a step moves weights, g
   const auto gradient = trainer->parameter_gradient();
   trainer->batch(data, rows.data(), 64);
   const auto after = trainer->network().parameters;
-  const auto first = static_cast<std::size_t>(Small::Sizes::offset(1));  // the first BatchNorm: gamma, beta, mean, variance
+  const auto first =
+      static_cast<std::size_t>(Small::Sizes::offset(1));  // the first BatchNorm: gamma, beta, mean, variance
   for (std::size_t i = 0; i < 18; ++i) {
     // Adam's first step is the learning rate, against the gradient's sign
     CHECK(after[first + i] - net.parameters[first + i] ==

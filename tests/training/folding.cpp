@@ -64,7 +64,8 @@ void check_outputs() {
 TEST_CASE_TEMPLATE("folded and unfolded agree to rounding", Scalar, float, double) {
   check_outputs<BatchNormMlp<Scalar, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>>();
   check_outputs<BatchNormMlp<Scalar, Inputs<5>, Hidden<1, 3>, Outputs<2>, Tanh>>();
-  check_outputs<Network<Scalar, Inputs<5>, Dense<7>, BatchNorm, Relu, DenseWithoutBias<4>, Tanh, Dense<3>, BatchNorm>>();
+  check_outputs<
+      Network<Scalar, Inputs<5>, Dense<7>, BatchNorm, Relu, DenseWithoutBias<4>, Tanh, Dense<3>, BatchNorm>>();
   check_outputs<Network<Scalar, Inputs<5>, DenseWithoutBias<7>, DenseWithoutBias<4>, BatchNorm>>();
 }
 

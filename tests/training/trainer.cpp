@@ -306,3 +306,22 @@ TEST_CASE("no data: no step, loss 0") {
   CHECK(trainer->epoch({}, Progress{0, 1}, engine) == 0.0);
   CHECK(trainer->steps() == 0);
 }
+
+TEST_CASE("an observer sees the trainer after each step, and changes nothing") {
+  const auto data = known_map<double>(70, 139);
+  std::mt19937_64 engine(13);
+  const auto net = initialised<Small<double>>(engine);
+  using Ordered = Trainer<Small<double>, Mse, Adam, PaperContext, TimeOrderedBatches, 32>;
+  auto seen = std::make_unique<Ordered>(net, Mse{}, Adam{}, PaperContext{});
+  auto unseen = std::make_unique<Ordered>(net, Mse{}, Adam{}, PaperContext{});
+  std::vector<Small<double>::Parameters> weights;
+  std::vector<long> steps;
+  const double loss = seen->epoch(data, Progress{0, 1}, engine, [&](const Ordered& trainer) {
+    weights.push_back(trainer.network().parameters);
+    steps.push_back(trainer.steps());
+  });
+  CHECK(loss == unseen->epoch(data, Progress{0, 1}, engine));
+  CHECK(steps == std::vector<long>{1, 2, 3});
+  CHECK(weights[0] != weights[1]);
+  CHECK(weights[2] == unseen->network().parameters);
+}

@@ -87,8 +87,8 @@ struct Standardised {
   }
 };
 
-/// Form of the loss as Algorithm 1 prints it: tanh of the differences as they are (commands; rad/s^2), the N_b - 1 terms divided
-/// by N_b.
+/// Form of the loss as Algorithm 1 prints it: tanh of the differences as they are (commands; rad/s^2), the N_b - 1 terms
+/// divided by N_b.
 struct Literal {
   static constexpr double gain = 1.0;
   static constexpr bool physical_units = true;

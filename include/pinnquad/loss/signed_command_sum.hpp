@@ -10,12 +10,13 @@ namespace pinnquad {
 /// Both series over the samples of a batch, and how the first depends on the predictions. No heap.
 template <class Axis, class Context, class Batch>
 struct SignedCommandSum {
-  static_assert(Context::Features::angular_acceleration >= 0,
-                "pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations");
+  static_assert(
+      Context::Features::angular_acceleration >= 0,
+      "pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations");
   using Scalar = typename Batch::Scalar;
   using Array = Eigen::Array<Scalar, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), Batch::max_size>;
-  using Slope = Eigen::Array<Scalar, rotor_count, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), rotor_count,
-                             Batch::max_size>;
+  using Slope = Eigen::Array<Scalar, rotor_count, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign),
+                             rotor_count, Batch::max_size>;
 
   Array commands;              ///< m: sum of sign_i u_i with the allocation's signs, divided by `spread`
   Slope slope;                 ///< d m / d standardised prediction
@@ -32,12 +33,10 @@ struct SignedCommandSum {
             batch.prediction(static_cast<Eigen::Index>(i), sample) * scale + Scalar(context.output.mean[i]);
         const Scalar sign = signs[i] / spread;
         commands[sample] += sign * Context::Outputs::command(output, airframe);
-        slope(static_cast<Eigen::Index>(i), sample) =
-            sign * scale * Context::Outputs::command_slope(output, airframe);
+        slope(static_cast<Eigen::Index>(i), sample) = sign * scale * Context::Outputs::command_slope(output, airframe);
       }
     }
-    angular_acceleration =
-        batch.features.row(Context::Features::angular_acceleration + Axis::axis).transpose().array();
+    angular_acceleration = batch.features.row(Context::Features::angular_acceleration + Axis::axis).transpose().array();
   }
 
   /// Adds dL/d prediction, given dL/dm.

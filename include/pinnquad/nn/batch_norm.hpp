@@ -52,8 +52,8 @@ struct BatchNorm {
 
 namespace detail {
 template <class Scalar, class InputSize, int Count, int Width, int Out, class Activation, class... Specs>
-struct MakeBatchNormMlp : MakeBatchNormMlp<Scalar, InputSize, Count - 1, Width, Out, Activation, DenseWithoutBias<Width>,
-                                           BatchNorm, Activation, Specs...> {};
+struct MakeBatchNormMlp : MakeBatchNormMlp<Scalar, InputSize, Count - 1, Width, Out, Activation,
+                                           DenseWithoutBias<Width>, BatchNorm, Activation, Specs...> {};
 template <class Scalar, class InputSize, int Width, int Out, class Activation, class... Specs>
 struct MakeBatchNormMlp<Scalar, InputSize, 0, Width, Out, Activation, Specs...> {
   using type = Network<Scalar, InputSize, Specs..., Dense<Out>>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The contract of a learning-rate policy: `double factor(double done) const noexcept`, by which the optimiser's learning rate is
-// multiplied; done = share of all training steps already taken, from 0 in the first step to just below 1 in the last.
+// The contract of a learning-rate policy: `double factor(double done) const noexcept`, by which the optimiser's learning
+// rate is multiplied; done = share of all training steps already taken, from 0 in the first to just below 1 in the last.
 #pragma once
 
 #include <type_traits>

@@ -143,9 +143,8 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
       constexpr int offset = decltype(v)::value * Pack::width;
       Pack sum[chains];
       for (Pack& s : sum) s = Pack::broadcast(Scalar(0));
-      const auto add = [&](int i, int c) PINNQUAD_INLINE_LAMBDA {
-        sum[c] = sum[c] + Pack::load(x + i * stride + offset);
-      };
+      const auto add = [&](int i, int c)
+                           PINNQUAD_INLINE_LAMBDA { sum[c] = sum[c] + Pack::load(x + i * stride + offset); };
       over_samples(samples, add);
       const Pack center = share * total(sum);
       for (Pack& s : sum) s = Pack::broadcast(Scalar(0));

@@ -26,8 +26,8 @@ class Checkpoint {
   }
 
   bool empty() const noexcept { return epoch_ < 0; }
-  int epoch() const noexcept { return epoch_; }      ///< -1 before the first
-  double error() const noexcept { return error_; }   ///< infinite before the first
+  int epoch() const noexcept { return epoch_; }     ///< -1 before the first
+  double error() const noexcept { return error_; }  ///< infinite before the first
   const NetworkType& network() const noexcept { return network_; }
 
  private:

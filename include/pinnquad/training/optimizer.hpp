@@ -28,17 +28,19 @@ struct BeginsStep<T, std::enable_if_t<FollowsProgress<T>::value>> {
   using Step = decltype(std::declval<const T&>().begin(1L, 0.0));
 };
 template <class T>
-struct BeginsStep<T, std::enable_if_t<!FollowsProgress<T>::value, std::void_t<decltype(std::declval<const T&>().begin(1L))>>> {
+struct BeginsStep<
+    T, std::enable_if_t<!FollowsProgress<T>::value, std::void_t<decltype(std::declval<const T&>().begin(1L))>>> {
   using Step = decltype(std::declval<const T&>().begin(1L));
 };
 
 template <class T, class Step, class = void>
 struct UpdatesParameters : std::false_type {};
 template <class T, class Step>
-struct UpdatesParameters<T, Step,
-                         std::void_t<decltype(std::declval<const T&>().template update<GenericPack<double, 4>>(
-                             std::declval<const Step&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
-                             static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))>> : std::true_type {};
+struct UpdatesParameters<
+    T, Step,
+    std::void_t<decltype(std::declval<const T&>().template update<GenericPack<double, 4>>(
+        std::declval<const Step&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
+        static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))>> : std::true_type {};
 }  // namespace detail
 
 /// True for an optimiser whose begin() is told how far training is.

@@ -88,8 +88,8 @@ class Trainer {
     return data.size() > 0 ? sum / data.size() : 0.0;
   }
 
-  /// Loss of these rows and one optimiser step down its gradient. Outside epoch(), a rate policy sees the beginning of the epoch
-  /// that was trained last.
+  /// Loss of these rows and one optimiser step down its gradient. Outside epoch(), a rate policy sees the beginning of the
+  /// epoch that was trained last.
   Scalar batch(const Data& data, const int* rows, int size) {
     const FlushDenormals flush;
     const Scalar value = differentiate(data, rows, size);
