@@ -15,10 +15,9 @@
 #include "airframes.hpp"
 #include "campaign.hpp"
 #include "judgement.hpp"
-#include "pinnquad/aero/air_density.hpp"
+#include "model_predictions.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
-#include "pinnquad/dynamics/linearized.hpp"
 #include "plots.hpp"
 
 namespace {
@@ -41,35 +40,6 @@ struct Options {
   std::uint64_t seed = 1;
   unsigned threads = 0;
 };
-
-/// Model 1 on a block of rows. The air's density is that of the paper's site at the row's altitude.
-template <class Vehicle>
-programs::Predictions linear_predictions(const Flight& flight, const IndexRange& range) {
-  const Airframe<double> airframe = airframe_value<Vehicle, double>();
-  const Rotors<double> rotors(airframe);
-  const Site<double> site = paper_site<double>();
-  programs::Predictions result;
-  for (std::size_t row = range.begin; row < range.end; ++row) {
-    const Sample& sample = flight[row];
-    const double density = standard_atmosphere_density_kg_m3(site.elevation_m + sample.altitude_m);
-    result.push_back(linearized_commands(airframe, rotors,
-                                         Accelerations<double>{sample.linear_acceleration_m_s2,
-                                                               sample.angular_acceleration_rad_s2},
-                                         site.gravity_m_s2, density / standard_air_density_kg_m3<double>));
-  }
-  return result;
-}
-
-template <class Model>
-programs::Predictions network_predictions(const Model& model, const Flight& flight, const IndexRange& range) {
-  programs::Predictions result;
-  for (std::size_t row = range.begin; row < range.end; ++row) {
-    const auto u = model.predict(flight[row]);
-    result.push_back({static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]),
-                      static_cast<double>(u[3])});
-  }
-  return result;
-}
 
 /// The test flight as the flight side is asked it, and what the trainer predicts: a line of counts, then a row of numbers per
 /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4).
@@ -130,19 +100,21 @@ int train_judge_export(const Options& options, const Flight& flight) {
   std::vector<Model> models;
   std::vector<programs::Predictions> predictions;
   results.push_back({linear_name, 0, {}, 0, 0});
-  predictions.push_back(linear_predictions<Vehicle>(flight, split.test));
+  predictions.push_back(programs::linear_predictions<Vehicle>(flight, split.test));
   results.back().test = programs::judge<Context>(flight, split.test, predictions.back());
   results.back().validation_error =
-      programs::judge<Context>(flight, split.validation, linear_predictions<Vehicle>(flight, split.validation))
+      programs::judge<Context>(flight, split.validation,
+                               programs::linear_predictions<Vehicle>(flight, split.validation))
           .errors.mean.mean_absolute;
   for (const programs::Training& training : trainings) {
     models.push_back(make_trained_model(training.network, context, flight, split.train));
-    predictions.push_back(network_predictions(models.back(), flight, split.test));
+    predictions.push_back(programs::network_predictions(models.back(), flight, split.test));
     programs::Result result{programs::kind_name(training.kind), training.seed, {}, 0, training.training_s};
     result.test = programs::judge<Context>(flight, split.test, predictions.back());
-    result.validation_error = programs::judge<Context>(flight, split.validation,
-                                                       network_predictions(models.back(), flight, split.validation))
-                                  .errors.mean.mean_absolute;
+    result.validation_error =
+        programs::judge<Context>(flight, split.validation,
+                                 programs::network_predictions(models.back(), flight, split.validation))
+            .errors.mean.mean_absolute;
     results.push_back(result);
   }
   const std::string folder = options.out + "/";

@@ -16,7 +16,9 @@ using pinnquad::EulerAngles;
 using pinnquad::is_feature_set;
 using pinnquad::motion_inputs;
 using pinnquad::MotionInputs;
+using pinnquad::MotionInputsWithAltitude;
 using pinnquad::PaperFeatures;
+using pinnquad::PaperFeaturesWithAltitude;
 using pinnquad::State;
 using pinnquad::Status;
 using pinnquad::test::draws;
@@ -162,8 +164,39 @@ TEST_CASE("motion_inputs() asks for the motion in the state, velocity in the bod
   CHECK(pinnquad::test::components(inputs.attitude) == pinnquad::test::components(state.attitude));
 }
 
+TEST_CASE("with altitude: the sixteen of the paper, then the altitude; check() sees it") {
+  RandomStates random(164);
+  MotionInputsWithAltitude<float> inputs;
+  static_cast<MotionInputs<float>&>(inputs) = random_inputs<float>(random);
+  inputs.altitude_m = 1.25F;
+  std::array<float, PaperFeaturesWithAltitude::size> x{};
+  PaperFeaturesWithAltitude::extract(inputs, x.data());
+  const auto paper = features<float>(inputs);
+  for (std::size_t i = 0; i < 16; ++i) {
+    CHECK(x[i] == paper[i]);
+    CHECK(std::string(PaperFeaturesWithAltitude::names[i]) == PaperFeatures::names[i]);
+    CHECK(std::string(PaperFeaturesWithAltitude::units[i]) == PaperFeatures::units[i]);
+  }
+  CHECK(x[16] == 1.25F);
+  CHECK(std::string(PaperFeaturesWithAltitude::names[16]) == "altitude");
+  CHECK(std::string(PaperFeaturesWithAltitude::units[16]) == "m");
+  CHECK(PaperFeaturesWithAltitude::angular_acceleration == PaperFeatures::angular_acceleration);
+  CHECK(PaperFeaturesWithAltitude::check(inputs) == Status::ok);
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    auto broken = inputs;
+    broken.altitude_m = bad;
+    CHECK(PaperFeaturesWithAltitude::check(broken) == Status::not_finite);
+    broken = inputs;
+    broken.body_rates_rad_s[1] = bad;
+    CHECK(PaperFeaturesWithAltitude::check(broken) == Status::not_finite);
+  }
+  inputs.attitude = {0.0F, 2.0F, 0.0F, 0.0F};
+  CHECK(PaperFeaturesWithAltitude::check(inputs) == Status::not_unit_quaternion);
+}
+
 TEST_CASE("what is a feature set") {
   CHECK(is_feature_set<PaperFeatures>);
+  CHECK(is_feature_set<PaperFeaturesWithAltitude>);
   CHECK_FALSE(is_feature_set<NoFeatures>);
   CHECK_FALSE(is_feature_set<FeaturesWithTooFewNames>);
   CHECK_FALSE(is_feature_set<int>);

@@ -57,6 +57,16 @@ TEST_CASE("the training rows have mean 0 and spread 1; other rows are scaled ali
   }
 }
 
+TEST_CASE("with altitude: the altitude that was recorded is the last feature") {
+  using pinnquad::PaperFeaturesWithAltitude;
+  for (const auto& sample : random_flight_rows(20, 145)) {
+    const auto x = pinnquad::sample_features<PaperFeaturesWithAltitude, double>(sample);
+    const auto paper = pinnquad::sample_features<PaperFeatures, double>(sample);
+    for (std::size_t i = 0; i < paper.size(); ++i) CHECK(x[i] == paper[i]);
+    CHECK(x.back() == sample.altitude_m);
+  }
+}
+
 TEST_CASE("features are those of X in physical units") {
   const Flight flight = random_flight_rows(30, 142);
   const auto context = make_context<PaperContext>(flight, {0, 30});

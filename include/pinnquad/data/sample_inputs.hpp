@@ -27,6 +27,16 @@ struct SampleInputs<MotionInputs<Scalar>> {
   }
 };
 
+template <class Scalar>
+struct SampleInputs<MotionInputsWithAltitude<Scalar>> {
+  static MotionInputsWithAltitude<Scalar> from(const Sample& sample) {
+    MotionInputsWithAltitude<Scalar> inputs;
+    static_cast<MotionInputs<Scalar>&>(inputs) = SampleInputs<MotionInputs<Scalar>>::from(sample);
+    inputs.altitude_m = Scalar(sample.altitude_m);
+    return inputs;
+  }
+};
+
 /// Feature vector X of a sample, physical units.
 template <class Features, class Scalar>
 std::array<Scalar, static_cast<std::size_t>(Features::size)> sample_features(const Sample& sample) {

@@ -14,6 +14,17 @@
 
 namespace pinnquad {
 
+namespace detail {
+/// The names of a feature set that extends another one by an entry at the end.
+template <std::size_t Size>
+constexpr std::array<const char*, Size + 1> with_last(const std::array<const char*, Size>& names, const char* last) noexcept {
+  std::array<const char*, Size + 1> result{};
+  for (std::size_t i = 0; i < Size; ++i) result[i] = names[i];
+  result[Size] = last;
+  return result;
+}
+}  // namespace detail
+
 /// What an inverse-dynamics network is asked: the motion wanted, in the state the vehicle is in. Body frame FRD.
 template <class Scalar>
 struct MotionInputs {
@@ -70,6 +81,36 @@ struct PaperFeatures {
     x[13] = level.pitch_rad;
     x[14] = yaw.sine;
     x[15] = yaw.cosine;
+  }
+};
+
+/// What a network near the ground is asked besides.
+template <class Scalar>
+struct MotionInputsWithAltitude : MotionInputs<Scalar> {
+  Scalar altitude_m{0};  ///< above ground, positive up
+};
+
+/// X of Sec. 4.1 with the altitude as the last of 17 entries: the paper's networks near the ground (Discussion 5).
+struct PaperFeaturesWithAltitude {
+  template <class Scalar>
+  using Inputs = MotionInputsWithAltitude<Scalar>;
+
+  static constexpr int size = PaperFeatures::size + 1;
+  static constexpr int angular_acceleration = PaperFeatures::angular_acceleration;
+  static constexpr std::array<const char*, size> names = detail::with_last(PaperFeatures::names, "altitude");
+  static constexpr std::array<const char*, size> units = detail::with_last(PaperFeatures::units, "m");
+
+  /// As PaperFeatures; `not_finite` for the altitude too.
+  template <class Scalar>
+  static Status check(const Inputs<Scalar>& in) noexcept {
+    return all_finite(&in.altitude_m, 1) ? PaperFeatures::check<Scalar>(in) : Status::not_finite;
+  }
+
+  /// Fills x[0..size). The inputs must have passed check().
+  template <class Scalar>
+  static void extract(const Inputs<Scalar>& in, Scalar* x) noexcept {
+    PaperFeatures::extract<Scalar>(in, x);
+    x[PaperFeatures::size] = in.altitude_m;
   }
 };
 

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// Joins the folders of a study's shards into one, as if a single machine had run it.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "study_campaign.hpp"
+
+namespace study {
+
+namespace detail {
+
+/// The trainings of a study, from its settings: models in order, flights, seeds.
+inline std::vector<RowId> expected_rows(const nlohmann::json& configuration) {
+  std::vector<RowId> rows;
+  const auto first_flight = configuration.at("flight_seed").get<std::uint64_t>();
+  const auto first = configuration.at("first_seed").get<std::uint64_t>();
+  for (const nlohmann::json& model : configuration.at("models")) {
+    const auto flights = model.at("flights").get<std::uint64_t>();
+    const bool trained = model.at("trained").get<bool>();
+    const auto seeds = trained ? configuration.at("seeds").get<std::uint64_t>() : 1;
+    for (std::uint64_t flight = 0; flight < flights; ++flight) {
+      for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        rows.push_back({model.at("id"), model.at("flight"), first_flight + flight, trained ? first + seed : 0});
+      }
+    }
+  }
+  return rows;
+}
+
+/// A shard's folder as read.
+struct Part {
+  std::string path;
+  nlohmann::json configuration;
+  StoredRows stored;
+};
+
+inline Part read_part(const std::string& path) {
+  Part part;
+  part.path = path;
+  part.configuration = read_configuration(path + "/study.json");
+  try {
+    expected_rows(part.configuration);
+  } catch (const nlohmann::json::exception&) {
+    throw pinnquad::InputError(path + "/study.json", 0, 0, "the settings of a study", "something else");
+  }
+  part.stored = read_rows(path + "/rows.csv");
+  if (part.stored.broken > 0) {
+    std::fprintf(stderr, "paper_study: %s/rows.csv: %zu not whole; left out\n", path.c_str(), part.stored.broken);
+  }
+  return part;
+}
+
+/// One study.json for all parts: times added up, processors named.
+inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
+  nlohmann::json joined = parts.front().configuration;
+  std::set<std::string> processors;
+  double wall_s = 0;
+  std::string started = joined.value("started", ""), finished;
+  int threads = 0;
+  for (const Part& part : parts) {
+    const nlohmann::json& c = part.configuration;
+    processors.insert(c.value("cpu", "unknown"));
+    wall_s += c.value("wall_s", 0.0);
+    threads += c.value("threads", 0);
+    started = std::min(started, c.value("started", started));
+    if (c.contains("finished") && c["finished"].is_string())
+      finished = std::max(finished, c["finished"].get<std::string>());
+  }
+  std::string names;
+  for (const std::string& name : processors) names += (names.empty() ? "" : "; ") + name;
+  joined["cpu"] = names;
+  joined["wall_s"] = wall_s;
+  joined["threads"] = threads;
+  joined["started"] = started;
+  joined["finished"] = finished;
+  joined["shard"] = "1/1";
+  joined["parts"] = parts.size();
+  return joined;
+}
+
+}  // namespace detail
+
+/// Exit code: 0, or 1 if trainings are missing. Throws InputError, OutputError; std::invalid_argument for parts of
+/// different studies and for two different rows of one training.
+inline int merge(const std::vector<std::string>& paths, const std::string& out) {
+  std::vector<detail::Part> parts;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    if (std::filesystem::equivalent(path, out, error))
+      throw std::invalid_argument("merge: " + path + " is the folder to write");
+    parts.push_back(detail::read_part(path));
+    const std::string differs = difference(parts.front().configuration, parts.back().configuration, {"shard"});
+    if (!differs.empty()) {
+      throw std::invalid_argument("merge: " + path + " is of another study than " + paths.front() + ": " + differs);
+    }
+  }
+  std::map<RowId, std::string> rows;
+  for (const detail::Part& part : parts) {
+    for (const auto& [id, row] : part.stored.rows) {
+      const auto [known, is_new] = rows.emplace(id, row);
+      if (!is_new && without_time(known->second) != without_time(row)) {
+        throw std::invalid_argument("merge: " + part.path + " has other figures than a part before for " +
+                                    to_string(id));
+      }
+    }
+  }
+  nlohmann::json joined = detail::joined_configuration(parts);
+  const StudyFolder folder(out);
+  std::error_code error;
+  if (std::filesystem::exists(folder.configuration(), error)) {
+    const std::string differs = difference(read_configuration(folder.configuration()), joined);
+    if (!differs.empty()) {
+      throw std::invalid_argument(folder.configuration() + ": of another study: " + differs + "; give another --out");
+    }
+  }
+  const std::vector<RowId> expected = detail::expected_rows(joined);
+  std::vector<std::string> lines;
+  const RowId* missing = nullptr;
+  for (const RowId& id : expected) {
+    const auto row = rows.find(id);
+    if (row != rows.end()) {
+      lines.push_back(row->second);
+    } else if (missing == nullptr) {
+      missing = &id;
+    }
+  }
+  for (const detail::Part& part : parts) {
+    for (const auto& entry : std::filesystem::directory_iterator(part.path + "/series", error)) {
+      if (entry.path().extension() != ".csv") continue;
+      pinnquad::AtomicFile copy(out + "/series/" + entry.path().filename().string());
+      copy.stream() << pinnquad::detail::file_text(entry.path().string());
+      copy.commit();
+    }
+  }
+  joined["trainings"] = expected.size();
+  joined["trainings_finished"] = lines.size();
+  if (missing != nullptr) joined["finished"] = nlohmann::json();
+  write_configuration(folder.configuration(), joined);
+  write_rows(folder.rows(), lines);
+  std::printf("%zu of %zu trainings from %zu folders are in %s\n", lines.size(), expected.size(), parts.size(),
+              folder.rows().c_str());
+  if (missing == nullptr) return 0;
+  std::fprintf(stderr, "paper_study: merge: %zu trainings are missing, the first is %s\n",
+               expected.size() - lines.size(), to_string(*missing).c_str());
+  return 1;
+}
+
+}  // namespace study

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=bash disable=SC2054,SC2154
+# paper_study: killed and resumed, interrupted, sharded and merged, it gives the rows of an undisturbed run, bit for bit; what is
+# broken is run again, what is foreign is refused.
+source "$(dirname "$0")/common.sh" "$@"
+
+models=(--models 1,7,9,13 --seeds 3)
+options=("${models[@]}" --epochs 12 --threads 2)
+trainings=10
+# every column but the last, which is a time
+figures() { sed 's/,[^,]*$//' "$1/rows.csv"; }
+same() { # <folder> <other folder>: the same rows in the same order, the same predictions
+  diff <(figures "$1") <(figures "$2") || fail "the rows of $1 and $2 differ"
+  diff -r "$1/series" "$2/series" || fail "the predictions of $1 and $2 differ"
+}
+rows() { if [ -f "$1/rows.csv" ]; then wc -l <"$1/rows.csv"; else echo 0; fi; }
+# started <folder>: runs in the background until a training is finished beside model 1; sets pid
+started() {
+  "$study" "${options[@]}" --out "$1" >stdout.txt 2>stderr.txt &
+  pid=$!
+  for ((wait = 0; wait < 6000; ++wait)); do
+    if [ "$(rows "$1")" -ge 3 ] || ! kill -0 "$pid" 2>/dev/null; then return; fi
+    sleep 0.02
+  done
+}
+
+"$study" "${options[@]}" --out whole >whole.txt
+[ "$(rows whole)" -eq $((trainings + 1)) ] || fail "rows.csv: a header and $trainings rows were expected"
+grep -q '^13 *d3/101 ' whole.txt || fail "no line of model 13: $(cat whole.txt)"
+head -n 1 whole/rows.csv | grep -q '^model,flight,flight_seed,seed,epochs,weights,mae,.*,validation_mae,training_s$' ||
+  fail "columns: $(head -n 1 whole/rows.csv)"
+for model in 1 7 9 13; do
+  head -n 1 "whole/series/model$model.csv" | grep -q '^time_s,wdot_x,wdot_y,wdot_z,u1,u2,u3,u4,p1,p2,p3,p4$' ||
+    fail "series of model $model"
+done
+# NOTES #16: 40 % and 80 % of 15,000 rows, 20 % of 5,000
+for block in 7:6000 9:12000 13:1000; do
+  [ "$(wc -l <"whole/series/model${block%:*}.csv")" -eq $((${block#*:} + 1)) ] || fail "test rows of model $block"
+done
+for entry in version recipe flights models compiler flags cpu threads wall_s started finished; do
+  grep -q "^  \"$entry\": " whole/study.json || fail "study.json has no $entry"
+done
+"$study" "${models[@]}" --epochs 12 --threads 1 --out one_thread >/dev/null
+same whole one_thread
+
+# killed, then resumed; the next run finds nothing to do
+started killed
+kill -KILL "$pid" 2>/dev/null || fail "the study was over before it could be killed: a longer one is needed"
+{ wait "$pid" || true; } 2>stderr.txt # where the shell says that it was killed
+kept=$(rows killed)
+[ "$kept" -le "$trainings" ] || fail "the study was over before it was killed"
+"$study" "${options[@]}" --out killed >resumed.txt
+same whole killed
+grep -q "$trainings of $trainings trainings are in .*, [1-9][0-9]* of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
+[ -z "$(find killed -name '*.partial*')" ] || fail "a half-written file was left behind"
+cp -r killed again
+: >again/rows.csv.partial-1 # as a killed run leaves it
+: >again/series/model7.csv.partial-1
+"$study" "${options[@]}" --out again >resumed.txt
+grep -q ", $trainings of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
+[ -z "$(find again -name '*.partial*')" ] || fail "a half-written file was left behind"
+cmp killed/rows.csv again/rows.csv || fail "a run with nothing to do changed the rows"
+
+# Ctrl-C: the code of an interrupt, what is finished is kept
+started interrupted
+kill -TERM "$pid" 2>/dev/null || true
+code=0
+wait "$pid" || code=$?
+[ "$code" -eq 130 ] || fail "exit code $code instead of 130; said: $(cat stderr.txt)"
+grep -q "interrupted; [1-9] of $trainings trainings are in interrupted/rows.csv; the same command goes on" stderr.txt ||
+  fail "said: $(cat stderr.txt)"
+"$study" "${options[@]}" --out interrupted >/dev/null
+same whole interrupted
+[ -z "$(find interrupted -name '*.partial*')" ] || fail "a half-written file was left behind"
+
+# shards and merge
+for shard in 1 2 3; do "$study" "${options[@]}" --shard "$shard/3" --out "part$shard" >/dev/null; done
+code=0
+"$study" merge part1 part3 --out merged >stdout.txt 2>stderr.txt || code=$?
+[ "$code" -eq 1 ] || fail "exit code $code of a merge without part 2"
+grep -q '3 trainings are missing, the first is model 7, flight d1 of seed 101, seed 1' stderr.txt || fail "said: $(cat stderr.txt)"
+"$study" merge part1 part2 part3 --out merged >/dev/null
+same whole merged
+"$study" "${options[@]}" --out merged >resumed.txt # a merged folder is a study like any other
+grep -q ", $trainings of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
+
+# rows that are not whole: that training is run again
+broken() { # <awk or head command>...: makes rows.csv of the copy
+  rm -rf broken
+  cp -r whole broken
+  "$@" <whole/rows.csv >broken/rows.csv
+  "$study" "${options[@]}" --out broken >/dev/null 2>stderr.txt
+  same whole broken
+}
+broken head -c -25
+grep -q 'broken/rows.csv: 1 row is not whole; run again' stderr.txt || fail "said: $(cat stderr.txt)"
+broken awk -F, -v OFS=, 'NR == 5 { NF = NF - 1 } { print }'
+broken awk -F, -v OFS=, 'NR == 5 { $9 = "0.9x" } { print }'
+broken head -c 20
+broken head -n 4
+broken true
+
+# a full disk (a file that may not grow): what was finished is kept
+cp -r whole full
+head -n -2 whole/rows.csv >full/rows.csv
+size=$(wc -c <full/rows.csv)
+limit=$((size / 1024 + 1))
+[ "$(wc -c <full/study.json)" -lt $((limit * 1024)) ] || fail "study.json has grown: this check needs more rows"
+limited() { (trap '' XFSZ; ulimit -f "$limit"; exec "$study" "${options[@]}" --out full); }
+expect_line 2 'cannot write full/rows.csv: File too large' limited
+diff <(head -n -2 whole/rows.csv | head -c "$size") <(head -c "$size" full/rows.csv) || fail "a full disk lost rows"
+[ -z "$(tail -c 1 full/rows.csv)" ] || fail "a full disk left half a row"
+"$study" "${options[@]}" --out full >/dev/null
+same whole full
+
+# foreign folders and bad input
+expect_line 2 'whole/study.json: of another study: epochs is 12 there and 13 here' "$study" "${models[@]}" --epochs 13 --out whole
+expect_line 2 'of another study: models has 4 entries there and 1 here' "$study" --models 7 --seeds 3 --epochs 12 --out whole
+expect_line 2 'seed' "$study" "${options[@]}" --flight-seed 2 --out whole
+cp -r part2 other
+sed -i 's/"epochs": 12/"epochs": 11/' other/study.json
+expect_line 2 'merge: other is of another study than part1: epochs is 12 there and 11 here' "$study" merge part1 other --out no
+cp -r part2 other_figures
+awk -F, -v OFS=, 'NR == 2 { $7 = "0.5" } { print }' part2/rows.csv >other_figures/rows.csv
+expect_line 2 'other_figures has other figures than a part before for model 7' "$study" merge part2 other_figures --out no
+expect_line 2 'absent/study.json: expected a readable file' "$study" merge part1 absent --out no
+expect_line 2 'no model 15 in Table 2; known: 1-14' "$study" --models 2,15 --out no
+expect_line 2 'no model 0 in Table 2' "$study" --models 0 --out no
+expect_line 2 "found 'x'" "$study" --models 2,x --out no
+expect_line 2 "found '8-5'" "$study" --models 8-5 --out no
+expect_line 2 'expected i/n' "$study" --shard 4/3 --out no
+expect_line 2 '--out DIR is needed' "$study" --seeds 1
+expect_line 2 "no variant .z.; known: vanilla, " "$study" ablation --variants vanilla,z --out no
+expect_line 2 '--seeds' "$study" --seeds 0 --out no
+: >a_file
+expect_line 2 'a_file/out' "$study" "${options[@]}" --out a_file/out
+rm -rf garbage
+cp -r whole garbage
+echo garbage >garbage/study.json
+expect_line 2 'garbage/study.json: expected the settings of a study' "$study" "${options[@]}" --out garbage
+echo '{}' >garbage/study.json
+expect_line 2 'garbage/study.json: expected the settings of a study' "$study" merge garbage --out no
+rm garbage/study.json
+expect_line 2 'garbage/study.json: expected the settings of the rows beside it, found none' "$study" "${options[@]}" --out garbage
+cp whole/study.json garbage
+sed -i 1s/mae/mea/ garbage/rows.csv
+expect_line 2 'garbage/rows.csv:1: expected the columns' "$study" "${options[@]}" --out garbage
+rm garbage/rows.csv
+mkdir garbage/rows.csv
+expect_line 2 'garbage/rows.csv: expected a readable file, found a folder' "$study" "${options[@]}" --out garbage
+exec 9<whole
+flock 9
+expect_line 2 'cannot write whole: another paper_study is at work in it' "$study" "${options[@]}" --out whole
+exec 9<&-
+
+# the ablation runs, the weights of the least validation error are others
+"$study" ablation --seeds 1 --epochs 1 --out ablation >ablation.txt
+grep -q '^informed_lambda_0.3 ' ablation.txt || fail "said: $(cat ablation.txt)"
+"$study" --models 13 --seeds 1 --epochs 12 --weights best --patience 3 --out best >/dev/null
+grep -q '^13,d3,101,1,12,best,' best/rows.csv || fail "said: $(cat best/rows.csv)"
+[ ! -e no ] || fail "a refused command left the folder no"
