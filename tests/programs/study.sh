@@ -6,6 +6,8 @@ source "$(dirname "$0")/common.sh" "$@"
 
 models=(--models 1,7,9,13 --seeds 3)
 options=("${models[@]}" --epochs 12 --threads 2)
+# long enough to be killed before it is over
+long=("${models[@]}" --epochs 80 --threads 2)
 trainings=10
 # every column but the last, which is a time
 figures() { sed 's/,[^,]*$//' "$1/rows.csv"; }
@@ -16,7 +18,7 @@ same() { # <folder> <other folder>: the same rows in the same order, the same pr
 rows() { if [ -f "$1/rows.csv" ]; then wc -l <"$1/rows.csv"; else echo 0; fi; }
 # started <folder>: runs in the background until a training is finished beside model 1; sets pid
 started() {
-  "$study" "${options[@]}" --out "$1" >stdout.txt 2>stderr.txt &
+  "$study" "${long[@]}" --out "$1" >stdout.txt 2>stderr.txt &
   pid=$!
   for ((wait = 0; wait < 6000; ++wait)); do
     if [ "$(rows "$1")" -ge 3 ] || ! kill -0 "$pid" 2>/dev/null; then return; fi
@@ -44,19 +46,20 @@ done
 same whole one_thread
 
 # killed, then resumed; the next run finds nothing to do
+"$study" "${long[@]}" --out long >/dev/null
 started killed
 kill -KILL "$pid" 2>/dev/null || fail "the study was over before it could be killed: a longer one is needed"
 { wait "$pid" || true; } 2>stderr.txt # where the shell says that it was killed
 kept=$(rows killed)
 [ "$kept" -le "$trainings" ] || fail "the study was over before it was killed"
-"$study" "${options[@]}" --out killed >resumed.txt
-same whole killed
+"$study" "${long[@]}" --out killed >resumed.txt
+same long killed
 grep -q "$trainings of $trainings trainings are in .*, [1-9][0-9]* of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
 [ -z "$(find killed -name '*.partial*')" ] || fail "a half-written file was left behind"
 cp -r killed again
 : >again/rows.csv.partial-1 # as a killed run leaves it
 : >again/series/model7.csv.partial-1
-"$study" "${options[@]}" --out again >resumed.txt
+"$study" "${long[@]}" --out again >resumed.txt
 grep -q ", $trainings of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
 [ -z "$(find again -name '*.partial*')" ] || fail "a half-written file was left behind"
 cmp killed/rows.csv again/rows.csv || fail "a run with nothing to do changed the rows"
@@ -69,8 +72,8 @@ wait "$pid" || code=$?
 [ "$code" -eq 130 ] || fail "exit code $code instead of 130; said: $(cat stderr.txt)"
 grep -q "interrupted; [1-9] of $trainings trainings are in interrupted/rows.csv; the same command goes on" stderr.txt ||
   fail "said: $(cat stderr.txt)"
-"$study" "${options[@]}" --out interrupted >/dev/null
-same whole interrupted
+"$study" "${long[@]}" --out interrupted >/dev/null
+same long interrupted
 [ -z "$(find interrupted -name '*.partial*')" ] || fail "a half-written file was left behind"
 
 # shards and merge
