@@ -7,7 +7,7 @@ source_dir=$3
 work=$4
 compiler=$5
 compiler_flags=$6
-study=$7
+study=${7:-}
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
