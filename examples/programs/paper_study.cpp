@@ -16,6 +16,7 @@
 #include "study_ablation.hpp"
 #include "study_campaign.hpp"
 #include "study_merge.hpp"
+#include "study_pictures.hpp"
 #include "study_report.hpp"
 #include "study_summary.hpp"
 #include "study_table.hpp"
@@ -85,7 +86,10 @@ int run_campaign(const Options& options, const char* kind, std::vector<study::Co
   const int code = campaign.run();
   if (code == 0) study::print_summary(plan, campaign.rows());
   // a shard's rows are for merge; an ablation is no Table 3
-  if (code == 0 && plan.kind == "table 2" && options.shard == "1/1") write_report(options.out);
+  if (code == 0 && plan.kind == "table 2" && options.shard == "1/1") {
+    study::draw_flights(options.out, options.flight_seed);
+    write_report(options.out);
+  }
   return code;
 }
 

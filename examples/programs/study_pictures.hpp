@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Pictures of the study's flights, Figs. 2, 4 (d), 5 and 6, drawn into its folder for the report to embed.
+#pragma once
+
+#include <filesystem>
+#include <random>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "flight_pictures.hpp"
+#include "flight_trace.hpp"
+#include "study_flights.hpp"
+
+namespace study {
+
+/// Flies d1, d2 and d3 of one seed again, forces taken apart, and draws `folder`/flights/{d1,d2,d3}/*.svg as
+/// `fly NAME --pictures` does. False, after one line on stderr, where gnuplot is missing; the report then leaves them out.
+inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
+  using namespace pinnquad;
+  const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();
+  bool drawn = true;
+  programs::each_flight([&](auto tag) {
+    using PaperFlight = typename decltype(tag)::type;
+    if (!drawn) return;
+    const auto vehicle = flight_vehicle<PaperFlight>(airframe, PaperFlight::ground_effect);
+    const auto without = flight_vehicle<PaperFlight>(airframe, GroundEffectModel::none);
+    std::vector<programs::TraceRow> trace;
+    const RecordedFlight recorded =
+        fly(vehicle, PaperFlight::pilot(vehicle, std::mt19937_64(seed)), PaperFlight::plan(),
+            [&](const FlightRow& row) { trace.push_back(programs::trace_row(vehicle, without, row.vehicle)); });
+    const std::string into = folder + "/flights/" + PaperFlight::name;
+    std::filesystem::create_directories(into);
+    drawn = programs::plot_trajectory(into + "/trajectory.svg", trace) &&
+            programs::plot_correlation(into + "/correlation.svg", recorded.flight, airframe);
+    if (drawn && PaperFlight::ground_effect != GroundEffectModel::none) {
+      drawn = programs::plot_ground_effect(into + "/ground_effect.svg", trace, airframe);
+    }
+    if (drawn && std::is_same_v<PaperFlight, WindyFlight>) drawn = programs::plot_wind(into + "/wind.svg", trace);
+  });
+  return drawn;
+}
+
+}  // namespace study
