@@ -59,10 +59,12 @@ void simulation_step(benchmark::State& state) {
 
 int main(int argc, char** argv) {
   register_naive_eigen(healthy_network());
-  benchmark::RegisterBenchmark("SimulationStep/full",
-                               simulation_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
-  benchmark::RegisterBenchmark("SimulationStep/full_float",
-                               simulation_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
+  benchmark::RegisterBenchmark(
+      "SimulationStep/full",
+      simulation_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
+  benchmark::RegisterBenchmark(
+      "SimulationStep/full_float",
+      simulation_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
   benchmark::RegisterBenchmark("SimulationStep/bare", simulation_step<double>);
   return run_benchmarks(argc, argv);
 }

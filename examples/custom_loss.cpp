@@ -24,7 +24,8 @@ struct EvenRotors {
 
 int main() {
   using Net = Mlp<float, Inputs<16>, Hidden<3, 25>, Outputs<4>, Relu>;
-  using Loss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnnealing>, Weighted<EvenRotors, Constant>>;
+  using Loss =
+      PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnnealing>, Weighted<EvenRotors, Constant>>;
   using Settings = Context<PaperFeatures, PaperQuadrotor>;
 
   const Quadrotor<double, StandardAtmosphere, QuadraticDrag> quadrotor(airframe_value<PaperQuadrotor, double>(),

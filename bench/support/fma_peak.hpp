@@ -23,7 +23,8 @@ void fma_peak(benchmark::State& state) {
   const Pack factor = Pack::broadcast(shrink);
   const Pack term = Pack::broadcast(add);
   Pack sum[chains];
-  unroll<chains>([&](auto i) PINNQUAD_INLINE_LAMBDA { sum[i] = Pack::broadcast(static_cast<float>(decltype(i)::value)); });
+  unroll<chains>([&](auto i)
+                     PINNQUAD_INLINE_LAMBDA { sum[i] = Pack::broadcast(static_cast<float>(decltype(i)::value)); });
   for (auto _ : state) {
     for (int round = 0; round < rounds; ++round) {
       unroll<chains>([&](auto i) PINNQUAD_INLINE_LAMBDA { sum[i] = Pack::multiply_add(sum[i], factor, term); });

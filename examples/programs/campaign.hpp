@@ -75,9 +75,8 @@ std::vector<Training> train_all(const Context& context, const Data& data, int ep
   std::atomic<unsigned> running{threads};
   const auto work = [&] {
     for (std::size_t i = next.fetch_add(1); i < jobs.size() && !interrupted(); i = next.fetch_add(1)) {
-      finished[i] = jobs[i].kind == Kind::vanilla
-                        ? train_one<VanillaLoss>(context, data, epochs, jobs[i], epochs_done)
-                        : train_one<PhysicsLoss>(context, data, epochs, jobs[i], epochs_done);
+      finished[i] = jobs[i].kind == Kind::vanilla ? train_one<VanillaLoss>(context, data, epochs, jobs[i], epochs_done)
+                                                  : train_one<PhysicsLoss>(context, data, epochs, jobs[i], epochs_done);
     }
     running.fetch_sub(1);
   };

@@ -162,8 +162,9 @@ bool closed_loop() {
   const AnalyticInverse<Vehicle> analytic(vehicle);
   HoverTrim<double> trim;
   if (hover_trim(vehicle, trajectory.center_m, trim) != Status::ok) return false;
-  std::printf("  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
-              trajectory.period_s, TrackingPlan<double>{}.duration_s);
+  std::printf(
+      "  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
+      trajectory.period_s, TrackingPlan<double>{}.duration_s);
   std::printf("  %-28s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "fell back to analytic");
   using Network = NetworkInverse<Inverse, AnalyticInverse<Vehicle>>;
   using Zeroed = NetworkInverse<InverseDynamics<ZeroedModel>, AnalyticInverse<Vehicle>>;
@@ -173,7 +174,8 @@ bool closed_loop() {
   const auto zeroed = fly("network, weights zeroed", vehicle, trajectory, Zeroed({}, analytic));
   const double fallbacks = static_cast<double>(network.fallback.fallbacks()) / network.fallback.asked;
   if (fallbacks > fallback_limit) {
-    std::printf("  the network declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks, 100 * fallback_limit);
+    std::printf("  the network declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,
+                100 * fallback_limit);
   }
   return network.status == Status::ok && fallbacks <= fallback_limit && network.rmse_m < zeroed.rmse_m;
 }

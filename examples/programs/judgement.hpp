@@ -41,9 +41,9 @@ template <class Context>
 std::array<AxisSeries, 3> axis_series(const pinnquad::Flight& flight, const pinnquad::IndexRange& range,
                                       const Predictions& predictions) {
   using pinnquad::signed_sum;
-  const std::array<std::array<double, pinnquad::rotor_count>, 3> signs = {
-      Context::template signs<pinnquad::Roll>(), Context::template signs<pinnquad::Pitch>(),
-      Context::template signs<pinnquad::Yaw>()};
+  const std::array<std::array<double, pinnquad::rotor_count>, 3> signs = {Context::template signs<pinnquad::Roll>(),
+                                                                          Context::template signs<pinnquad::Pitch>(),
+                                                                          Context::template signs<pinnquad::Yaw>()};
   std::array<AxisSeries, 3> series;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < range.size(); ++i) {
@@ -64,8 +64,8 @@ Judgement judge(const pinnquad::Flight& flight, const pinnquad::IndexRange& rang
   result.errors = pinnquad::prediction_errors(predictions, targets);
   const std::array<AxisSeries, 3> series = axis_series<Context>(flight, range, predictions);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    result.axes[axis] = pinnquad::physical_consistency(series[axis].target, series[axis].predicted,
-                                                       series[axis].angular_acceleration);
+    result.axes[axis] =
+        pinnquad::physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);
   }
   return result;
 }
@@ -93,8 +93,8 @@ inline std::vector<Figure> figures() {
       {"r2", [](const Judgement& j, std::size_t) { return j.errors.mean.r_squared; }, 0}};
   for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
     const std::string suffix = "_u" + std::to_string(motor + 1);
-    list.push_back({"mae" + suffix,
-                    [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].mean_absolute; }, motor});
+    list.push_back(
+        {"mae" + suffix, [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].mean_absolute; }, motor});
     list.push_back({"rmse" + suffix,
                     [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].root_mean_square; }, motor});
     list.push_back(
@@ -165,7 +165,8 @@ inline void print_table(const std::vector<Result>& results, const std::vector<st
     line("  " + name + ": R^2", "r2_" + name, 1, 4);
   }
   const auto per_axis = [&](const char* label, const char* figure, double scale, int digits) {
-    for (const char* axis : axis_names) line(std::string(label) + ", " + axis, std::string(figure) + "_" + axis, scale, digits);
+    for (const char* axis : axis_names)
+      line(std::string(label) + ", " + axis, std::string(figure) + "_" + axis, scale, digits);
   };
   per_axis("ellipse angle difference, deg", "angle_difference_deg", 1, 3);
   per_axis("slope error, %", "slope_error", 100, 2);
@@ -175,13 +176,13 @@ inline void print_table(const std::vector<Result>& results, const std::vector<st
 }
 
 /// Prints candidate against baseline, seed by seed.
-inline void print_paired(const std::vector<Result>& results, const std::string& candidate, const std::string& baseline) {
+inline void print_paired(const std::vector<Result>& results, const std::string& candidate,
+                         const std::string& baseline) {
   std::printf("  %s against %s, paired over seeds (lower is better):\n", candidate.c_str(), baseline.c_str());
   for (const Figure& figure : figures()) {
     const bool compared = figure.name == "mae" || figure.name == "rmse" ||
                           figure.name.rfind("angle_difference_deg", 0) == 0 ||
-                          figure.name.rfind("slope_error", 0) == 0 ||
-                          figure.name.rfind("sign_violation_share", 0) == 0;
+                          figure.name.rfind("slope_error", 0) == 0 || figure.name.rfind("sign_violation_share", 0) == 0;
     if (!compared) continue;
     std::vector<double> of_candidate, of_baseline;
     for (const Result& a : results) {

@@ -96,8 +96,8 @@ inline bool plot_prediction(const std::string& svg, const std::vector<double>& t
   out << "EOD\nset xlabel 'time, s'\nset ylabel 'command u_1'\nset key top right horizontal\n"
       << "plot $series using 1:2 w l lw 3 lc rgb '#9ec5e8' t 'flown'";
   for (std::size_t m = 0; m < models.size(); ++m) {
-    out << ", $series using 1:" << m + 3 << " w l lw 1.3 lc rgb '" << colours[m % colours.size()] << "' t '" << models[m]
-        << "'";
+    out << ", $series using 1:" << m + 3 << " w l lw 1.3 lc rgb '" << colours[m % colours.size()] << "' t '"
+        << models[m] << "'";
   }
   out << '\n';
   return run_gnuplot(out.str());

@@ -53,8 +53,8 @@ void write_replay(const std::string& path, const Model& model, const Flight& fli
     const auto predicted = model.predict(flight[row]);
     std::string line;
     const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + detail::number_text(value); };
-    for (const auto* vector : {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s,
-                               &in.body_rates_rad_s}) {
+    for (const auto* vector :
+         {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s, &in.body_rates_rad_s}) {
       for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
     }
     for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z}) add(static_cast<double>(v));
@@ -188,8 +188,11 @@ int train_judge_export(const Options& options, const Flight& flight) {
 
   std::printf("[4/5] export\n");
   const Model& best = models[best_informed - 1];  // results[0] is the linearized model
-  const Provenance provenance = {std::filesystem::path(options.flight).filename().string(), content_hash(flight),
-                                 split.train.size(), results[best_informed].seed, options.epochs,
+  const Provenance provenance = {std::filesystem::path(options.flight).filename().string(),
+                                 content_hash(flight),
+                                 split.train.size(),
+                                 results[best_informed].seed,
+                                 options.epochs,
                                  "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"};
   write_model_header(folder + "model.hpp", options.model_name, best, golden_features<Model>(flight, split.train),
                      provenance);
@@ -211,7 +214,9 @@ int main(int argument_count, char** arguments) {
   Options options;
   CLI::App app{"Trains vanilla and physics-informed networks on a flight, judges them, exports the best as a header.",
                "train"};
-  app.add_option("--flight", options.flight, "recorded flight, CSV as `fly` writes it")->type_name("FILE.csv")->required();
+  app.add_option("--flight", options.flight, "recorded flight, CSV as `fly` writes it")
+      ->type_name("FILE.csv")
+      ->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
       ->capture_default_str();
   app.add_option("--out", options.out, "folder for results, pictures and the exported header")->capture_default_str();
@@ -239,9 +244,8 @@ int main(int argument_count, char** arguments) {
     std::filesystem::create_directories(options.out, error);
     AtomicFile probe(options.out + "/results.csv");  // an unwritable folder is found before the training
     int code = exit_bad_input;
-    const bool known = programs::with_airframe(options.airframe, [&](auto tag) {
-      code = train_judge_export<typename decltype(tag)::type>(options, flight);
-    });
+    const bool known = programs::with_airframe(
+        options.airframe, [&](auto tag) { code = train_judge_export<typename decltype(tag)::type>(options, flight); });
     if (!known) {
       std::fprintf(stderr, "train: no airframe named '%s'; known: %s\n", options.airframe.c_str(),
                    programs::airframe_names().c_str());

@@ -34,7 +34,8 @@ TEST_CASE_TEMPLATE("each hub's force, summed about the centre of gravity in thre
     double force[3] = {}, torque[3] = {};
     for (std::size_t i = 0; i < 4; ++i) {
       // v + omega x r with all components, then r x F
-      const double r[3] = {static_cast<double>(airframe.rotors[i].x_m), static_cast<double>(airframe.rotors[i].y_m), 0.0};
+      const double r[3] = {static_cast<double>(airframe.rotors[i].x_m), static_cast<double>(airframe.rotors[i].y_m),
+                           0.0};
       const double w[3] = {static_cast<double>(c.body_rates_rad_s[0]), static_cast<double>(c.body_rates_rad_s[1]),
                            static_cast<double>(c.body_rates_rad_s[2])};
       const double v[2] = {static_cast<double>(c.air_relative_velocity_m_s[0]) + w[1] * r[2] - w[2] * r[1],

@@ -95,5 +95,6 @@ using Trainer = pinnquad::Trainer<Net, Loss, Optimizer, Knowledge, pinnquad::Shu
 
 int main() {
   using Model = decltype(pinnquad::make_trained_model(Net{}, Knowledge{}, {}, {}));
-  return static_cast<int>(sizeof(Trainer) + sizeof(Model) + sizeof(Nothing) + sizeof(Reverse) + sizeof(Square)) > 0 ? 0 : 1;
+  return static_cast<int>(sizeof(Trainer) + sizeof(Model) + sizeof(Nothing) + sizeof(Reverse) + sizeof(Square)) > 0 ? 0
+                                                                                                                    : 1;
 }

@@ -61,9 +61,17 @@ std::vector<float> numbers_of(const std::string& header, const std::string& name
 
 TEST_CASE("a literal reads back as the same bits and has the type of its value") {
   std::mt19937_64 engine(1);
-  std::vector<float> values = {0.0f, -0.0f, 1.0f, -1.0f, 100.0f, 1e30f, 3e-39f, std::numeric_limits<float>::max(),
+  std::vector<float> values = {0.0f,
+                               -0.0f,
+                               1.0f,
+                               -1.0f,
+                               100.0f,
+                               1e30f,
+                               3e-39f,
+                               std::numeric_limits<float>::max(),
                                std::numeric_limits<float>::denorm_min()};
-  for (int i = 0; i < 2000; ++i) values.push_back(float(standard_normal(engine) * std::pow(10.0, uniform(engine, -20, 20))));
+  for (int i = 0; i < 2000; ++i)
+    values.push_back(float(standard_normal(engine) * std::pow(10.0, uniform(engine, -20, 20))));
   for (const float value : values) {
     const std::string text = detail::literal(value);
     CHECK(text.back() == 'f');

@@ -211,8 +211,7 @@ TEST_CASE_TEMPLATE("an allocation that can't be inverted is refused and the outp
   }
 }
 
-TEST_CASE_TEMPLATE("an allocation that is singular up to rounding is refused", Scalar, float,
-                   double) {
+TEST_CASE_TEMPLATE("an allocation that is singular up to rounding is refused", Scalar, float, double) {
   CHECK(Rotors<Scalar>(all_one_way<Scalar>()).status() == Status::no_solution);
   Airframe<Scalar> same_place = pinnquad::PaperQuadrotor::value<Scalar>();
   same_place.rotors[1] = same_place.rotors[0];

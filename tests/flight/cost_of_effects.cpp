@@ -26,8 +26,7 @@ using Vehicle = Quadrotor<double, QuadraticDrag>;
 #elif defined(WITH_DRAG_AND_DENSITY)
 using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
 #endif
-Evaluation<double> evaluation_of(const Vehicle& vehicle, const State<double>& state,
-                                 const Commands<double>& commands) {
+Evaluation<double> evaluation_of(const Vehicle& vehicle, const State<double>& state, const Commands<double>& commands) {
   return vehicle.evaluate(state, commands, 0.0);
 }
 #endif

@@ -34,9 +34,10 @@ bool one_step(const ReferenceTable& table, std::size_t row) {
   return std::fabs(table.at(row + 1, "t") - table.at(row, "t") - 0.001) < 1e-9;
 }
 
-const char* const runs[] = {"agile",       "agile_wind",  "coast8_fwd",  "coast8_side", "coast_tilted",     "drop_terminal",
-                            "ge1_descend", "ge2_descend", "ge2_tilted",  "hover",       "motor_step",       "pitch_step",
-                            "roll_step",   "tumble",      "wind_const",  "wind_const_yaw90", "wind_periodic", "yaw_step"};
+const char* const runs[] = {
+    "agile",       "agile_wind",       "coast8_fwd",    "coast8_side", "coast_tilted", "drop_terminal", "ge1_descend",
+    "ge2_descend", "ge2_tilted",       "hover",         "motor_step",  "pitch_step",   "roll_step",     "tumble",
+    "wind_const",  "wind_const_yaw90", "wind_periodic", "yaw_step"};
 
 pinnquad::VehicleState<double> start(const ReferenceTable& table) {
   pinnquad::VehicleState<double> state;
@@ -92,11 +93,25 @@ TEST_CASE("one step: forces at the row's pose and half-step velocity, thrust of 
       const Vector3<double> rates = vector(table, row, "w") + vector(table, row, "al") * (h / 2);
       const Commands<double> u = commands(table, row, "uf");
       const Vector3<double> wind = vector(table, row, "wind");
-      const plain::Point p{ground_effect_of(name), table.at(row, "pz"), table.at(row, "qw"), table.at(row, "qx"),
-                           table.at(row, "qy"),    table.at(row, "qz"), velocity[0],         velocity[1],
-                           velocity[2],            rates[0],            rates[1],            rates[2],
-                           u[0],                   u[1],                u[2],                u[3],
-                           wind[0],                wind[1],             wind[2]};
+      const plain::Point p{ground_effect_of(name),
+                           table.at(row, "pz"),
+                           table.at(row, "qw"),
+                           table.at(row, "qx"),
+                           table.at(row, "qy"),
+                           table.at(row, "qz"),
+                           velocity[0],
+                           velocity[1],
+                           velocity[2],
+                           rates[0],
+                           rates[1],
+                           rates[2],
+                           u[0],
+                           u[1],
+                           u[2],
+                           u[3],
+                           wind[0],
+                           wind[1],
+                           wind[2]};
       const plain::Result value = pinnquad::test::evaluate(airframe, p);
       const auto array = [](const double(&v)[3]) { return std::array<double, 3>{v[0], v[1], v[2]}; };
       // near hover accelerations cancel: the scale is what cancels, gravity, and a rotor's torque over the inertia
@@ -160,8 +175,8 @@ void fly_run(const char* name, double speed_tolerance) {
 TEST_CASE("whole runs under constant commands: RK4 against the simulator's first-order integrator") {
   // h/2 times the acceleration that a step begins with: 5e-4 s * 10 m/s^2, and what that lag becomes in turning flight
   const double first_order = 6e-3;
-  for (const char* name : {"hover", "coast8_fwd", "coast8_side", "drop_terminal", "wind_const", "wind_const_yaw90",
-                           "wind_periodic"})
+  for (const char* name :
+       {"hover", "coast8_fwd", "coast8_side", "drop_terminal", "wind_const", "wind_const_yaw90", "wind_periodic"})
     fly_run<>(name, first_order);
   fly_run<pinnquad::CheesemanBennettGroundEffect>("ge1_descend", first_order);
   fly_run<pinnquad::ConyersGroundEffect>("ge2_descend", first_order);

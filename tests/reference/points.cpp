@@ -67,7 +67,8 @@ double height_over_radius(const plain::Point& p) { return (0.877 - p.pz) / groun
 /// |dF_ground / dF_rotor|: above 1 the thrust equation can have two solutions.
 double gain(const plain::Point& p) {
   double ratio = 1.0;
-  if (p.ground_effect == plain::GroundEffect::cheeseman_bennett) ratio = plain::cheeseman_bennett(height_over_radius(p));
+  if (p.ground_effect == plain::GroundEffect::cheeseman_bennett)
+    ratio = plain::cheeseman_bennett(height_over_radius(p));
   if (p.ground_effect == plain::GroundEffect::conyers) ratio = plain::conyers(height_over_radius(p), 690.0, 114.3);
   return std::fabs((ratio - 1.0) * (1.0 - 2.0 * (p.qx * p.qx + p.qy * p.qy)));
 }

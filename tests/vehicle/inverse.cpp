@@ -205,8 +205,7 @@ TEST_CASE_TEMPLATE("a motion beyond all numbers is refused and the commands stay
   CHECK(u == before);
 }
 
-TEST_CASE_TEMPLATE("a vehicle or an attitude that can't be inverted is refused", Scalar, float,
-                   double) {
+TEST_CASE_TEMPLATE("a vehicle or an attitude that can't be inverted is refused", Scalar, float, double) {
   const Commands<Scalar> before{Scalar(1), Scalar(2), Scalar(3), Scalar(4)};
   pinnquad::Airframe<Scalar> flat = pinnquad::PaperQuadrotor::value<Scalar>();
   for (auto& rotor : flat.rotors) rotor.y_m = Scalar(0);
@@ -222,8 +221,7 @@ TEST_CASE_TEMPLATE("a vehicle or an attitude that can't be inverted is refused",
   CHECK(u == before);
 }
 
-TEST_CASE_TEMPLATE("almost without thrust in ground effect there still is a solution", Scalar,
-                   float, double) {
+TEST_CASE_TEMPLATE("almost without thrust in ground effect there still is a solution", Scalar, float, double) {
   RandomStates random(105);
   const NearGround<Scalar> vehicle = near_ground<Scalar>();
   for (int draw = 0; draw < draws; ++draw) {
@@ -235,8 +233,8 @@ TEST_CASE_TEMPLATE("almost without thrust in ground effect there still is a solu
   }
 }
 
-TEST_CASE_TEMPLATE("commands -> motion -> commands, rotor by rotor: ground effect with torque, rotor drag", Scalar, float,
-                   double) {
+TEST_CASE_TEMPLATE("commands -> motion -> commands, rotor by rotor: ground effect with torque, rotor drag", Scalar,
+                   float, double) {
   using Vehicle = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::RotorDrag,
                             pinnquad::ConyersRotorGroundEffect>;
   RandomStates random(107);
@@ -248,8 +246,8 @@ TEST_CASE_TEMPLATE("commands -> motion -> commands, rotor by rotor: ground effec
   }
 }
 
-TEST_CASE_TEMPLATE("rotor drag tilts what ground effect sees: the two together still have one exact inverse", Scalar, float,
-                   double) {
+TEST_CASE_TEMPLATE("rotor drag tilts what ground effect sees: the two together still have one exact inverse", Scalar,
+                   float, double) {
   using Vehicle = Quadrotor<Scalar, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::ConyersGroundEffect>;
   RandomStates random(108);
   const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {});
@@ -268,8 +266,8 @@ struct BesideThePole {
   double ratio;
 
   BesideThePole()
-      : vehicle(pinnquad::PaperQuadrotor::value<double>(), pinnquad::paper_site<double>(), pinnquad::StandardAtmosphere{},
-                pinnquad::QuadraticDrag{}, pinnquad::CheesemanBennettGroundEffect{}),
+      : vehicle(pinnquad::PaperQuadrotor::value<double>(), pinnquad::paper_site<double>(),
+                pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{}, pinnquad::CheesemanBennettGroundEffect{}),
         ratio(pinnquad::CheesemanBennett{}.thrust_ratio(0.30, vehicle.airframe())) {
     state.position_m[2] = 0.877 - 0.30 * 0.1143;
     state.velocity_m_s[2] = -9.0;  // climbing: drag pushes down

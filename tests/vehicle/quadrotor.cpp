@@ -524,8 +524,8 @@ TEST_CASE_TEMPLATE("a result that is not finite is refused and leaves the state 
   CHECK(std::memcmp(&state, &start, sizeof state) == 0);
 }
 
-TEST_CASE_TEMPLATE("step refuses a time that is no number, a step backwards and an attitude that is none",
-                   Scalar, float, double) {
+TEST_CASE_TEMPLATE("step refuses a time that is no number, a step backwards and an attitude that is none", Scalar,
+                   float, double) {
   const Bare<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
   VehicleState<Scalar> state;
   state.time_s = std::numeric_limits<double>::quiet_NaN();

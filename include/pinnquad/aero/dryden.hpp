@@ -69,7 +69,8 @@ class DrydenTurbulence {
   /// One component at a distance along the field, m/s: 0 along the wind, 1 across (to its right), 2 down.
   double gust(std::size_t axis, double along_m) const noexcept {
     double sum = 0;
-    for (std::size_t i = 0; i < waves; ++i) sum += std::cos(wave_number_rad_m_[axis][i] * along_m + phase_rad_[axis][i]);
+    for (std::size_t i = 0; i < waves; ++i)
+      sum += std::cos(wave_number_rad_m_[axis][i] * along_m + phase_rad_[axis][i]);
     return amplitude_m_s_[axis] * sum;
   }
 

@@ -44,9 +44,9 @@ struct AeroCondition {
   Scalar air_density_kg_m3{0};
   Scalar time_s{0};
   /// Of the rotors, without effects. These two are zero unless the effect `uses_rotor_wrench`.
-  Wrench<Scalar> rotors;                                  ///< body wrench of all four
-  std::array<Scalar, rotor_count> rotor_thrust_N{};       ///< of each, along body -z
-  Wrench<Scalar> aerodynamic;  ///< sum of the effects before this one, body frame
+  Wrench<Scalar> rotors;                             ///< body wrench of all four
+  std::array<Scalar, rotor_count> rotor_thrust_N{};  ///< of each, along body -z
+  Wrench<Scalar> aerodynamic;                        ///< sum of the effects before this one, body frame
 };
 
 /// Where an effect takes the absolute value of a force that the thrust can turn round, its wrench has two branches.
@@ -64,8 +64,8 @@ struct EffectProbe {
 template <class Effect, class = void>
 struct HasSurroundings : std::false_type {};
 template <class Effect>
-struct HasSurroundings<
-    Effect, std::void_t<decltype(std::declval<const Effect&>().surroundings(EffectProbe::surroundings()))>>
+struct HasSurroundings<Effect,
+                       std::void_t<decltype(std::declval<const Effect&>().surroundings(EffectProbe::surroundings()))>>
     : std::true_type {};
 template <class Effect, class = void>
 struct HasWrench : std::false_type {};

@@ -108,7 +108,8 @@ struct GroundEffect {
     };
     const Quaternion<Scalar>& q = condition.attitude;
     const Scalar one(1), x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
-    return (q.x * z2 - q.w * y2) * force(0) + (q.y * z2 + q.w * x2) * force(1) + (one - (q.x * x2 + q.y * y2)) * force(2);
+    return (q.x * z2 - q.w * y2) * force(0) + (q.y * z2 + q.w * x2) * force(1) +
+           (one - (q.x * x2 + q.y * y2)) * force(2);
   }
 
   template <class Scalar>

@@ -126,9 +126,9 @@ template <class Scalar>
 Tilt<Scalar> tilt(const Quaternion<Scalar>& q) noexcept {
   using std::atan2;
   using std::sqrt;
-  const Scalar across = Scalar(2) * (q.w * q.x + q.y * q.z);                   // |q|^2 sin phi cos theta
-  const Scalar upright = q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z;        // |q|^2 cos phi cos theta
-  const Scalar along = Scalar(2) * (q.w * q.y - q.z * q.x);                    // |q|^2 sin theta
+  const Scalar across = Scalar(2) * (q.w * q.x + q.y * q.z);             // |q|^2 sin phi cos theta
+  const Scalar upright = q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z;  // |q|^2 cos phi cos theta
+  const Scalar along = Scalar(2) * (q.w * q.y - q.z * q.x);              // |q|^2 sin theta
   return {atan2(across, upright), atan2(along, sqrt(across * across + upright * upright))};
 }
 
@@ -186,7 +186,7 @@ template <class Scalar>
 Quaternion<Scalar> swap_enu_flu_ned_frd(const Quaternion<Scalar>& q) noexcept {
   using std::sqrt;
   const Scalar h = sqrt(Scalar(0.5));
-  const Quaternion<Scalar> world{Scalar(0), h, h, Scalar(0)};  // half turn about (1, 1, 0): ENU <-> NED
+  const Quaternion<Scalar> world{Scalar(0), h, h, Scalar(0)};                 // half turn about (1, 1, 0): ENU <-> NED
   const Quaternion<Scalar> body{Scalar(0), Scalar(1), Scalar(0), Scalar(0)};  // half turn about x: FLU <-> FRD
   return world * q * body;
 }

@@ -7,16 +7,16 @@
 
 namespace pinnquad {
 
-enum class [[nodiscard]] Status : std::uint8_t {
-  ok = 0,
-  not_finite,           ///< an input is NaN or infinite
-  out_of_range,         ///< an argument lies outside what makes sense, such as a negative time step
-  not_unit_quaternion,  ///< the attitude's norm is not 1 (tolerance: see unit_quaternion_tolerance)
-  outside_envelope,     ///< a feature lies outside what the model was trained on
-  output_not_finite,    ///< finite inputs led to NaN or Inf
-  no_solution,          ///< the inverse problem has no solution (thrust equation, allocation)
-  invalid_airframe,     ///< mass, inertia, rotors or allocation can't be those of a quadrotor that flies
-  self_test_failed,     ///< a golden vector was not reproduced
+enum class [[nodiscard]] Status : std::uint8_t{
+    ok = 0,
+    not_finite,           ///< an input is NaN or infinite
+    out_of_range,         ///< an argument lies outside what makes sense, such as a negative time step
+    not_unit_quaternion,  ///< the attitude's norm is not 1 (tolerance: see unit_quaternion_tolerance)
+    outside_envelope,     ///< a feature lies outside what the model was trained on
+    output_not_finite,    ///< finite inputs led to NaN or Inf
+    no_solution,          ///< the inverse problem has no solution (thrust equation, allocation)
+    invalid_airframe,     ///< mass, inertia, rotors or allocation can't be those of a quadrotor that flies
+    self_test_failed,     ///< a golden vector was not reproduced
 };
 
 /// Plain words for logs.

@@ -14,9 +14,9 @@ inline constexpr int rotor_count = 4;
 
 /// Fixed-size matrix without alignment demands (row vectors must be row-major in Eigen).
 template <class Scalar, int Rows, int Columns = 1>
-using Matrix = Eigen::Matrix<Scalar, Rows, Columns,
-                             (Rows == 1 && Columns != 1 ? int(Eigen::RowMajor) : int(Eigen::ColMajor)) |
-                                 int(Eigen::DontAlign)>;
+using Matrix =
+    Eigen::Matrix<Scalar, Rows, Columns,
+                  (Rows == 1 && Columns != 1 ? int(Eigen::RowMajor) : int(Eigen::ColMajor)) | int(Eigen::DontAlign)>;
 
 template <class Scalar, int Size>
 using Vector = Matrix<Scalar, Size, 1>;

@@ -15,8 +15,7 @@ struct SampleInputs;
 template <class Scalar>
 struct SampleInputs<MotionInputs<Scalar>> {
   static MotionInputs<Scalar> from(const Sample& sample) {
-    const Quaternion<double> q =
-        from_euler(EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+    const Quaternion<double> q = from_euler(EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
     MotionInputs<Scalar> inputs;
     inputs.linear_acceleration_m_s2 = sample.linear_acceleration_m_s2.cast<Scalar>();
     inputs.angular_acceleration_rad_s2 = sample.angular_acceleration_rad_s2.cast<Scalar>();

@@ -117,8 +117,8 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
     out << "}};\n";
   };
   const auto table = [&](const char* name, const auto& rows) {
-    out << "  static constexpr std::array<std::array<" << scalar << ", " << rows[0].size() << ">, " << rows.size() << "> "
-        << name << " = {{";
+    out << "  static constexpr std::array<std::array<" << scalar << ", " << rows[0].size() << ">, " << rows.size()
+        << "> " << name << " = {{";
     for (std::size_t i = 0; i < rows.size(); ++i) {
       out << (i == 0 ? "\n    {" : ",\n    {");
       detail::write_braced(out, rows[i], "    ");
@@ -127,7 +127,8 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
     out << "}};\n";
   };
 
-  out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION << ". Generated: export again rather than edit.\n"
+  out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
+      << ". Generated: export again rather than edit.\n"
       << "// Frame: body FRD, world NED, SI units, rad. Outputs in the order of the airframe's rotors.\n"
       << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n"
       << "struct " << struct_name << " {\n"

@@ -36,15 +36,15 @@ inline constexpr Scalar standard_gravity_m_s2 = Scalar(9.80665);
 template <class Scalar>
 struct Airframe {
   Scalar mass_kg{};
-  std::array<Scalar, 3> inertia_kg_m2{};                        ///< J = diag(Jx, Jy, Jz), FRD
-  std::array<RotorMount<Scalar>, rotor_count> rotors{};         ///< in the order of the commands
-  Scalar thrust_coefficient{};                                  ///< C_T = thrust / (rho n^2 D^4), n in rev/s
-  Scalar power_coefficient{};                                   ///< C_P = 2 pi torque / (rho n^2 D^5)
-  Scalar propeller_diameter_m{};                                ///< D
-  Scalar max_rotor_speed_rev_s{};                               ///< n at command 1
-  Scalar rotor_time_constant_s{};                               ///< first-order lag of the thrust command
-  std::array<Scalar, 3> drag_area_m2{};                         ///< k_i of F_i = -k_i rho |v_i| v_i
-  Scalar drag_deadband_m_s{};                                   ///< no drag along an axis at or below this speed
+  std::array<Scalar, 3> inertia_kg_m2{};                 ///< J = diag(Jx, Jy, Jz), FRD
+  std::array<RotorMount<Scalar>, rotor_count> rotors{};  ///< in the order of the commands
+  Scalar thrust_coefficient{};                           ///< C_T = thrust / (rho n^2 D^4), n in rev/s
+  Scalar power_coefficient{};                            ///< C_P = 2 pi torque / (rho n^2 D^5)
+  Scalar propeller_diameter_m{};                         ///< D
+  Scalar max_rotor_speed_rev_s{};                        ///< n at command 1
+  Scalar rotor_time_constant_s{};                        ///< first-order lag of the thrust command
+  std::array<Scalar, 3> drag_area_m2{};                  ///< k_i of F_i = -k_i rho |v_i| v_i
+  Scalar drag_deadband_m_s{};                            ///< no drag along an axis at or below this speed
 
   /// c_T of Eq. (2) at the rated density: thrust = c_T n^2, N s^2.
   constexpr Scalar dimensional_thrust_coefficient() const noexcept {
@@ -90,8 +90,8 @@ constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
   using detail::plausible;
   using detail::plausible_or_zero;
   const Scalar jx = a.inertia_kg_m2[0], jy = a.inertia_kg_m2[1], jz = a.inertia_kg_m2[2];
-  const bool body = plausible(a.mass_kg) && plausible(jx) && plausible(jy) && plausible(jz) && jx + jy >= jz && jy + jz >= jx &&
-                    jz + jx >= jy;
+  const bool body = plausible(a.mass_kg) && plausible(jx) && plausible(jy) && plausible(jz) && jx + jy >= jz &&
+                    jy + jz >= jx && jz + jx >= jy;
   const bool rotors = plausible(a.thrust_coefficient) && plausible(a.power_coefficient) &&
                       plausible(a.propeller_diameter_m) && plausible(a.max_rotor_speed_rev_s) &&
                       plausible_or_zero(a.rotor_time_constant_s);

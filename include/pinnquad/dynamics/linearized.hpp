@@ -13,8 +13,8 @@ Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe,
                                                const Wrench<Scalar>& wrench, Scalar gravity_m_s2) noexcept {
   const Scalar specific_thrust = -wrench.force_N[2] / airframe.mass_kg;
   Accelerations<Scalar> result;
-  result.linear_m_s2 = Vector3<Scalar>(-pitch_rad * specific_thrust, roll_rad * specific_thrust,
-                                       gravity_m_s2 - specific_thrust);
+  result.linear_m_s2 =
+      Vector3<Scalar>(-pitch_rad * specific_thrust, roll_rad * specific_thrust, gravity_m_s2 - specific_thrust);
   result.angular_rad_s2 = wrench.torque_N_m.cwiseQuotient(to_vector(airframe.inertia_kg_m2));
   return result;
 }
@@ -24,8 +24,7 @@ template <class Scalar>
 Wrench<Scalar> linearized_wrench(const Airframe<Scalar>& airframe, const Accelerations<Scalar>& motion,
                                  Scalar gravity_m_s2) noexcept {
   Wrench<Scalar> result;
-  result.force_N =
-      Vector3<Scalar>(Scalar(0), Scalar(0), airframe.mass_kg * (motion.linear_m_s2[2] - gravity_m_s2));
+  result.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), airframe.mass_kg * (motion.linear_m_s2[2] - gravity_m_s2));
   result.torque_N_m = to_vector(airframe.inertia_kg_m2).cwiseProduct(motion.angular_rad_s2);
   return result;
 }

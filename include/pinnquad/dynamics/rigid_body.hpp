@@ -15,11 +15,10 @@ Accelerations<Scalar> accelerations(const Airframe<Scalar>& airframe, const Stat
   const Vector3<Scalar> inertia = to_vector(airframe.inertia_kg_m2);
   const Vector3<Scalar>& rates = state.body_rates_rad_s;
   const Vector3<Scalar> momentum = inertia.cwiseProduct(rates);
-  const Vector3<Scalar> gravity = world_to_body<Scalar>(
-      state.attitude, Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2));
+  const Vector3<Scalar> gravity =
+      world_to_body<Scalar>(state.attitude, Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2));
   Accelerations<Scalar> result;
-  result.linear_m_s2 =
-      wrench.force_N / airframe.mass_kg + gravity - cross<Scalar>(rates, body_velocity(state));
+  result.linear_m_s2 = wrench.force_N / airframe.mass_kg + gravity - cross<Scalar>(rates, body_velocity(state));
   result.angular_rad_s2 = (cross<Scalar>(momentum, rates) + wrench.torque_N_m).cwiseQuotient(inertia);
   return result;
 }
@@ -31,8 +30,8 @@ Wrench<Scalar> required_wrench(const Airframe<Scalar>& airframe, const State<Sca
   const Vector3<Scalar> inertia = to_vector(airframe.inertia_kg_m2);
   const Vector3<Scalar>& rates = state.body_rates_rad_s;
   const Vector3<Scalar> momentum = inertia.cwiseProduct(rates);
-  const Vector3<Scalar> gravity = world_to_body<Scalar>(
-      state.attitude, Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2));
+  const Vector3<Scalar> gravity =
+      world_to_body<Scalar>(state.attitude, Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2));
   Wrench<Scalar> result;
   result.force_N = (motion.linear_m_s2 + cross<Scalar>(rates, body_velocity(state)) - gravity) * airframe.mass_kg;
   result.torque_N_m = inertia.cwiseProduct(motion.angular_rad_s2) - cross<Scalar>(momentum, rates);

@@ -8,8 +8,8 @@ namespace pinnquad {
 
 template <class Scalar>
 struct Site {
-  Scalar elevation_m{0};     ///< of the NED origin above sea level
-  Scalar ground_z_m{0};      ///< NED z of the vehicle's centre when the rotors' height above ground counts as zero
+  Scalar elevation_m{0};  ///< of the NED origin above sea level
+  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre when the rotors' height above ground counts as zero
   Scalar gravity_m_s2{standard_gravity_m_s2<Scalar>};
 };
 

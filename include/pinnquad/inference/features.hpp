@@ -17,7 +17,8 @@ namespace pinnquad {
 namespace detail {
 /// The names of a feature set that extends another one by an entry at the end.
 template <std::size_t Size>
-constexpr std::array<const char*, Size + 1> with_last(const std::array<const char*, Size>& names, const char* last) noexcept {
+constexpr std::array<const char*, Size + 1> with_last(const std::array<const char*, Size>& names,
+                                                      const char* last) noexcept {
   std::array<const char*, Size + 1> result{};
   for (std::size_t i = 0; i < Size; ++i) result[i] = names[i];
   result[Size] = last;
@@ -51,9 +52,9 @@ struct PaperFeatures {
   static constexpr std::array<const char*, size> names = {"vdot_bx", "vdot_by", "vdot_bz", "wdot_x", "wdot_y", "wdot_z",
                                                           "v_bx",    "v_by",    "v_bz",    "w_x",    "w_y",    "w_z",
                                                           "roll",    "pitch",   "sin_yaw", "cos_yaw"};
-  static constexpr std::array<const char*, size> units = {"m/s^2",   "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2",
-                                                          "m/s",     "m/s",   "m/s",   "rad/s",   "rad/s",   "rad/s",
-                                                          "rad",     "rad",   "1",     "1"};
+  static constexpr std::array<const char*, size> units = {"m/s^2", "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2",
+                                                          "m/s",   "m/s",   "m/s",   "rad/s",   "rad/s",   "rad/s",
+                                                          "rad",   "rad",   "1",     "1"};
 
   /// `not_finite` for NaN or Inf, `not_unit_quaternion` for an attitude that is none.
   template <class Scalar>
@@ -118,12 +119,12 @@ namespace detail {
 template <class T, class = void>
 struct IsFeatureSet : std::false_type {};
 template <class T>
-struct IsFeatureSet<T, std::void_t<typename T::template Inputs<double>, decltype(T::size), decltype(T::names),
-                                   decltype(T::units), decltype(T::angular_acceleration),
-                                   decltype(Status(T::check(
-                                       std::declval<const typename T::template Inputs<double>&>()))),
-                                   decltype(T::extract(std::declval<const typename T::template Inputs<double>&>(),
-                                                       static_cast<double*>(nullptr)))>>
+struct IsFeatureSet<T,
+                    std::void_t<typename T::template Inputs<double>, decltype(T::size), decltype(T::names),
+                                decltype(T::units), decltype(T::angular_acceleration),
+                                decltype(Status(T::check(std::declval<const typename T::template Inputs<double>&>()))),
+                                decltype(T::extract(std::declval<const typename T::template Inputs<double>&>(),
+                                                    static_cast<double*>(nullptr)))>>
     : std::bool_constant<T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size)> {};
 }  // namespace detail
 

@@ -25,8 +25,8 @@ template <class M>
 struct IsModel<M, std::void_t<typename M::Scalar, typename M::Network, typename M::Features, typename M::Outputs,
                               typename M::Vehicle, decltype(M::format_version), decltype(M::parameters),
                               decltype(M::input), decltype(M::output), decltype(M::envelope_lower),
-                              decltype(M::envelope_upper), decltype(M::golden_features),
-                              decltype(M::golden_commands)>> : std::true_type {};
+                              decltype(M::envelope_upper), decltype(M::golden_features), decltype(M::golden_commands)>>
+    : std::true_type {};
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
@@ -46,7 +46,8 @@ constexpr bool require_model() noexcept {
     static_assert(is_airframe<typename M::Vehicle>, "pinnquad: the model's Vehicle is not an airframe");
     static_assert(M::Network::inputs == M::Features::size,
                   "pinnquad: the network's input count differs from the feature set's size");
-    static_assert(M::Network::outputs == rotor_count, "pinnquad: the network's output count differs from the rotor count");
+    static_assert(M::Network::outputs == rotor_count,
+                  "pinnquad: the network's output count differs from the rotor count");
     static_assert(M::parameters.size() == static_cast<std::size_t>(M::Network::parameter_count),
                   "pinnquad: the exported parameters do not have the network's length");
     static_assert(M::input.size == M::Features::size && M::output.size == rotor_count,

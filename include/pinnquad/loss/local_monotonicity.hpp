@@ -118,7 +118,8 @@ template <class T, class = void>
 struct IsStep : std::false_type {};
 template <class T>
 struct IsStep<T, std::void_t<decltype(std::declval<const T&>().apply(std::declval<ProbeArray&>())),
-                             decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>> : std::true_type {};
+                             decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>>
+    : std::true_type {};
 template <class T, class = void>
 struct IsForm : std::false_type {};
 template <class T>
@@ -141,12 +142,14 @@ constexpr Step initial_step() {
 /// allocation, n = angular acceleration, compared as the form says.
 template <class Axis, class Step = TanhStep, class Form = Standardised>
 struct LocalMonotonicity {
-  static_assert(detail::IsStep<Step>::value,
-                "pinnquad: LocalMonotonicity's second argument is not a step function; it needs apply() and slope(), as "
-                "TanhStep has");
-  static_assert(detail::IsForm<Form>::value,
-                "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
-                "Standardised has");
+  static_assert(
+      detail::IsStep<Step>::value,
+      "pinnquad: LocalMonotonicity's second argument is not a step function; it needs apply() and slope(), as "
+      "TanhStep has");
+  static_assert(
+      detail::IsForm<Form>::value,
+      "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
+      "Standardised has");
   Step step = detail::initial_step<Step, Form>();
 
   template <class Context, class Batch, class Gradient>

@@ -51,7 +51,8 @@ template <class FeatureSet, class VehicleType, class Schema = CommandOutputs>
 struct Context {
   static_assert(is_feature_set<FeatureSet>,
                 "pinnquad: Context's first argument is not a feature set (inference/features.hpp)");
-  static_assert(is_airframe<VehicleType>, "pinnquad: Context's second argument is not an airframe (dynamics/airframe.hpp)");
+  static_assert(is_airframe<VehicleType>,
+                "pinnquad: Context's second argument is not an airframe (dynamics/airframe.hpp)");
   static_assert(is_output_schema<Schema>,
                 "pinnquad: Context's third argument is not an output schema (inference/output_schema.hpp)");
   using Features = FeatureSet;
@@ -83,9 +84,9 @@ using ProbeBatch = LossBatch<double, PaperFeatures::size, rotor_count, 8>;
 template <class T, class = void>
 struct IsLoss : std::false_type {};
 template <class T>
-struct IsLoss<T, std::void_t<decltype(std::declval<const T&>().evaluate(
-                     std::declval<const ProbeContext&>(), std::declval<const ProbeBatch&>(), 1.0,
-                     std::declval<ProbeBatch::Gradient&>()))>>
+struct IsLoss<T, std::void_t<decltype(std::declval<const T&>().evaluate(std::declval<const ProbeContext&>(),
+                                                                        std::declval<const ProbeBatch&>(), 1.0,
+                                                                        std::declval<ProbeBatch::Gradient&>()))>>
     : std::is_same<decltype(std::declval<const T&>().evaluate(std::declval<const ProbeContext&>(),
                                                               std::declval<const ProbeBatch&>(), 1.0,
                                                               std::declval<ProbeBatch::Gradient&>())),

@@ -4,8 +4,8 @@
 
 #include <tuple>
 
-#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 
@@ -14,7 +14,8 @@ namespace pinnquad {
 /// A loss term and the schedule of its weight lambda.
 template <class LossType, class ScheduleType>
 struct Weighted {
-  static_assert(is_loss<LossType>, "pinnquad: Weighted's first argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+  static_assert(is_loss<LossType>,
+                "pinnquad: Weighted's first argument is not a loss; it needs evaluate() (loss/loss.hpp)");
   static_assert(is_schedule<ScheduleType>,
                 "pinnquad: Weighted's second argument is not a schedule; it needs weight(epoch, epochs) "
                 "(schedule/schedule.hpp)");

@@ -32,11 +32,12 @@ namespace detail {
 template <class Layer, class Scalar, class = void>
 struct IsBoundLayer : std::false_type {};
 template <class Layer, class Scalar>
-struct IsBoundLayer<Layer, Scalar,
-                    std::void_t<typename Layer::Scalar, decltype(Layer::inputs), decltype(Layer::outputs), decltype(Layer::parameter_count),
-                                decltype(Layer::forward(static_cast<const Scalar*>(nullptr),
-                                                        static_cast<const Scalar*>(nullptr),
-                                                        static_cast<Scalar*>(nullptr)))>> : std::true_type {};
+struct IsBoundLayer<
+    Layer, Scalar,
+    std::void_t<typename Layer::Scalar, decltype(Layer::inputs), decltype(Layer::outputs),
+                decltype(Layer::parameter_count),
+                decltype(Layer::forward(static_cast<const Scalar*>(nullptr), static_cast<const Scalar*>(nullptr),
+                                        static_cast<Scalar*>(nullptr)))>> : std::true_type {};
 template <class Spec, class Scalar, int In, class = void>
 struct IsLayer : std::false_type {};
 template <class Spec, class Scalar, int In>

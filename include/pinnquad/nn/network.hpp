@@ -19,8 +19,9 @@ struct Chain {
 };
 template <class Scalar, int In, class First, class... Rest>
 struct Chain<Scalar, In, First, Rest...> {
-  static_assert(is_layer<First, Scalar, In>,
-                "pinnquad: this type is not a layer; it needs Bind<Scalar, In> with sizes and forward() (nn/layer.hpp)");
+  static_assert(
+      is_layer<First, Scalar, In>,
+      "pinnquad: this type is not a layer; it needs Bind<Scalar, In> with sizes and forward() (nn/layer.hpp)");
   using Layer = typename First::template Bind<Scalar, In>;
   static_assert(Layer::inputs == In, "pinnquad: a layer does not take the outputs of the layer before it");
   using Layers = decltype(std::tuple_cat(std::declval<std::tuple<Layer>>(),

@@ -18,7 +18,7 @@ struct BatchLayer {
                 "pinnquad: this layer cannot be trained; specialise BackwardRule (training/backward/backward.hpp)");
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = false;
-  static constexpr bool needs_output = true;  ///< backward() looks at y, so nobody may overwrite it
+  static constexpr bool needs_output = true;      ///< backward() looks at y, so nobody may overwrite it
   static constexpr bool couples_samples = false;  ///< outputs depend on the other samples of the batch (batch_norm.hpp)
   static constexpr int size = padded<Pack>(Layer::parameter_count);
   static constexpr int x_stride = padded<Pack>(Layer::inputs);
@@ -64,7 +64,7 @@ struct BatchDense {
   static constexpr int y_stride = padded<Pack>(Out);
   static constexpr int size = (In + (HasBias ? 1 : 0)) * y_stride;
 
-  alignas(64) Scalar stored[size] = {};           // [input][output], then the bias
+  alignas(64) Scalar stored[size] = {};  // [input][output], then the bias
   alignas(64) Scalar gradient[size] = {};
   alignas(64) Scalar by_output[Out * x_stride] = {};  // [output][input]
 
@@ -117,7 +117,8 @@ struct BatchDense {
 }  // namespace detail
 
 template <class Scalar, int In, int Out, class Pack, int BatchSize>
-struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> : detail::BatchDense<Scalar, In, Out, true, Pack> {};
+struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void>
+    : detail::BatchDense<Scalar, In, Out, true, Pack> {};
 
 template <class Scalar, int In, int Out, class Pack, int BatchSize>
 struct BatchLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, BatchSize, void>

@@ -120,9 +120,7 @@ class NetworkGradient {
   };
   using Buffers = typename BuffersOf<std::make_integer_sequence<int, layer_count>>::type;
 
-  static int tiled(int samples) noexcept {
-    return (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows;
-  }
+  static int tiled(int samples) noexcept { return (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows; }
 
   int clear_inputs_past(int samples) noexcept {
     const int rows = tiled(samples);

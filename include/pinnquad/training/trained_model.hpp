@@ -56,8 +56,9 @@ inline constexpr double negligible_weight = 1e-20;
 /// Joins a network with the scalers of its context and the envelope of its training rows. Batch norm is folded away: what is
 /// judged and exported is the network that flies.
 template <class NetworkType, class ContextType>
-TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network, const ContextType& context,
-                                                                  const Flight& flight, const IndexRange& training) {
+TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
+                                                                  const ContextType& context, const Flight& flight,
+                                                                  const IndexRange& training) {
   using Model = TrainedModel<Folded<NetworkType>, ContextType>;
   using Scalar = typename Model::Scalar;
   Model model;

@@ -49,7 +49,8 @@ class Trainer {
                 "(training/optimizer.hpp)");
   static_assert(NetworkType::inputs == ContextType::Features::size,
                 "pinnquad: the network's input count differs from the feature set's size");
-  static_assert(NetworkType::outputs == rotor_count, "pinnquad: the network's output count differs from the rotor count");
+  static_assert(NetworkType::outputs == rotor_count,
+                "pinnquad: the network's output count differs from the rotor count");
 
  public:
   using Network = NetworkType;
@@ -125,7 +126,8 @@ class Trainer {
     const Scalar value = loss_.evaluate(context_, loss_batch_, Scalar(1), output_gradient_);
     for (int i = 0; i < size; ++i) {
       Scalar* delta = gradient_.output_delta(i);
-      for (int k = 0; k < Gradient::output_stride; ++k) delta[k] = k < Network::outputs ? output_gradient_(k, i) : Scalar(0);
+      for (int k = 0; k < Gradient::output_stride; ++k)
+        delta[k] = k < Network::outputs ? output_gradient_(k, i) : Scalar(0);
     }
     gradient_.backward(size);
     return value;

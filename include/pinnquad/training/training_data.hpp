@@ -65,9 +65,8 @@ ContextType make_context(const Flight& flight, const IndexRange& range) {
   std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
   std::vector<std::array<double, rotor_count>> outputs;
   std::vector<std::array<double, 3>> sums;
-  const std::array<std::array<double, rotor_count>, 3> signs = {ContextType::template signs<Roll>(),
-                                                                ContextType::template signs<Pitch>(),
-                                                                ContextType::template signs<Yaw>()};
+  const std::array<std::array<double, rotor_count>, 3> signs = {
+      ContextType::template signs<Roll>(), ContextType::template signs<Pitch>(), ContextType::template signs<Yaw>()};
   for (std::size_t row = range.begin; row < range.end; ++row) {
     features.push_back(sample_features<Features, double>(flight[row]));
     outputs.push_back(detail::sample_outputs<ContextType>(flight[row]));

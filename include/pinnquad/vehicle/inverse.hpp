@@ -16,13 +16,13 @@ template <class Scalar, class... Effects>
 Status inverse_commands(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
                         const Accelerations<Scalar>& motion, Scalar time_s, Commands<Scalar>& commands) noexcept {
   if (quadrotor.status() != Status::ok) return quadrotor.status();
-  if (!(all_finite(state) && all_finite(motion.linear_m_s2) && all_finite(motion.angular_rad_s2) && is_finite(time_s))) {
+  if (!(all_finite(state) && all_finite(motion.linear_m_s2) && all_finite(motion.angular_rad_s2) &&
+        is_finite(time_s))) {
     return Status::not_finite;
   }
   if (!is_unit(state.attitude)) return Status::not_unit_quaternion;
   const Surroundings<Scalar> air = quadrotor.surroundings(state, time_s);
-  const Wrench<Scalar> required =
-      required_wrench(quadrotor.airframe(), state, motion, quadrotor.site().gravity_m_s2);
+  const Wrench<Scalar> required = required_wrench(quadrotor.airframe(), state, motion, quadrotor.site().gravity_m_s2);
   Commands<Scalar> result{};
   const Status status = commands_for_wrench(quadrotor, state, air, required, result);
   if (status != Status::ok) return status;

@@ -19,7 +19,7 @@ template <class Scalar>
 struct VehicleState {
   State<Scalar> body{};
   Commands<Scalar> rotors{};  ///< lag-filtered commands: thrust of rotor i is proportional to rotors[i]
-  double time_s{0};  ///< double also for a float vehicle: in float a millisecond is lost after a few hours
+  double time_s{0};           ///< double also for a float vehicle: in float a millisecond is lost after a few hours
 };
 
 /// One evaluation of the dynamics, taken apart.
@@ -34,8 +34,9 @@ struct Evaluation {
 /// Eqs. (1) and (2) with effects. An effect that is not named costs nothing.
 template <class Scalar, class... Effects>
 class Quadrotor {
-  static_assert((is_effect<Effects> && ...),
-                "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
+  static_assert(
+      (is_effect<Effects> && ...),
+      "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
 
  public:
   /// Effects as they are by default.
@@ -76,22 +77,22 @@ class Quadrotor {
   /// Body wrench of all effects for given commands of the rotors (settled, not clipped).
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                            const Commands<Scalar>& rotor_commands) const noexcept {
-    return sum_of_effects(state, air, rotor_commands, [this](const auto& effect, const auto& condition)
-                                                          PINNQUAD_INLINE_LAMBDA {
-      return effect.wrench(condition, airframe_);
-    });
+    return sum_of_effects(state, air, rotor_commands,
+                          [this](const auto& effect, const auto& condition)
+                              PINNQUAD_INLINE_LAMBDA { return effect.wrench(condition, airframe_); });
   }
 
   /// The same with every effect that has branches on this one, whether the condition lies on it or not.
   Wrench<Scalar> aerodynamic_wrench_on(ThrustBranch branch, const State<Scalar>& state, const Surroundings<Scalar>& air,
                                        const Commands<Scalar>& rotor_commands) const noexcept {
-    return sum_of_effects(state, air, rotor_commands, [this, branch](const auto& effect, const auto& condition) noexcept {
-      if constexpr (has_thrust_branches<std::decay_t<decltype(effect)>>) {
-        return effect.wrench_on(branch, condition, airframe_);
-      } else {
-        return effect.wrench(condition, airframe_);
-      }
-    });
+    return sum_of_effects(state, air, rotor_commands,
+                          [this, branch](const auto& effect, const auto& condition) noexcept {
+                            if constexpr (has_thrust_branches<std::decay_t<decltype(effect)>>) {
+                              return effect.wrench_on(branch, condition, airframe_);
+                            } else {
+                              return effect.wrench(condition, airframe_);
+                            }
+                          });
   }
 
   /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag.
@@ -170,8 +171,9 @@ class Quadrotor {
                                                        const WrenchOf& wrench_of) const noexcept {
     AeroCondition<Scalar> condition;
     condition.air_relative_velocity_m_s =
-        Axes(state.attitude).to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
-                                     state.velocity_m_s[2] - air.wind_m_s[2]);
+        Axes(state.attitude)
+            .to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
+                     state.velocity_m_s[2] - air.wind_m_s[2]);
     condition.body_rates_rad_s = state.body_rates_rad_s;
     condition.attitude = state.attitude;
     condition.height_above_ground_m = site_.ground_z_m - state.position_m[2];
@@ -180,7 +182,8 @@ class Quadrotor {
     each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       using Effect = std::decay_t<decltype(effect)>;
       if constexpr (makes_wrench<Effect>) {
-        condition.rotors = uses_rotor_wrench<Effect> ? rotors_.wrench(rotor_commands, density_ratio(air)) : Wrench<Scalar>{};
+        condition.rotors =
+            uses_rotor_wrench<Effect> ? rotors_.wrench(rotor_commands, density_ratio(air)) : Wrench<Scalar>{};
         condition.rotor_thrust_N = uses_rotor_wrench<Effect> ? rotors_.thrusts(rotor_commands, density_ratio(air))
                                                              : std::array<Scalar, rotor_count>{};
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
@@ -218,9 +221,9 @@ class Quadrotor {
     const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
-    d.acceleration_m_s2 =
-        Axes(state.attitude).to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
-                                      wrench.force_N[2] * inverse_mass_);
+    d.acceleration_m_s2 = Axes(state.attitude)
+                              .to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
+                                        wrench.force_N[2] * inverse_mass_);
     d.acceleration_m_s2[2] += site_.gravity_m_s2;
     d.attitude_rate = attitude_rate(state.attitude, state.body_rates_rad_s);
     d.angular_acceleration_rad_s2 = accelerations(airframe_, state, wrench, site_.gravity_m_s2).angular_rad_s2;

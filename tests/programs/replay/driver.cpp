@@ -20,8 +20,7 @@ using namespace pinnquad;
 
 int run(const std::string& html, const std::string& csv, std::size_t samples, const std::string& title) {
   programs::ReplayPage::require_available(html);
-  programs::ReplayPage page(title, airframe_value<PaperQuadrotor, double>(),
-                            paper_site<double>().ground_z_m);
+  programs::ReplayPage page(title, airframe_value<PaperQuadrotor, double>(), paper_site<double>().ground_z_m);
   std::ofstream rows(csv);
   rows.precision(17);
   rows << "t,north,east,down,v_north,v_east,v_down,qw,qx,qy,qz,u1,u2,u3,u4\n";
@@ -32,15 +31,16 @@ int run(const std::string& html, const std::string& csv, std::size_t samples, co
   const RandomPilot<std::mt19937_64> pilot(std::mt19937_64(7), pilot_style(quadrotor, plan.start_m),
                                            quadrotor.site().ground_z_m);
   const FlightReport report = fly(quadrotor, pilot, plan, [&](const FlightRow& row) {
-    page.add(row.vehicle, row.sample.commands);
-    const State<double>& body = row.vehicle.body;
-    rows << row.vehicle.time_s;
-    for (int i = 0; i < 3; ++i) rows << ',' << body.position_m[i];
-    for (int i = 0; i < 3; ++i) rows << ',' << body.velocity_m_s[i];
-    rows << ',' << body.attitude.w << ',' << body.attitude.x << ',' << body.attitude.y << ',' << body.attitude.z;
-    for (const double command : row.sample.commands) rows << ',' << command;
-    rows << '\n';
-  }).report;
+                                page.add(row.vehicle, row.sample.commands);
+                                const State<double>& body = row.vehicle.body;
+                                rows << row.vehicle.time_s;
+                                for (int i = 0; i < 3; ++i) rows << ',' << body.position_m[i];
+                                for (int i = 0; i < 3; ++i) rows << ',' << body.velocity_m_s[i];
+                                rows << ',' << body.attitude.w << ',' << body.attitude.x << ',' << body.attitude.y
+                                     << ',' << body.attitude.z;
+                                for (const double command : row.sample.commands) rows << ',' << command;
+                                rows << '\n';
+                              }).report;
   rows.close();
   if (report.end != FlightEnd::completed || !rows) {
     std::fprintf(stderr, "replay_driver: the flight or its rows failed: %s\n", to_string(report.status));

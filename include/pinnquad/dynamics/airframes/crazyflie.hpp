@@ -21,9 +21,9 @@ struct Crazyflie {
     constexpr double d = 0.0462696;                               // propeller radius 23.1348 mm, Panerati
     constexpr double rho = 1.225;
     Airframe<Scalar> a{};
-    a.mass_kg = Scalar(0.027);                                           // [B]
+    a.mass_kg = Scalar(0.027);                                            // [B]
     a.inertia_kg_m2 = {Scalar(1.4e-5), Scalar(1.4e-5), Scalar(2.17e-5)};  // [L]
-    constexpr Scalar arm = Scalar(0.046 / 1.4142135623730951);           // [B] 92 mm from motor to motor, diagonal
+    constexpr Scalar arm = Scalar(0.046 / 1.4142135623730951);            // [B] 92 mm from motor to motor, diagonal
     a.rotors[0] = {arm, arm, Spin::counter_clockwise};
     a.rotors[1] = {-arm, -arm, Spin::counter_clockwise};
     a.rotors[2] = {arm, -arm, Spin::clockwise};

@@ -13,7 +13,7 @@ struct PaperQuadrotor {
   template <class Scalar>
   static constexpr Airframe<Scalar> value() {
     Airframe<Scalar> a{};
-    a.mass_kg = Scalar(1.5);                                                // Table 1
+    a.mass_kg = Scalar(1.5);                                                   // Table 1
     a.inertia_kg_m2 = {Scalar(1.469e-2), Scalar(1.686e-2), Scalar(3.093e-2)};  // Table 1
     constexpr Scalar arm = Scalar(0.243952);  // 0.345 / sqrt(2): the 2l = 0.690 m of Table 1 is diagonal (NOTES #4)
     a.rotors[0] = {arm, arm, Spin::counter_clockwise};    // front right
@@ -26,7 +26,7 @@ struct PaperQuadrotor {
     a.max_rotor_speed_rev_s = Scalar(8500.0 / 60.0);      // ours: hovers at command 0.50 (NOTES #7)
     a.rotor_time_constant_s = Scalar(0.005);              // the paper's simulator (NOTES #6)
     a.drag_area_m2 = {Scalar(5.38309e-3), Scalar(5.83809e-3), Scalar(0.1099301)};  // the paper's simulator
-    a.drag_deadband_m_s = Scalar(0.1);                    // the paper's simulator
+    a.drag_deadband_m_s = Scalar(0.1);                                             // the paper's simulator
     return a;
   }
 };

@@ -51,9 +51,8 @@ PINNQUAD_ALWAYS_INLINE void multiply_packed(const typename Pack::Scalar* packed,
       if constexpr (Columns >= 4 && chains == 4) {
         total = (sum[0][v] + sum[1][v]) + (sum[2][v] + sum[3][v]);
       } else {
-        unroll<(chains < Columns ? chains : Columns) - 1>([&](auto c) PINNQUAD_INLINE_LAMBDA {
-          total = total + sum[c + 1][v];
-        });
+        unroll<(chains < Columns ? chains : Columns) - 1>(
+            [&](auto c) PINNQUAD_INLINE_LAMBDA { total = total + sum[c + 1][v]; });
       }
       activation(total).store(y + (first + v) * Pack::width);
     });

@@ -40,7 +40,9 @@ struct PackAvx512 {
   friend PINNQUAD_ALWAYS_INLINE PackAvx512 operator/(PackAvx512 a, PackAvx512 b) noexcept {
     return {_mm512_div_ps(a.value, b.value)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackAvx512 square_root(PackAvx512 a) noexcept { return {_mm512_maskz_sqrt_ps(all, a.value)}; }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 square_root(PackAvx512 a) noexcept {
+    return {_mm512_maskz_sqrt_ps(all, a.value)};
+  }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackAvx512 positive_part(PackAvx512 a) noexcept {
     return {_mm512_maskz_max_ps(all, _mm512_setzero_ps(), a.value)};

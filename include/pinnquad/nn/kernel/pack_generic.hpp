@@ -14,7 +14,7 @@ template <class ScalarType, int Width>
 struct GenericPack {
   using Scalar = ScalarType;
   static constexpr int width = Width;
-  static constexpr int tile_rows = 4;     ///< register tile of tile.hpp
+  static constexpr int tile_rows = 4;  ///< register tile of tile.hpp
   static constexpr int tile_vectors = 1;
 
   Scalar lane[Width];

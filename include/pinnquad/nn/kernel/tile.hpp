@@ -16,8 +16,8 @@ PINNQUAD_ALWAYS_INLINE void multiply_tile(const typename Pack::Scalar* a, const 
                                           const typename Pack::Scalar* start, typename Pack::Scalar* c) noexcept {
   Pack sum[Rows][Vectors];
   unroll<Vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-    const Pack first = start != nullptr ? Pack::load(start + v * Pack::width)
-                                        : Pack::broadcast(typename Pack::Scalar(0));
+    const Pack first =
+        start != nullptr ? Pack::load(start + v * Pack::width) : Pack::broadcast(typename Pack::Scalar(0));
     unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA { sum[r][v] = first; });
   });
   for (int k = 0; k < depth; ++k) {
@@ -25,9 +25,8 @@ PINNQUAD_ALWAYS_INLINE void multiply_tile(const typename Pack::Scalar* a, const 
     unroll<Vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { row[v] = Pack::load(b + v * Pack::width); });
     unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
       const Pack factor = Pack::broadcast(a[r * RowStride]);
-      unroll<Vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-        sum[r][v] = Pack::multiply_add(factor, row[v], sum[r][v]);
-      });
+      unroll<Vectors>([&](auto v)
+                          PINNQUAD_INLINE_LAMBDA { sum[r][v] = Pack::multiply_add(factor, row[v], sum[r][v]); });
     });
     a += DepthStride;
     b += Stride;
