@@ -22,7 +22,7 @@ TEST_CASE("every Status has its own words and no other value has any") {
     REQUIRE(++count < 256);
   }
   CHECK(static_cast<int>(words.size()) == count);
-  CHECK(count == static_cast<int>(Status::self_test_failed) + 1);
+  CHECK(count == pinnquad::status_count);
   CHECK(pinnquad::to_string(static_cast<Status>(255)) == unknown);
 }
 
@@ -34,4 +34,13 @@ TEST_CASE("words for logs say what is meant") {
   CHECK(std::string(pinnquad::to_string(Status::no_solution)) == "no solution");
   CHECK(std::string(pinnquad::to_string(Status::invalid_airframe)) == "invalid airframe");
   CHECK(std::string(pinnquad::to_string(Status::self_test_failed)) == "self test failed");
+}
+
+TEST_CASE("outputs are written under three Statuses and under no other") {
+  int written = 0;
+  for (int i = 0; i < pinnquad::status_count; ++i) written += pinnquad::has_output(static_cast<Status>(i)) ? 1 : 0;
+  CHECK(written == 3);
+  CHECK(pinnquad::has_output(Status::ok));
+  CHECK(pinnquad::has_output(Status::limited));
+  CHECK(pinnquad::has_output(Status::fell_back));
 }

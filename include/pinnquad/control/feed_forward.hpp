@@ -72,7 +72,7 @@ class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
 
 /// How often a network's answer was replaced, and why.
 struct FallbackCount {
-  static constexpr std::size_t statuses = static_cast<std::size_t>(Status::self_test_failed) + 1;
+  static constexpr auto statuses = static_cast<std::size_t>(status_count);
 
   std::uint32_t asked{0};
   std::array<std::uint32_t, statuses> by_status{};  ///< indexed by Status; `ok` counts the network's own answers

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
@@ -95,6 +96,13 @@ template <class Scalar>
 Vector3<Scalar> body_down_axis(const Quaternion<Scalar>& q) noexcept {
   return Vector3<Scalar>(Scalar(2) * (q.x * q.z + q.w * q.y), Scalar(2) * (q.y * q.z - q.w * q.x),
                          Scalar(1) - Scalar(2) * (q.x * q.x + q.y * q.y));
+}
+
+/// The world's z axis (down) in the body: third row of R, how far down each body axis points.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Vector3<Scalar> world_down_axis(const Quaternion<Scalar>& q) noexcept {
+  const Scalar x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+  return Vector3<Scalar>(q.x * z2 - q.w * y2, q.y * z2 + q.w * x2, Scalar(1) - (q.x * x2 + q.y * y2));
 }
 
 template <class Scalar>

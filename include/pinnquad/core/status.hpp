@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What can be wrong with an input of flight code, which has no exceptions.
-// Every function that returns a Status leaves its output untouched unless the Status is `ok`.
+// Every function that returns a Status leaves its output untouched unless has_output(status).
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,21 @@ enum class [[nodiscard]] Status : std::uint8_t{
     no_solution,          ///< the inverse problem has no solution (thrust equation, allocation)
     invalid_airframe,     ///< mass, inertia, rotors or allocation can't be those of a quadrotor that flies
     self_test_failed,     ///< a golden vector was not reproduced
+    outside_limits,       ///< a command lies outside the output limits, and the guard refuses it
+    limited,              ///< commands were clipped to the output limits; they are written
+    fell_back,            ///< the network declined; the commands written are the fallback's
+    block_truncated,      ///< a model block is shorter than it says, or not aligned
+    block_incompatible,   ///< a block of another format, network or feature set
+    block_corrupt,        ///< a block whose checksum or contents are wrong
 };
+
+/// Number of Status values, for counters by Status.
+inline constexpr int status_count = static_cast<int>(Status::block_corrupt) + 1;
+
+/// True where the output was written: `ok`, `limited`, `fell_back`.
+constexpr bool has_output(Status status) noexcept {
+  return status == Status::ok || status == Status::limited || status == Status::fell_back;
+}
 
 /// Plain words for logs.
 constexpr const char* to_string(Status status) noexcept {
@@ -31,6 +45,12 @@ constexpr const char* to_string(Status status) noexcept {
     case Status::no_solution: return "no solution";
     case Status::invalid_airframe: return "invalid airframe";
     case Status::self_test_failed: return "self test failed";
+    case Status::outside_limits: return "command outside the output limits";
+    case Status::limited: return "commands limited";
+    case Status::fell_back: return "fallback used";
+    case Status::block_truncated: return "model block truncated or misaligned";
+    case Status::block_incompatible: return "model block of another format or shape";
+    case Status::block_corrupt: return "model block corrupt";
   }
   return "unknown status";
 }
