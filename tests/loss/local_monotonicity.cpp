@@ -27,6 +27,7 @@ using pinnquad::RotorSpeedOutputs;
 using pinnquad::SignStep;
 using pinnquad::TanhStep;
 using pinnquad::Yaw;
+using pinnquad::test::array;
 using pinnquad::test::flight_context;
 using pinnquad::test::PaperBatch;
 using pinnquad::test::random_batch;
@@ -39,12 +40,6 @@ using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
 
 /// The paper and NOTES give four digits after the point.
 constexpr double printed_digits = 5e-5;
-
-Array array(std::initializer_list<double> values) {
-  Array result(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), result.data());
-  return result;
-}
 
 template <class Step>
 double value(const Step& step, const Array& m, const Array& n) {

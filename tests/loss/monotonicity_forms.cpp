@@ -25,6 +25,7 @@ using pinnquad::SignStep;
 using pinnquad::Standardised;
 using pinnquad::TanhStep;
 using pinnquad::Yaw;
+using pinnquad::test::array;
 using pinnquad::test::flight_context;
 using pinnquad::test::PaperBatch;
 using pinnquad::test::random_batch;
@@ -34,12 +35,6 @@ namespace {
 
 using Array = Eigen::ArrayXd;
 using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
-
-Array array(std::initializer_list<double> values) {
-  Array result(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), result.data());
-  return result;
-}
 
 template <class Form, class Step>
 double compared(const Step& step, const Array& m, const Array& n) {

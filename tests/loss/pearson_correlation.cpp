@@ -20,6 +20,7 @@ using pinnquad::PearsonCorrelation;
 using pinnquad::Roll;
 using pinnquad::RotorSpeedOutputs;
 using pinnquad::Yaw;
+using pinnquad::test::array;
 using pinnquad::test::central_differences;
 using pinnquad::test::flight_context;
 using pinnquad::test::gradient_error;
@@ -32,12 +33,6 @@ namespace {
 
 using Array = Eigen::ArrayXd;
 using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
-
-Array array(std::initializer_list<double> values) {
-  Array result(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), result.data());
-  return result;
-}
 
 double value(const Array& m, const Array& n) {
   Array gradient = Array::Zero(m.size());

@@ -52,8 +52,8 @@ TEST_CASE("sticks: the standard deviation and the memory the style states") {
     ++frames;
   }
   constexpr double sampling_error = 0.05;  // 800 s hold some 5,000 independent values
-  CHECK(std::abs(std::sqrt(square / frames) / style.roll_pitch_stick_rad_s - 1) <= sampling_error);
-  const double memory = std::exp(-style.stick_frame_s * style.stick_bandwidth_rad_s);
+  CHECK(std::abs(std::sqrt(square / frames) / style.thumbs.roll_pitch_spread_rad_s - 1) <= sampling_error);
+  const double memory = std::exp(-style.thumbs.frame_s * style.thumbs.bandwidth_rad_s);
   CHECK(std::abs((1 - product / square) / (1 - memory) - 1) <= sampling_error);
 }
 

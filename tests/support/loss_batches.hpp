@@ -2,6 +2,8 @@
 // Mini-batches and contexts for the tests of losses: seeded, with the spread of standardised data.
 #pragma once
 
+#include <algorithm>
+#include <initializer_list>
 #include <random>
 
 #include "pinnquad/core/random.hpp"
@@ -12,6 +14,13 @@ namespace pinnquad::test {
 
 template <class Scalar>
 using PaperBatch = LossBatch<Scalar, PaperFeatures::size, rotor_count, 64>;
+
+/// A series with these values.
+inline Eigen::ArrayXd array(std::initializer_list<double> values) {
+  Eigen::ArrayXd result(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), result.data());
+  return result;
+}
 
 /// Normal features, targets and predictions.
 template <class Scalar>

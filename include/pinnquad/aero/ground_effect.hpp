@@ -84,8 +84,7 @@ struct GroundEffect {
   template <class Scalar>
   Wrench<Scalar> wrench_on(ThrustBranch branch, const AeroCondition<Scalar>& condition,
                            const Airframe<Scalar>& airframe) const noexcept {
-    const Quaternion<Scalar>& q = condition.attitude;
-    const bool upright = q.w * q.w + q.z * q.z >= q.x * q.x + q.y * q.y;
+    const bool upright = world_down_axis(condition.attitude)[2] >= Scalar(0);
     const Scalar vertical = vertical_force(condition);
     return lift(condition, airframe, upright == (branch == ThrustBranch::upper) ? -vertical : vertical);
   }
@@ -106,10 +105,8 @@ struct GroundEffect {
     const auto force = [&](int axis) noexcept {
       return condition.rotors.force_N[axis] + condition.aerodynamic.force_N[axis];
     };
-    const Quaternion<Scalar>& q = condition.attitude;
-    const Scalar one(1), x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
-    return (q.x * z2 - q.w * y2) * force(0) + (q.y * z2 + q.w * x2) * force(1) +
-           (one - (q.x * x2 + q.y * y2)) * force(2);
+    const Vector3<Scalar> down = world_down_axis(condition.attitude);
+    return down[0] * force(0) + down[1] * force(1) + down[2] * force(2);
   }
 
   template <class Scalar>

@@ -18,15 +18,12 @@ struct RotorGroundEffect {
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
     const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
-    const Quaternion<Scalar>& q = condition.attitude;
-    const Scalar two(2);  // third row of R: how far down each body axis points
-    const Scalar zx = two * (q.x * q.z - q.w * q.y), zy = two * (q.y * q.z + q.w * q.x);
-    const Scalar zz = Scalar(1) - two * (q.x * q.x + q.y * q.y);
-    const Scalar share = zz < Scalar(0) ? -zz : zz;
+    const Vector3<Scalar> down = world_down_axis(condition.attitude);
+    const Scalar share = down[2] < Scalar(0) ? -down[2] : down[2];
     Wrench<Scalar> result;
     for (std::size_t i = 0; i < rotor_count; ++i) {
       const RotorMount<Scalar>& hub = airframe.rotors[i];
-      const Scalar height_m = condition.height_above_ground_m - (zx * hub.x_m + zy * hub.y_m);
+      const Scalar height_m = condition.height_above_ground_m - (down[0] * hub.x_m + down[1] * hub.y_m);
       const Scalar r = ratio.thrust_ratio(height_m * per_radius_1_m, airframe);
       const Scalar lift = (r - Scalar(1)) * share * condition.rotor_thrust_N[i];
       result.force_N[2] -= lift;

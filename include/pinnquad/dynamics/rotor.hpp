@@ -66,6 +66,16 @@ constexpr Scalar signed_sum(const std::array<Scalar, rotor_count>& signs, const 
   return signs[0] * commands[0] + signs[1] * commands[1] + signs[2] * commands[2] + signs[3] * commands[3];
 }
 
+/// m v.
+template <class Scalar>
+constexpr std::array<Scalar, 4> product(const AllocationMatrix<Scalar>& m, const std::array<Scalar, 4>& v) noexcept {
+  std::array<Scalar, 4> result{};
+  for (std::size_t row = 0; row < 4; ++row) {
+    result[row] = m[row][0] * v[0] + m[row][1] * v[1] + m[row][2] * v[2] + m[row][3] * v[3];
+  }
+  return result;
+}
+
 /// Inverse of a 4 x 4 matrix by Gauss-Jordan with partial pivoting, rows scaled to a largest entry of 1. `no_solution` if it
 /// is singular to the scalar's precision (a pivot below 1000 epsilon); the output stays untouched then.
 template <class Scalar>
@@ -173,15 +183,6 @@ class Rotors {
   }
 
  private:
-  static constexpr std::array<Scalar, 4> product(const AllocationMatrix<Scalar>& m,
-                                                 const std::array<Scalar, 4>& v) noexcept {
-    std::array<Scalar, 4> result{};
-    for (std::size_t row = 0; row < 4; ++row) {
-      result[row] = m[row][0] * v[0] + m[row][1] * v[1] + m[row][2] * v[2] + m[row][3] * v[3];
-    }
-    return result;
-  }
-
   AllocationMatrix<Scalar> allocation_{};
   AllocationMatrix<Scalar> inverse_{};
   Status status_{Status::ok};

@@ -39,6 +39,33 @@ struct SignStep {
   }
 };
 
+namespace detail {
+/// The steps of both series from sample to sample.
+template <class Array>
+struct StepPairs {
+  using Scalar = typename Array::Scalar;
+  Eigen::Index count;
+  Array m, n;
+
+  template <class Step>
+  StepPairs(const Step& step, const Array& series_m, const Array& series_n)
+      : count(series_m.size() > 0 ? series_m.size() - 1 : 0),
+        m(series_m.tail(count) - series_m.head(count)),
+        n(series_n.tail(count) - series_n.head(count)) {
+    step.apply(m);
+    step.apply(n);
+  }
+
+  /// Adds dL/d series_m, given dL/d step_m.
+  template <class Step, class Derivative>
+  void add_gradient(const Step& step, const Eigen::ArrayBase<Derivative>& by_step, Array& gradient) const {
+    const Array slope = by_step.derived() * step.slope(m);
+    gradient.tail(count) += slope;
+    gradient.head(count) -= slope;
+  }
+};
+}  // namespace detail
+
 /// mean over the N - 1 consecutive pairs of 1 - step(m_{i+1} - m_i) step(n_{i+1} - n_i); N = 1 gives 0.
 /// 0: the series rise and fall together; 1: unrelated; 2: always opposed. Adds weight * d/dm to `gradient`.
 /// Algorithm 1 prints 1 / N_b over N_b - 1 terms; the mean over the pairs gives footnote 2's values (NOTES #8).
@@ -46,16 +73,11 @@ template <class Step, class Array>
 typename Array::Scalar local_monotonicity(const Step& step, const Array& m, const Array& n,
                                           typename Array::Scalar weight, Array& gradient) {
   using Scalar = typename Array::Scalar;
-  const Eigen::Index pairs = m.size() - 1;
-  if (pairs < 1) return Scalar(0);
-  Array step_m = m.tail(pairs) - m.head(pairs);
-  Array step_n = n.tail(pairs) - n.head(pairs);
-  step.apply(step_m);
-  step.apply(step_n);
-  const Array slope = (-weight / Scalar(pairs)) * step_n * step.slope(step_m);
-  gradient.tail(pairs) += slope;
-  gradient.head(pairs) -= slope;
-  return (Scalar(1) - step_m * step_n).sum() / Scalar(pairs);
+  const detail::StepPairs<Array> steps(step, m, n);
+  if (steps.count < 1) return Scalar(0);
+  const auto pairs = static_cast<Scalar>(steps.count);
+  steps.add_gradient(step, (-weight / pairs) * steps.n, gradient);
+  return (Scalar(1) - steps.m * steps.n).sum() / pairs;
 }
 
 /// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It asks for equal
@@ -64,16 +86,11 @@ template <class Step, class Array>
 typename Array::Scalar monotonicity_match(const Step& step, const Array& m, const Array& n,
                                           typename Array::Scalar weight, Array& gradient) {
   using Scalar = typename Array::Scalar;
-  const Eigen::Index pairs = m.size() - 1;
-  if (pairs < 1) return Scalar(0);
-  Array step_m = m.tail(pairs) - m.head(pairs);
-  Array step_n = n.tail(pairs) - n.head(pairs);
-  step.apply(step_m);
-  step.apply(step_n);
-  const Array slope = (Scalar(2) * weight / Scalar(pairs)) * (step_m - step_n) * step.slope(step_m);
-  gradient.tail(pairs) += slope;
-  gradient.head(pairs) -= slope;
-  return (step_m - step_n).square().sum() / Scalar(pairs);
+  const detail::StepPairs<Array> steps(step, m, n);
+  if (steps.count < 1) return Scalar(0);
+  const auto pairs = static_cast<Scalar>(steps.count);
+  steps.add_gradient(step, (Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
+  return (steps.m - steps.n).square().sum() / pairs;
 }
 
 /// Form of the loss, default: both series divided by their spread in the training set, mean over the pairs (NOTES #8, #9).

@@ -51,18 +51,12 @@ struct BatchNorm {
 };
 
 namespace detail {
-template <class Scalar, class InputSize, int Count, int Width, int Out, class Activation, class... Specs>
-struct MakeBatchNormMlp : MakeBatchNormMlp<Scalar, InputSize, Count - 1, Width, Out, Activation,
-                                           DenseWithoutBias<Width>, BatchNorm, Activation, Specs...> {};
-template <class Scalar, class InputSize, int Width, int Out, class Activation, class... Specs>
-struct MakeBatchNormMlp<Scalar, InputSize, 0, Width, Out, Activation, Specs...> {
-  using type = Network<Scalar, InputSize, Specs..., Dense<Out>>;
-};
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
 struct BatchNormMlp;
 template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
 struct BatchNormMlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
-    : MakeBatchNormMlp<Scalar, InputSize, Count, Width, OutputSize::size, Activation> {};
+    : Stack<Scalar, InputSize, Count, SpecList<DenseWithoutBias<Width>, BatchNorm, Activation>,
+            Dense<OutputSize::size>> {};
 }  // namespace detail
 
 /// The paper's network with batch norm between Dense and activation (NOTES #15):

@@ -100,17 +100,24 @@ class Network {
 };
 
 namespace detail {
-template <class Scalar, class InputSize, int Count, int Width, int Out, class Activation, class... Specs>
-struct MakeMlp : MakeMlp<Scalar, InputSize, Count - 1, Width, Out, Activation, Dense<Width>, Activation, Specs...> {};
-template <class Scalar, class InputSize, int Width, int Out, class Activation, class... Specs>
-struct MakeMlp<Scalar, InputSize, 0, Width, Out, Activation, Specs...> {
-  using type = Network<Scalar, InputSize, Specs..., Dense<Out>>;
+template <class... Specs>
+struct SpecList {};
+
+/// `Hidden` specs `Count` times over, then `Last`.
+template <class Scalar, class InputSize, int Count, class Hidden, class Last, class... Specs>
+struct Stack;
+template <class Scalar, class InputSize, int Count, class... Hidden, class Last, class... Specs>
+struct Stack<Scalar, InputSize, Count, SpecList<Hidden...>, Last, Specs...>
+    : Stack<Scalar, InputSize, Count - 1, SpecList<Hidden...>, Last, Specs..., Hidden...> {};
+template <class Scalar, class InputSize, class... Hidden, class Last, class... Specs>
+struct Stack<Scalar, InputSize, 0, SpecList<Hidden...>, Last, Specs...> {
+  using type = Network<Scalar, InputSize, Specs..., Last>;
 };
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
 struct Mlp;
 template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
 struct Mlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
-    : MakeMlp<Scalar, InputSize, Count, Width, OutputSize::size, Activation> {};
+    : Stack<Scalar, InputSize, Count, SpecList<Dense<Width>, Activation>, Dense<OutputSize::size>> {};
 template <class T>
 struct IsNetwork : std::false_type {};
 template <class Scalar, class InputSize, class... Specs>

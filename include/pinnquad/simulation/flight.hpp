@@ -68,8 +68,8 @@ PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vec
   const double calm = (1 - hover_command) / calm_reserve;
   if (calm < 1) {
     style.max_yaw_rate_rad_s *= calm;
-    style.yaw_stick_rad_s *= calm;
-    style.roll_pitch_stick_rad_s *= calm;
+    style.thumbs.yaw_spread_rad_s *= calm;
+    style.thumbs.roll_pitch_spread_rad_s *= calm;
     style.velocity_lag_s /= calm;
   }
   return style;

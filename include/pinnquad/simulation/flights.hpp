@@ -54,8 +54,8 @@ NearGroundStyle near_ground_style(const Quadrotor<double, Effects...>& quadrotor
   lower(style.max_climb_m_s, agile.max_climb_m_s);
   lower(style.max_descent_m_s, agile.max_descent_m_s);
   lower(style.max_yaw_rate_rad_s, agile.max_yaw_rate_rad_s);
-  lower(style.thumbs.roll_pitch_spread_rad_s, agile.roll_pitch_stick_rad_s);
-  lower(style.thumbs.yaw_spread_rad_s, agile.yaw_stick_rad_s);
+  lower(style.thumbs.roll_pitch_spread_rad_s, agile.thumbs.roll_pitch_spread_rad_s);
+  lower(style.thumbs.yaw_spread_rad_s, agile.thumbs.yaw_spread_rad_s);
   constexpr double reserve_share = 1.0 / 3;
   const double hover = hover_command(quadrotor, place_m);
   lower(style.max_vertical_acceleration_m_s2, reserve_share * (1 / hover - 1) * quadrotor.site().gravity_m_s2);

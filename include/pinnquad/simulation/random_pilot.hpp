@@ -22,10 +22,7 @@ struct PilotStyle {
   double velocity_lag_s{0.45};  ///< the velocity asked for follows its target with this lag
   double max_yaw_rate_rad_s{1.0};
   double yaw_rate_lag_s{0.4};
-  double stick_frame_s{0.004};          ///< the sticks arrive in frames, as over a 250 Hz radio link
-  double stick_bandwidth_rad_s{14};     ///< of the thumbs: a first-order random process
-  double roll_pitch_stick_rad_s{0.21};  ///< its standard deviation
-  double yaw_stick_rad_s{0.062};
+  ThumbStyle thumbs{};
   double lowest_m{10};  ///< box, heights above ground and distances from the origin
   double highest_m{60};
   double farthest_m{60};
@@ -41,11 +38,7 @@ class RandomPilot {
  public:
   /// `ground_z_m`: NED z of the ground (Site). The engine is the pilot's own from here on.
   explicit RandomPilot(const Engine& engine, const PilotStyle& style = {}, double ground_z_m = 0)
-      : engine_(engine),
-        style_(style),
-        ground_z_m_(ground_z_m),
-        thumbs_(
-            {style.stick_frame_s, style.stick_bandwidth_rad_s, style.roll_pitch_stick_rad_s, style.yaw_stick_rad_s}) {}
+      : engine_(engine), style_(style), ground_z_m_(ground_z_m), thumbs_(style.thumbs) {}
 
   SetPoint<double> operator()(const State<double>& state, double time_s) {
     const double elapsed_s = time_s - time_s_;

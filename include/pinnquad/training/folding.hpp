@@ -12,9 +12,6 @@ namespace pinnquad {
 
 namespace detail {
 
-template <class... Specs>
-struct SpecList {};
-
 /// Moves specs from the second list to the first: a Dense takes the BatchNorm behind it along.
 template <class Done, class Left>
 struct FoldSpecs;

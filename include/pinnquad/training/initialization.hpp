@@ -15,8 +15,7 @@ namespace pinnquad {
 struct XavierUniform {
   template <class Scalar, int In, int Out, class Engine>
   void initialise(DenseLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
-    const double limit = std::sqrt(6.0 / (In + Out));
-    for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
+    initialise(DenseWithoutBiasLayer<Scalar, In, Out>{}, parameters, engine);
     for (int i = 0; i < Out; ++i) parameters[Out * In + i] = Scalar(0);
   }
   template <class Scalar, int In, int Out, class Engine>

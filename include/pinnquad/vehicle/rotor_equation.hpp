@@ -19,7 +19,8 @@ Scalar largest_magnitude(const Commands<Scalar>& values) noexcept {
   Scalar largest(0);
   for (const Scalar value : values) {
     const Scalar magnitude = value < Scalar(0) ? -value : value;
-    if (!(magnitude <= largest)) largest = magnitude;  // NaN stays
+    if (!(magnitude <= largest)) largest = magnitude;
+    if (!is_finite(largest)) return largest;  // NaN would lose the next comparison
   }
   return largest;
 }
@@ -83,13 +84,7 @@ class RotorEquation {
   static std::array<Scalar, 4> difference(const std::array<Scalar, 4>& a, const std::array<Scalar, 4>& b) noexcept {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
   }
-  static Commands<Scalar> product(const AllocationMatrix<Scalar>& m, const std::array<Scalar, 4>& v) noexcept {
-    Commands<Scalar> result{};
-    for (std::size_t row = 0; row < 4; ++row) {
-      result[row] = m[row][0] * v[0] + m[row][1] * v[1] + m[row][2] * v[2] + m[row][3] * v[3];
-    }
-    return result;
-  }
+
   const Quadrotor<Scalar, Effects...>& quadrotor_;
   const State<Scalar>& state_;
   const Surroundings<Scalar>& air_;

@@ -29,29 +29,26 @@ PINNQUAD_ALWAYS_INLINE double multiply_add(double a, double b, double c) noexcep
 #endif
 }
 
+namespace detail {
+/// sum + row . x, inputs ascending.
+template <int Columns, class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar add_dot(Scalar sum, const Scalar* row, const Scalar* x) noexcept {
+  for (int column = 0; column < Columns; ++column) sum = multiply_add(row[column], x[column], sum);
+  return sum;
+}
+}  // namespace detail
+
 /// y = W x + b; W is Rows x Columns, row-major (row = output, column = input).
 template <int Rows, int Columns, class Scalar>
 PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* bias, const Scalar* x,
                                                Scalar* y) noexcept {
-  for (int row = 0; row < Rows; ++row) {
-    Scalar sum = bias[row];
-    for (int column = 0; column < Columns; ++column) {
-      sum = multiply_add(weight[row * Columns + column], x[column], sum);
-    }
-    y[row] = sum;
-  }
+  for (int row = 0; row < Rows; ++row) y[row] = detail::add_dot<Columns>(bias[row], weight + row * Columns, x);
 }
 
 /// y = W x.
 template <int Rows, int Columns, class Scalar>
 PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* x, Scalar* y) noexcept {
-  for (int row = 0; row < Rows; ++row) {
-    Scalar sum(0);
-    for (int column = 0; column < Columns; ++column) {
-      sum = multiply_add(weight[row * Columns + column], x[column], sum);
-    }
-    y[row] = sum;
-  }
+  for (int row = 0; row < Rows; ++row) y[row] = detail::add_dot<Columns>(Scalar(0), weight + row * Columns, x);
 }
 
 }  // namespace pinnquad
