@@ -6,19 +6,17 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <mutex>
 #include <random>
-#include <thread>
 #include <vector>
 
 #include "interrupt.hpp"
+#include "parallel.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
-#include "progress_line.hpp"
 
 namespace programs {
 
@@ -70,26 +68,18 @@ std::vector<Training> train_all(const Context& context, const Data& data, int ep
     }
   }
   std::vector<char> finished(jobs.size(), 0);
-  std::atomic<std::size_t> next{0};
   std::atomic<long> epochs_done{0};
-  std::atomic<unsigned> running{threads};
-  const auto work = [&] {
-    for (std::size_t i = next.fetch_add(1); i < jobs.size() && !interrupted(); i = next.fetch_add(1)) {
-      finished[i] = jobs[i].kind == Kind::vanilla ? train_one<VanillaLoss>(context, data, epochs, jobs[i], epochs_done)
-                                                  : train_one<PhysicsLoss>(context, data, epochs, jobs[i], epochs_done);
-    }
-    running.fetch_sub(1);
-  };
-  std::vector<std::thread> workers;
-  for (unsigned i = 0; i < threads; ++i) workers.emplace_back(work);
-  ProgressLine progress("training " + std::to_string(jobs.size()) + " networks");
   const double all_epochs = static_cast<double>(jobs.size()) * epochs;
-  while (running.load() > 0) {
-    progress.update(static_cast<double>(epochs_done.load()) / all_epochs);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  for (std::thread& worker : workers) worker.join();
-  progress.clear();
+  run_parallel(
+      "training " + std::to_string(jobs.size()) + " networks", jobs.size(), threads,
+      [&] { return static_cast<double>(epochs_done.load()) / all_epochs; },
+      [&](std::size_t i) {
+        const bool done = jobs[i].kind == Kind::vanilla
+                              ? train_one<VanillaLoss>(context, data, epochs, jobs[i], epochs_done)
+                              : train_one<PhysicsLoss>(context, data, epochs, jobs[i], epochs_done);
+        finished[i] = done ? 1 : 0;
+        return done;
+      });
 
   std::vector<Training> done;
   for (std::size_t i = 0; i < jobs.size(); ++i) {

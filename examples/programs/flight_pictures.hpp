@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "axis_motion.hpp"
 #include "flight_trace.hpp"
 #include "gnuplot.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
 
 namespace programs {
@@ -142,13 +142,8 @@ inline bool plot_correlation(const std::string& svg, const pinnquad::Flight& fli
   std::ostringstream out;
   out << "set multiplot\n";
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::array<double, pinnquad::rotor_count> signs =
-        pinnquad::allocation_signs(airframe, static_cast<int>(axis));
-    std::vector<double> accelerations, sums;
-    for (const pinnquad::Sample& sample : flight) {
-      accelerations.push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
-      sums.push_back(pinnquad::signed_sum(signs, sample.commands));
-    }
+    const AxisMotion motion = axis_motion(flight, airframe, static_cast<int>(axis));
+    const std::vector<double>&accelerations = motion.angular_acceleration, &sums = motion.command_sum;
     const auto line = [&](double x, std::size_t i) {
       char text[96];
       std::snprintf(text, sizeof text, "%.2f %.3f %.4f\n", x, accelerations[i], sums[i]);
@@ -167,8 +162,8 @@ inline bool plot_correlation(const std::string& svg, const pinnquad::Flight& fli
     }
     out << "EOD\n";
     std::string sum = "S = ";
-    for (std::size_t i = 0; i < signs.size(); ++i) {
-      sum += (signs[i] < 0 ? (i == 0 ? "-" : " - ") : (i == 0 ? "" : " + ")) + ("u_" + std::to_string(i + 1));
+    for (std::size_t i = 0; i < motion.signs.size(); ++i) {
+      sum += (motion.signs[i] < 0 ? (i == 0 ? "-" : " - ") : (i == 0 ? "" : " + ")) + ("u_" + std::to_string(i + 1));
     }
     const bool lowest = axis == 2;
     const double top = tops[axis], bottom = top - panel_height;
@@ -280,6 +275,18 @@ inline bool plot_wind(const std::string& svg, const std::vector<TraceRow>& trace
       << "set format x '%g'\nset xlabel 'time, s' offset 0,0.4\nset ylabel 'wind north, m/s' offset 1,0\nset ytics 1\n"
       << "plot $series using 1:8 w l lw 1.5 lc rgb '#2a8f4f'\nunset multiplot\n";
   return draw_svg(svg, 1000, 900, out.str());
+}
+
+/// All of them into a folder that is there: trajectory.svg, correlation.svg, ground_effect.svg where there is one, wind.svg
+/// if `windy`. False, after one line on stderr, where gnuplot is missing.
+inline bool draw_flight(const std::string& folder, const pinnquad::Flight& flight, const std::vector<TraceRow>& trace,
+                        const pinnquad::Airframe<double>& airframe, pinnquad::GroundEffectModel ground_effect,
+                        bool windy) {
+  return plot_trajectory(folder + "/trajectory.svg", trace) &&
+         plot_correlation(folder + "/correlation.svg", flight, airframe) &&
+         (ground_effect == pinnquad::GroundEffectModel::none ||
+          plot_ground_effect(folder + "/ground_effect.svg", trace, airframe)) &&
+         (!windy || plot_wind(folder + "/wind.svg", trace));
 }
 
 }  // namespace programs

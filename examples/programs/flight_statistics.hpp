@@ -5,22 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
-#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "interrupt.hpp"
+#include "axis_motion.hpp"
+#include "degrees.hpp"
+#include "parallel.hpp"
 #include "pinnquad/data/csv_table.hpp"
-#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/simulation/flight.hpp"
-#include "progress_line.hpp"
 
 namespace programs {
 
@@ -36,13 +33,9 @@ inline std::array<double, 3> axis_correlations(const pinnquad::Flight& flight,
                                                const pinnquad::Airframe<double>& airframe) {
   std::array<double, 3> result{};
   for (int axis = 0; axis < 3; ++axis) {
-    const std::array<double, pinnquad::rotor_count> signs = pinnquad::allocation_signs(airframe, axis);
-    std::vector<double> accelerations, sums;
-    for (const pinnquad::Sample& sample : flight) {
-      accelerations.push_back(sample.angular_acceleration_rad_s2[axis]);
-      sums.push_back(pinnquad::signed_sum(signs, sample.commands));
-    }
-    result[static_cast<std::size_t>(axis)] = pinnquad::pearson_correlation(accelerations, sums);
+    const AxisMotion motion = axis_motion(flight, airframe, axis);
+    result[static_cast<std::size_t>(axis)] =
+        pinnquad::pearson_correlation(motion.angular_acceleration, motion.command_sum);
   }
   return result;
 }
@@ -53,33 +46,15 @@ template <class FlySeed>
 std::vector<FlightFigures> fly_seeds(const std::string& name, std::uint64_t first_seed, std::size_t seeds,
                                      std::size_t rows_per_flight, const FlySeed& fly_seed) {
   std::vector<FlightFigures> figures(seeds);
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::exception_ptr> failures(std::min(cores, seeds));
-  std::atomic<std::size_t> next{0}, rows_done{0}, running{failures.size()};
-  const auto work = [&](std::exception_ptr& failure) {
-    try {
-      for (std::size_t i = next.fetch_add(1); i < seeds; i = next.fetch_add(1)) {
-        figures[i] = fly_seed(first_seed + i, rows_done);
-      }
-    } catch (...) {
-      failure = std::current_exception();
-      next.store(seeds);
-    }
-    running.fetch_sub(1);
-  };
-  std::vector<std::thread> workers;
-  for (std::exception_ptr& failure : failures) workers.emplace_back(work, std::ref(failure));
-  ProgressLine progress("flying " + std::to_string(seeds) + " seeds of " + name);
+  std::atomic<std::size_t> rows_done{0};
   const double all_rows = static_cast<double>(seeds) * static_cast<double>(rows_per_flight);
-  while (running.load() > 0) {
-    progress.update(static_cast<double>(rows_done.load()) / all_rows);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  for (std::thread& worker : workers) worker.join();
-  progress.clear();
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
+  run_parallel(
+      "flying " + std::to_string(seeds) + " seeds of " + name, seeds, std::max(1U, std::thread::hardware_concurrency()),
+      [&] { return static_cast<double>(rows_done.load()) / all_rows; },
+      [&](std::size_t i) {
+        figures[i] = fly_seed(first_seed + i, rows_done);
+        return true;
+      });
   return figures;
 }
 
@@ -98,7 +73,7 @@ inline const std::vector<FlightColumn>& flight_columns() {
       {"min_altitude_m", "lowest, m", "%.2f", [](const FlightFigures& f) { return f.report.min_altitude_m; }},
       {"max_altitude_m", "highest, m", "%.2f", [](const FlightFigures& f) { return f.report.max_altitude_m; }},
       {"max_tilt_deg", "tilt, deg", "%.1f",
-       [](const FlightFigures& f) { return 57.295779513082323 * f.report.max_tilt_rad; }},
+       [](const FlightFigures& f) { return degrees_per_radian * f.report.max_tilt_rad; }},
       {"saturated_percent", "saturated, %", "%.2f",
        [](const FlightFigures& f) { return 100 * f.report.saturated_share; }},
       {"pcc_roll", "PCC roll", "%.3f", [](const FlightFigures& f) { return f.correlation[0]; }},

@@ -32,7 +32,6 @@ using namespace pinnquad;
 
 constexpr int exit_flight_failed = 1;
 constexpr int exit_bad_input = 2;
-constexpr double degrees = 57.295779513082323;
 
 struct Options {
   std::string flight = AgileFlight::name;
@@ -130,7 +129,10 @@ class Campaign {
     if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
     if (!options_.replay.empty()) replay.write(options_.replay);
     print_summary(recorded);
-    return options_.pictures.empty() || draw(recorded, trace) ? 0 : exit_flight_failed;
+    const bool drawn =
+        options_.pictures.empty() || programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_,
+                                                           ground_effect_, std::is_same_v<PaperFlight, WindyFlight>);
+    return drawn ? 0 : exit_flight_failed;
   }
 
  private:
@@ -221,7 +223,7 @@ class Campaign {
     std::printf(", %zu rows at %.3g s, %.1f s\n", report.rows, plan_.sample_period_s(),
                 static_cast<double>(report.rows) * plan_.sample_period_s());
     std::printf("speed       up to %.2f m/s; tilt up to %.1f deg\n", report.max_speed_m_s,
-                degrees * report.max_tilt_rad);
+                programs::degrees_per_radian * report.max_tilt_rad);
     std::printf("altitude    %.*f to %.*f m above ground\n", report.max_altitude_m < 5 ? 2 : 1, report.min_altitude_m,
                 report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
     std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
@@ -234,17 +236,6 @@ class Campaign {
     if (climb_m_s < PilotStyle{}.max_climb_m_s) {
       std::printf("note        this airframe's thrust allows the pilot %.1f m/s of climb at most\n", climb_m_s);
     }
-  }
-
-  bool draw(const RecordedFlight& recorded, const std::vector<programs::TraceRow>& trace) const {
-    const std::string folder = options_.pictures + "/";
-    bool drawn = programs::plot_trajectory(folder + "trajectory.svg", trace) &&
-                 programs::plot_correlation(folder + "correlation.svg", recorded.flight, airframe_);
-    if (drawn && ground_effect_ != GroundEffectModel::none) {
-      drawn = programs::plot_ground_effect(folder + "ground_effect.svg", trace, airframe_);
-    }
-    if (drawn && std::is_same_v<PaperFlight, WindyFlight>) drawn = programs::plot_wind(folder + "wind.svg", trace);
-    return drawn;
   }
 
   const Options& options_;

@@ -19,7 +19,7 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
                           const std::vector<std::array<AxisSeries, 3>>& series, const std::vector<Judgement>& judged) {
   std::ostringstream out;
   const int rows = static_cast<int>(models.size());
-  out << gnuplot_head(svg, 1200, 60 + 370 * rows) << "set multiplot layout " << rows << ",3\n";
+  out << "set multiplot layout " << rows << ",3\n";
   for (std::size_t model = 0; model < models.size(); ++model) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const AxisSeries& s = series[model][axis];
@@ -62,14 +62,14 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
     }
   }
   out << "unset multiplot\n";
-  return run_gnuplot(out.str());
+  return draw_svg(svg, 1200, 60 + 370 * rows, out.str());
 }
 
 /// Fig. 7: mean absolute error of each model, mean and deviation over seeds.
 inline bool plot_errors(const std::string& svg, const std::vector<Result>& results,
                         const std::vector<std::string>& models) {
   std::ostringstream out;
-  out << gnuplot_head(svg, 700, 420) << "$errors << EOD\n";
+  out << "$errors << EOD\n";
   const Figure mae = figures().front();
   for (const std::string& model : models) {
     const pinnquad::Summary s = pinnquad::summarize(over_seeds(results, model, mae));
@@ -78,7 +78,7 @@ inline bool plot_errors(const std::string& svg, const std::vector<Result>& resul
   out << "EOD\nset style data histogram\nset style histogram errorbars gap 1 lw 1.5\nset style fill solid 0.75\n"
       << "set boxwidth 0.9\nset yrange [0:*]\nset ylabel 'mean absolute error of the commands, 1e-3'\nunset key\n"
       << "plot $errors using 2:3:xtic(1) lc rgb '#1f6fb2'\n";
-  return run_gnuplot(out.str());
+  return draw_svg(svg, 700, 420, out.str());
 }
 
 /// Commands of one rotor over some seconds of the test flight: flown and predicted.
@@ -87,7 +87,7 @@ inline bool plot_prediction(const std::string& svg, const std::vector<double>& t
                             const std::vector<std::vector<double>>& predicted) {
   static constexpr std::array<const char*, 3> colours = {"#8a8a8a", "#d1541a", "#2a8f4f"};
   std::ostringstream out;
-  out << gnuplot_head(svg, 1200, 420) << "$series << EOD\n";
+  out << "$series << EOD\n";
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     out << time_s[i] << ' ' << target[i];
     for (const auto& p : predicted) out << ' ' << p[i];
@@ -100,7 +100,7 @@ inline bool plot_prediction(const std::string& svg, const std::vector<double>& t
         << models[m] << "'";
   }
   out << '\n';
-  return run_gnuplot(out.str());
+  return draw_svg(svg, 1200, 420, out.str());
 }
 
 }  // namespace programs

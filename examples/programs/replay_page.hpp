@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "html_text.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
@@ -30,44 +31,21 @@ namespace programs {
 
 namespace detail {
 
-/// `<`, `>`, `&` and quotes as HTML text; control characters, which HTML has no place for, as spaces.
-inline std::string html_text(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    }
-  }
-  return result;
-}
-
-/// Base64 (RFC 4648) of the values as a little-endian array, on any machine.
+/// Base64 of the values as a little-endian array, on any machine.
 template <class Value>
-std::string base64(const std::vector<Value>& values) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+std::string base64_of(const std::vector<Value>& values) {
   using Bits = std::conditional_t<sizeof(Value) == 4, std::uint32_t, std::uint16_t>;
   static_assert(sizeof(Bits) == sizeof(Value));
-  std::vector<std::uint32_t> bytes;
-  bytes.reserve(values.size() * sizeof(Value) + 2);
+  std::string bytes;
+  bytes.reserve(values.size() * sizeof(Value));
   for (const Value value : values) {
     Bits bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
-    for (std::size_t i = 0; i < sizeof(Value); ++i) bytes.push_back((std::uint32_t{bits} >> (8 * i)) & 0xffu);
+    for (std::size_t i = 0; i < sizeof(Value); ++i) {
+      bytes += static_cast<char>(static_cast<unsigned char>(std::uint32_t{bits} >> (8 * i)));
+    }
   }
-  const std::size_t size = bytes.size();
-  bytes.resize((size + 2) / 3 * 3);
-  std::string text;
-  text.reserve(bytes.size() / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::uint32_t group = bytes[i] << 16 | bytes[i + 1] << 8 | bytes[i + 2];
-    for (int shift = 18; shift >= 0; shift -= 6) text += digits[(group >> shift) & 63u];
-  }
-  for (std::size_t pad = bytes.size() - size; pad > 0; --pad) text[text.size() - pad] = '=';
-  return text;
+  return base64(std::move(bytes));
 }
 
 }  // namespace detail
@@ -131,8 +109,8 @@ class ReplayPage {
     const std::size_t after_title = title + std::strlen(title_marker);
     const std::size_t after_flight = flight + std::strlen(flight_marker);
     pinnquad::AtomicFile file(path);
-    file.stream() << page.substr(0, title) << detail::html_text(title_)
-                  << page.substr(after_title, flight - after_title) << json() << page.substr(after_flight);
+    file.stream() << page.substr(0, title) << html_text(title_) << page.substr(after_title, flight - after_title)
+                  << json() << page.substr(after_flight);
     file.commit();
   }
 
@@ -186,7 +164,7 @@ class ReplayPage {
     std::vector<Value> values;
     values.reserve(rows_.size() * width);
     for (const Row& row : rows_) values.insert(values.end(), get(row), get(row) + width);
-    return detail::base64(values);
+    return detail::base64_of(values);
   }
 
   /// Numbers as JSON wants them, with all the digits that a float has.
@@ -220,7 +198,7 @@ class ReplayPage {
            ",\"ground_z_m\":" + number(ground_z_m_) + ",\"velocity_unit_m_s\":" + number(unit_m_s) + ",\"time_s\":\"" +
            column<float>(1, [](const Row& row) { return &row.time_s; }) + "\",\"position_m\":\"" +
            column<float>(3, [](const Row& row) { return row.position_m; }) + "\",\"velocity\":\"" +
-           detail::base64(velocity) + "\",\"attitude\":\"" +
+           detail::base64_of(velocity) + "\",\"attitude\":\"" +
            column<std::int16_t>(4, [](const Row& row) { return row.attitude; }) + "\",\"commands\":\"" +
            column<std::uint16_t>(4, [](const Row& row) { return row.commands; }) + "\"}";
   }

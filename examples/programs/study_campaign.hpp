@@ -3,20 +3,17 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <sys/file.h>
 
-#include "progress_line.hpp"
+#include "interrupt.hpp"
+#include "parallel.hpp"
 #include "study_configuration.hpp"
 #include "study_rows.hpp"
 
@@ -64,7 +61,7 @@ inline Flights fly_all(const Plan& plan) {
   Flights flights;
   for (const Contender& contender : plan.contenders) {
     for (const std::uint64_t seed : flight_seeds(plan, contender)) {
-      const FlightId id{contender.flight, seed};
+      const programs::StudyFlight id{contender.flight, seed};
       if (flights.count(id) == 0 && !programs::interrupted()) flights[id] = flown(id);
     }
   }
@@ -222,43 +219,33 @@ class Campaign {
     }
     RowAppender appender(folder_.rows());
     std::mutex mutex;
-    std::exception_ptr failure;
-    std::atomic<std::size_t> next{0};
-    std::atomic<unsigned> running{threads_};
-    const auto work = [&] {
-      try {
-        for (std::size_t i = next.fetch_add(1); i < missing.size() && !workshop.stopped(); i = next.fetch_add(1)) {
-          const Job& job = missing[i];
-          Outcome outcome;
-          if (!job.contender->run(workshop, job.assignment, outcome)) break;
-          const std::string row = row_text(job.id(), job.assignment.epochs, outcome);
-          if (is_shown(job)) {
-            write_series(folder_.series(job.contender->id),
-                         workshop.flights().at({job.contender->flight, job.assignment.flight_seed}), outcome);
-          }
-          const std::lock_guard<std::mutex> lock(mutex);
-          if (failure) break;
-          appender.append(row);
-          stored_.rows[job.id()] = row;
-        }
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!failure) failure = std::current_exception();
-        workshop.stop();
+    bool failed = false;
+    const auto finish = [&](const Job& job, const Outcome& outcome) {
+      const std::string row = row_text(job.id(), job.assignment.epochs, outcome);
+      if (is_shown(job)) {
+        write_series(folder_.series(job.contender->id),
+                     workshop.flights().at({job.contender->flight, job.assignment.flight_seed}), outcome);
       }
-      running.fetch_sub(1);
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (failed) return false;
+      appender.append(row);
+      stored_.rows[job.id()] = row;
+      return true;
     };
-    programs::ProgressLine progress("training " + std::to_string(missing.size()) + " networks");
-    std::vector<std::thread> workers;
-    for (unsigned i = 0; i < threads_; ++i) workers.emplace_back(work);
-    while (running.load() > 0) {
-      progress.update(all_rows > 0 ? static_cast<double>(workshop.rows_done()) / all_rows : 1);
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    for (std::thread& worker : workers) worker.join();
-    progress_s_ = progress.elapsed_s();
-    progress.clear();
-    if (failure) std::rethrow_exception(failure);
+    progress_s_ = programs::run_parallel(
+        "training " + std::to_string(missing.size()) + " networks", missing.size(), threads_,
+        [&] { return all_rows > 0 ? static_cast<double>(workshop.rows_done()) / all_rows : 1; },
+        [&](std::size_t i) {
+          try {
+            Outcome outcome;
+            return missing[i].contender->run(workshop, missing[i].assignment, outcome) && finish(missing[i], outcome);
+          } catch (...) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            failed = true;
+            workshop.stop();
+            throw;
+          }
+        });
   }
 
   /// Its predictions are kept: the first seed of each model on the main flight.

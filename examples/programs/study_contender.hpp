@@ -53,7 +53,7 @@ struct Material {
 template <class DataSet>
 class Materials {
  public:
-  const Material<DataSet>& of(const FlightId& id, const pinnquad::Flight& rows) {
+  const Material<DataSet>& of(const programs::StudyFlight& id, const pinnquad::Flight& rows) {
     const std::lock_guard<std::mutex> lock(mutex_);
     auto& made = made_[id];
     if (!made) made = std::make_unique<Material<DataSet>>(rows);
@@ -62,7 +62,7 @@ class Materials {
 
  private:
   std::mutex mutex_;
-  std::map<FlightId, std::unique_ptr<Material<DataSet>>> made_;
+  std::map<programs::StudyFlight, std::unique_ptr<Material<DataSet>>> made_;
 };
 
 /// What all trainings share. Safe to use from many threads.
@@ -73,7 +73,7 @@ class Workshop {
   const Flights& flights() const { return flights_; }
   template <class DataSet>
   const Material<DataSet>& material(std::uint64_t flight_seed) {
-    const FlightId id{DataSet::Flight::name, flight_seed};
+    const programs::StudyFlight id{DataSet::Flight::name, flight_seed};
     return std::get<Materials<DataSet>>(materials_).of(id, flights_.at(id));
   }
   /// Set when another training failed: this one stops too.

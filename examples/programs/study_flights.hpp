@@ -7,27 +7,21 @@
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "flight_choice.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "study_columns.hpp"
 
 namespace study {
 
 /// What flies in the study.
 using Airframe = pinnquad::PaperQuadrotor;
 
-struct FlightId {
-  std::string name;  ///< d1, d2 or d3
-  std::uint64_t seed = 0;
-  bool operator<(const FlightId& other) const { return std::tie(name, seed) < std::tie(other.name, other.seed); }
-};
-
 /// Flies `fly NAME --seed SEED`. Throws std::runtime_error, one line, if the flight ends early.
-inline pinnquad::Flight flown(const FlightId& id) {
+inline pinnquad::Flight flown(const programs::StudyFlight& id) {
   pinnquad::RecordedFlight recorded;
   programs::with_flight(id.name, [&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
@@ -41,6 +35,6 @@ inline pinnquad::Flight flown(const FlightId& id) {
 }
 
 /// All flights of a study.
-using Flights = std::map<FlightId, pinnquad::Flight>;
+using Flights = std::map<programs::StudyFlight, pinnquad::Flight>;
 
 }  // namespace study

@@ -31,12 +31,8 @@ inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
             [&](const FlightRow& row) { trace.push_back(programs::trace_row(vehicle, without, row.vehicle)); });
     const std::string into = folder + "/flights/" + PaperFlight::name;
     std::filesystem::create_directories(into);
-    drawn = programs::plot_trajectory(into + "/trajectory.svg", trace) &&
-            programs::plot_correlation(into + "/correlation.svg", recorded.flight, airframe);
-    if (drawn && PaperFlight::ground_effect != GroundEffectModel::none) {
-      drawn = programs::plot_ground_effect(into + "/ground_effect.svg", trace, airframe);
-    }
-    if (drawn && std::is_same_v<PaperFlight, WindyFlight>) drawn = programs::plot_wind(into + "/wind.svg", trace);
+    drawn = programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
+                                  std::is_same_v<PaperFlight, WindyFlight>);
   });
   return drawn;
 }

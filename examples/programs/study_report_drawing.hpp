@@ -21,7 +21,7 @@ inline std::string at(double value) {
 }
 
 inline std::string svg(double width, double height, const std::string& content, const std::string& label) {
-  return "<svg viewBox=\"0 0 " + at(width) + " " + at(height) + "\" role=\"img\" aria-label=\"" + escaped(label) +
+  return "<svg viewBox=\"0 0 " + at(width) + " " + at(height) + "\" role=\"img\" aria-label=\"" + html_text(label) +
          "\">\n" + content + "</svg>\n";
 }
 

@@ -5,28 +5,14 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "html_text.hpp"
+
 namespace programs {
 namespace html {
-
-/// Text as HTML: markup escaped, control characters as spaces.
-inline std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    }
-  }
-  return result;
-}
 
 /// A number with a true minus sign and fixed decimals; a dash where there is none.
 inline std::string number(double value, int decimals, bool plus = false) {
@@ -39,7 +25,7 @@ inline std::string number(double value, int decimals, bool plus = false) {
 
 /// A figure with its unit as text, such as "-4.1e-3" or "3.2 deg", in the page's signs.
 inline std::string quantity(const std::string& text) {
-  std::string result = escaped(text);
+  std::string result = html_text(text);
   if (!result.empty() && result[0] == '-') result = "&minus;" + result.substr(1);
   const auto replace = [&result](const std::string& what, const std::string& with) {
     const std::size_t at = result.find(what);
@@ -99,18 +85,7 @@ inline std::string figure(const std::string& drawing, const std::string& caption
 
 /// An SVG drawing as an image of its own, so that its names and styles stay in it.
 inline std::string embedded_svg(const std::string& svg, const std::string& description) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < svg.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      bits = (bits << 8) | (i + k < svg.size() ? static_cast<unsigned char>(svg[i + k]) : 0u);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k > svg.size() - i ? '=' : digits[(bits >> (18 - 6 * k)) & 63u];
-    }
-  }
-  return "<img alt=\"" + escaped(description) + "\" src=\"data:image/svg+xml;base64," + text + "\"/>";
+  return "<img alt=\"" + html_text(description) + "\" src=\"data:image/svg+xml;base64," + base64(svg) + "\"/>";
 }
 
 }  // namespace html

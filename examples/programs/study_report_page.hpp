@@ -57,7 +57,7 @@ inline std::string summary(const std::vector<Comparison>& comparisons, const std
     const Comparison& main = comparisons.front();
     text +=
         paragraph("The main comparison, annealed physics-informed loss against vanilla (model 4 against 2, flight " +
-                  html::escaped(main.flight.name) + "): the mean absolute error changes by <b>" +
+                  html_text(main.flight.name) + "): the mean absolute error changes by <b>" +
                   html::number(100 * main.result.relative_difference, 1, true) + "&#160;%</b>, lower in " +
                   std::to_string(main.result.wins) + " of " + std::to_string(main.result.pairs) +
                   " seeds, p = " + html::p_value(main.result.p_value) + ". The paper&rsquo;s means change by " +
@@ -76,7 +76,7 @@ inline std::string summary(const std::vector<Comparison>& comparisons, const std
 inline std::string missing_box(const std::vector<std::string>& lines) {
   if (lines.empty()) return "";
   std::string text = "<div class=\"gap\"><p><b>This study is not the whole of Table 2.</b></p>";
-  for (const std::string& line : lines) text += "<p>" + html::escaped(line) + "</p>";
+  for (const std::string& line : lines) text += "<p>" + html_text(line) + "</p>";
   return text + "</div>\n";
 }
 

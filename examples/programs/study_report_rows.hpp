@@ -15,21 +15,11 @@
 
 #include "judgement.hpp"
 #include "pinnquad/data/csv_table.hpp"
+#include "study_columns.hpp"
 
 namespace programs {
 
 constexpr int study_models = 14;  ///< of Table 2
-
-/// One recorded flight: what kind it is of (D1, D2, D3), and the seed it was flown from.
-struct StudyFlight {
-  std::string name;
-  std::uint64_t seed = 0;
-
-  friend bool operator==(const StudyFlight& a, const StudyFlight& b) { return a.name == b.name && a.seed == b.seed; }
-  friend bool operator<(const StudyFlight& a, const StudyFlight& b) {
-    return std::tie(a.name, a.seed) < std::tie(b.name, b.seed);
-  }
-};
 
 /// One training, judged on its test block. A figure that is not finite (a training that diverged, a share of nothing)
 /// is NaN: it is shown and left out of means and comparisons.
@@ -82,14 +72,6 @@ struct RowCells {
 };
 
 }  // namespace detail
-
-/// Columns of rows.csv that a report needs: which training, what it reached, what it took.
-inline std::vector<std::string> study_columns() {
-  std::vector<std::string> columns = {"model", "flight", "flight_seed", "seed", "epochs", "weights"};
-  for (const Figure& figure : figures()) columns.push_back(figure.name);
-  columns.insert(columns.end(), {"validation_mae", "training_s"});
-  return columns;
-}
 
 /// Reads rows.csv; columns by name, in any order, others ignored. Throws InputError with file, line and column: no
 /// readable file, a missing column, a row of other length, a cell that is not what its column holds, a training twice.

@@ -90,7 +90,7 @@ inline std::string claims_overview(const JudgedClaims& claims) {
     const auto& [claim, judged] = claims[i];
     const bool closes = i + 1 == claims.size() || claims[i + 1].first.discussion != claim.discussion;
     body += html::row({{"<a href=\"#claim-" + claim.id + "\">" + claim.id + "</a>", "key"},
-                       {html::escaped(claim.statement), ""},
+                       {html_text(claim.statement), ""},
                        {badge(judged.verdict), "key"}},
                       closes ? "group" : "");
   }
@@ -111,20 +111,20 @@ inline std::string claims_section(const JudgedClaims& claims) {
     }
     std::string body;
     for (const Evidence& e : judged.evidence) {
-      body += html::row({{html::escaped(e.what), ""},
+      body += html::row({{html_text(e.what), ""},
                          {html::quantity(e.from), "n"},
                          {html::quantity(e.to), "n"},
                          {html::quantity(e.change), "n"},
-                         {html::escaped(e.wins), "n"},
+                         {html_text(e.wins), "n"},
                          {e.p_value.empty() ? "" : html::p_value(std::stod(e.p_value)), "n"},
                          {html::quantity(e.paper), "n paper"},
-                         {html::escaped(e.says), e.says == "better" || e.says == "holds"          ? "good"
-                                                 : e.says == "worse" || e.says == "does not hold" ? "bad"
-                                                                                                  : "mild"}});
+                         {html_text(e.says), e.says == "better" || e.says == "holds"          ? "good"
+                                             : e.says == "worse" || e.says == "does not hold" ? "bad"
+                                                                                              : "mild"}});
     }
     text += "<div class=\"claim\" id=\"claim-" + claim.id + "\"><div class=\"id\">" + claim.id +
-            "</div><div class=\"statement\">" + html::escaped(claim.statement) + "</div><div>" + badge(judged.verdict) +
-            "</div><div class=\"rest\"><div class=\"rule\">" + html::escaped(claim.rule) + ".</div>" +
+            "</div><div class=\"statement\">" + html_text(claim.statement) + "</div><div>" + badge(judged.verdict) +
+            "</div><div class=\"rest\"><div class=\"rule\">" + html_text(claim.rule) + ".</div>" +
             html::table(html::row({{"compared", ""},
                                    {"baseline", "n"},
                                    {"candidate", "n"},
@@ -157,7 +157,7 @@ inline std::string table2_section(const Study& study, const StudySettings& setti
                        {term, ""},
                        {model.data, ""},
                        {settings.splits.count(model.id) > 0 ? settings.splits.at(model.id) : model.split, "n"},
-                       {study.has(model.id) ? html::escaped(study.first.at(model.id).name) + ", seed " +
+                       {study.has(model.id) ? html_text(study.first.at(model.id).name) + ", seed " +
                                                   std::to_string(study.first.at(model.id).seed)
                                             : "not run",
                         ""},
@@ -293,11 +293,11 @@ inline std::string flights_table(const std::vector<FlightsComparison>& all, cons
       opens = false;
     };
     if (const std::optional<Comparison> first = compare(study, f.pair, f.measure)) {
-      line(html::escaped(first->flight.name) + ", seed " + std::to_string(first->flight.seed) + " (Table 2&rsquo;s)",
+      line(html_text(first->flight.name) + ", seed " + std::to_string(first->flight.seed) + " (Table 2&rsquo;s)",
            first->result, true, "");
     }
     for (const Comparison& c : f.flights) {
-      line(html::escaped(c.flight.name) + ", seed " + std::to_string(c.flight.seed), c.result, true, "");
+      line(html_text(c.flight.name) + ", seed " + std::to_string(c.flight.seed), c.result, true, "");
     }
     if (f.trainings) line("all trainings on further flights", *f.trainings, false, "");
     line("means of the further flights", f.of_means, false, "group");

@@ -112,7 +112,7 @@ inline StudySettings read_study_settings(const std::string& path) {
 namespace detail {
 
 inline std::string json_text(const nlohmann::json& value) {
-  if (value.is_string()) return html::escaped(value.get<std::string>());
+  if (value.is_string()) return html_text(value.get<std::string>());
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_null()) return "&ndash;";
   const bool flat = value.is_array() &&
@@ -122,12 +122,12 @@ inline std::string json_text(const nlohmann::json& value) {
     for (const nlohmann::json& item : value) text += (text.empty() ? "" : ", ") + json_text(item);
     return text;
   }
-  return html::escaped(value.dump());
+  return html_text(value.dump());
 }
 
 inline std::string key_text(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
-  return html::escaped(key);
+  return html_text(key);
 }
 
 /// A list of objects as a table with the keys of all of them.

@@ -18,9 +18,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "judgement.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/csv_table.hpp"
+#include "study_columns.hpp"
 #include "study_contender.hpp"
 
 namespace study {
@@ -47,10 +47,11 @@ inline std::string to_string(const RowId& id) {
 /// Which weights were judged: those after the last epoch, or those of the least validation error.
 inline const char* weights_name(bool best) { return best ? "best" : "final"; }
 
+/// The first line of rows.csv, without a line end.
 inline std::string rows_header() {
-  std::string header = "model,flight,flight_seed,seed,epochs,weights";
-  for (const programs::Figure& figure : programs::figures()) header += "," + figure.name;
-  return header + ",validation_mae,training_s";
+  std::string header;
+  for (const std::string& column : programs::study_columns()) header += (header.empty() ? "" : ",") + column;
+  return header;
 }
 
 /// The line of a finished training, without a line end.
