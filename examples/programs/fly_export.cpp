@@ -166,12 +166,13 @@ bool closed_loop() {
       "  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
       trajectory.period_s, TrackingPlan<double>{}.duration_s);
   std::printf("  %-28s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "fell back to analytic");
-  using Network = NetworkInverse<Inverse, AnalyticInverse<Vehicle>>;
-  using Zeroed = NetworkInverse<InverseDynamics<ZeroedModel>, AnalyticInverse<Vehicle>>;
-  const auto network = fly("network", vehicle, trajectory, Network({}, analytic));
+  using Guard = Extend<TrainingGuard, Fallback<AnalyticInverse<Vehicle>>>;
+  using Guarded = InverseDynamics<Model, Guard>;
+  using Zeroed = InverseDynamics<ZeroedModel, Guard>;
+  const auto network = fly("network", vehicle, trajectory, NetworkInverse<Guarded>(Guarded(analytic)));
   fly("analytic inverse", vehicle, trajectory, analytic);
   fly("none (hover trim)", vehicle, trajectory, trim);
-  const auto zeroed = fly("network, weights zeroed", vehicle, trajectory, Zeroed({}, analytic));
+  const auto zeroed = fly("network, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed>(Zeroed(analytic)));
   const double fallbacks = static_cast<double>(network.fallback.fallbacks()) / network.fallback.asked;
   if (fallbacks > fallback_limit) {
     std::printf("  the network declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,
