@@ -26,4 +26,36 @@ struct DescribedModel : SmallModel {
       {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
 };
 
+/// Float constants as doubles that no float is.
+template <std::size_t Size>
+constexpr std::array<double, Size> widened(const std::array<float, Size>& from) {
+  std::array<double, Size> to{};
+  for (std::size_t i = 0; i < Size; ++i) to[i] = static_cast<double>(from[i]) * 1.0000000001;
+  return to;
+}
+template <int Size>
+constexpr Scaler<double, Size> widened(const Scaler<float, Size>& from) {
+  return {widened(from.mean), widened(from.spread)};
+}
+template <std::size_t Rows, std::size_t Columns>
+constexpr std::array<std::array<double, Columns>, Rows> widened(
+    const std::array<std::array<float, Columns>, Rows>& from) {
+  std::array<std::array<double, Columns>, Rows> to{};
+  for (std::size_t i = 0; i < Rows; ++i) to[i] = widened(from[i]);
+  return to;
+}
+
+/// The small model in double.
+struct DoubleModel : DescribedModel {
+  using Scalar = double;
+  using Network = DescribedModel::Network::Rebind<double>;
+  static constexpr auto parameters = widened(DescribedModel::parameters);
+  static constexpr auto input = widened(DescribedModel::input);
+  static constexpr auto output = widened(DescribedModel::output);
+  static constexpr auto envelope_lower = widened(DescribedModel::envelope_lower);
+  static constexpr auto envelope_upper = widened(DescribedModel::envelope_upper);
+  static constexpr auto golden_features = widened(DescribedModel::golden_features);
+  static constexpr auto golden_commands = widened(DescribedModel::golden_commands);
+};
+
 }  // namespace pinnquad::test

@@ -67,8 +67,8 @@ class LoadedModel : public ModelScales<ShapeType> {
  private:
   /// Weights as in the block, for machines without a vector unit.
   struct Unpacked : Network {
-    void assign(const Scalar* parameters) noexcept {
-      for (Scalar& own : this->parameters) own = *parameters++;
+    void assign(const Scalar* from) noexcept {
+      for (Scalar& weight : this->parameters) weight = *from++;
     }
   };
 

@@ -51,6 +51,12 @@ template <class S>
 struct HasShape<S, std::void_t<typename S::Scalar, typename S::Network, typename S::Features, typename S::Outputs,
                                typename S::Vehicle>> : std::true_type {};
 
+/// A model made at run time for a shape: inference/model_view.hpp, loaded_model.hpp.
+template <class M, class = void>
+struct IsMadeForShape : std::false_type {};
+template <class M>
+struct IsMadeForShape<M, std::void_t<typename M::Shape>> : HasShape<typename M::Shape> {};
+
 template <class M, class = void>
 struct IsModel : std::false_type {};
 template <class M>
@@ -172,11 +178,15 @@ constexpr bool require_shape() noexcept {
   return detail::HasShape<S>::value;
 }
 
-/// The same for a whole exported model: its types, its arrays, and what it says of itself.
+/// The same for a whole exported model: its types, its arrays, and what it says of itself. For a model made at run time, the
+/// types: the numbers were checked when its block was opened.
 template <class M>
 constexpr bool require_model() noexcept {
-  static_assert(is_model<M>, "pinnquad: this type is not an exported model (inference/model.hpp)");
-  if constexpr (is_model<M>) {
+  constexpr bool made_for_shape = detail::IsMadeForShape<M>::value;
+  static_assert(is_model<M> || made_for_shape, "pinnquad: this type is not an exported model (inference/model.hpp)");
+  if constexpr (made_for_shape) {
+    return require_shape<typename M::Shape>();
+  } else if constexpr (is_model<M>) {
     static_assert(M::format_version <= model_format_version,
                   "pinnquad: the model was exported by a newer pinnquad than this one; update the library");
     static_assert(M::format_version >= oldest_model_format_version,

@@ -70,7 +70,7 @@ struct ModelBlockLayout {
 
 namespace detail {
 template <class Shape>
-constexpr std::uint64_t shape_hash() noexcept {
+constexpr std::uint64_t hash_of_shape() noexcept {
   Fnv1a fnv;
   fnv.absorb_text(type_text<typename Shape::Network>());
   fnv.absorb_text(model_frame);
@@ -90,7 +90,7 @@ constexpr std::uint64_t shape_hash() noexcept {
 /// and motor order. The same from gcc and clang as long as the network's types have names that another translation unit could
 /// use and no template arguments that compilers print differently (unsigned or character constants).
 template <class Shape>
-inline constexpr std::uint64_t shape_hash = detail::shape_hash<Shape>();
+inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
 
 namespace detail {
 

@@ -12,13 +12,13 @@
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-template <class Model, class = void>
-struct HasConstantArrays : std::false_type {};
+/// By the kind of pointer: gcc 12 takes the value of a member that an instance has for an error, not for a substitution that
+/// fails, if the member is inherited.
 template <class Model>
-struct HasConstantArrays<
-    Model, std::enable_if_t<Model::envelope_lower.data() != nullptr && Model::envelope_upper.data() != nullptr &&
-                            Model::input.mean.data() != nullptr && Model::output.mean.data() != nullptr>>
-    : std::true_type {};
+struct HasConstantArrays : std::bool_constant<!std::is_member_object_pointer_v<decltype(&Model::envelope_lower)> &&
+                                              !std::is_member_object_pointer_v<decltype(&Model::envelope_upper)> &&
+                                              !std::is_member_object_pointer_v<decltype(&Model::input)> &&
+                                              !std::is_member_object_pointer_v<decltype(&Model::output)>> {};
 
 template <class Model, class = void>
 struct HasOwnForward : std::false_type {};
