@@ -71,6 +71,16 @@ bool rows_finite(const Rows& rows) {
   return true;
 }
 
+/// CRC-32 bit by bit, and not the library's own.
+std::uint32_t plain_crc32(const unsigned char* bytes, std::size_t length) {
+  std::uint32_t remainder = 0xffffffffu;
+  for (std::size_t i = 0; i < length; ++i) {
+    remainder ^= bytes[i];
+    for (int bit = 0; bit < 8; ++bit) remainder = (remainder >> 1) ^ ((remainder & 1u) != 0 ? 0xedb88320u : 0u);
+  }
+  return ~remainder;
+}
+
 /// What was accepted, looked at again and flown.
 template <class Shape, class Model>
 void fly(const Model& model) {
@@ -123,6 +133,12 @@ void load(const std::uint8_t* data, std::size_t size) {
            "a refusal leaves the view alone");
     return;
   }
+  const std::size_t length = detail::read_u32(memory.block() + Header::length);
+  expect(length <= size && length == ModelBlockLayout<Shape>::length(view.golden_features.size()),
+         "the length is right");
+  expect(plain_crc32(memory.block(), length - 4) == detail::read_u32(memory.block() + length - 4),
+         "the checksum is right");
+  expect(std::memcmp(memory.block(), "PINNQUAD\1\0\0\0", 12) == 0, "it is a block of version 1");
   const auto* begin = reinterpret_cast<const unsigned char*>(view.parameters());
   expect(begin >= memory.block() &&
              begin + sizeof(Scalar) * Shape::Network::parameter_count + Header::checksum_size <= memory.block() + size,
