@@ -4,6 +4,7 @@
 // Data comes in and goes out through plain arrays, so that nothing can be computed by the compiler instead.
 #include <pinnquad/flight.hpp>
 
+#include "../support/described_model.hpp"
 #include "../support/small_model.hpp"
 #include "pinnquad/control/tracking.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
@@ -167,6 +168,29 @@ unsigned char pinnquad_flight_self_test_reported(float* largest_difference) {
 
 unsigned char pinnquad_flight_self_test() {
   return static_cast<unsigned char>(pinnquad::self_test(pinnquad::InverseDynamics<SmallModel>{}));
+}
+
+unsigned char pinnquad_flight_view_predict(const void* block, unsigned long length, const float* x, float* u) {
+  using View = pinnquad::ModelView<pinnquad::test::DescribedModel>;
+  View view;
+  const Status status = View::open(block, length, view);
+  if (status != Status::ok) return static_cast<unsigned char>(status);
+  const pinnquad::InverseDynamics<View> inverse(view);
+  if (pinnquad::self_test(inverse) != Status::ok) return static_cast<unsigned char>(Status::self_test_failed);
+  return static_cast<unsigned char>(inverse.predict_features(x, u));
+}
+
+unsigned char pinnquad_flight_loaded_predict(const void* block, unsigned long length, const double* x, double* u) {
+  using View = pinnquad::ModelView<pinnquad::test::DoubleModel>;
+  using Loaded = pinnquad::LoadedModel<pinnquad::test::DoubleModel>;
+  View view;
+  Status status = View::open(block, length, view);
+  static Loaded loaded;
+  if (status == Status::ok) status = loaded.load(view);
+  if (status != Status::ok) return static_cast<unsigned char>(status);
+  const pinnquad::InverseDynamics<Loaded> inverse(loaded);
+  if (pinnquad::self_test(inverse) != Status::ok) return static_cast<unsigned char>(Status::self_test_failed);
+  return static_cast<unsigned char>(inverse.predict_features(x, u));
 }
 
 float pinnquad_flight_output_schema(float output) {
