@@ -83,7 +83,7 @@ class ModelView : public ModelScales<ShapeType> {
   /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, or for
   /// another shape. `block_corrupt`: wrong checksum, no golden vector, a value that is NaN or Inf, a spread that is not
   /// positive, an envelope upside down. `view` is untouched unless the Status is ok.
-  /// Reads the block once or twice: about 10 ns per byte with a checksum by half bytes, not for a control loop.
+  /// Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
     using Header = ModelBlockHeader;
