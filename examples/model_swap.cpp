@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A new model while the vehicle flies: the control thread never waits, locks or allocates; another thread loads a model block
-// into the slot that is not in use, tests it, and publishes it with one atomic pointer.
+// A new model while the vehicle flies: the control thread never waits, locks or allocates; another thread loads a model
+// block into the slot that is not in use, tests it, and publishes it with one atomic pointer.
 //   exit code 0: every prediction was that of one whole model, all good blocks flew, no bad one did
 #include <atomic>
 #include <chrono>
@@ -21,9 +21,9 @@ using Clock = std::chrono::steady_clock;
 using Inverse = InverseDynamics<LoadedModel<DemoQuadModel>>;  // weights of its own, the vector unit's kernel
 
 /// Two slots for one control thread and one thread that loads.
-/// How the old slot is known to be free: the control thread says, at the start of each tick, which slot it took, and a thread's
-/// loads of one atomic never go back in time. Once it has said the new one, it will not read the old one again, and all that
-/// it read there lies before what it said.
+/// How the old slot is known to be free: the control thread says, at the start of each tick, which slot it took, and a
+/// thread's loads of one atomic never go back in time. Once it has said the new one, it will not read the old one
+/// again, and all that it read there lies before what it said.
 class ModelSlots {
  public:
   explicit ModelSlots(const Inverse& first) : slots_{first, first} {}
@@ -35,8 +35,8 @@ class ModelSlots {
     return *current;
   }
 
-  /// Loading thread. Puts a model that passes its self test in the place of the one that flies; else says why not, and all
-  /// stays as it was. Waits for the control thread's next tick if it has not yet taken the model published last.
+  /// Loading thread. Puts a model that passes its self test in the place of the one that flies; else says why not, and
+  /// all stays as it was. Waits for the control thread's next tick if it has not yet taken the model published last.
   Status replace(const void* block, std::size_t length) {
     ModelView<DemoQuadModel> view;
     const Status opened = ModelView<DemoQuadModel>::open(block, length, view);

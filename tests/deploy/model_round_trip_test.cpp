@@ -60,8 +60,8 @@ std::string written() {
   return out.str();
 }
 
-/// From `#pragma once` on (the library's version stands before it), without the golden commands: their last bits depend on
-/// whether the machine that wrote them multiplies and adds in one rounding.
+/// From `#pragma once` on (the library's version stands before it), without the golden commands: their last bits depend
+/// on whether the machine that wrote them multiplies and adds in one rounding.
 std::string comparable(std::string text) {
   const std::size_t begin = text.find("#pragma once");
   REQUIRE(begin != std::string::npos);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// libFuzzer target over the loader of model blocks: whatever the bytes, open() reads none beyond the block and leaves the view
-// alone unless it accepts; what it accepts is sound, and can be flown and self-tested without a trap.
-// The mutator makes most inputs pass the checksum, the magic and the shape: chance would not in a lifetime.
-// Build and run: scripts/heavy/fuzz.
+// libFuzzer target over the loader of model blocks: whatever the bytes, open() reads none beyond the block and leaves
+// the view alone unless it accepts; what it accepts is sound, and can be flown and self-tested without a trap. The
+// mutator makes most inputs pass the checksum, the magic and the shape: chance would not in a lifetime. Build and run:
+// scripts/heavy/fuzz.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every format that was ever exported still flies: archived headers compile, pass their self test and answer as they did.
+// Every format that was ever exported still flies: archived headers compile, pass their self test and answer as they
+// did.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -44,6 +44,7 @@ grep -q ": agrees" block.txt || fail "the block does not agree with the trainer"
 fly_export/fly_export --replay c/replay.txt >other.txt 2>/dev/null || true
 grep -q ": DISAGREES" other.txt || fail "the header's weights agree with another training's"
 head -c 20000 c/model.block >cut.block
-expect_line 2 "cut.block: model block truncated or misaligned" fly_export/fly_export --replay c/replay.txt --block cut.block
-expect_line 2 "flight.csv: model block of another format or shape" fly_export/fly_export --replay c/replay.txt --block flight.csv
-expect_line 2 "none.block: no such readable file" fly_export/fly_export --replay c/replay.txt --block none.block
+refused() { expect_line 2 "$2: $1" fly_export/fly_export --replay c/replay.txt --block "$2"; } # <why> <file>
+refused "model block truncated or misaligned" cut.block
+refused "model block of another format or shape" flight.csv
+refused "no such readable file" none.block

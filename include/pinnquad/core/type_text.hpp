@@ -13,8 +13,8 @@ constexpr std::string_view signature() noexcept {
   return __PRETTY_FUNCTION__;
 }
 
-/// "pinnquad::Network<float, pinnquad::Inputs<16>, ...>". Types in anonymous namespaces and in functions have no name that
-/// another translation unit could use.
+/// "pinnquad::Network<float, pinnquad::Inputs<16>, ...>". Types in anonymous namespaces and in functions have no name
+/// that another translation unit could use.
 template <class T>
 constexpr std::string_view type_text() noexcept {
   constexpr std::string_view probe = signature<int>();

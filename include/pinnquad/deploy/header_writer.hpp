@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes a trained model as a C++ header that flight code includes: weights, feature schema, scaling, training envelope, golden
-// vectors, provenance. Every number reads back bit for bit.
+// Writes a trained model as a C++ header that flight code includes: weights, feature schema, scaling, training
+// envelope, golden vectors, provenance. Every number reads back bit for bit.
 #pragma once
 
 #include <cctype>
@@ -111,9 +111,9 @@ inline bool is_identifier(const std::string& name) {
   return true;
 }
 
-/// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their commands are
-/// computed here by the portable kernel. The contract of what is written: inference/model.hpp.
-/// Throws std::invalid_argument for a name that is no identifier, for no golden vector, and for one outside the envelope.
+/// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
+/// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp. Throws
+/// std::invalid_argument for a name that is no identifier, for no golden vector, and for one outside the envelope.
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& out, const std::string& struct_name, const TrainedModel<NetworkType, ContextType>& model,
                  const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,

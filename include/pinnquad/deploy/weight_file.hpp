@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes a trained or an exported model as a block of bytes, to be read in place by a ModelView: weights that change without
-// a new firmware. Layout: inference/model_block.hpp; the same bytes on every machine.
+// Writes a trained or an exported model as a block of bytes, to be read in place by a ModelView: weights that change
+// without a new firmware. Layout: inference/model_block.hpp; the same bytes on every machine.
 #pragma once
 
 #include <cstdint>

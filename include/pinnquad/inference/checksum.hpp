@@ -27,8 +27,8 @@ inline constexpr std::array<std::uint32_t, 16> crc32_half_bytes = crc32_table();
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// CRC-32 of IEEE 802.3 (polynomial 0x04c11db7, reflected; start and final exclusive-or 0xffffffff), as zlib computes it:
-/// crc32 of "123456789" is 0xcbf43926. `before` is the CRC of what stands before these bytes.
+/// CRC-32 of IEEE 802.3 (polynomial 0x04c11db7, reflected; start and final exclusive-or 0xffffffff), as zlib computes
+/// it: crc32 of "123456789" is 0xcbf43926. `before` is the CRC of what stands before these bytes.
 constexpr std::uint32_t crc32(const unsigned char* bytes, std::size_t length, std::uint32_t before = 0) noexcept {
   std::uint32_t remainder = ~before;
   for (std::size_t i = 0; i < length; ++i) {

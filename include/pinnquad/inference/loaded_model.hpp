@@ -34,9 +34,9 @@ class FixedRows {
 /// Golden vectors that a LoadedModel keeps; `train` writes as many.
 inline constexpr std::size_t loaded_golden_vectors = 8;
 
-/// A model as `InverseDynamics` reads it, with weights of its own: packed where there is a vector unit, else as in the block.
-/// About as large as its weights, so not a thing for a small stack. As made, it declines: its envelope is empty and its self
-/// test fails.
+/// A model as `InverseDynamics` reads it, with weights of its own: packed where there is a vector unit, else as in the
+/// block. About as large as its weights, so not a thing for a small stack. As made, it declines: its envelope is empty
+/// and its self test fails.
 template <class ShapeType>
 class LoadedModel : public ModelScales<ShapeType> {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The contract of an exported model, a struct with static constexpr members that deploy/header_writer.hpp writes. Each format
-// is described here once; what a header says of itself is checked against what the including code's types say.
+// The contract of an exported model, a struct with static constexpr members that deploy/header_writer.hpp writes. Each
+// format is described here once; what a header says of itself is checked against what the including code's types say.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ inline constexpr int oldest_model_format_version = 1;
 /// The frames of every feature set, as a header of format 2 states them.
 inline constexpr const char* model_frame = "body FRD, world NED";
 
-/// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of about
-/// ten to spare.
+/// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
+/// about ten to spare.
 inline constexpr double golden_tolerance = 1e-5;
 
 /// How a rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw): -1, 0 or 1.
@@ -178,8 +178,8 @@ constexpr bool require_shape() noexcept {
   return detail::HasShape<S>::value;
 }
 
-/// The same for a whole exported model: its types, its arrays, and what it says of itself. For a model made at run time, the
-/// types: the numbers were checked when its block was opened.
+/// The same for a whole exported model: its types, its arrays, and what it says of itself. For a model made at run
+/// time, the types: the numbers were checked when its block was opened.
 template <class M>
 constexpr bool require_model() noexcept {
   constexpr bool made_for_shape = detail::IsMadeForShape<M>::value;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The layout of a model block: a model's numbers in memory (a flash partition, a file read into RAM), little-endian. Stated
-// once, for deploy/weight_file.hpp, which writes it, and inference/model_view.hpp, which reads it.
+// The layout of a model block: a model's numbers in memory (a flash partition, a file read into RAM), little-endian.
+// Stated once, for deploy/weight_file.hpp, which writes it, and inference/model_view.hpp, which reads it.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ inline constexpr std::size_t model_block_alignment = 8;
 /// Byte offsets of the header's fields, and what they hold:
 ///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs, u32 outputs,
 ///   u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
-/// Scalars follow: input mean and spread, output mean and spread, envelope lower and upper, golden features, golden commands,
-/// parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
+/// Scalars follow: input mean and spread, output mean and spread, envelope lower and upper, golden features, golden
+/// commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
 struct ModelBlockHeader {
   static constexpr std::size_t version = 8;
   static constexpr std::size_t length = 12;
@@ -86,9 +86,9 @@ constexpr std::uint64_t hash_of_shape() noexcept {
 }
 }  // namespace detail
 
-/// Names what a block's weights are for: network type, frame, feature names and units, output names and unit, vehicle name
-/// and motor order. The same from gcc and clang as long as the network's types have names that another translation unit could
-/// use and no template arguments that compilers print differently (unsigned or character constants).
+/// Names what a block's weights are for: network type, frame, feature names and units, output names and unit, vehicle
+/// name and motor order. The same from gcc and clang as long as the network's types have names that another translation
+/// unit could use and no template arguments that compilers print differently (unsigned or character constants).
 template <class Shape>
 inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
 

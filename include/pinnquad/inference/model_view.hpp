@@ -64,10 +64,11 @@ class BlockRows {
   std::size_t count_ = 1;
 };
 
-/// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an exported
-/// header, or any type with Scalar, Network, Features, Outputs and Vehicle.
-/// Lifetime: scalers and envelope are copied; weights and golden vectors are read in the block each time. A copy of a view
-/// looks into the same block. As made, a view declines: its envelope is empty, its self test fails, forward() gives NaN.
+/// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
+/// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle.
+/// Lifetime: scalers and envelope are copied; weights and golden vectors are read in the block each time. A copy of a
+/// view looks into the same block. As made, a view declines: its envelope is empty, its self test fails, forward()
+/// gives NaN.
 template <class ShapeType>
 class ModelView : public ModelScales<ShapeType> {
  public:
@@ -80,9 +81,9 @@ class ModelView : public ModelScales<ShapeType> {
   BlockRows<Scalar, rotor_count> golden_commands{};
 
   /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
-  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, or for
-  /// another shape. `block_corrupt`: wrong checksum, no golden vector, a value that is NaN or Inf, a spread that is not
-  /// positive, an envelope upside down. `view` is untouched unless the Status is ok.
+  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, or
+  /// for another shape. `block_corrupt`: wrong checksum, no golden vector, a value that is NaN or Inf, a spread that is
+  /// not positive, an envelope upside down. `view` is untouched unless the Status is ok.
   /// Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
