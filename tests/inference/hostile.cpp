@@ -310,3 +310,39 @@ TEST_CASE("a million hostile inputs: no surprise") {
   MESSAGE(attacked, " inputs in ", seconds, " s");
   CHECK(attacked >= 1000000);
 }
+
+TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or infinite") {
+  Hostility<float> hostility(21);
+  using Clamping = Guard<FiniteInputs, ClampToEnvelope, FiniteOutputs, ClipCommands<>>;
+  int answered = 0, not_finite = 0, written = 0, touched = 0;
+  constexpr int models = 20000;
+  for (int i = 0; i < models; ++i) {
+    SmallInstance model;
+    for (std::uint64_t k = 1 + hostility.below(3); k > 0; --k) {
+      switch (hostility.below(4)) {
+        case 0: model.parameters[hostility.below(172)] = hostility.value(); break;
+        case 1: model.parameters[hostility.below(172)] *= 1e30F; break;
+        case 2: model.output.spread[hostility.below(4)] = hostility.value(); break;
+        default: model.input.spread[hostility.below(16)] = hostility.value();
+      }
+    }
+    const auto inputs = hostility.inputs(0);
+    const auto tried = [&](const auto& inverse) {
+      Commands<float> commands = marked<float>();
+      const Status status = inverse.predict(inputs, commands);
+      if (has_output(status)) ++answered;
+      if (status == Status::output_not_finite) ++not_finite;
+      if (!has_output(status) && !same_bits(commands, marked<float>())) ++touched;
+      for (const float u : commands) {
+        if (has_output(status) && !std::isfinite(u)) ++written;
+      }
+    };
+    tried(InverseDynamics<SmallInstance>(model));
+    tried(InverseDynamics<SmallInstance, Clamping>(model));
+  }
+  MESSAGE((2 * models), " predictions: answered ", answered, ", output not finite ", not_finite);
+  CHECK(written == 0);
+  CHECK(touched == 0);
+  CHECK(answered > models / 4);
+  CHECK(not_finite > models / 10);
+}
