@@ -154,7 +154,7 @@ class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail:
   static_assert(count<FiniteOutputs> > 0,
                 "pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor");
   static_assert(
-      checks_inputs || refuses_outside_envelope,
+      checks_inputs || refuses_outside_envelope || clamps_to_envelope,
       "pinnquad: a Guard without FiniteInputs needs TrainingEnvelope, which refuses NaN and infinity too: a ReLU "
       "turns -infinity into 0, and the outputs would look sound");
   static_assert(checks_inputs || !clamps_to_envelope,

@@ -12,13 +12,15 @@
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// By the kind of pointer: gcc 12 takes the value of a member that an instance has for an error, not for a substitution that
-/// fails, if the member is inherited.
+/// True if all of them are static members; a data member's address is a pointer to member.
+template <class Model, class = void>
+struct HasConstantArrays : std::false_type {};
 template <class Model>
-struct HasConstantArrays : std::bool_constant<!std::is_member_object_pointer_v<decltype(&Model::envelope_lower)> &&
-                                              !std::is_member_object_pointer_v<decltype(&Model::envelope_upper)> &&
-                                              !std::is_member_object_pointer_v<decltype(&Model::input)> &&
-                                              !std::is_member_object_pointer_v<decltype(&Model::output)>> {};
+struct HasConstantArrays<Model, std::void_t<decltype(&Model::envelope_lower), decltype(&Model::envelope_upper),
+                                            decltype(&Model::input), decltype(&Model::output)>>
+    : std::bool_constant<std::is_pointer_v<decltype(&Model::envelope_lower)> &&
+                         std::is_pointer_v<decltype(&Model::envelope_upper)> &&
+                         std::is_pointer_v<decltype(&Model::input)> && std::is_pointer_v<decltype(&Model::output)>> {};
 
 template <class Model, class = void>
 struct HasOwnForward : std::false_type {};
