@@ -1,5 +1,5 @@
 // Inverse-dynamics model, exported by pinnquad 0.1.0. Generated: export again rather than edit.
-// Frame: body FRD, world NED, SI units, rad. Outputs in the order of the airframe's rotors.
+// SI units, rad. Commands in the order of the airframe's rotors.
 #pragma once
 
 #include "pinnquad/flight.hpp"
@@ -12,7 +12,7 @@ struct DemoQuadModel {
   using Vehicle = pinnquad::PaperQuadrotor;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 1;
+  static constexpr int format_version = 2;
   static constexpr const char* name = "DemoQuadModel";
 
   // provenance
@@ -23,10 +23,23 @@ struct DemoQuadModel {
   static constexpr int epochs = 300;
   static constexpr const char* loss = "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing";
 
-  // feature schema: vdot_bx [m/s^2], vdot_by [m/s^2], vdot_bz [m/s^2], wdot_x [rad/s^2], wdot_y [rad/s^2], 
-  // wdot_z [rad/s^2], v_bx [m/s], v_by [m/s], v_bz [m/s], w_x [rad/s], w_y [rad/s], 
-  // w_z [rad/s], roll [rad], pitch [rad], sin_yaw [1], cos_yaw [1]
-  // outputs: u1 [1] u2 [1] u3 [1] u4 [1]
+  // what it was trained for; require_model() compares with Features, Outputs and Vehicle
+  static constexpr const char* frame = "body FRD, world NED";
+  static constexpr std::array<const char*, 16> feature_names = {{
+      "vdot_bx", "vdot_by", "vdot_bz", "wdot_x", "wdot_y", "wdot_z", "v_bx", "v_by",
+      "v_bz", "w_x", "w_y", "w_z", "roll", "pitch", "sin_yaw", "cos_yaw"}};
+  static constexpr std::array<const char*, 16> feature_units = {{
+      "m/s^2", "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "m/s", "m/s",
+      "m/s", "rad/s", "rad/s", "rad/s", "rad", "rad", "1", "1"}};
+  static constexpr std::array<const char*, 4> output_names = {{"u1", "u2", "u3", "u4"}};
+  static constexpr const char* output_unit = "1";
+  static constexpr const char* vehicle_name = "paper_quadrotor";
+  // rotor by rotor: signs of its torque about x, y, z
+  static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {{
+    {{-1, 1, 1}},
+    {{1, -1, 1}},
+    {{1, 1, -1}},
+    {{-1, -1, -1}}}};
 
   // standardisation: (value - mean) / spread
   static constexpr pinnquad::Scaler<float, 16> input = {{{

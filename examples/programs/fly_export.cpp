@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,6 @@ using namespace pinnquad;
 
 using Model = TrainedQuadModel;
 using Scalar = Model::Scalar;
-using Inverse = InverseDynamics<Model>;
 
 constexpr int exit_failed = 1;
 constexpr int exit_bad_input = 2;
@@ -34,7 +34,7 @@ struct ZeroedModel : Model {
 
 /// A row of the replay file, as `train` writes it.
 struct ReplayRow {
-  Inverse::Inputs inputs;
+  Model::Inputs inputs;
   std::array<double, rotor_count> predicted{};
   std::array<double, rotor_count> flown{};
 };
@@ -78,6 +78,7 @@ std::vector<ReplayRow> read_replay(const std::string& path) {
 }
 
 /// Replays the test flight. True if every answer agrees with the trainer's.
+template <class Inverse>
 bool replay(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
   double worst = 0, error = 0;
   std::size_t answered = 0, outside = 0;
@@ -104,6 +105,7 @@ bool replay(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
 }
 
 /// Nanoseconds per predict(), best of several passes over the replay: each call depends on the one before.
+template <class Inverse>
 double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
   using Clock = std::chrono::steady_clock;
   constexpr int passes = 40;
@@ -113,7 +115,7 @@ double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<Repl
   for (int pass = 0; pass < passes; ++pass) {
     const auto start = Clock::now();
     for (const ReplayRow& row : rows) {
-      Inverse::Inputs inputs = row.inputs;
+      Model::Inputs inputs = row.inputs;
       inputs.velocity_m_s[0] += commands[0] * Scalar(1e-12);  // chains the calls
       const Status status = inverse.predict(inputs, commands);
       sink += status == Status::ok ? commands[1] : Scalar(0);
@@ -156,7 +158,8 @@ TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const Figu
 }
 
 /// The closed loop. True if the network flew it, mostly by itself, and its weights were worth having.
-bool closed_loop() {
+template <class Flown>
+bool closed_loop(const Flown& model) {
   const Vehicle vehicle(airframe_value<Model::Vehicle, double>(), paper_site<double>(), {}, {});
   const FigureEight<double> trajectory = trajectory_for(vehicle);
   const AnalyticInverse<Vehicle> analytic(vehicle);
@@ -166,12 +169,13 @@ bool closed_loop() {
       "  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
       trajectory.period_s, TrackingPlan<double>{}.duration_s);
   std::printf("  %-28s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "fell back to analytic");
-  using Network = NetworkInverse<Inverse, AnalyticInverse<Vehicle>>;
-  using Zeroed = NetworkInverse<InverseDynamics<ZeroedModel>, AnalyticInverse<Vehicle>>;
-  const auto network = fly("network", vehicle, trajectory, Network({}, analytic));
+  using Guard = Extend<TrainingGuard, Fallback<AnalyticInverse<Vehicle>>>;
+  using Guarded = InverseDynamics<Flown, Guard>;
+  using Zeroed = InverseDynamics<ZeroedModel, Guard>;
+  const auto network = fly("network", vehicle, trajectory, NetworkInverse<Guarded>(Guarded(model, analytic)));
   fly("analytic inverse", vehicle, trajectory, analytic);
   fly("none (hover trim)", vehicle, trajectory, trim);
-  const auto zeroed = fly("network, weights zeroed", vehicle, trajectory, Zeroed({}, analytic));
+  const auto zeroed = fly("network, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed>(Zeroed(analytic)));
   const double fallbacks = static_cast<double>(network.fallback.fallbacks()) / network.fallback.asked;
   if (fallbacks > fallback_limit) {
     std::printf("  the network declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,
@@ -180,14 +184,47 @@ bool closed_loop() {
   return network.status == Status::ok && fallbacks <= fallback_limit && network.rmse_m < zeroed.rmse_m;
 }
 
+/// Self test, replay, speed, closed loop: the exit code.
+template <class Flown>
+int fly_model(const Flown& model, const std::vector<ReplayRow>& rows) {
+  const InverseDynamics<Flown> inverse(model);
+  const Status tested = self_test(inverse);
+  std::printf("  self test    %zu golden vectors: %s\n", model.golden_features.size(), to_string(tested));
+  if (tested != Status::ok) return exit_failed;
+  const bool agrees = replay(inverse, rows);
+  std::printf("  speed        %.0f ns per predict(), checks and features included\n",
+              nanoseconds_per_prediction(inverse, rows));
+  const bool flew = closed_loop(model);
+  if (!agrees || !flew) std::fprintf(stderr, "fly_export: the export does not fly as it should\n");
+  return agrees && flew ? 0 : exit_failed;
+}
+
+/// The same for the weights of a block that a later training has written for this header.
+int fly_block(const std::string& path, const std::vector<ReplayRow>& rows) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> block{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  ModelView<Model> view;
+  const Status opened = ModelView<Model>::open(block.data(), block.size(), view);
+  if (!file || opened != Status::ok) {
+    std::fprintf(stderr, "fly_export: %s: %s\n", path.c_str(), file ? to_string(opened) : "no such readable file");
+    return exit_bad_input;
+  }
+  std::printf("  block        %s, %zu bytes, trained on %u rows\n", path.c_str(), block.size(), view.training_rows);
+  static LoadedModel<Model> loaded;
+  if (loaded.load(view) != Status::ok) return exit_failed;
+  return fly_model(loaded, rows);
+}
+
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  std::string path;
+  std::string path, block;
   CLI::App app{"Flies an exported model: self test, replay of its test flight, closed loop.", "fly_export"};
   app.add_option("--replay", path, "the test flight and the trainer's predictions, written by train")
       ->type_name("FILE")
       ->required();
+  app.add_option("--block", block, "fly the weights of this model block, written by train, instead of the header's")
+      ->type_name("FILE");
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -198,16 +235,7 @@ int main(int argument_count, char** arguments) {
   const std::vector<ReplayRow> rows = read_replay(path);
   if (rows.empty()) return exit_bad_input;
 
-  const Inverse inverse;
   std::printf("  model        %s, %d parameters in %zu bytes, trained on %s (%d rows)\n", Model::name,
               Model::Network::parameter_count, sizeof Model::parameters, Model::training_data, Model::training_rows);
-  const Status tested = self_test(inverse);
-  std::printf("  self test    %zu golden vectors: %s\n", Model::golden_features.size(), to_string(tested));
-  if (tested != Status::ok) return exit_failed;
-  const bool agrees = replay(inverse, rows);
-  std::printf("  speed        %.0f ns per predict(), checks and features included\n",
-              nanoseconds_per_prediction(inverse, rows));
-  const bool flew = closed_loop();
-  if (!agrees || !flew) std::fprintf(stderr, "fly_export: the export does not fly as it should\n");
-  return agrees && flew ? 0 : exit_failed;
+  return block.empty() ? fly_model(Model{}, rows) : fly_block(block, rows);
 }

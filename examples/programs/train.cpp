@@ -17,7 +17,7 @@
 #include "judgement.hpp"
 #include "model_predictions.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 #include "plots.hpp"
 
 namespace {
@@ -35,6 +35,7 @@ struct Options {
   std::string airframe = PaperQuadrotor::name;
   std::string out = "demo_out";
   std::string model_name = "TrainedQuadModel";
+  std::string block;  ///< where to write the weights as a block too; empty: nowhere
   int seeds = 5;
   int epochs = 300;
   std::uint64_t seed = 1;
@@ -194,12 +195,17 @@ int train_judge_export(const Options& options, const Flight& flight) {
                                  results[best_informed].seed,
                                  options.epochs,
                                  "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"};
-  write_model_header(folder + "model.hpp", options.model_name, best, golden_features<Model>(flight, split.train),
-                     provenance);
+  const auto golden = golden_features<Model>(flight, split.train);
+  write_model_header(folder + "model.hpp", options.model_name, best, golden, provenance);
   write_replay(folder + "replay.txt", best, flight, split.test);
   std::printf("  %smodel.hpp: struct %s, %s of seed %llu (least error on the validation rows)\n", folder.c_str(),
               options.model_name.c_str(), informed.c_str(),
               static_cast<unsigned long long>(results[best_informed].seed));
+  if (!options.block.empty()) {
+    const std::vector<unsigned char> block = model_block(best, golden, provenance);
+    write_weight_file(options.block, block);
+    std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), block.size());
+  }
   if (programs::interrupted()) {
     std::fprintf(stderr, "train: interrupted; %zu of %d trainings were finished and kept\n", trainings.size(),
                  2 * options.seeds);
@@ -221,6 +227,7 @@ int main(int argument_count, char** arguments) {
       ->capture_default_str();
   app.add_option("--out", options.out, "folder for results, pictures and the exported header")->capture_default_str();
   app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
+  app.add_option("--block", options.block, "also write the exported weights as a model block")->type_name("FILE");
   app.add_option("--seeds", options.seeds, "networks per kind")
       ->capture_default_str()
       ->check(CLI::Range(1, static_cast<int>(pinnquad::most_pairs)));
@@ -243,6 +250,7 @@ int main(int argument_count, char** arguments) {
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
     AtomicFile probe(options.out + "/results.csv");  // an unwritable folder is found before the training
+    if (!options.block.empty()) AtomicFile block_probe(options.block);
     int code = exit_bad_input;
     const bool known = programs::with_airframe(
         options.airframe, [&](auto tag) { code = train_judge_export<typename decltype(tag)::type>(options, flight); });

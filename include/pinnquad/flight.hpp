@@ -19,6 +19,8 @@
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
+#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/inference/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/relu.hpp"

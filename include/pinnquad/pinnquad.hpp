@@ -7,6 +7,7 @@
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/evaluation/confidence_ellipse.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/evaluation/errors.hpp"

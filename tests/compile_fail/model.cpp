@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: MIT
 // CASE NOT_A_MODEL: pinnquad: this type is not an exported model
 // CASE MEMBER_MISSING: pinnquad: this type is not an exported model
-// CASE OTHER_FORMAT: pinnquad: the model was exported in another format
+// CASE NEWER_FORMAT: pinnquad: the model was exported by a newer pinnquad than this one; update the library
+// CASE OLDER_FORMAT: pinnquad: the model's format is older than this library reads; export it again
+// CASE UNDESCRIBED: pinnquad: the model lacks what its format demands
+// CASE OTHER_FRAME: pinnquad: the model was trained in other frames
+// CASE OTHER_FEATURE: pinnquad: the model was trained on other features than its feature set now has
+// CASE OTHER_FEATURE_UNIT: pinnquad: the model was trained in other units than its feature set now has
+// CASE FEATURE_NAME_MISSING: pinnquad: the model was trained on other features than its feature set now has
+// CASE OTHER_OUTPUT: pinnquad: the model has other outputs than its output schema now has
+// CASE OTHER_OUTPUT_UNIT: pinnquad: the model's outputs have another unit than its output schema
+// CASE OTHER_VEHICLE: pinnquad: the model was trained for another airframe than its Vehicle
+// CASE ROTORS_SWAPPED: pinnquad: the model was trained with another motor order than its Vehicle now has
+// CASE ROTOR_TURNS_THE_OTHER_WAY: pinnquad: the model was trained with another motor order than its Vehicle now has
+// CASE SPREAD_ZERO: pinnquad: a scaler's spread is not positive
+// CASE GOLDEN_OUTSIDE: pinnquad: a golden vector lies outside the model's envelope
 // CASE TOO_FEW_PARAMETERS: pinnquad: the exported parameters do not have the network's length
 // CASE ENVELOPE_LENGTH: pinnquad: the envelope does not have the length of the feature set
 // CASE SCALER_LENGTH: pinnquad: a scaler does not have the length of what it scales
@@ -9,19 +22,73 @@
 // CASE GOLDEN_LENGTH: pinnquad: a golden vector does not have the length
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
 // CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
+// CASE SCALAR_DIFFERS: pinnquad: the model's Scalar is not that of its Network
 #include <array>
 
-#include "../support/small_model.hpp"
+#include "../support/described_model.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 
 namespace {
 
-using pinnquad::test::SmallModel;
+using pinnquad::test::DescribedModel;
+
+template <class Texts>
+constexpr Texts with_first(Texts texts, const char* first) {
+  texts[0] = first;
+  return texts;
+}
+
+constexpr auto with_spread(pinnquad::Scaler<float, 16> scaler, float last) {
+  scaler.spread[15] = last;
+  return scaler;
+}
+
+#if defined(OTHER_VEHICLE)
+struct RenamedQuadrotor : pinnquad::PaperQuadrotor {
+  static constexpr const char* name = "my_quadrotor";
+};
+#endif
 
 /// The small model with one member changed by the case.
-struct Changed : SmallModel {
-#if defined(OTHER_FORMAT)
-  static constexpr int format_version = SmallModel::format_version + 1;
+struct Changed : DescribedModel {
+#if defined(NEWER_FORMAT)
+  static constexpr int format_version = pinnquad::model_format_version + 1;
+#elif defined(OLDER_FORMAT)
+  static constexpr int format_version = pinnquad::oldest_model_format_version - 1;
+#elif defined(OTHER_FRAME)
+  static constexpr const char* frame = "body FLU, world ENU";
+#elif defined(OTHER_FEATURE)
+  static constexpr auto feature_names = with_first(DescribedModel::feature_names, "vdot_wx");
+#elif defined(OTHER_FEATURE_UNIT)
+  static constexpr auto feature_units = with_first(DescribedModel::feature_units, "g");
+#elif defined(FEATURE_NAME_MISSING)
+  static constexpr std::array<const char*, 1> feature_names = {"vdot_bx"};
+#elif defined(OTHER_OUTPUT)
+  static constexpr auto output_names = with_first(DescribedModel::output_names, "n1");
+#elif defined(OTHER_OUTPUT_UNIT)
+  static constexpr const char* output_unit = "rev/s";
+#elif defined(OTHER_VEHICLE)
+  using Vehicle = RenamedQuadrotor;
+#elif defined(ROTORS_SWAPPED)
+  static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {
+      { {1, -1, 1},
+        {-1, 1, 1},
+        {1, 1, -1},
+        { -1,
+          -1,
+          -1 } }};
+#elif defined(ROTOR_TURNS_THE_OTHER_WAY)
+  static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {
+      { {-1, 1, 1},
+        {1, -1, 1},
+        {1, 1, -1},
+        { -1,
+          -1,
+          1 } }};
+#elif defined(SPREAD_ZERO)
+  static constexpr auto input = with_spread(DescribedModel::input, 0.0F);
+#elif defined(GOLDEN_OUTSIDE)
+  static constexpr std::array<float, 16> envelope_upper{};
 #elif defined(TOO_FEW_PARAMETERS)
   static constexpr std::array<float, 171> parameters{};
 #elif defined(ENVELOPE_LENGTH)
@@ -37,14 +104,21 @@ struct Changed : SmallModel {
   using Network = pinnquad::Network<float, pinnquad::Inputs<15>, pinnquad::Dense<4>>;
 #elif defined(OUTPUTS_DIFFER)
   using Network = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>>;
+#elif defined(SCALAR_DIFFERS)
+  using Scalar = double;
 #endif
+};
+
+/// A header that claims format 2 and has the members of format 1.
+struct Undescribed : pinnquad::test::SmallModel {
+  static constexpr int format_version = 2;
 };
 
 /// A header cut short.
 struct Truncated {
   using Scalar = float;
-  using Network = SmallModel::Network;
-  using Features = SmallModel::Features;
+  using Network = DescribedModel::Network;
+  using Features = DescribedModel::Features;
 };
 
 struct Nothing {};
@@ -53,6 +127,8 @@ struct Nothing {};
 using Model = Nothing;
 #elif defined(MEMBER_MISSING)
 using Model = Truncated;
+#elif defined(UNDESCRIBED)
+using Model = Undescribed;
 #else
 using Model = Changed;
 #endif

@@ -138,6 +138,18 @@ TEST_CASE("provenance is told, and no text can break out of its string") {
   CHECK(header.find("static_assert(pinnquad::require_model<SomeModel>());") != std::string::npos);
 }
 
+TEST_CASE("what the model was trained for is told as data") {
+  const std::string header = written(some_model(1), {Model::FeatureVector{}});
+  for (const char* line :
+       {"int format_version = 2;", "frame = \"body FRD, world NED\";",
+        "output_names = {{\"u1\", \"u2\", \"u3\", \"u4\"}};", "output_unit = \"1\";",
+        "vehicle_name = \"paper_quadrotor\";", "\"sin_yaw\", \"cos_yaw\"}};", "\"rad\", \"1\", \"1\"}};",
+        "motor_torque_signs = {{\n    {{-1, 1, 1}},\n    {{1, -1, 1}},\n    {{1, 1, -1}},\n    {{-1, -1, -1}}}};"}) {
+    CAPTURE(line);
+    CHECK(header.find(line) != std::string::npos);
+  }
+}
+
 TEST_CASE("a struct needs a name and a model golden vectors; a refused export leaves no file") {
   CHECK(is_identifier("MyQuadModel"));
   CHECK(is_identifier("_x9"));
@@ -148,6 +160,8 @@ TEST_CASE("a struct needs a name and a model golden vectors; a refused export le
   std::ostringstream out;
   CHECK_THROWS_AS(write_model(out, "my model", some_model(1), {Model::FeatureVector{}}, {}), std::invalid_argument);
   CHECK_THROWS_AS(write_model(out, "Model", some_model(1), {}, {}), std::invalid_argument);
+  CHECK_THROWS_WITH(write_model(out, "Model", some_model(1), {Model::FeatureVector{7.0f}}, {}),
+                    "export: golden vector 1 lies outside the envelope");
   CHECK(out.str().empty());
   const pinnquad_test::TemporaryFolder folder;
   CHECK_THROWS_AS(write_model_header(folder.path("model.hpp"), "Model", some_model(1), {}, {}), std::invalid_argument);

@@ -4,6 +4,7 @@
 // Data comes in and goes out through plain arrays, so that nothing can be computed by the compiler instead.
 #include <pinnquad/flight.hpp>
 
+#include "../support/described_model.hpp"
 #include "../support/small_model.hpp"
 #include "pinnquad/control/tracking.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
@@ -22,6 +23,12 @@ template <class Scalar>
 using Everything =
     pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
                         pinnquad::QuadraticDrag, pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
+
+/// What no rotor can do, but a network may ask for.
+struct WideCommands {
+  static constexpr double lower = -0.5;
+  static constexpr double upper = 1.5;
+};
 
 template <class Scalar>
 Everything<Scalar> everything() noexcept {
@@ -79,6 +86,26 @@ unsigned char inverse(const Scalar* state, const Scalar* wanted, Scalar* u) noex
   return static_cast<unsigned char>(status);
 }
 
+/// Every policy of a guard that can stand beside the others, falling back to the inverse by formula.
+using Guarded = pinnquad::InverseDynamics<
+    SmallModel,
+    pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<WideCommands>, pinnquad::ClipCommands<>,
+                     pinnquad::Fallback<pinnquad::AnalyticInverse<Everything<float>>>>>;
+
+Guarded guarded() noexcept { return Guarded(pinnquad::AnalyticInverse<Everything<float>>(everything<float>())); }
+
+template <class Inverse>
+unsigned char predict_and_report(const Inverse& inverse, const float* state, const float* wanted, float* u) noexcept {
+  const auto vehicle = read(state);
+  Commands<float> commands{};
+  typename Inverse::Report report;
+  const pinnquad::PlaceAndTime<float> place{vehicle.body.position_m, wanted[6]};
+  const Status status = inverse.predict(pinnquad::motion_inputs(vehicle.body, motion(wanted)), place, commands, report);
+  for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i];
+  u[4] = report.excess[0] + float(report.worst_feature);
+  return static_cast<unsigned char>(status);
+}
+
 /// A closed loop of everything in control/, the network in it.
 template <class Scalar, class Trajectory, class FeedForward>
 unsigned char fly(const Trajectory& trajectory, const FeedForward& feed_forward, Scalar* rmse_m) noexcept {
@@ -111,14 +138,59 @@ unsigned char pinnquad_flight_predict(const float* state, const float* wanted, f
 }
 
 unsigned char pinnquad_flight_predict_features(const float* x, float* u) {
+  return static_cast<unsigned char>(pinnquad::InverseDynamics<SmallModel>{}.predict_features(x, u));
+}
+
+unsigned char pinnquad_flight_predict_guarded(const float* state, const float* wanted, float* u) {
+  const auto vehicle = read(state);
   Commands<float> commands{};
-  const Status status = pinnquad::InverseDynamics<SmallModel>{}.predict_features(x, commands);
+  const pinnquad::PlaceAndTime<float> place{vehicle.body.position_m, wanted[6]};
+  const Status status = guarded().predict(pinnquad::motion_inputs(vehicle.body, motion(wanted)), place, commands);
   for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i];
+  return static_cast<unsigned char>(status);
+}
+
+unsigned char pinnquad_flight_predict_reported(const float* state, const float* wanted, float* u) {
+  return predict_and_report(guarded(), state, wanted, u);
+}
+
+unsigned char pinnquad_flight_predict_clamped(const float* state, const float* wanted, float* u) {
+  using Clamping = pinnquad::Guard<pinnquad::FiniteInputs, pinnquad::ClampToEnvelope, pinnquad::FiniteOutputs>;
+  return predict_and_report(pinnquad::InverseDynamics<SmallModel, Clamping>{}, state, wanted, u);
+}
+
+unsigned char pinnquad_flight_self_test_reported(float* largest_difference) {
+  pinnquad::SelfTestReport<float> report;
+  const Status status = pinnquad::self_test(guarded(), report);
+  *largest_difference = report.largest_difference;
   return static_cast<unsigned char>(status);
 }
 
 unsigned char pinnquad_flight_self_test() {
   return static_cast<unsigned char>(pinnquad::self_test(pinnquad::InverseDynamics<SmallModel>{}));
+}
+
+unsigned char pinnquad_flight_view_predict(const void* block, unsigned long length, const float* x, float* u) {
+  using View = pinnquad::ModelView<pinnquad::test::DescribedModel>;
+  View view;
+  const Status status = View::open(block, length, view);
+  if (status != Status::ok) return static_cast<unsigned char>(status);
+  const pinnquad::InverseDynamics<View> inverse(view);
+  if (pinnquad::self_test(inverse) != Status::ok) return static_cast<unsigned char>(Status::self_test_failed);
+  return static_cast<unsigned char>(inverse.predict_features(x, u));
+}
+
+unsigned char pinnquad_flight_loaded_predict(const void* block, unsigned long length, const double* x, double* u) {
+  using View = pinnquad::ModelView<pinnquad::test::DoubleModel>;
+  using Loaded = pinnquad::LoadedModel<pinnquad::test::DoubleModel>;
+  View view;
+  Status status = View::open(block, length, view);
+  static Loaded loaded;
+  if (status == Status::ok) status = loaded.load(view);
+  if (status != Status::ok) return static_cast<unsigned char>(status);
+  const pinnquad::InverseDynamics<Loaded> inverse(loaded);
+  if (pinnquad::self_test(inverse) != Status::ok) return static_cast<unsigned char>(Status::self_test_failed);
+  return static_cast<unsigned char>(inverse.predict_features(x, u));
 }
 
 float pinnquad_flight_output_schema(float output) {
@@ -188,9 +260,7 @@ void pinnquad_flight_frames(float* v) {
 // control
 
 unsigned char pinnquad_flight_track_network(float* rmse_m) {
-  using Model = pinnquad::InverseDynamics<SmallModel>;
-  using Fallback = pinnquad::AnalyticInverse<Everything<float>>;
-  const pinnquad::NetworkInverse<Model, Fallback> feed_forward(Model{}, Fallback(everything<float>()));
+  const pinnquad::NetworkInverse<Guarded> feed_forward(guarded());
   return fly(pinnquad::FigureEight<float>{}, feed_forward, rmse_m);
 }
 

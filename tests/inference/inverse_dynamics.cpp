@@ -170,23 +170,23 @@ TEST_CASE("bad inputs: a Status, and not a bit of the commands changed") {
 }
 
 TEST_CASE("the envelope holds for each of the features, on both sides, its borders included") {
-  using Inverse = InverseDynamics<SmallModel>;
+  const InverseDynamics<SmallModel> inverse;
   for (std::size_t i = 0; i < 16; ++i) {
     CAPTURE(i);
     auto x = SmallModel::golden_features[0];
-    CHECK(Inverse::inside_envelope(x.data()));
+    CHECK(inverse.inside_envelope(x.data()));
     x[i] = SmallModel::envelope_upper[i];
-    CHECK(Inverse::inside_envelope(x.data()));
+    CHECK(inverse.inside_envelope(x.data()));
     x[i] = std::nextafter(SmallModel::envelope_upper[i], 1e9F);
-    CHECK_FALSE(Inverse::inside_envelope(x.data()));
+    CHECK_FALSE(inverse.inside_envelope(x.data()));
     x[i] = SmallModel::envelope_lower[i];
-    CHECK(Inverse::inside_envelope(x.data()));
+    CHECK(inverse.inside_envelope(x.data()));
     x[i] = std::nextafter(SmallModel::envelope_lower[i], -1e9F);
-    CHECK_FALSE(Inverse::inside_envelope(x.data()));
+    CHECK_FALSE(inverse.inside_envelope(x.data()));
     x[i] = std::numeric_limits<float>::quiet_NaN();
-    CHECK_FALSE(Inverse::inside_envelope(x.data()));
+    CHECK_FALSE(inverse.inside_envelope(x.data()));
     Commands<float> commands = marked();
-    CHECK(Inverse{}.predict_features(x.data(), commands) == Status::outside_envelope);
+    CHECK(inverse.predict_features(x.data(), commands) == Status::outside_envelope);
     CHECK(same_bits(commands, marked()));
   }
 }
@@ -205,7 +205,7 @@ TEST_CASE("the vector unit's kernel and the portable one agree") {
     std::array<float, 16> z{};
     for (float& v : z) v = random.scalar<float>(-2, 2);
     std::array<float, 4> y{}, portable{};
-    InverseDynamics<SmallModel>::forward(z.data(), y.data());
+    InverseDynamics<SmallModel>{}.forward(z.data(), y.data());
     SmallModel::Network::forward(SmallModel::parameters.data(), z.data(), portable.data());
     for (std::size_t k = 0; k < 4; ++k) CHECK(std::fabs(static_cast<double>(y[k] - portable[k])) <= float_tolerance);
   }

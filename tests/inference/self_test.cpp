@@ -5,12 +5,19 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <vector>
 
-#include "support/small_model.hpp"
+#include "support/plain_network.hpp"
+#include "support/small_model_variants.hpp"
 
 using pinnquad::InverseDynamics;
+using pinnquad::SelfTestReport;
 using pinnquad::Status;
+using pinnquad::test::SmallDoubleModel;
+using pinnquad::test::SmallInstance;
 using pinnquad::test::SmallModel;
 
 namespace {
@@ -70,6 +77,60 @@ struct GoldenOutsideEnvelope : SmallModel {
   static constexpr auto golden_features = last_entry_moved(SmallModel::golden_features, 3.0F);
 };
 
+Status reported(const SmallInstance& model, SelfTestReport<float>& report) {
+  return pinnquad::self_test(InverseDynamics<SmallInstance>(model), report);
+}
+
+/// The commands of a model for one golden vector, in double, through plain loops.
+std::vector<double> plain_commands(const SmallInstance& model, std::size_t vector) {
+  std::vector<double> z(16);
+  for (std::size_t i = 0; i < 16; ++i) {
+    z[i] = (static_cast<double>(SmallModel::golden_features[vector][i]) - static_cast<double>(model.input.mean[i])) /
+           static_cast<double>(model.input.spread[i]);
+  }
+  auto y = plain::forward({{16, 8, 4}, plain::Activation::relu}, model.parameters, z).outputs;
+  for (std::size_t i = 0; i < 4; ++i) {
+    y[i] = y[i] * static_cast<double>(model.output.spread[i]) + static_cast<double>(model.output.mean[i]);
+  }
+  return y;
+}
+
+/// How far the model's golden commands are missed at most; NaN for NaN.
+double largest_miss(const SmallInstance& model) {
+  double largest = 0;
+  for (std::size_t vector = 0; vector < SmallModel::golden_features.size(); ++vector) {
+    const auto commands = plain_commands(model, vector);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double miss = std::fabs(commands[i] - static_cast<double>(SmallModel::golden_commands[vector][i]));
+      if (!(miss <= largest)) largest = miss;
+      if (!std::isfinite(miss)) return miss;
+    }
+  }
+  return largest;
+}
+
+float with_bit_flipped(float value, int bit) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  bits ^= std::uint32_t(1) << bit;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/// A kernel that leaves out the last input of every row.
+struct WrongKernel : SmallInstance {
+  void forward(const float* x, float* y) const noexcept {
+    float cut[16];
+    for (int i = 0; i < 16; ++i) cut[i] = i == 15 ? 0.0F : x[i];
+    Network::forward(parameters.data(), cut, y);
+  }
+};
+
+struct TightCommands {
+  static constexpr double lower = 0.49;
+  static constexpr double upper = 0.5;
+};
+
 template <class Model>
 Status tested() {
   return pinnquad::self_test(InverseDynamics<Model>{});
@@ -92,4 +153,77 @@ TEST_CASE("a wrong layout, a NaN, a wrong or impossible golden vector fail") {
   CHECK(tested<NotANumber>() == Status::self_test_failed);
   CHECK(tested<WrongGoldenCommand>() == Status::self_test_failed);
   CHECK(tested<GoldenOutsideEnvelope>() == Status::self_test_failed);
+}
+
+TEST_CASE("whatever the guard: golden commands out of its limits, or a fallback, change nothing") {
+  using Tight = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<TightCommands>>;
+  const InverseDynamics<SmallModel, Tight> tight;
+  pinnquad::Commands<float> commands{};
+  CHECK(tight.predict_features(SmallModel::golden_features[0].data(), commands) == Status::outside_limits);
+  CHECK(pinnquad::self_test(tight) == Status::ok);
+}
+
+TEST_CASE("the report: how close a sound model comes, and which vector a broken one misses, by how much") {
+  SelfTestReport<float> report;
+  REQUIRE(reported({}, report) == Status::ok);
+  CHECK(report.cause == Status::ok);
+  CHECK(static_cast<double>(report.largest_difference) == doctest::Approx(largest_miss({})).epsilon(0.5));
+  CHECK(static_cast<double>(report.largest_difference) < pinnquad::golden_tolerance / 10);
+  CHECK(report.vector >= 0);
+
+  SmallInstance model;
+  model.golden_commands[3][2] += 0.125F;
+  REQUIRE(reported(model, report) == Status::self_test_failed);
+  CHECK(report.cause == Status::self_test_failed);
+  CHECK(report.vector == 3);
+  CHECK(report.rotor == 2);
+  CHECK(std::fabs(report.largest_difference - 0.125F) <= 1e-5F);
+
+  model = {};
+  model.parameters[170] = std::numeric_limits<float>::quiet_NaN();  // third output's bias
+  REQUIRE(reported(model, report) == Status::self_test_failed);
+  CHECK(report.cause == Status::output_not_finite);
+  CHECK(report.vector == 0);
+  CHECK(report.rotor == 2);
+  CHECK(std::isnan(report.largest_difference));
+
+  model = {};
+  model.envelope_upper[6] = -8.0F;
+  REQUIRE(reported(model, report) == Status::self_test_failed);
+  CHECK(report.cause == Status::outside_envelope);
+  CHECK(report.vector == 0);
+  CHECK(pinnquad::self_test(InverseDynamics<SmallDoubleModel>{}) == Status::ok);
+}
+
+TEST_CASE("a wrong kernel fails") {
+  SelfTestReport<float> report;
+  CHECK(pinnquad::self_test(InverseDynamics<WrongKernel>(WrongKernel{}), report) == Status::self_test_failed);
+  CHECK(report.largest_difference > 1e-3F);
+}
+
+TEST_CASE(
+    "each bit of each weight: found exactly where plain loops say that it moves a golden command beyond the "
+    "tolerance") {
+  int found = 0, found_high = 0, high = 0, disagreed = 0, missed_high = 0;
+  constexpr double undecided = 2e-6;  // float sums against double ones
+  for (std::size_t weight = 0; weight < SmallModel::parameters.size(); ++weight) {
+    for (int bit = 0; bit < 32; ++bit) {
+      SmallInstance model;
+      model.parameters[weight] = with_bit_flipped(model.parameters[weight], bit);
+      const bool failed = pinnquad::self_test(InverseDynamics<SmallInstance>(model)) == Status::self_test_failed;
+      const double miss = largest_miss(model);
+      const bool should = !(miss <= pinnquad::golden_tolerance);
+      if (failed != should && !(std::fabs(miss - pinnquad::golden_tolerance) <= undecided)) ++disagreed;
+      if (failed) ++found;
+      if (bit >= 23) {  // sign and exponent
+        ++high;
+        ++(failed ? found_high : missed_high);
+      }
+    }
+  }
+  MESSAGE("found ", found, " of ", (32 * SmallModel::parameters.size()), " wrong bits; of sign and exponent bits ",
+          found_high, " of ", high);
+  CHECK(disagreed == 0);
+  CHECK(missed_high * 20 <= high);
+  CHECK(found < int(32 * SmallModel::parameters.size()));  // the last bits are rounding: a checksum's business
 }

@@ -37,6 +37,7 @@ expect_line 2 'a_file/out' "$train" --flight good.csv --out a_file/out --epochs 
 expect_line 2 'a_file/flight\.csv' "$fly" --samples 10 --out a_file/flight.csv
 expect_line 2 "no airframe named 'zeppelin'; known: " "$train" --flight good.csv --airframe zeppelin --out out
 expect_line 2 "no airframe named 'zeppelin'; known: " "$fly" --airframe zeppelin --out out/f.csv
+expect_line 2 'a_file/model\.block' "$train" --flight good.csv --out out --epochs 1 --seeds 1 --block a_file/model.block
 expect_line 2 '--epochs' "$train" --flight good.csv --epochs 0
 expect_line 2 '--name' "$train" --flight good.csv --name 3rd
 expect_line 2 '--seeds' "$train" --flight good.csv --seeds many

@@ -4,10 +4,10 @@ source "$(dirname "$0")/common.sh" "$@"
 
 "$fly" --seed 3 --samples 3000 --out flight.csv
 [ "$(wc -l <flight.csv)" -eq 3001 ] || fail "3000 rows and a header were expected"
-mkdir a b
-"$train" --flight flight.csv --out a --seeds 2 --epochs 8 --threads 2 >a.txt
+mkdir a b c
+"$train" --flight flight.csv --out a --seeds 2 --epochs 8 --threads 2 --block a/model.block >a.txt
 grep -q "physics-informed" a.txt || fail "the table names no physics-informed network"
-for file in results.csv report.json model.hpp replay.txt ellipses.svg errors.svg prediction.svg; do
+for file in results.csv report.json model.hpp model.block replay.txt ellipses.svg errors.svg prediction.svg; do
   [ -s "a/$file" ] || fail "$file is missing or empty"
 done
 [ "$(wc -l <a/results.csv)" -eq 6 ] || fail "results.csv: a header, the linearized model and 4 networks were expected"
@@ -17,8 +17,9 @@ done
 cmp flight.csv again.csv || fail "the same seed flew another flight"
 "$fly" --seed 4 --samples 3000 --out other.csv >/dev/null
 ! cmp -s flight.csv other.csv || fail "another seed flew the same flight"
-"$train" --flight flight.csv --out b --seeds 2 --epochs 8 --threads 1 >/dev/null
+"$train" --flight flight.csv --out b --seeds 2 --epochs 8 --threads 1 --block b/model.block >/dev/null
 cmp a/model.hpp b/model.hpp || fail "the same seeds trained other weights"
+cmp a/model.block b/model.block || fail "the same seeds wrote another block"
 
 # the exported header in a project of its own
 cmake -S "$source_dir/examples/fly_export" -B fly_export -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" \
@@ -32,3 +33,18 @@ grep -q "weights zeroed" flown.txt || fail "no closed loop was flown"
 expect_line 2 "flight.csv:1: expected" fly_export/fly_export --replay flight.csv
 head -c 5000 a/replay.txt >truncated.txt
 expect_line 2 "truncated.txt:[0-9]+:[0-9]+: expected a number" fly_export/fly_export --replay truncated.txt
+
+# weights of a later training as a block, flown by the program that was built for the first
+"$train" --flight flight.csv --out c --seeds 1 --seed 7 --epochs 6 --block c/model.block >/dev/null
+! cmp -s a/model.block c/model.block || fail "another seed trained the same weights"
+fly_export/fly_export --replay c/replay.txt --block c/model.block >block.txt 2>/dev/null || true
+grep -q "block .*c/model.block, .* bytes" block.txt || fail "the block was not read"
+grep -q "self test .*: ok" block.txt || fail "the self test of the block failed"
+grep -q ": agrees" block.txt || fail "the block does not agree with the trainer"
+fly_export/fly_export --replay c/replay.txt >other.txt 2>/dev/null || true
+grep -q ": DISAGREES" other.txt || fail "the header's weights agree with another training's"
+head -c 20000 c/model.block >cut.block
+refused() { expect_line 2 "$2: $1" fly_export/fly_export --replay c/replay.txt --block "$2"; } # <why> <file>
+refused "model block truncated or misaligned" cut.block
+refused "model block of another format or shape" flight.csv
+refused "no such readable file" none.block

@@ -52,6 +52,8 @@ Scalar standard_atmosphere_density_kg_m3(Scalar altitude_m) noexcept {
 
 /// Sets the density of the surroundings from their altitude.
 struct StandardAtmosphere {
+  static constexpr VariesWith varies_with = VariesWith::height;
+
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
     air.air_density_kg_m3 = standard_atmosphere_density_kg_m3(air.altitude_m);

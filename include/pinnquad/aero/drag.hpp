@@ -9,6 +9,8 @@ namespace pinnquad {
 /// F_i = -k_i rho |v_i| v_i for |v_i| above the airframe's deadband, else 0; body axes, no torque.
 /// v is relative to the air, k from Airframe::drag_area_m2. Source: the paper's simulator.
 struct QuadraticDrag {
+  static constexpr VariesWith varies_with = VariesWith::motion;
+
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {

@@ -5,7 +5,8 @@
 // All `surroundings` run first, then the rotors, then each `wrench` in the order of the vehicle's effects.
 // Optional: `template <class Scalar> auto bound(const Airframe<Scalar>&) const noexcept;` returns the effect that a vehicle
 // keeps in its place, with what follows from the airframe worked out once.
-// An effect whose wrench depends on the rotors says so, see `uses_rotor_wrench` and `has_thrust_branches`.
+// An effect whose wrench depends on the rotors says so, see `uses_rotor_wrench` and `has_thrust_branches`; one that is the same
+// at every place and time may say so, see `varies_with`.
 #pragma once
 
 #include <array>
@@ -55,6 +56,13 @@ enum class ThrustBranch : std::uint8_t {
   lower,  ///< more thrust makes less of it, until the force is zero and the upper branch begins
 };
 
+/// What an effect's air and wrench depend on besides motion, attitude and airframe, and on the effects before it.
+enum class VariesWith : std::uint8_t {
+  motion,          ///< nothing else
+  height,          ///< above ground or sea level
+  place_and_time,  ///< anything
+};
+
 namespace detail {
 struct EffectProbe {
   static Surroundings<double>& surroundings();
@@ -84,6 +92,11 @@ template <class Effect, class = void>
 struct UsesRotors : std::false_type {};
 template <class Effect>
 struct UsesRotors<Effect, std::enable_if_t<Effect::uses_rotor_wrench>> : std::true_type {};
+template <class Effect, class = void>
+struct Variation : std::integral_constant<VariesWith, VariesWith::place_and_time> {};
+template <class Effect>
+struct Variation<Effect, std::void_t<decltype(Effect::varies_with)>>
+    : std::integral_constant<VariesWith, Effect::varies_with> {};
 template <class Effect, class = void>
 struct HasBranches : std::false_type {};
 template <class Effect>
@@ -126,5 +139,18 @@ inline constexpr bool uses_rotor_wrench = detail::UsesRotors<Effect>::value;
 /// its wrench as if the condition lay on that branch.
 template <class Effect>
 inline constexpr bool has_thrust_branches = detail::HasBranches<Effect>::value;
+
+/// `static constexpr VariesWith varies_with = VariesWith::motion;` lets an inverse go without place and time. An effect that
+/// says nothing is taken to depend on both.
+template <class Effect>
+inline constexpr VariesWith varies_with = detail::Variation<Effect>::value;
+
+/// The most that any of these effects depends on.
+template <class... Effects>
+inline constexpr VariesWith widest_variation = ((varies_with<Effects> == VariesWith::place_and_time) || ...)
+                                                   ? VariesWith::place_and_time
+                                               : ((varies_with<Effects> == VariesWith::height) || ...)
+                                                   ? VariesWith::height
+                                                   : VariesWith::motion;
 
 }  // namespace pinnquad

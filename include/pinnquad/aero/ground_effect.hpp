@@ -71,6 +71,7 @@ struct Conyers {
 template <class ThrustRatio>
 struct GroundEffect {
   static constexpr bool uses_rotor_wrench = true;
+  static constexpr VariesWith varies_with = VariesWith::height;
   ThrustRatio ratio{};
 
   template <class Scalar>

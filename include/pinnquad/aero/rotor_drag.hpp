@@ -12,6 +12,7 @@ namespace pinnquad {
 /// Martin and Salaun, The true role of accelerometer feedback in quadrotor control (2010), near hover.
 struct RotorDrag {
   static constexpr bool uses_rotor_wrench = true;
+  static constexpr VariesWith varies_with = VariesWith::motion;
   double coefficient_s_m{0.02};
 
   template <class Scalar>

@@ -12,6 +12,7 @@ namespace pinnquad {
 template <class ThrustRatio>
 struct RotorGroundEffect {
   static constexpr bool uses_rotor_wrench = true;
+  static constexpr VariesWith varies_with = VariesWith::height;
   ThrustRatio ratio{};
 
   template <class Scalar>

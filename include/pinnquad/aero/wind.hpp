@@ -11,6 +11,7 @@ namespace pinnquad {
 
 /// The same wind everywhere and always; adds to the wind set so far.
 struct ConstantWind {
+  static constexpr VariesWith varies_with = VariesWith::motion;
   std::array<double, 3> velocity_m_s{0.0, 0.0, 0.0};  ///< NED
 
   template <class Scalar>

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Feed-forward policies: the commands for a motion wanted, before any feedback.
 // Contract: `Status operator()(const State<S>&, const Accelerations<S>& desired, S time_s, Commands<S>&) noexcept`; the
-// commands are not clipped, and untouched unless the Status is ok.
+// commands are untouched unless has_output(status). AnalyticInverse (inference/analytic_inverse.hpp) is one.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <type_traits>
 
-#include "pinnquad/inference/features.hpp"
-#include "pinnquad/vehicle/inverse.hpp"
+#include "pinnquad/inference/analytic_inverse.hpp"
 
 namespace pinnquad {
 
@@ -52,33 +51,16 @@ Status hover_trim(const Quadrotor<Scalar, Effects...>& quadrotor, const Vector3<
   return inverse_commands(quadrotor, state, Accelerations<Scalar>{}, Scalar(0), trim.commands);
 }
 
-template <class Vehicle>
-class AnalyticInverse;
-
-/// The inverse by formula, through the vehicle's own effects (vehicle/inverse.hpp).
-template <class Scalar, class... Effects>
-class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
- public:
-  explicit AnalyticInverse(const Quadrotor<Scalar, Effects...>& quadrotor) noexcept : quadrotor_(quadrotor) {}
-
-  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, Scalar time_s,
-                    Commands<Scalar>& commands) noexcept {
-    return inverse_commands(quadrotor_, state, desired, time_s, commands);
-  }
-
- private:
-  Quadrotor<Scalar, Effects...> quadrotor_;
-};
-
-/// How often a network's answer was replaced, and why.
+/// How often a network declined, and why.
 struct FallbackCount {
   static constexpr auto statuses = static_cast<std::size_t>(status_count);
 
   std::uint32_t asked{0};
-  std::array<std::uint32_t, statuses> by_status{};  ///< indexed by Status; `ok` counts the network's own answers
+  std::array<std::uint32_t, statuses> by_status{};  ///< indexed by Status; `ok` and `limited` count the network's own
 
   constexpr std::uint32_t of(Status status) const noexcept { return by_status[index(status)]; }
-  constexpr std::uint32_t fallbacks() const noexcept { return asked - of(Status::ok); }
+  constexpr std::uint32_t fallbacks() const noexcept { return asked - of(Status::ok) - of(Status::limited); }
+  /// What the network alone came to.
   constexpr void add(Status status) noexcept {
     ++asked;
     ++by_status[index(status)];
@@ -88,10 +70,10 @@ struct FallbackCount {
   static constexpr std::size_t index(Status status) noexcept { return static_cast<std::size_t>(status) % statuses; }
 };
 
-/// The network's prediction for the motion wanted; where it declines (outside the training envelope, bad input), the
-/// fallback's answer, counted by Status. `InverseDynamics` has the interface of inference/inverse_dynamics.hpp; its
-/// scalar may be narrower than the loop's.
-template <class InverseDynamics, class Fallback>
+/// The network's prediction for the motion wanted, or what its guard falls back to, counted by why. `InverseDynamics` has the
+/// interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in its guard
+/// the policy declines where the network does.
+template <class InverseDynamics>
 class NetworkInverse {
  public:
   using NetworkScalar = typename InverseDynamics::Scalar;
@@ -99,18 +81,19 @@ class NetworkInverse {
                 "pinnquad: NetworkInverse fills MotionInputs; this model's feature set asks for other inputs "
                 "(inference/features.hpp)");
 
-  NetworkInverse(const InverseDynamics& inverse, const Fallback& fallback) noexcept
-      : inverse_(inverse), fallback_(fallback) {}
+  explicit NetworkInverse(const InverseDynamics& inverse) noexcept : inverse_(inverse) {}
 
   template <class Scalar>
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, Scalar time_s,
                     Commands<Scalar>& commands) noexcept {
     Commands<NetworkScalar> predicted{};
-    const Status status = inverse_.predict(narrowed(motion_inputs(state, desired)), predicted);
-    count_.add(status);
-    if (status != Status::ok) return fallback_(state, desired, time_s, commands);
+    typename InverseDynamics::Report report;
+    const PlaceAndTime<Scalar> place{state.position_m, time_s};
+    const Status status = inverse_.predict(narrowed(motion_inputs(state, desired)), place, predicted, report);
+    count_.add(report.cause);
+    if (!has_output(status)) return status;
     for (std::size_t i = 0; i < predicted.size(); ++i) commands[i] = Scalar(predicted[i]);
-    return Status::ok;
+    return status;
   }
 
   const FallbackCount& count() const noexcept { return count_; }
@@ -127,7 +110,6 @@ class NetworkInverse {
   }
 
   InverseDynamics inverse_;
-  Fallback fallback_;
   FallbackCount count_{};
 };
 

@@ -34,7 +34,7 @@ class TrackingController {
     if (status != Status::ok) return status;
     Commands<Scalar> sum{};
     status = feed_forward_(state, demand.reference, time_s, sum);
-    if (status != Status::ok) return status;
+    if (!has_output(status)) return status;
     Wrench<Scalar> feedback;
     feedback.force_N[2] = airframe_.mass_kg * demand.feedback_acceleration_m_s2[2];
     feedback.torque_N_m = to_vector(airframe_.inertia_kg_m2).cwiseProduct(demand.feedback_angular_acceleration_rad_s2);

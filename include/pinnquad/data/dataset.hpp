@@ -10,31 +10,13 @@
 #include <limits>
 #include <vector>
 
+#include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/data/sample.hpp"
 
 namespace pinnquad {
 
 /// Rows of one flight, time strictly increasing.
 using Flight = std::vector<Sample>;
-
-namespace detail {
-
-/// FNV-1a, 64 bit, one byte at a time. Source: Fowler, Noll, Vo.
-struct Fnv1a {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-
-  constexpr void absorb(unsigned char byte) noexcept {
-    hash ^= byte;
-    hash *= 0x100000001b3u;
-  }
-
-  /// Eight bytes, least significant first, whatever the byte order of the machine.
-  constexpr void absorb_word(std::uint64_t word) noexcept {
-    for (int byte = 0; byte < 8; ++byte) absorb(static_cast<unsigned char>((word >> (8 * byte)) & 0xffu));
-  }
-};
-
-}  // namespace detail
 
 /// Provenance of a flight: 64-bit FNV-1a over the number of rows and the IEEE 754 bits of every value, each as eight
 /// bytes, least significant first, rows in order, values in the order of `sample_field_names`.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Writes a trained model as a C++ header that flight code includes: weights, feature schema, scaling, training envelope, golden
-// vectors, provenance. Every number reads back bit for bit.
+// Writes a trained model as a C++ header that flight code includes: weights, feature schema, scaling, training
+// envelope, golden vectors, provenance. Every number reads back bit for bit.
 #pragma once
 
 #include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <ostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,18 @@ inline std::string literal(double value) {
   return result;
 }
 
-/// Numbers in braces, several to a line.
+inline std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
+  }
+  return result + '"';
+}
+inline std::string literal(const char* text) { return quoted(text); }
+inline std::string literal(int value) { return std::to_string(value); }
+
+/// Values in braces, several to a line.
 template <class Range>
 void write_braced(std::ostream& out, const Range& values, const std::string& indent) {
   constexpr int per_line = 8;
@@ -64,20 +76,28 @@ void write_braced(std::ostream& out, const Range& values, const std::string& ind
   out << '}';
 }
 
-inline std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
-  }
-  return result + '"';
-}
-
 inline std::string hexadecimal(std::uint64_t value) {
   char text[17];
   const auto end = std::to_chars(text, text + 16, value, 16).ptr;
   const std::string digits(text, end);
   return "0x" + std::string(16 - digits.size(), '0') + digits;
+}
+
+/// The commands of golden feature vectors, by the portable kernel.
+/// Throws std::invalid_argument for none, and for one outside the envelope: no self test could pass it.
+template <class Model>
+std::vector<Commands<typename Model::Scalar>> golden_commands(
+    const Model& model, const std::vector<typename Model::FeatureVector>& golden) {
+  if (golden.empty()) throw std::invalid_argument("export: a model needs at least one golden vector");
+  std::vector<Commands<typename Model::Scalar>> commands;
+  for (const auto& x : golden) {
+    if (!between(model.envelope_lower, x, model.envelope_upper)) {
+      throw std::invalid_argument("export: golden vector " + std::to_string(commands.size() + 1) +
+                                  " lies outside the envelope");
+    }
+    commands.push_back(model.predict(x));
+  }
+  return commands;
 }
 
 }  // namespace detail
@@ -91,9 +111,9 @@ inline bool is_identifier(const std::string& name) {
   return true;
 }
 
-/// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their commands are
-/// computed here by the portable kernel. The contract of what is written: inference/model.hpp.
-/// Throws std::invalid_argument for a name that is no identifier or for no golden vector.
+/// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
+/// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp. Throws
+/// std::invalid_argument for a name that is no identifier, for no golden vector, and for one outside the envelope.
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& out, const std::string& struct_name, const TrainedModel<NetworkType, ContextType>& model,
                  const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
@@ -101,13 +121,16 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
   using Model = TrainedModel<NetworkType, ContextType>;
   using Scalar = typename Model::Scalar;
   if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
-  if (golden.empty()) throw std::invalid_argument("export: a model needs at least one golden vector");
+  const auto golden_commands = detail::golden_commands(model, golden);
 
   const std::string scalar = type_name<Scalar>();
-  const auto array = [&](const char* name, const auto& values) {
-    out << "  static constexpr std::array<" << scalar << ", " << values.size() << "> " << name << " = {";
+  const auto array = [&](const std::string& type, const char* name, const auto& values) {
+    out << "  static constexpr std::array<" << type << ", " << values.size() << "> " << name << " = {";
     detail::write_braced(out, values, "  ");
     out << "};\n";
+  };
+  const auto text = [&](const char* name, const std::string& value) {
+    out << "  static constexpr const char* " << name << " = " << detail::quoted(value) << ";\n";
   };
   const auto scaler = [&](const char* name, const auto& value) {
     out << "  static constexpr pinnquad::Scaler<" << scalar << ", " << value.mean.size() << "> " << name << " = {{";
@@ -116,9 +139,9 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
     detail::write_braced(out, value.spread, "  ");
     out << "}};\n";
   };
-  const auto table = [&](const char* name, const auto& rows) {
-    out << "  static constexpr std::array<std::array<" << scalar << ", " << rows[0].size() << ">, " << rows.size()
-        << "> " << name << " = {{";
+  const auto table = [&](const std::string& type, const char* name, const auto& rows) {
+    out << "  static constexpr std::array<std::array<" << type << ", " << rows[0].size() << ">, " << rows.size() << "> "
+        << name << " = {{";
     for (std::size_t i = 0; i < rows.size(); ++i) {
       out << (i == 0 ? "\n    {" : ",\n    {");
       detail::write_braced(out, rows[i], "    ");
@@ -129,7 +152,7 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
 
   out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
       << ". Generated: export again rather than edit.\n"
-      << "// Frame: body FRD, world NED, SI units, rad. Outputs in the order of the airframe's rotors.\n"
+      << "// SI units, rad. Commands in the order of the airframe's rotors.\n"
       << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n"
       << "struct " << struct_name << " {\n"
       << "  using Scalar = " << scalar << ";\n"
@@ -138,38 +161,38 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
       << "  using Outputs = " << type_name<typename Model::Outputs>() << ";\n"
       << "  using Vehicle = " << type_name<typename Model::Vehicle>() << ";\n"
       << "  using Inputs = Features::Inputs<Scalar>;\n\n"
-      << "  static constexpr int format_version = " << model_format_version << ";\n"
-      << "  static constexpr const char* name = " << detail::quoted(struct_name) << ";\n\n"
-      << "  // provenance\n"
-      << "  static constexpr const char* training_data = " << detail::quoted(provenance.training_data) << ";\n"
-      << "  static constexpr std::uint64_t training_data_hash = " << detail::hexadecimal(provenance.training_data_hash)
+      << "  static constexpr int format_version = " << model_format_version << ";\n";
+  text("name", struct_name);
+  out << "\n  // provenance\n";
+  text("training_data", provenance.training_data);
+  out << "  static constexpr std::uint64_t training_data_hash = " << detail::hexadecimal(provenance.training_data_hash)
       << ";\n"
       << "  static constexpr int training_rows = " << provenance.training_rows << ";\n"
       << "  static constexpr std::uint64_t seed = " << provenance.seed << "u;\n"
-      << "  static constexpr int epochs = " << provenance.epochs << ";\n"
-      << "  static constexpr const char* loss = " << detail::quoted(provenance.loss) << ";\n\n"
-      << "  // feature schema:";
-  for (std::size_t i = 0; i < Model::Features::names.size(); ++i) {
-    out << (i == 0 ? " " : ", ") << (i % 6 == 5 ? "\n  // " : "") << Model::Features::names[i] << " ["
-        << Model::Features::units[i] << ']';
-  }
-  out << "\n  // outputs:";
-  for (const char* name : Model::Outputs::names) out << ' ' << name << " [" << Model::Outputs::unit << ']';
-  out << "\n\n  // standardisation: (value - mean) / spread\n";
+      << "  static constexpr int epochs = " << provenance.epochs << ";\n";
+  text("loss", provenance.loss);
+  out << "\n  // what it was trained for; require_model() compares with Features, Outputs and Vehicle\n";
+  text("frame", model_frame);
+  array("const char*", "feature_names", Model::Features::names);
+  array("const char*", "feature_units", Model::Features::units);
+  array("const char*", "output_names", Model::Outputs::names);
+  text("output_unit", Model::Outputs::unit);
+  text("vehicle_name", Model::Vehicle::name);
+  out << "  // rotor by rotor: signs of its torque about x, y, z\n";
+  table("int", "motor_torque_signs", motor_torque_signs<typename Model::Vehicle>());
+  out << "\n  // standardisation: (value - mean) / spread\n";
   scaler("input", model.input);
   scaler("output", model.output);
   out << "\n  // training envelope per feature, margin included\n";
-  array("envelope_lower", model.envelope_lower);
-  array("envelope_upper", model.envelope_upper);
+  array(scalar, "envelope_lower", model.envelope_lower);
+  array(scalar, "envelope_upper", model.envelope_upper);
 
-  std::vector<Commands<Scalar>> golden_commands;
-  for (const auto& x : golden) golden_commands.push_back(model.predict(x));
   out << "\n  // golden vectors: features in physical units -> commands\n";
-  table("golden_features", golden);
-  table("golden_commands", golden_commands);
+  table(scalar, "golden_features", golden);
+  table(scalar, "golden_commands", golden_commands);
 
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
-  array("parameters", model.network.parameters);
+  array(scalar, "parameters", model.network.parameters);
   out << "};\n\nstatic_assert(pinnquad::require_model<" << struct_name << ">());\n";
 }
 

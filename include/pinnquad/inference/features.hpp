@@ -61,8 +61,11 @@ struct PaperFeatures {
   static Status check(const Inputs<Scalar>& in) noexcept {
     const Quaternion<Scalar>& q = in.attitude;
     const Scalar attitude[4] = {q.w, q.x, q.y, q.z};
-    const bool finite = all_finite(in.linear_acceleration_m_s2) && all_finite(in.angular_acceleration_rad_s2) &&
-                        all_finite(in.velocity_m_s) && all_finite(in.body_rates_rad_s) && all_finite(attitude, 4);
+    bool finite = all_finite(attitude, 4);  // no early exit: the time does not depend on the data
+    finite &= all_finite(in.linear_acceleration_m_s2);
+    finite &= all_finite(in.angular_acceleration_rad_s2);
+    finite &= all_finite(in.velocity_m_s);
+    finite &= all_finite(in.body_rates_rad_s);
     if (!finite) return Status::not_finite;
     return is_unit(q) ? Status::ok : Status::not_unit_quaternion;
   }

@@ -1,76 +1,263 @@
 // SPDX-License-Identifier: MIT
-// What the control loop calls: predict() = check -> features -> envelope -> scale -> forward -> check.
-// No state, no heap, bounded time; weights stay where the exported header put them.
+// What the control loop calls: predict() = check -> features -> envelope -> scale -> forward -> check, as its Guard says.
+// No heap, bounded time; weights stay where the exported header put them, and the object is empty then.
 #pragma once
 
-#include "pinnquad/core/finite.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/model.hpp"
+#include "pinnquad/inference/model_numbers.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 
 namespace pinnquad {
 
 namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
 /// The model's weights as the vector unit wants them, packed by the compiler.
 template <class Model>
 inline constexpr PackedNetwork<typename Model::Network> packed_model{Model::parameters};
+
+/// What is written to where nobody asked why.
+struct NoReport {};
+
+/// A model that brings its own forward() is an instance with weights elsewhere, checked by whoever loads it.
+template <class Model>
+constexpr bool check_model() noexcept {
+  if constexpr (is_model<Model> && HasOwnForward<Model>::value) {
+    return true;
+  } else {
+    return require_model<Model>();
+  }
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
 /// An exported network as an inverse-dynamics model: motion wanted -> commands.
-template <class ModelType>
-class InverseDynamics {
-  static_assert(require_model<ModelType>());
+/// Every function leaves the commands untouched unless has_output(status).
+template <class ModelType, class GuardType = TrainingGuard>
+class InverseDynamics : private detail::Held<ModelType>, private detail::Held<GuardType> {
+  static_assert(detail::check_model<ModelType>());
+  static_assert(is_guard<GuardType>,
+                "pinnquad: the second argument of InverseDynamics is a Guard (inference/guard.hpp)");
 
  public:
   using Model = ModelType;
+  using Guard = GuardType;
   using Scalar = typename Model::Scalar;
   using Features = typename Model::Features;
   using Inputs = typename Features::template Inputs<Scalar>;
   using Network = typename Model::Network;
+  using Report = GuardReport<Scalar, Features::size>;
 
-  /// Commands that make the motion asked for; not clipped to 0..1 (the rotor clips).
-  /// `not_finite`, `not_unit_quaternion`: a bad input. `outside_envelope`: a feature beyond the training data.
-  /// `output_not_finite`: the network's weights are broken. `commands` are untouched unless the Status is ok.
+  /// Of an exported model: it and the guard are types alone. A model or a fallback with values of its own must be given.
+  InverseDynamics() = default;
+  explicit InverseDynamics(const Model& model) noexcept : detail::Held<Model>(model) {}
+  explicit InverseDynamics(const Guard& guard) noexcept : detail::Held<Guard>(guard) {}
+  InverseDynamics(const Model& model, const Guard& guard) noexcept
+      : detail::Held<Model>(model), detail::Held<Guard>(guard) {}
+
+  const Model& model() const noexcept { return detail::Held<Model>::held(); }
+  const Guard& guard() const noexcept { return detail::Held<Guard>::held(); }
+
+  /// Commands that make the motion asked for; not clipped to 0..1 unless the guard does (the rotor clips).
+  /// `ok`, `limited`: the network's. `fell_back`: the fallback's. `not_finite`, `not_unit_quaternion`: a bad input.
+  /// `outside_envelope`: a feature beyond the training data. `outside_limits`: the guard refuses the commands.
+  /// `output_not_finite`: the network's weights are broken.
   Status predict(const Inputs& inputs, Commands<Scalar>& commands) const noexcept {
-    const Status checked = Features::check(inputs);
-    if (checked != Status::ok) return checked;
-    Scalar x[Features::size];
-    Features::extract(inputs, x);
-    return predict_features(x, commands);
+    detail::NoReport none;
+    return guarded(inputs, commands, none);
+  }
+  /// The same, and why.
+  Status predict(const Inputs& inputs, Commands<Scalar>& commands, Report& report) const noexcept {
+    report = {};
+    return guarded(inputs, commands, report);
+  }
+  /// The same for a fallback that needs to know where and when.
+  template <class Real>
+  Status predict(const Inputs& inputs, const PlaceAndTime<Real>& place, Commands<Scalar>& commands) const noexcept {
+    detail::NoReport none;
+    return guarded(inputs, commands, none, place);
+  }
+  template <class Real>
+  Status predict(const Inputs& inputs, const PlaceAndTime<Real>& place, Commands<Scalar>& commands,
+                 Report& report) const noexcept {
+    report = {};
+    return guarded(inputs, commands, report, place);
   }
 
-  /// The same from a feature vector X, physical units.
+  /// The network's answer to a feature vector X, physical units, under all of the guard but its fallback, which needs the
+  /// inputs. `not_finite` for NaN or infinity that no envelope refuses.
   Status predict_features(const Scalar* x, Commands<Scalar>& commands) const noexcept {
-    if (!inside_envelope(x)) return Status::outside_envelope;
+    return predict_features(x, commands.data());
+  }
+  /// The same into four numbers.
+  Status predict_features(const Scalar* x, Scalar* commands) const noexcept {
+    detail::NoReport none;
+    Scalar outputs[rotor_count];
+    const Status status = ask_network(x, outputs, none);
+    if (has_output(status)) {
+      for (int i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
+    }
+    return status;
+  }
+
+  /// The network alone, without any check: features X -> commands. For self_test(), not for motors.
+  PINNQUAD_ALWAYS_INLINE void evaluate(const Scalar* x, Scalar* commands) const noexcept {
     Scalar standardised[Features::size];
     Scalar outputs[rotor_count];
-    Model::input.standardise(x, standardised);
+    const Scalar* input_mean = Numbers::input_mean(model());
+    const Scalar* input_spread = Numbers::input_spread(model());
+    for (int i = 0; i < Features::size; ++i) standardised[i] = (x[i] - input_mean[i]) / input_spread[i];
     forward(standardised, outputs);
-    Model::output.restore(outputs, outputs);
+    const Scalar* output_mean = Numbers::output_mean(model());
+    const Scalar* output_spread = Numbers::output_spread(model());
     constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();
-    for (Scalar& v : outputs) v = Model::Outputs::command(v, airframe);
-    if (!all_finite(outputs, rotor_count)) return Status::output_not_finite;
-    for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
-    return Status::ok;
+    for (int i = 0; i < rotor_count; ++i) {
+      commands[i] = Model::Outputs::command(outputs[i] * output_spread[i] + output_mean[i], airframe);
+    }
   }
 
   /// True if every feature lies in what the model was trained on, margin included; false for NaN.
-  static bool inside_envelope(const Scalar* x) noexcept {
+  PINNQUAD_ALWAYS_INLINE bool inside_envelope(const Scalar* x) const noexcept {
+    const Scalar* lower = Numbers::lower(model());
+    const Scalar* upper = Numbers::upper(model());
     bool inside = true;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(Features::size); ++i) {
-      inside &= x[i] >= Model::envelope_lower[i] && x[i] <= Model::envelope_upper[i];
-    }
+    for (int i = 0; i < Features::size; ++i) inside &= x[i] >= lower[i] && x[i] <= upper[i];
     return inside;
   }
 
-  /// The bare network, standardised in and out: the vector unit's kernel where there is one, else the portable one.
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) noexcept {
-    if constexpr (has_vector_unit<Scalar>) {
+  /// The bare network, standardised in and out: the model's own forward() if it has one; else the vector unit's kernel where
+  /// there is one, else the portable one.
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
+    if constexpr (detail::HasOwnForward<Model>::value) {
+      model().forward(standardised, outputs);
+    } else if constexpr (has_vector_unit<Scalar>) {
       detail::packed_model<Model>.forward(standardised, outputs);
     } else {
-      Network::forward(Model::parameters.data(), standardised, outputs);
+      constexpr const Scalar* weights = Model::parameters.data();
+      Network::forward(weights, standardised, outputs);
+    }
+  }
+
+ private:
+  using Numbers = detail::ModelNumbers<Model>;
+  template <class ReportType>
+  static constexpr bool reports = !std::is_same_v<ReportType, detail::NoReport>;
+
+  template <class ReportType, class... Place>
+  PINNQUAD_ALWAYS_INLINE Status guarded(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
+                                        const Place&... place) const noexcept {
+    Scalar outputs[rotor_count];
+    const Status status = ask_network(inputs, outputs, report);
+    if constexpr (reports<ReportType>) report.cause = status;
+    if (has_output(status)) {
+      for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
+      return status;
+    }
+    if constexpr (Guard::falls_back) {
+      return fall_back(inputs, commands, report, place...) ? Status::fell_back : status;
+    } else {
+      return status;
+    }
+  }
+
+  template <class ReportType>
+  PINNQUAD_ALWAYS_INLINE Status ask_network(const Inputs& inputs, Scalar* commands, ReportType& report) const noexcept {
+    if constexpr (Guard::checks_inputs) {
+      const Status checked = Features::check(inputs);
+      if (checked != Status::ok) return checked;
+    }
+    Scalar x[Features::size];
+    Features::extract(inputs, x);
+    return ask_network(x, commands, report);
+  }
+
+  template <class ReportType>
+  PINNQUAD_ALWAYS_INLINE Status ask_network(const Scalar* x, Scalar* commands, ReportType& report) const noexcept {
+    if constexpr (reports<ReportType>) measure(x, report);
+    if constexpr (Guard::refuses_outside_envelope) {
+      if (!inside_envelope(x)) return Status::outside_envelope;
+    }
+    if constexpr (Guard::checks_inputs) {
+      if (!all_finite(x, Features::size)) return Status::not_finite;
+    }
+    bool moved = false;
+    if constexpr (Guard::clamps_to_envelope) {
+      Scalar nearest[Features::size];
+      moved = clamp(x, nearest);
+      if constexpr (reports<ReportType>) report.features_clamped = moved;
+      evaluate(nearest, commands);
+    } else {
+      evaluate(x, commands);
+    }
+    const Status checked = Guard::check_commands(commands);
+    if constexpr (reports<ReportType>) report.commands_clipped = checked == Status::limited;
+    return checked == Status::ok && moved ? Status::limited : checked;
+  }
+
+  /// x moved into the envelope; true if anything had to move. x is finite.
+  PINNQUAD_ALWAYS_INLINE bool clamp(const Scalar* x, Scalar* nearest) const noexcept {
+    const Scalar* lower = Numbers::lower(model());
+    const Scalar* upper = Numbers::upper(model());
+    for (int i = 0; i < Features::size; ++i)
+      nearest[i] = x[i] < lower[i] ? lower[i] : (upper[i] < x[i] ? upper[i] : x[i]);
+    return !inside_envelope(x);
+  }
+
+  /// Asks the fallback; true if its commands were written. Out of line: the network's way is the hot one.
+  template <class ReportType, class... Place>
+  PINNQUAD_NOINLINE bool fall_back(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
+                                   const Place&... place) const noexcept {
+    Commands<Scalar> replaced{};
+    Status status = ask_fallback(inputs, replaced, place...);
+    if (has_output(status)) {
+      status = Guard::check_commands(replaced.data());
+      if constexpr (reports<ReportType>) report.commands_clipped = status == Status::limited;
+    }
+    if constexpr (reports<ReportType>) {
+      report.fallback_asked = true;
+      report.fallback = status;
+    }
+    if (!has_output(status)) return false;
+    commands = replaced;
+    return true;
+  }
+
+  /// With place and time if they are known and it takes them.
+  template <class... Place>
+  Status ask_fallback(const Inputs& inputs, Commands<Scalar>& commands, const Place&... place) const noexcept {
+    using Inverse = typename Guard::FallbackInverse;
+    if constexpr (std::is_invocable_r_v<Status, const Inverse&, const Inputs&, const Place&..., Commands<Scalar>&>) {
+      return guard().fallback()(inputs, place..., commands);
+    } else {
+      static_assert(std::is_invocable_r_v<Status, const Inverse&, const Inputs&, Commands<Scalar>&>,
+                    "pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time: "
+                    "predict(inputs, place, commands) (Fallback in inference/guard.hpp)");
+      return guard().fallback()(inputs, commands);
+    }
+  }
+
+  void measure(const Scalar* x, Report& report) const noexcept {
+    const Scalar* lower = Numbers::lower(model());
+    const Scalar* upper = Numbers::upper(model());
+    Scalar worst(0);
+    for (int i = 0; i < Features::size; ++i) {
+      const Scalar beyond = x[i] < lower[i] ? lower[i] - x[i] : x[i] - upper[i];  // NaN stays NaN
+      Scalar excess = beyond / ((upper[i] - lower[i]) / Scalar(2));
+      if (x[i] >= lower[i] && x[i] <= upper[i]) excess = Scalar(0);
+      report.excess[static_cast<std::size_t>(i)] = excess;
+      // what is not finite outdoes every number, the first of them all
+      if (is_finite(worst) && !(excess <= worst)) {
+        worst = excess;
+        report.worst_feature = i;
+      }
     }
   }
 };
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad

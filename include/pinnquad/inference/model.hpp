@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The contract of an exported model, a struct with static constexpr members that deploy/header_writer.hpp writes: types Scalar,
-// Network, Features, Outputs, Vehicle; arrays parameters, envelope_lower, envelope_upper, golden_features, golden_commands;
-// scalers input and output; format_version, name and provenance strings.
+// The contract of an exported model, a struct with static constexpr members that deploy/header_writer.hpp writes. Each
+// format is described here once; what a header says of itself is checked against what the including code's types say.
 #pragma once
+
+#include <cstdint>
+#include <string_view>
 
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
@@ -11,43 +13,185 @@
 
 namespace pinnquad {
 
-/// Format that this library writes and reads. A header of another format does not compile.
-inline constexpr int model_format_version = 1;
+/// Format that this library writes. A header of a newer one does not compile.
+///   1  types Scalar, Network, Features, Outputs, Vehicle; arrays parameters, envelope_lower, envelope_upper,
+///      golden_features, golden_commands; scalers input, output; format_version
+///   2  besides: frame, feature_names, feature_units, output_names, output_unit, vehicle_name, motor_torque_signs,
+///      training_data_hash
+inline constexpr int model_format_version = 2;
 
-/// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of about
-/// ten to spare.
+/// The oldest format that still flies.
+inline constexpr int oldest_model_format_version = 1;
+
+/// The frames of every feature set, as a header of format 2 states them.
+inline constexpr const char* model_frame = "body FRD, world NED";
+
+/// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
+/// about ten to spare.
 inline constexpr double golden_tolerance = 1e-5;
 
+/// How a rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw): -1, 0 or 1.
+using TorqueSigns = std::array<int, 3>;
+
+/// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
+template <class Vehicle>
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+  std::array<TorqueSigns, rotor_count> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto signs = allocation_signs(Vehicle::template value<double>(), static_cast<int>(axis));
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
+  }
+  return result;
+}
+
 namespace detail {
+template <class S, class = void>
+struct HasShape : std::false_type {};
+template <class S>
+struct HasShape<S, std::void_t<typename S::Scalar, typename S::Network, typename S::Features, typename S::Outputs,
+                               typename S::Vehicle>> : std::true_type {};
+
+/// A model made at run time for a shape: inference/model_view.hpp, loaded_model.hpp.
+template <class M, class = void>
+struct IsMadeForShape : std::false_type {};
+template <class M>
+struct IsMadeForShape<M, std::void_t<typename M::Shape>> : HasShape<typename M::Shape> {};
+
 template <class M, class = void>
 struct IsModel : std::false_type {};
 template <class M>
-struct IsModel<M, std::void_t<typename M::Scalar, typename M::Network, typename M::Features, typename M::Outputs,
-                              typename M::Vehicle, decltype(M::format_version), decltype(M::parameters),
-                              decltype(M::input), decltype(M::output), decltype(M::envelope_lower),
-                              decltype(M::envelope_upper), decltype(M::golden_features), decltype(M::golden_commands)>>
+struct IsModel<M,
+               std::void_t<std::enable_if_t<HasShape<M>::value>, decltype(M::format_version), decltype(M::parameters),
+                           decltype(M::input), decltype(M::output), decltype(M::envelope_lower),
+                           decltype(M::envelope_upper), decltype(M::golden_features), decltype(M::golden_commands)>>
     : std::true_type {};
+
+template <class M, class = void>
+struct DescribesItself : std::false_type {};
+template <class M>
+struct DescribesItself<M, std::void_t<decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
+                                      decltype(M::output_names), decltype(M::output_unit), decltype(M::vehicle_name),
+                                      decltype(M::motor_torque_signs), decltype(std::uint64_t{M::training_data_hash})>>
+    : std::true_type {};
+
+constexpr bool same_text(const char* a, const char* b) noexcept { return std::string_view(a) == std::string_view(b); }
+
+template <class Texts, class Others>
+constexpr bool same_texts(const Texts& texts, const Others& others) noexcept {
+  if (texts.size() != others.size()) return false;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (!same_text(texts[i], others[i])) return false;
+  }
+  return true;
+}
+
+template <class Signs>
+constexpr bool same_signs(const Signs& signs, const std::array<TorqueSigns, rotor_count>& others) noexcept {
+  if (signs.size() != others.size()) return false;
+  for (std::size_t rotor = 0; rotor < others.size(); ++rotor) {
+    if (signs[rotor].size() != others[rotor].size()) return false;
+    for (std::size_t axis = 0; axis < others[rotor].size(); ++axis) {
+      if (signs[rotor][axis] != others[rotor][axis]) return false;
+    }
+  }
+  return true;
+}
+
+/// lower[i] <= x[i] <= upper[i] for all i; false for NaN.
+template <class Array>
+constexpr bool between(const Array& lower, const Array& x, const Array& upper) noexcept {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!(lower[i] <= x[i] && x[i] <= upper[i])) return false;
+  }
+  return true;
+}
+
+template <class M>
+constexpr bool golden_inside_envelope() noexcept {
+  for (const auto& x : M::golden_features) {
+    if (!between(M::envelope_lower, x, M::envelope_upper)) return false;
+  }
+  return true;
+}
+
+template <class Array>
+constexpr bool all_positive(const Array& values) noexcept {
+  for (const auto& value : values) {
+    if (!(value > 0)) return false;
+  }
+  return true;
+}
+
+/// What a header of format 2 says of itself, against what its types say.
+template <class M>
+constexpr void require_description() noexcept {
+  static_assert(
+      DescribesItself<M>::value,
+      "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of the "
+      "training data (inference/model.hpp)");
+  if constexpr (DescribesItself<M>::value) {
+    using Features = typename M::Features;
+    using Outputs = typename M::Outputs;
+    static_assert(same_text(M::frame, model_frame), "pinnquad: the model was trained in other frames (frame)");
+    static_assert(same_texts(M::feature_names, Features::names),
+                  "pinnquad: the model was trained on other features than its feature set now has (feature_names)");
+    static_assert(same_texts(M::feature_units, Features::units),
+                  "pinnquad: the model was trained in other units than its feature set now has (feature_units)");
+    static_assert(same_texts(M::output_names, Outputs::names),
+                  "pinnquad: the model has other outputs than its output schema now has (output_names)");
+    static_assert(same_text(M::output_unit, Outputs::unit),
+                  "pinnquad: the model's outputs have another unit than its output schema (output_unit)");
+    static_assert(same_text(M::vehicle_name, M::Vehicle::name),
+                  "pinnquad: the model was trained for another airframe than its Vehicle (vehicle_name)");
+    static_assert(
+        same_signs(M::motor_torque_signs, motor_torque_signs<typename M::Vehicle>()),
+        "pinnquad: the model was trained with another motor order than its Vehicle now has: a rotor sits or turns "
+        "elsewhere (motor_torque_signs)");
+    static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
+                  "pinnquad: a scaler's spread is not positive");
+    static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
+  }
+}
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class M>
 inline constexpr bool is_model = detail::IsModel<M>::value;
 
-/// Checks, at compile time and by rule, that the parts of a model fit together.
+/// Checks, at compile time and by rule, that the types of a model fit together, wherever its weights are.
+template <class S>
+constexpr bool require_shape() noexcept {
+  static_assert(detail::HasShape<S>::value,
+                "pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle (inference/model.hpp)");
+  if constexpr (detail::HasShape<S>::value) {
+    static_assert(is_network<typename S::Network>, "pinnquad: the model's Network is not a pinnquad::Network");
+    static_assert(is_feature_set<typename S::Features>, "pinnquad: the model's Features are not a feature set");
+    static_assert(is_output_schema<typename S::Outputs>, "pinnquad: the model's Outputs are not an output schema");
+    static_assert(is_airframe<typename S::Vehicle>, "pinnquad: the model's Vehicle is not an airframe");
+    static_assert(std::is_same_v<typename S::Scalar, typename S::Network::Scalar>,
+                  "pinnquad: the model's Scalar is not that of its Network");
+    static_assert(S::Network::inputs == S::Features::size,
+                  "pinnquad: the network's input count differs from the feature set's size");
+    static_assert(S::Network::outputs == rotor_count,
+                  "pinnquad: the network's output count differs from the rotor count");
+  }
+  return detail::HasShape<S>::value;
+}
+
+/// The same for a whole exported model: its types, its arrays, and what it says of itself. For a model made at run
+/// time, the types: the numbers were checked when its block was opened.
 template <class M>
 constexpr bool require_model() noexcept {
-  static_assert(is_model<M>, "pinnquad: this type is not an exported model (inference/model.hpp)");
-  if constexpr (is_model<M>) {
-    static_assert(M::format_version == model_format_version,
-                  "pinnquad: the model was exported in another format; export it again with this version");
-    static_assert(is_network<typename M::Network>, "pinnquad: the model's Network is not a pinnquad::Network");
-    static_assert(is_feature_set<typename M::Features>, "pinnquad: the model's Features are not a feature set");
-    static_assert(is_output_schema<typename M::Outputs>, "pinnquad: the model's Outputs are not an output schema");
-    static_assert(is_airframe<typename M::Vehicle>, "pinnquad: the model's Vehicle is not an airframe");
-    static_assert(M::Network::inputs == M::Features::size,
-                  "pinnquad: the network's input count differs from the feature set's size");
-    static_assert(M::Network::outputs == rotor_count,
-                  "pinnquad: the network's output count differs from the rotor count");
+  constexpr bool made_for_shape = detail::IsMadeForShape<M>::value;
+  static_assert(is_model<M> || made_for_shape, "pinnquad: this type is not an exported model (inference/model.hpp)");
+  if constexpr (made_for_shape) {
+    return require_shape<typename M::Shape>();
+  } else if constexpr (is_model<M>) {
+    static_assert(M::format_version <= model_format_version,
+                  "pinnquad: the model was exported by a newer pinnquad than this one; update the library");
+    static_assert(M::format_version >= oldest_model_format_version,
+                  "pinnquad: the model's format is older than this library reads; export it again");
+    static_assert(require_shape<M>());
     static_assert(M::parameters.size() == static_cast<std::size_t>(M::Network::parameter_count),
                   "pinnquad: the exported parameters do not have the network's length");
     static_assert(M::input.size == M::Features::size && M::output.size == rotor_count,
@@ -62,6 +206,7 @@ constexpr bool require_model() noexcept {
                       std::tuple_size<typename std::decay_t<decltype(M::golden_commands)>::value_type>::value ==
                           static_cast<std::size_t>(rotor_count),
                   "pinnquad: a golden vector does not have the length of features or commands");
+    if constexpr (M::format_version >= 2) detail::require_description<M>();
   }
   return is_model<M>;
 }

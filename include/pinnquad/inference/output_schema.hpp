@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
@@ -20,7 +21,7 @@ struct CommandOutputs {
     return command;
   }
   template <class Scalar>
-  static constexpr Scalar command(Scalar output, const Airframe<Scalar>&) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command(Scalar output, const Airframe<Scalar>&) noexcept {
     return output;
   }
   template <class Scalar>
@@ -41,7 +42,7 @@ struct RotorSpeedOutputs {
   }
   /// A negative speed gives a negative command: monotone, so that a network's error keeps its direction.
   template <class Scalar>
-  static constexpr Scalar command(Scalar output, const Airframe<Scalar>& airframe) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command(Scalar output, const Airframe<Scalar>& airframe) noexcept {
     const Scalar u = command_from_speed(airframe, output);
     return output < Scalar(0) ? -u : u;
   }

@@ -6,23 +6,66 @@
 
 namespace pinnquad {
 
-/// Ok if every golden command is reproduced within golden_tolerance, else `self_test_failed`: a wrong kernel, compiler flag
-/// or bit in flash.
-template <class Model>
-Status self_test(const InverseDynamics<Model>& inverse) noexcept {
+/// Where a self test failed, or how far it was from failing.
+template <class Scalar>
+struct SelfTestReport {
+  Status cause{Status::ok};      ///< `self_test_failed`: off by more than golden_tolerance; `output_not_finite`;
+                                 ///< `outside_envelope`: the golden vector is not one that predict() would answer
+  int vector{-1};                ///< the first golden vector that failed; in a sound model the one furthest off
+  int rotor{-1};                 ///< its command furthest off, -1 if none is off at all
+  Scalar largest_difference{0};  ///< |command - golden command| there; not finite if the command is not
+};
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// Ok if the network by itself, whatever the guard, reproduces every golden command within golden_tolerance, and every golden
+/// vector lies in the envelope. Else `self_test_failed`: a wrong kernel, compiler flag or bit in flash.
+/// Every NaN is found. A wrong bit of a weight is found if it moves a golden command by more than the tolerance: a bit that
+/// matters less than rounding is for a checksum to find.
+template <class Model, class Guard>
+Status self_test(const InverseDynamics<Model, Guard>& inverse,
+                 SelfTestReport<typename Model::Scalar>& report) noexcept {
   using Scalar = typename Model::Scalar;
-  for (std::size_t i = 0; i < Model::golden_features.size(); ++i) {
-    Commands<Scalar> commands{};
-    if (inverse.predict_features(Model::golden_features[i].data(), commands) != Status::ok) {
+  report = {};
+  const Model& model = inverse.model();
+  const int vectors = static_cast<int>(model.golden_features.size());
+  for (int vector = 0; vector < vectors; ++vector) {
+    const auto index = static_cast<std::size_t>(vector);
+    Scalar x[Model::Features::size];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(Model::Features::size); ++i) {
+      x[i] = model.golden_features[index][i];
+    }
+    Scalar commands[rotor_count];
+    inverse.evaluate(x, commands);
+    SelfTestReport<Scalar> found{inverse.inside_envelope(x) ? Status::ok : Status::outside_envelope, vector};
+    for (int rotor = 0; rotor < rotor_count; ++rotor) {
+      const Scalar difference = commands[rotor] - model.golden_commands[index][static_cast<std::size_t>(rotor)];
+      const Scalar magnitude = difference < Scalar(0) ? -difference : difference;
+      // what is not finite outdoes every number
+      if (is_finite(found.largest_difference) && !(magnitude <= found.largest_difference)) {
+        found.largest_difference = magnitude;
+        found.rotor = rotor;
+      }
+    }
+    if (!is_finite(found.largest_difference)) {
+      found.cause = Status::output_not_finite;
+    } else if (!(found.largest_difference <= Scalar(golden_tolerance))) {
+      found.cause = Status::self_test_failed;
+    }
+    if (found.cause != Status::ok) {
+      report = found;
       return Status::self_test_failed;
     }
-    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
-      const Scalar difference = commands[rotor] - Model::golden_commands[i][rotor];
-      const Scalar magnitude = difference < Scalar(0) ? -difference : difference;
-      if (!(magnitude <= Scalar(golden_tolerance))) return Status::self_test_failed;
-    }
+    if (vector == 0 || found.largest_difference > report.largest_difference) report = found;
   }
   return Status::ok;
 }
 
+template <class Model, class Guard>
+Status self_test(const InverseDynamics<Model, Guard>& inverse) noexcept {
+  SelfTestReport<typename Model::Scalar> report;
+  return self_test(inverse, report);
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad

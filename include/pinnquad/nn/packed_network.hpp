@@ -64,7 +64,14 @@ class PackedNetwork {
   using Scalar = typename NetworkType::Scalar;
   using Pack = PackType;
 
-  constexpr explicit PackedNetwork(const typename NetworkType::Parameters& parameters) noexcept { pack<0>(parameters); }
+  /// All weights zero.
+  constexpr PackedNetwork() noexcept = default;
+  constexpr explicit PackedNetwork(const typename NetworkType::Parameters& parameters) noexcept {
+    assign(parameters.data());
+  }
+
+  /// Packs other parameters, NetworkType::parameter_count of them, in place.
+  constexpr void assign(const Scalar* parameters) noexcept { pack<0>(parameters); }
 
   /// y[0, outputs) = network(x[0, inputs)).
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
@@ -81,9 +88,9 @@ class PackedNetwork {
   using Packed = detail::PackedLayer<typename NetworkType::template Layer<Index>, Pack>;
 
   template <int Index>
-  constexpr void pack(const typename NetworkType::Parameters& parameters) noexcept {
+  constexpr void pack(const Scalar* parameters) noexcept {
     if constexpr (Index < layer_count) {
-      Packed<Index>::pack(parameters.data() + NetworkType::Sizes::offset(Index), packed_.data() + Sizes::offset(Index));
+      Packed<Index>::pack(parameters + NetworkType::Sizes::offset(Index), packed_.data() + Sizes::offset(Index));
       pack<Index + 1>(parameters);
     }
   }

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// What stands between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>, a list of
+// policies that the compiler checks for sense. The order in the list has no meaning: inputs are checked first, then the
+// envelope, then the outputs' numbers and limits; where all that declines, the fallback is asked.
+#pragma once
+
+#include <array>
+#include <type_traits>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/core/status.hpp"
+#include "pinnquad/core/types.hpp"
+#include "pinnquad/inference/held.hpp"
+
+namespace pinnquad {
+
+/// Inputs and features are finite and the attitude is a rotation: else `not_finite`, `not_unit_quaternion`.
+/// May be left out beside TrainingEnvelope, which refuses NaN and infinite features too; the attitude's norm is then not
+/// looked at.
+struct FiniteInputs {};
+
+/// Every feature lies in what the model was trained on, margin included: else `outside_envelope`.
+struct TrainingEnvelope {};
+
+/// Features outside the envelope are moved to its border: `limited`. The network is asked for another motion then, which a
+/// feedback loop around it has to make good.
+struct ClampToEnvelope {};
+
+/// The commands are finite: else `output_not_finite`. No guard is without it.
+struct FiniteOutputs {};
+
+/// What a rotor can do.
+struct UnitCommands {
+  static constexpr double lower = 0.0;
+  static constexpr double upper = 1.0;
+};
+
+/// Commands outside the limits are refused: `outside_limits`. `Limits` has constants `lower` and `upper`.
+template <class Limits = UnitCommands>
+struct RefuseCommands {};
+
+/// Commands outside the limits are clipped to them: `limited`. Beside RefuseCommands the refusal comes first, so that what is
+/// a little too much is clipped and what is absurd refused.
+template <class Limits = UnitCommands>
+struct ClipCommands {};
+
+/// Asked where the network declines; its commands pass the same output checks and the Status is `fell_back`. Where it declines
+/// too, the Status is the network's and nothing is written.
+/// Contract: `Status operator()(const Inputs&, Commands<Scalar>&) const noexcept`, or with a `const PlaceAndTime<Real>&` in
+/// the middle, or both; commands are taken if has_output(status). It checks its inputs itself: it is asked with those that the
+/// guard refused. inference/analytic_inverse.hpp is one.
+template <class Inverse>
+struct Fallback {};
+
+/// Where and when a motion is wanted, for a fallback that needs to know (ground effect, density, wind).
+template <class Real>
+struct PlaceAndTime {
+  Vector3<Real> position_m = Vector3<Real>::Zero();  ///< NED, of the vehicle's site
+  Real time_s{0};
+};
+
+/// Why a prediction came out as it did.
+template <class Scalar, int Size>
+struct GuardReport {
+  Status cause{Status::ok};     ///< what the network alone came to: `ok`, `limited`, or why it declined
+  Status fallback{Status::ok};  ///< what the fallback came to, if it was asked
+  bool fallback_asked{false};
+  bool features_clamped{false};
+  bool commands_clipped{false};  ///< the network's or the fallback's
+  /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that isn't.
+  /// All zero if the inputs were refused before there were features.
+  std::array<Scalar, static_cast<std::size_t>(Size)> excess{};
+  int worst_feature{-1};  ///< the one furthest outside, -1 if none is
+};
+
+namespace detail {
+
+/// Stands for a fallback where there is none.
+struct NoFallback {};
+
+template <class Policy>
+struct PolicyTraits {
+  static constexpr bool known = false;
+};
+template <>
+struct PolicyTraits<FiniteInputs> {
+  static constexpr bool known = true;
+};
+template <>
+struct PolicyTraits<TrainingEnvelope> {
+  static constexpr bool known = true;
+};
+template <>
+struct PolicyTraits<ClampToEnvelope> {
+  static constexpr bool known = true;
+};
+template <>
+struct PolicyTraits<FiniteOutputs> {
+  static constexpr bool known = true;
+};
+template <class L>
+struct PolicyTraits<RefuseCommands<L>> {
+  static constexpr bool known = true;
+};
+template <class L>
+struct PolicyTraits<ClipCommands<L>> {
+  static constexpr bool known = true;
+};
+template <class I>
+struct PolicyTraits<Fallback<I>> {
+  static constexpr bool known = true;
+};
+
+/// The argument of the one `Template<...>` among the policies, else `Default`; and how many there are.
+template <template <class> class Template, class Default, class... Policies>
+struct ArgumentOf {
+  using type = Default;
+  static constexpr int count = 0;
+};
+template <template <class> class Template, class Default, class First, class... Rest>
+struct ArgumentOf<Template, Default, First, Rest...> : ArgumentOf<Template, Default, Rest...> {};
+template <template <class> class Template, class Default, class Argument, class... Rest>
+struct ArgumentOf<Template, Default, Template<Argument>, Rest...> {
+  using type = Argument;
+  static constexpr int count = 1 + ArgumentOf<Template, Default, Rest...>::count;
+};
+
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// See the head of this file. A value: it holds the fallback, and is empty without one.
+template <class... Policies>
+class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>::type> {
+  template <class Policy>
+  static constexpr int count = (int(std::is_same_v<Policy, Policies>) + ... + 0);
+  using Refused = detail::ArgumentOf<RefuseCommands, UnitCommands, Policies...>;
+  using Clipped = detail::ArgumentOf<ClipCommands, UnitCommands, Policies...>;
+  using FallenBack = detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>;
+
+ public:
+  using FallbackInverse = typename FallenBack::type;
+
+  static constexpr bool checks_inputs = count<FiniteInputs> > 0;
+  static constexpr bool refuses_outside_envelope = count<TrainingEnvelope> > 0;
+  static constexpr bool clamps_to_envelope = count<ClampToEnvelope> > 0;
+  static constexpr bool refuses_commands = Refused::count > 0;
+  static constexpr bool clips_commands = Clipped::count > 0;
+  static constexpr bool falls_back = FallenBack::count > 0;
+
+  static_assert((detail::PolicyTraits<Policies>::known && ...),
+                "pinnquad: this type is not a policy of a Guard (inference/guard.hpp)");
+  static_assert(count<FiniteOutputs> > 0,
+                "pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor");
+  static_assert(
+      checks_inputs || refuses_outside_envelope || clamps_to_envelope,
+      "pinnquad: a Guard without FiniteInputs needs TrainingEnvelope, which refuses NaN and infinity too: a ReLU "
+      "turns -infinity into 0, and the outputs would look sound");
+  static_assert(checks_inputs || !clamps_to_envelope,
+                "pinnquad: ClampToEnvelope needs FiniteInputs: it would turn infinity into a number");
+  static_assert(!(refuses_outside_envelope && clamps_to_envelope),
+                "pinnquad: a Guard either refuses what is outside the envelope or clamps it, not both");
+  static_assert(((count<Policies> == 1) && ...) && Refused::count <= 1 && Clipped::count <= 1 && FallenBack::count <= 1,
+                "pinnquad: a policy of a Guard is named twice");
+  static_assert(Refused::type::lower <= Refused::type::upper && Clipped::type::lower <= Clipped::type::upper,
+                "pinnquad: a Guard's lower command limit lies above the upper one");
+
+  Guard() = default;
+  /// A fallback that has values of its own must be given.
+  Guard(const FallbackInverse& fallback) noexcept : detail::Held<FallbackInverse>(fallback) {}  // NOLINT: implicit
+
+  const FallbackInverse& fallback() const noexcept { return detail::Held<FallbackInverse>::held(); }
+
+  /// Checks of the commands, the network's as the fallback's: `ok`, `limited` (and the commands are clipped) or a refusal.
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE Status check_commands(Scalar* commands) noexcept {
+    if (!all_finite(commands, rotor_count)) return Status::output_not_finite;
+    if constexpr (refuses_commands) {
+      constexpr Scalar lower = Scalar(Refused::type::lower), upper = Scalar(Refused::type::upper);
+      bool inside = true;
+      for (int i = 0; i < rotor_count; ++i) inside &= commands[i] >= lower && commands[i] <= upper;
+      if (!inside) return Status::outside_limits;
+    }
+    if constexpr (clips_commands) {
+      constexpr Scalar lower = Scalar(Clipped::type::lower), upper = Scalar(Clipped::type::upper);
+      bool inside = true;
+      for (int i = 0; i < rotor_count; ++i) {
+        const Scalar v = commands[i];
+        inside &= v >= lower && v <= upper;
+        commands[i] = v < lower ? lower : (upper < v ? upper : v);
+      }
+      if (!inside) return Status::limited;
+    }
+    return Status::ok;
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+namespace detail {
+template <class T>
+struct IsGuard : std::false_type {};
+template <class... Policies>
+struct IsGuard<Guard<Policies...>> : std::true_type {};
+
+template <class GuardType, class... More>
+struct Extended;
+template <class... Policies, class... More>
+struct Extended<Guard<Policies...>, More...> {
+  using type = Guard<Policies..., More...>;
+};
+}  // namespace detail
+
+template <class T>
+inline constexpr bool is_guard = detail::IsGuard<T>::value;
+
+/// The guard of an InverseDynamics that names none: refuses bad inputs, motions beyond the training data, bad outputs.
+using TrainingGuard = Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>;
+
+/// A guard with more policies: `Extend<TrainingGuard, ClipCommands<>, Fallback<AnalyticInverse<Vehicle>>>`.
+template <class GuardType, class... More>
+using Extend = typename detail::Extended<GuardType, More...>::type;
+
+}  // namespace pinnquad

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// A value kept as a base class, which takes no room if its type has nothing to keep: what makes an InverseDynamics of an
+// exported model empty. Such a type needs no value to be given, any other does.
+#pragma once
+
+#include <type_traits>
+
+#include "pinnquad/core/instruction_set.hpp"
+
+namespace pinnquad::detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// All values of an empty type are one. Not a base itself: its member names would be ours.
+template <class T, bool Empty = std::is_empty_v<T>&& std::is_trivially_default_constructible_v<T>>
+class Held {
+ public:
+  Held() = default;
+  explicit Held(const T&) noexcept {}
+  static const T& held() noexcept { return value_; }
+
+ private:
+  static constexpr T value_{};
+};
+
+template <class T>
+class Held<T, false> {
+ public:
+  explicit Held(const T& value) noexcept : value_(value) {}
+  const T& held() const noexcept { return value_; }
+
+ private:
+  T value_;
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad::detail

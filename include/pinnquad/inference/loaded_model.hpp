@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// A model loaded from a block into memory of its own, arranged for the vector unit: the block may go afterwards.
+// A value without heap; the place for it (a static, a slot of two) is the caller's.
+#pragma once
+
+#include "pinnquad/inference/model_view.hpp"
+#include "pinnquad/nn/packed_network.hpp"
+
+namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// Rows of scalars, up to `Capacity` of them, kept by value. As made, one row of zeros.
+template <class Scalar, int Columns, std::size_t Capacity>
+class FixedRows {
+ public:
+  using value_type = std::array<Scalar, static_cast<std::size_t>(Columns)>;
+  static_assert(Capacity > 0);
+
+  constexpr std::size_t size() const noexcept { return count_; }
+  constexpr const value_type& operator[](std::size_t row) const noexcept { return rows_[row]; }
+
+  /// Keeps the first rows of `source`, as many as there is room for.
+  template <class Rows>
+  void copy(const Rows& source) noexcept {
+    count_ = source.size() < Capacity ? source.size() : Capacity;
+    for (std::size_t row = 0; row < count_; ++row) rows_[row] = source[row];
+  }
+
+ private:
+  std::array<value_type, Capacity> rows_{};
+  std::size_t count_ = 1;
+};
+
+/// Golden vectors that a LoadedModel keeps; `train` writes as many.
+inline constexpr std::size_t loaded_golden_vectors = 8;
+
+/// A model as `InverseDynamics` reads it, with weights of its own: packed where there is a vector unit, else as in the
+/// block. About as large as its weights, so not a thing for a small stack. As made, it declines: its envelope is empty
+/// and its self test fails.
+template <class ShapeType>
+class LoadedModel : public ModelScales<ShapeType> {
+ public:
+  using Scales = ModelScales<ShapeType>;
+  using typename Scales::Features;
+  using typename Scales::Network;
+  using typename Scales::Scalar;
+
+  FixedRows<Scalar, Features::size, loaded_golden_vectors> golden_features{};
+  FixedRows<Scalar, rotor_count, loaded_golden_vectors> golden_commands{};
+
+  /// Copies a view that open() has filled, in place. `block_truncated` for a view of no block: nothing is changed then.
+  /// Not to be called while another thread predicts with this model (examples/model_swap.cpp).
+  Status load(const ModelView<ShapeType>& view) noexcept {
+    if (view.parameters() == nullptr) return Status::block_truncated;
+    static_cast<Scales&>(*this) = view;
+    golden_features.copy(view.golden_features);
+    golden_commands.copy(view.golden_commands);
+    weights_.assign(view.parameters());
+    return Status::ok;
+  }
+
+  /// The bare network, standardised in and out: the vector unit's kernel where there is one, else the portable one.
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
+    weights_.forward(standardised, outputs);
+  }
+
+ private:
+  /// Weights as in the block, for machines without a vector unit.
+  struct Unpacked : Network {
+    void assign(const Scalar* from) noexcept {
+      for (Scalar& weight : this->parameters) weight = *from++;
+    }
+  };
+
+  std::conditional_t<has_vector_unit<Scalar>, PackedNetwork<Network>, Unpacked> weights_{};
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// The layout of a model block: a model's numbers in memory (a flash partition, a file read into RAM), little-endian.
+// Stated once, for deploy/weight_file.hpp, which writes it, and inference/model_view.hpp, which reads it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "pinnquad/core/fnv1a.hpp"
+#include "pinnquad/core/type_text.hpp"
+#include "pinnquad/inference/checksum.hpp"
+#include "pinnquad/inference/model.hpp"
+
+namespace pinnquad {
+
+inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N', 'N', 'Q', 'U', 'A', 'D'};
+inline constexpr std::uint32_t model_block_version = 1;
+
+/// Where a block may begin: at multiples of this many bytes, so that its scalars can be read in place.
+inline constexpr std::size_t model_block_alignment = 8;
+
+/// Byte offsets of the header's fields, and what they hold:
+///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs, u32 outputs,
+///   u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
+/// Scalars follow: input mean and spread, output mean and spread, envelope lower and upper, golden features, golden
+/// commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
+struct ModelBlockHeader {
+  static constexpr std::size_t version = 8;
+  static constexpr std::size_t length = 12;
+  static constexpr std::size_t scalar_bytes = 16;
+  static constexpr std::size_t inputs = 20;
+  static constexpr std::size_t outputs = 24;
+  static constexpr std::size_t parameters = 28;
+  static constexpr std::size_t golden_vectors = 32;
+  static constexpr std::size_t training_rows = 36;
+  static constexpr std::size_t shape_hash = 40;
+  static constexpr std::size_t training_data_hash = 48;
+  static constexpr std::size_t size = 56;
+  static constexpr std::size_t checksum_size = 4;
+};
+
+/// Where the scalars of a block for this shape stand, counted in scalars from the end of the header.
+template <class Shape>
+struct ModelBlockLayout {
+  static_assert(require_shape<Shape>());
+  static constexpr std::size_t inputs = Shape::Network::inputs;
+  static constexpr std::size_t outputs = Shape::Network::outputs;
+  static constexpr std::size_t parameter_count = Shape::Network::parameter_count;
+
+  static constexpr std::size_t input_mean = 0;
+  static constexpr std::size_t input_spread = inputs;
+  static constexpr std::size_t output_mean = 2 * inputs;
+  static constexpr std::size_t output_spread = output_mean + outputs;
+  static constexpr std::size_t envelope_lower = output_spread + outputs;
+  static constexpr std::size_t envelope_upper = envelope_lower + inputs;
+  static constexpr std::size_t golden_features = envelope_upper + inputs;
+  static constexpr std::size_t golden_commands(std::size_t golden) noexcept {
+    return golden_features + golden * inputs;
+  }
+  static constexpr std::size_t parameters(std::size_t golden) noexcept {
+    return golden_commands(golden) + golden * outputs;
+  }
+  /// Bytes of the whole block. In 64 bits: a golden count from a broken header must not wrap around.
+  static constexpr std::uint64_t length(std::uint64_t golden) noexcept {
+    const std::uint64_t scalars = golden_features + golden * (inputs + outputs) + parameter_count;
+    return ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) + ModelBlockHeader::checksum_size;
+  }
+};
+
+namespace detail {
+template <class Shape>
+constexpr std::uint64_t hash_of_shape() noexcept {
+  Fnv1a fnv;
+  fnv.absorb_text(type_text<typename Shape::Network>());
+  fnv.absorb_text(model_frame);
+  for (const char* name : Shape::Features::names) fnv.absorb_text(name);
+  for (const char* unit : Shape::Features::units) fnv.absorb_text(unit);
+  for (const char* name : Shape::Outputs::names) fnv.absorb_text(name);
+  fnv.absorb_text(Shape::Outputs::unit);
+  fnv.absorb_text(Shape::Vehicle::name);
+  for (const TorqueSigns& rotor : motor_torque_signs<typename Shape::Vehicle>()) {
+    for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
+  }
+  return fnv.hash;
+}
+}  // namespace detail
+
+/// Names what a block's weights are for: network type, frame, feature names and units, output names and unit, vehicle
+/// name and motor order. The same from gcc and clang as long as the network's types have names that another translation
+/// unit could use and no template arguments that compilers print differently (unsigned or character constants).
+template <class Shape>
+inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
+
+namespace detail {
+
+constexpr std::uint32_t read_u32(const unsigned char* from) noexcept {
+  return std::uint32_t{from[0]} | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 |
+         std::uint32_t{from[3]} << 24;
+}
+constexpr std::uint64_t read_u64(const unsigned char* from) noexcept {
+  return std::uint64_t{read_u32(from)} | std::uint64_t{read_u32(from + 4)} << 32;
+}
+
+/// What a reader expects of a block's header.
+struct ExpectedBlock {
+  std::uint32_t scalar_bytes, inputs, outputs, parameters;
+  std::uint64_t shape_hash;
+};
+
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// The checks of a block that need no scalar, in this order: place and length (`block_truncated`), magic and version
+/// (`block_incompatible`), length stated (`block_truncated`), checksum (`block_corrupt`), shape (`block_incompatible`).
+inline Status check_block(const unsigned char* block, std::size_t available,
+                          const detail::ExpectedBlock& expected) noexcept {
+  using Header = ModelBlockHeader;
+  using detail::read_u32;
+  if (block == nullptr || reinterpret_cast<std::uintptr_t>(block) % model_block_alignment != 0) {
+    return Status::block_truncated;
+  }
+  if (available < Header::size + Header::checksum_size) return Status::block_truncated;
+  for (std::size_t i = 0; i < model_block_magic.size(); ++i) {
+    if (block[i] != model_block_magic[i]) return Status::block_incompatible;
+  }
+  if (read_u32(block + Header::version) != model_block_version) return Status::block_incompatible;
+  const std::size_t length = read_u32(block + Header::length);
+  if (length > available) return Status::block_truncated;
+  if (length < Header::size + Header::checksum_size) return Status::block_corrupt;
+  const std::size_t checked = length - Header::checksum_size;
+  if (crc32(block, checked) != read_u32(block + checked)) return Status::block_corrupt;
+  const bool fits = read_u32(block + Header::scalar_bytes) == expected.scalar_bytes &&
+                    read_u32(block + Header::inputs) == expected.inputs &&
+                    read_u32(block + Header::outputs) == expected.outputs &&
+                    read_u32(block + Header::parameters) == expected.parameters &&
+                    detail::read_u64(block + Header::shape_hash) == expected.shape_hash;
+  return fits ? Status::ok : Status::block_incompatible;
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+}  // namespace pinnquad

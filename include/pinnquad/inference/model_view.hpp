@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// A model whose weights lie in a memory block, checked when it is opened and read in place.
+// The one view of the library: the block must neither move nor change while a view of it is used.
+#pragma once
+
+#include <cstring>
+#include <limits>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/inference/model_block.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+template <class Scalar>
+inline constexpr bool reads_in_place = __BYTE_ORDER__ ==
+                                           __ORDER_LITTLE_ENDIAN__&& std::numeric_limits<Scalar>::is_iec559 &&
+                                       (sizeof(Scalar) == 4 || sizeof(Scalar) == 8);
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// The members that a model has besides its weights. As made, the envelope is empty: every input lies outside.
+template <class ShapeType>
+struct ModelScales {
+  using Shape = ShapeType;
+  using Scalar = typename Shape::Scalar;
+  using Network = typename Shape::Network;
+  using Features = typename Shape::Features;
+  using Outputs = typename Shape::Outputs;
+  using Vehicle = typename Shape::Vehicle;
+  static_assert(require_shape<Shape>());
+  static_assert(detail::reads_in_place<Scalar>,
+                "pinnquad: a model block is read in place: float or double of IEEE 754, on a little-endian machine");
+  using FeatureVector = std::array<Scalar, static_cast<std::size_t>(Features::size)>;
+
+  Scaler<Scalar, Features::size> input{};
+  Scaler<Scalar, rotor_count> output{};
+  FeatureVector envelope_lower = Scaler<Scalar, Features::size>::ones();
+  FeatureVector envelope_upper{};
+  std::uint64_t training_data_hash = 0;
+  std::uint32_t training_rows = 0;
+};
+
+/// Rows of scalars in a block. As made, one row of zeros.
+template <class Scalar, int Columns>
+class BlockRows {
+ public:
+  using value_type = std::array<Scalar, static_cast<std::size_t>(Columns)>;
+
+  BlockRows() = default;
+  BlockRows(const Scalar* first, std::size_t count) noexcept : first_(first), count_(count) {}
+
+  std::size_t size() const noexcept { return count_; }
+  /// A copy of a row.
+  value_type operator[](std::size_t row) const noexcept {
+    value_type result{};
+    if (first_ != nullptr) std::memcpy(result.data(), first_ + row * result.size(), sizeof result);
+    return result;
+  }
+
+ private:
+  const Scalar* first_ = nullptr;
+  std::size_t count_ = 1;
+};
+
+/// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
+/// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle.
+/// Lifetime: scalers and envelope are copied; weights and golden vectors are read in the block each time. A copy of a
+/// view looks into the same block. As made, a view declines: its envelope is empty, its self test fails, forward()
+/// gives NaN.
+template <class ShapeType>
+class ModelView : public ModelScales<ShapeType> {
+ public:
+  using Scales = ModelScales<ShapeType>;
+  using typename Scales::Features;
+  using typename Scales::Network;
+  using typename Scales::Scalar;
+
+  BlockRows<Scalar, Features::size> golden_features{};
+  BlockRows<Scalar, rotor_count> golden_commands{};
+
+  /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
+  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, or
+  /// for another shape. `block_corrupt`: wrong checksum, no golden vector, a value that is NaN or Inf, a spread that is
+  /// not positive, an envelope upside down. `view` is untouched unless the Status is ok.
+  /// Reads the whole block, twice: not for a control loop.
+  static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
+    using Layout = ModelBlockLayout<ShapeType>;
+    using Header = ModelBlockHeader;
+    const auto* bytes = static_cast<const unsigned char*>(block);
+    const Status checked =
+        check_block(bytes, length,
+                    {sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, shape_hash<ShapeType>});
+    if (checked != Status::ok) return checked;
+    const std::uint32_t golden = detail::read_u32(bytes + Header::golden_vectors);
+    if (golden == 0 || Layout::length(golden) != detail::read_u32(bytes + Header::length)) {
+      return Status::block_corrupt;
+    }
+    // aligned, and of this scalar type: the header says so
+    const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes + Header::size));
+    if (!sound(scalars, golden)) return Status::block_corrupt;
+
+    copy(scalars + Layout::input_mean, view.input.mean);
+    copy(scalars + Layout::input_spread, view.input.spread);
+    copy(scalars + Layout::output_mean, view.output.mean);
+    copy(scalars + Layout::output_spread, view.output.spread);
+    copy(scalars + Layout::envelope_lower, view.envelope_lower);
+    copy(scalars + Layout::envelope_upper, view.envelope_upper);
+    view.golden_features = {scalars + Layout::golden_features, golden};
+    view.golden_commands = {scalars + Layout::golden_commands(golden), golden};
+    view.parameters_ = scalars + Layout::parameters(golden);
+    view.training_data_hash = detail::read_u64(bytes + Header::training_data_hash);
+    view.training_rows = detail::read_u32(bytes + Header::training_rows);
+    return Status::ok;
+  }
+
+  /// The bare network, standardised in and out, straight from the block: the portable kernel.
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
+    if (parameters_ == nullptr) {
+      for (int i = 0; i < rotor_count; ++i) outputs[i] = std::numeric_limits<Scalar>::quiet_NaN();
+      return;
+    }
+    Network::forward(parameters_, standardised, outputs);
+  }
+
+  /// The weights in the block, or null.
+  const Scalar* parameters() const noexcept { return parameters_; }
+
+ private:
+  template <class Array>
+  static void copy(const Scalar* from, Array& to) noexcept {
+    std::memcpy(to.data(), from, sizeof to);
+  }
+
+  static bool sound(const Scalar* scalars, std::size_t golden) noexcept {
+    using Layout = ModelBlockLayout<ShapeType>;
+    const std::size_t count = Layout::parameters(golden) + Layout::parameter_count;
+    bool sound = true;
+    for (std::size_t i = 0; i < count; ++i) sound &= is_finite(scalars[i]);
+    for (std::size_t i = 0; i < Layout::inputs; ++i) {
+      sound &= scalars[Layout::input_spread + i] > Scalar(0);
+      sound &= scalars[Layout::envelope_lower + i] <= scalars[Layout::envelope_upper + i];
+    }
+    for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_spread + i] > Scalar(0);
+    return sound;
+  }
+
+  const Scalar* parameters_ = nullptr;
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// libFuzzer target over the loader of model blocks: whatever the bytes, open() reads none beyond the block and leaves
+// the view alone unless it accepts; what it accepts is sound, and can be flown and self-tested without a trap. The
+// mutator makes most inputs pass the checksum, the magic and the shape: chance would not in a lifetime. Build and run:
+// scripts/heavy/fuzz.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+
+#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/inference/self_test.hpp"
+#include "support/described_model.hpp"
+
+namespace {
+
+using namespace pinnquad;
+using pinnquad::test::DescribedModel;
+using pinnquad::test::DoubleModel;
+using Header = ModelBlockHeader;
+
+/// A finding: said and stopped at, so that libFuzzer keeps the input.
+void expect(bool holds, const char* rule) {
+  if (holds) return;
+  std::fprintf(stderr, "broken: %s\n", rule);
+  std::abort();
+}
+
+/// How often open() came to which status, told at the end: a fuzzer whose inputs are all refused tests little.
+struct Tally {
+  unsigned long count[status_count] = {};
+  ~Tally() {
+    for (int status = 0; status < status_count; ++status) {
+      if (count[status] == 0) continue;
+      std::fprintf(stderr, "tally: %lu times %s\n", count[status], to_string(static_cast<Status>(status)));
+    }
+  }
+};
+Tally tally;
+
+/// Bytes in memory of their own, exactly as many as there are: the sanitizer sees a read past the end.
+/// `offset` of them before: operator new aligns to 16, so that is the misalignment.
+class Memory {
+ public:
+  Memory(const std::uint8_t* data, std::size_t size, std::size_t offset)
+      : begin_(static_cast<unsigned char*>(std::malloc(size + offset == 0 ? 1 : size + offset))), offset_(offset) {
+    expect(begin_ != nullptr, "memory");
+    if (size > 0) std::memcpy(begin_ + offset, data, size);
+  }
+  ~Memory() { std::free(begin_); }
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+  const unsigned char* block() const { return begin_ + offset_; }
+
+ private:
+  unsigned char* begin_;
+  std::size_t offset_;
+};
+
+/// std::isfinite, and not the library's own test of the bits.
+template <class Rows>
+bool rows_finite(const Rows& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const auto v : rows[i]) {
+      if (!std::isfinite(v)) return false;
+    }
+  }
+  return true;
+}
+
+/// CRC-32 bit by bit, and not the library's own.
+std::uint32_t plain_crc32(const unsigned char* bytes, std::size_t length) {
+  std::uint32_t remainder = 0xffffffffu;
+  for (std::size_t i = 0; i < length; ++i) {
+    remainder ^= bytes[i];
+    for (int bit = 0; bit < 8; ++bit) remainder = (remainder >> 1) ^ ((remainder & 1u) != 0 ? 0xedb88320u : 0u);
+  }
+  return ~remainder;
+}
+
+/// What was accepted, looked at again and flown.
+template <class Shape, class Model>
+void fly(const Model& model) {
+  using Scalar = typename Shape::Scalar;
+  using Inverse = InverseDynamics<Model>;
+  const Inverse inverse(model);
+  SelfTestReport<Scalar> report;
+  const Status tested = self_test(inverse, report);
+  expect(tested == Status::ok || tested == Status::self_test_failed, "a self test passes or fails");
+  for (std::size_t i = 0; i < std::min<std::size_t>(model.golden_features.size(), 8); ++i) {
+    auto x = model.golden_features[i];
+    const Scalar untouched = Scalar(-12345);
+    Commands<Scalar> commands{untouched, untouched, untouched, untouched};
+    const Status status = inverse.predict_features(x.data(), commands);
+    for (const Scalar u : commands) {
+      expect(status == Status::ok ? bool(std::isfinite(u)) : u == untouched, "commands are finite, or untouched");
+    }
+    expect(tested != Status::ok || status == Status::ok, "what passes its self test answers its golden vectors");
+    x[i] = model.envelope_upper[i] + std::abs(model.envelope_upper[i]) + Scalar(1);
+    expect(inverse.predict_features(x.data(), commands) == Status::outside_envelope, "the envelope holds");
+  }
+  MotionInputs<Scalar> inputs;
+  Commands<Scalar> commands{};
+  const Status status = inverse.predict(inputs, commands);
+  expect(status == Status::ok || status == Status::outside_envelope || status == Status::output_not_finite,
+         "hover is answered or declined");
+}
+
+template <class Shape>
+void load(const std::uint8_t* data, std::size_t size) {
+  using View = ModelView<Shape>;
+  using Scalar = typename Shape::Scalar;
+  for (const std::size_t offset : {1u, 2u, 4u, 7u}) {
+    const Memory memory(data, size, offset);
+    View view;
+    expect(View::open(memory.block(), size, view) == Status::block_truncated, "misaligned is refused");
+  }
+  const Memory memory(data, size, 0);
+  View view;
+  view.input.mean[0] = Scalar(77);
+  view.output.spread[3] = Scalar(78);
+  view.envelope_lower[15] = Scalar(79);
+  const Status status = View::open(memory.block(), size, view);
+  ++tally.count[static_cast<int>(status)];
+  if (status != Status::ok) {
+    expect(status == Status::block_truncated || status == Status::block_incompatible || status == Status::block_corrupt,
+           "a refusal says why");
+    expect(view.parameters() == nullptr && view.golden_features.size() == 1 && view.input.mean[0] == Scalar(77) &&
+               view.output.spread[3] == Scalar(78) && view.envelope_lower[15] == Scalar(79),
+           "a refusal leaves the view alone");
+    return;
+  }
+  const std::size_t length = detail::read_u32(memory.block() + Header::length);
+  expect(length <= size && length == ModelBlockLayout<Shape>::length(view.golden_features.size()),
+         "the length is right");
+  expect(plain_crc32(memory.block(), length - 4) == detail::read_u32(memory.block() + length - 4),
+         "the checksum is right");
+  expect(std::memcmp(memory.block(), "PINNQUAD\1\0\0\0", 12) == 0, "it is a block of version 1");
+  const auto* begin = reinterpret_cast<const unsigned char*>(view.parameters());
+  expect(begin >= memory.block() &&
+             begin + sizeof(Scalar) * Shape::Network::parameter_count + Header::checksum_size <= memory.block() + size,
+         "the weights lie in the block");
+  for (std::size_t i = 0; i < static_cast<std::size_t>(Shape::Network::parameter_count); ++i) {
+    expect(std::isfinite(view.parameters()[i]), "weights are finite");
+  }
+  for (std::size_t i = 0; i < view.input.mean.size(); ++i) {
+    expect(std::isfinite(view.input.mean[i]) && std::isfinite(view.input.spread[i]) && view.input.spread[i] > 0,
+           "the input's scaler is sound");
+    expect(std::isfinite(view.envelope_lower[i]) && std::isfinite(view.envelope_upper[i]) &&
+               view.envelope_lower[i] <= view.envelope_upper[i],
+           "the envelope is sound");
+  }
+  for (std::size_t i = 0; i < view.output.mean.size(); ++i) {
+    expect(std::isfinite(view.output.mean[i]) && std::isfinite(view.output.spread[i]) && view.output.spread[i] > 0,
+           "the output's scaler is sound");
+  }
+  expect(view.golden_features.size() > 0 && view.golden_features.size() == view.golden_commands.size(),
+         "golden vectors come in pairs");
+  expect(rows_finite(view.golden_features) && rows_finite(view.golden_commands), "golden vectors are finite");
+  fly<Shape>(view);
+  static LoadedModel<Shape> loaded;
+  expect(loaded.load(view) == Status::ok, "what opens loads");
+  fly<Shape>(loaded);
+}
+
+void write_u32(std::uint8_t* to, std::size_t value) {
+  for (std::size_t byte = 0; byte < 4; ++byte) to[byte] = static_cast<std::uint8_t>((value >> (8 * byte)) & 0xffu);
+}
+
+/// The header of a block of `size` bytes for this shape, but for the golden count if it fits nothing.
+template <class Shape>
+void repair_header(std::uint8_t* data, std::size_t size) {
+  using Layout = ModelBlockLayout<Shape>;
+  std::copy(model_block_magic.begin(), model_block_magic.end(), data);
+  write_u32(data + Header::version, model_block_version);
+  write_u32(data + Header::scalar_bytes, sizeof(typename Shape::Scalar));
+  write_u32(data + Header::inputs, Layout::inputs);
+  write_u32(data + Header::outputs, Layout::outputs);
+  write_u32(data + Header::parameters, Layout::parameter_count);
+  write_u32(data + Header::shape_hash, shape_hash<Shape> & 0xffffffffu);
+  write_u32(data + Header::shape_hash + 4, shape_hash<Shape> >> 32);
+  const std::size_t row = sizeof(typename Shape::Scalar) * (Layout::inputs + Layout::outputs);
+  if (size > Layout::length(0)) write_u32(data + Header::golden_vectors, (size - Layout::length(0)) / row);
+}
+
+/// The greatest size not above `size` that a block of this shape can have.
+template <class Shape>
+std::size_t whole_rows(std::size_t size) {
+  using Layout = ModelBlockLayout<Shape>;
+  const std::size_t row = Layout::length(1) - Layout::length(0);
+  return size < Layout::length(1) ? size : size - (size - Layout::length(0)) % row;
+}
+
+}  // namespace
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
+                                               unsigned int seed) {
+  std::minstd_rand engine(seed);
+  size = LLVMFuzzerMutate(data, size, most);
+  const bool is_double = size > 20 && data[Header::scalar_bytes] == sizeof(double);
+  if (engine() % 4 != 0) size = is_double ? whole_rows<DoubleModel>(size) : whole_rows<DescribedModel>(size);
+  if (size < Header::size + Header::checksum_size) return size;
+  if (engine() % 4 != 0) {
+    if (is_double) {
+      repair_header<DoubleModel>(data, size);
+    } else {
+      repair_header<DescribedModel>(data, size);
+    }
+  }
+  if (engine() % 8 != 0) write_u32(data + Header::length, size);
+  if (engine() % 8 != 0) write_u32(data + size - 4, crc32(data, size - 4));
+  return size;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  load<DescribedModel>(data, size);
+  load<DoubleModel>(data, size);
+  return 0;
+}

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: MIT
+// More than a million hostile inputs against every kind of guard, float and double: NaN, infinities, denormals, random bits,
+// attitudes that are none. What must hold is counted by an eye of its own (std::isfinite, memcmp), not by the guard's.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/wind.hpp"
+#include "pinnquad/inference/analytic_inverse.hpp"
+#include "pinnquad/inference/inverse_dynamics.hpp"
+#include "support/small_model_variants.hpp"
+
+using namespace pinnquad;
+using pinnquad::test::SmallDoubleModel;
+using pinnquad::test::SmallInstance;
+using pinnquad::test::SmallModel;
+
+namespace {
+
+constexpr int inputs_per_guard = 60000;
+
+template <class Scalar>
+using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
+
+template <class Scalar>
+class Hostility {
+ public:
+  explicit Hostility(std::uint64_t seed) : engine_(seed) {}
+
+  std::uint64_t below(std::uint64_t count) { return engine_() % count; }
+
+  Scalar random_bits() {
+    const auto bits = static_cast<Bits<Scalar>>(engine_());
+    Scalar value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+
+  Scalar uniform(Scalar size) {
+    return size * (Scalar(2) * static_cast<Scalar>(engine_() >> 40) / static_cast<Scalar>(1 << 24) - Scalar(1));
+  }
+
+  /// What no sensor should say.
+  Scalar value() {
+    using Limits = std::numeric_limits<Scalar>;
+    const Scalar sign = below(2) == 0 ? Scalar(1) : Scalar(-1);
+    switch (below(10)) {
+      case 0: return sign * Limits::quiet_NaN();
+      case 1: return sign * Limits::infinity();
+      case 2: return sign * Limits::denorm_min();
+      case 3: return sign * Limits::min() / Scalar(2);
+      case 4: return sign * Scalar(1e30);
+      case 5: return sign * Scalar(0);
+      case 6: return sign * Limits::max();
+      case 7: return sign * Limits::min();
+      case 8: return Limits::signaling_NaN();
+      default: return random_bits();
+    }
+  }
+
+  /// Ordinary where `spoiled` is 0; else that many of its 16 numbers are hostile.
+  MotionInputs<Scalar> inputs(std::uint64_t spoiled) {
+    MotionInputs<Scalar> result;
+    const Scalar size = below(4) == 0 ? Scalar(3) : Scalar(0.9);
+    for (int i = 0; i < 3; ++i) {
+      result.linear_acceleration_m_s2[i] = uniform(Scalar(9) * size);
+      result.angular_acceleration_rad_s2[i] = uniform(Scalar(5) * size);
+      result.velocity_m_s[i] = uniform(Scalar(6) * size);
+      result.body_rates_rad_s[i] = uniform(Scalar(3) * size);
+    }
+    result.attitude = from_euler(EulerAngles<Scalar>{uniform(Scalar(0.7)), uniform(Scalar(0.7)), uniform(Scalar(3))});
+    if (below(8) == 0) spoil_attitude(result.attitude);
+    for (std::uint64_t i = 0; i < spoiled; ++i) *number(result, below(16)) = value();
+    return result;
+  }
+
+  static Scalar* number(MotionInputs<Scalar>& in, std::uint64_t index) {
+    const auto axis = static_cast<int>(index % 3);
+    Scalar* const attitude[] = {&in.attitude.w, &in.attitude.x, &in.attitude.y, &in.attitude.z};
+    switch (index / 3) {
+      case 0: return &in.linear_acceleration_m_s2[axis];
+      case 1: return &in.angular_acceleration_rad_s2[axis];
+      case 2: return &in.velocity_m_s[axis];
+      case 3: return &in.body_rates_rad_s[axis];
+      default: return attitude[index - 12];
+    }
+  }
+
+ private:
+  void spoil_attitude(Quaternion<Scalar>& q) {
+    const Scalar scale = uniform(Scalar(3));
+    switch (below(5)) {
+      case 0: q = {Scalar(0), Scalar(0), Scalar(0), Scalar(0)}; break;
+      case 1: q = {q.w * scale, q.x * scale, q.y * scale, q.z * scale}; break;
+      case 2: q.y = std::numeric_limits<Scalar>::quiet_NaN(); break;
+      case 3: q = {random_bits(), random_bits(), random_bits(), random_bits()}; break;
+      default: q = {value(), value(), value(), value()};
+    }
+  }
+
+  std::mt19937_64 engine_;
+};
+
+template <class Scalar>
+bool sound(const MotionInputs<Scalar>& inputs) {
+  MotionInputs<Scalar> copy = inputs;
+  bool finite = true;
+  for (std::uint64_t i = 0; i < 16; ++i) finite = finite && std::isfinite(*Hostility<Scalar>::number(copy, i));
+  return finite;
+}
+
+template <class Scalar>
+bool unit(const MotionInputs<Scalar>& in) {
+  const double w = double(in.attitude.w), x = double(in.attitude.x), y = double(in.attitude.y),
+               z = double(in.attitude.z);
+  return std::fabs(w * w + x * x + y * y + z * z - 1) <= 1.001e-3;  // the tolerance, and rounding of the sum
+}
+
+template <class Scalar>
+Commands<Scalar> marked() {
+  return {Scalar(-1.25), Scalar(-0.0), std::numeric_limits<Scalar>::quiet_NaN(), Scalar(1e30)};
+}
+
+template <class Scalar>
+bool same_bits(const Commands<Scalar>& a, const Commands<Scalar>& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// Far from what a rotor can do, but not absurd.
+struct WideCommands {
+  static constexpr double lower = -50.0;
+  static constexpr double upper = 50.0;
+};
+
+/// What went wrong, by rule; all must stay 0.
+struct Broken {
+  int not_finite_written = 0;  ///< a command that is NaN or infinite
+  int touched = 0;             ///< commands changed though the Status has no output
+  int bad_input_answered = 0;  ///< the network answered a NaN, an infinity or (where inputs are checked) a bad attitude
+  int bad_input_fell_back = 0;     ///< the inverse by formula answered one
+  int outside_limits_written = 0;  ///< a command outside the guard's limits
+  int report_differs = 0;          ///< the overload with a report gives another Status or other bits
+  int features_differ = 0;         ///< predict_features() answers what is not finite, or writes it
+};
+
+template <class Guard, class Scalar>
+bool within_limits(const Commands<Scalar>& commands) {
+  if (!Guard::clips_commands && !Guard::refuses_commands) return true;
+  bool inside = true;
+  for (const Scalar u : commands) inside = inside && u >= Scalar(0) && u <= Scalar(1);
+  return inside;
+}
+
+template <class Inverse>
+struct Attack {
+  using Scalar = typename Inverse::Scalar;
+  using Guard = typename Inverse::Guard;
+
+  Broken broken;
+  std::array<int, static_cast<std::size_t>(status_count)> by_status{};
+  int worst_named_inside = 0;
+
+  void operator()(const Inverse& inverse, std::uint64_t seed) {
+    Hostility<Scalar> hostility(seed);
+    for (int i = 0; i < inputs_per_guard; ++i) {
+      const auto inputs = hostility.inputs(hostility.below(3) == 0 ? 0 : 1 + hostility.below(4));
+      PlaceAndTime<Scalar> place;
+      place.position_m = Vector3<Scalar>(hostility.uniform(Scalar(50)), Scalar(0), -Scalar(2));
+      if (hostility.below(4) == 0) place.position_m[2] = hostility.value();
+      if (hostility.below(4) == 0) place.time_s = hostility.value();
+      one(inverse, inputs, place);
+      if (i % 4 == 0) features(inverse, hostility);
+    }
+  }
+
+ private:
+  void one(const Inverse& inverse, const MotionInputs<Scalar>& inputs, const PlaceAndTime<Scalar>& place) {
+    Commands<Scalar> commands = marked<Scalar>(), reported = marked<Scalar>();
+    typename Inverse::Report report;
+    const Status status = inverse.predict(inputs, place, commands);
+    ++by_status[static_cast<std::size_t>(status)];
+    const Status again = inverse.predict(inputs, place, reported, report);
+    if (again != status || !same_bits(commands, reported)) ++broken.report_differs;
+    const bool named = report.worst_feature >= 0;
+    if (named && !report.features_clamped && report.cause == Status::ok && Guard::refuses_outside_envelope) {
+      ++worst_named_inside;
+    }
+    if (!has_output(status)) {
+      if (!same_bits(commands, marked<Scalar>())) ++broken.touched;
+      return;
+    }
+    for (const Scalar u : commands) {
+      if (!std::isfinite(u)) ++broken.not_finite_written;
+    }
+    if (!within_limits<Guard>(commands)) ++broken.outside_limits_written;
+    const bool good = sound(inputs) && (unit(inputs) || !Guard::checks_inputs);
+    if (!good && status != Status::fell_back) ++broken.bad_input_answered;
+    if (!good && status == Status::fell_back) ++broken.bad_input_fell_back;
+  }
+
+  void features(const Inverse& inverse, Hostility<Scalar>& hostility) {
+    Scalar x[16];
+    for (std::size_t i = 0; i < 16; ++i) x[i] = static_cast<Scalar>(SmallModel::golden_features[2][i]);
+    for (std::uint64_t i = hostility.below(4); i > 0; --i) x[hostility.below(16)] = hostility.value();
+    bool finite = true;
+    for (const Scalar v : x) finite = finite && std::isfinite(v);
+    Commands<Scalar> commands = marked<Scalar>();
+    const Status status = inverse.predict_features(x, commands.data());
+    if (has_output(status)) {
+      for (const Scalar u : commands) {
+        if (!std::isfinite(u) || !finite) ++broken.features_differ;
+      }
+    } else if (!same_bits(commands, marked<Scalar>())) {
+      ++broken.touched;
+    }
+  }
+};
+
+int attacked = 0;
+
+template <class Guard, class Model>
+auto attack(const char* name, const InverseDynamics<Model, Guard>& inverse, std::uint64_t seed) {
+  Attack<InverseDynamics<Model, Guard>> result;
+  result(inverse, seed);
+  attacked += inputs_per_guard;
+  std::string line = std::string(name) + (sizeof(typename Model::Scalar) == 4 ? ", float:" : ", double:");
+  for (int i = 0; i < status_count; ++i) {
+    const int count = result.by_status[static_cast<std::size_t>(i)];
+    if (count > 0) line += "  " + std::string(to_string(static_cast<Status>(i))) + " " + std::to_string(count);
+  }
+  MESSAGE(line);
+  CAPTURE(name);
+  CHECK(result.broken.not_finite_written == 0);
+  CHECK(result.broken.touched == 0);
+  CHECK(result.broken.bad_input_answered == 0);
+  CHECK(result.broken.bad_input_fell_back == 0);
+  CHECK(result.broken.outside_limits_written == 0);
+  CHECK(result.broken.report_differs == 0);
+  CHECK(result.broken.features_differ == 0);
+  CHECK(result.worst_named_inside == 0);
+  const auto count = [&](Status status) { return result.by_status[static_cast<std::size_t>(status)]; };
+  CHECK(count(Status::ok) > inputs_per_guard / 20);  // or nothing was tried
+  CHECK((count(Status::not_finite) > inputs_per_guard / 20) == Guard::checks_inputs);
+  CHECK((count(Status::not_unit_quaternion) > inputs_per_guard / 50) == Guard::checks_inputs);
+  if (Guard::refuses_outside_envelope && !Guard::falls_back) CHECK(count(Status::outside_envelope) > 1000);
+  if (Guard::falls_back && Guard::refuses_outside_envelope) CHECK(count(Status::fell_back) > 1000);
+  return result;
+}
+
+template <class Scalar>
+using Calm = Quadrotor<Scalar, QuadraticDrag>;
+template <class Scalar>
+using Gusty = Quadrotor<Scalar, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>;
+
+template <class Vehicle, class Scalar>
+AnalyticInverse<Vehicle> by_formula() {
+  return AnalyticInverse<Vehicle>(Vehicle(airframe_value<PaperQuadrotor, Scalar>(), paper_site<Scalar>()));
+}
+
+template <class Model>
+void attack_all() {
+  using Scalar = typename Model::Scalar;
+  using CalmFallback = Fallback<AnalyticInverse<Calm<Scalar>>>;
+  using GustyFallback = Fallback<AnalyticInverse<Gusty<Scalar>>>;
+  using Unchecked = Guard<TrainingEnvelope, FiniteOutputs>;
+  using Anywhere = Guard<FiniteInputs, FiniteOutputs>;
+  using Clamping = Guard<FiniteInputs, ClampToEnvelope, FiniteOutputs>;
+  using Refusing = Extend<TrainingGuard, RefuseCommands<>>;
+  using Clipping = Extend<TrainingGuard, ClipCommands<>>;
+  using FallingBack = Extend<TrainingGuard, CalmFallback>;
+  using UncheckedFallingBack = Extend<Unchecked, CalmFallback>;
+  using Everything = Extend<TrainingGuard, RefuseCommands<WideCommands>, ClipCommands<>, GustyFallback>;
+  using ClampingFallingBack = Extend<Clamping, RefuseCommands<>, GustyFallback>;
+  const auto calm = by_formula<Calm<Scalar>, Scalar>();
+  const auto gusty = by_formula<Gusty<Scalar>, Scalar>();
+
+  attack("training guard", InverseDynamics<Model>{}, 1);
+  attack("inputs unchecked", InverseDynamics<Model, Unchecked>{}, 2);
+  attack("no envelope", InverseDynamics<Model, Anywhere>{}, 3);
+  attack("clamped to envelope", InverseDynamics<Model, Clamping>{}, 4);
+  attack("commands refused", InverseDynamics<Model, Refusing>{}, 5);
+  attack("commands clipped", InverseDynamics<Model, Clipping>{}, 6);
+  attack("no envelope, clipped", InverseDynamics<Model, Extend<Anywhere, ClipCommands<>>>{}, 7);
+  attack("fallback", InverseDynamics<Model, FallingBack>(FallingBack(calm)), 8);
+  attack("inputs unchecked, fallback", InverseDynamics<Model, UncheckedFallingBack>(UncheckedFallingBack(calm)), 9);
+  attack("everything, gusty fallback", InverseDynamics<Model, Everything>(Everything(gusty)), 10);
+  attack("clamped, refused, gusty fallback", InverseDynamics<Model, ClampingFallingBack>(ClampingFallingBack(gusty)),
+         11);
+}
+
+}  // namespace
+
+TEST_CASE("a million hostile inputs: no surprise") {
+  attacked = 0;
+  const auto start = std::chrono::steady_clock::now();
+  attack_all<SmallModel>();
+  attack_all<SmallDoubleModel>();
+  attack("an instance", InverseDynamics<SmallInstance>(SmallInstance{}), 12);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  MESSAGE(attacked, " inputs in ", seconds, " s");
+  CHECK(attacked >= 1000000);
+}
+
+TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or infinite") {
+  Hostility<float> hostility(21);
+  using Clamping = Guard<FiniteInputs, ClampToEnvelope, FiniteOutputs, ClipCommands<>>;
+  int answered = 0, not_finite = 0, written = 0, touched = 0;
+  constexpr int models = 20000;
+  for (int i = 0; i < models; ++i) {
+    SmallInstance model;
+    for (std::uint64_t k = 1 + hostility.below(3); k > 0; --k) {
+      switch (hostility.below(4)) {
+        case 0: model.parameters[hostility.below(172)] = hostility.value(); break;
+        case 1: model.parameters[hostility.below(172)] *= 1e30F; break;
+        case 2: model.output.spread[hostility.below(4)] = hostility.value(); break;
+        default: model.input.spread[hostility.below(16)] = hostility.value();
+      }
+    }
+    const auto inputs = hostility.inputs(0);
+    const auto tried = [&](const auto& inverse) {
+      Commands<float> commands = marked<float>();
+      const Status status = inverse.predict(inputs, commands);
+      if (has_output(status)) ++answered;
+      if (status == Status::output_not_finite) ++not_finite;
+      if (!has_output(status) && !same_bits(commands, marked<float>())) ++touched;
+      for (const float u : commands) {
+        if (has_output(status) && !std::isfinite(u)) ++written;
+      }
+    };
+    tried(InverseDynamics<SmallInstance>(model));
+    tried(InverseDynamics<SmallInstance, Clamping>(model));
+  }
+  MESSAGE((2 * models), " predictions: answered ", answered, ", output not finite ", not_finite);
+  CHECK(written == 0);
+  CHECK(touched == 0);
+  CHECK(answered > models / 4);
+  CHECK(not_finite > models / 10);
+}

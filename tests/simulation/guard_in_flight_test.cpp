@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// The exported demo model on ordinary flights that it was not trained on: how often its guard falls back, and what for.
+// Here and not beside the guard, because inference may not include simulation.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "../examples/models/demo_quadrotor.hpp"
+#include "pinnquad/data/sample_inputs.hpp"
+#include "pinnquad/simulation/flights.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+using Flight = AgileFlight;
+using Formula = AnalyticInverse<Flight::Vehicle>;
+using Flown = InverseDynamics<DemoQuadModel, Extend<TrainingGuard, Fallback<Formula>>>;
+
+constexpr double largest_fallback_share = 0.05;
+
+struct Tally {
+  int rows = 0;
+  std::array<int, static_cast<std::size_t>(status_count)> by_status{};
+  std::array<int, PaperFeatures::size> worst{};
+  double network_error = 0, fallback_error = 0;  ///< sums over rows of the mean |command - formula|
+
+  int of(Status status) const { return by_status[static_cast<std::size_t>(status)]; }
+};
+
+Tally flown(std::uint64_t seed, double max_speed_m_s) {
+  const Flight::Vehicle vehicle(airframe_value<PaperQuadrotor, double>(), paper_site<double>(), {}, {});
+  const Formula formula(vehicle);
+  const Flown inverse{Flown::Guard(formula)};
+  Tally tally;
+  const auto row = [&](const FlightRow& at) {
+    const auto inputs = SampleInputs<MotionInputs<float>>::from(at.sample);
+    const PlaceAndTime<double> place{at.vehicle.body.position_m, at.vehicle.time_s};
+    Commands<float> commands{}, expected{};
+    Flown::Report report;
+    const Status status = inverse.predict(inputs, place, commands, report);
+    ++tally.rows;
+    ++tally.by_status[static_cast<std::size_t>(status)];
+    if (report.worst_feature >= 0) ++tally.worst[static_cast<std::size_t>(report.worst_feature)];
+    REQUIRE(formula(inputs, place, expected) == Status::ok);
+    double error = 0;
+    for (std::size_t i = 0; i < 4; ++i) error += std::fabs(static_cast<double>(commands[i] - expected[i])) / 4;
+    (status == Status::fell_back ? tally.fallback_error : tally.network_error) += error;
+  };
+  const auto recorded = fly(vehicle, Flight::pilot(vehicle, std::mt19937_64(seed), max_speed_m_s), Flight::plan(), row);
+  REQUIRE(recorded.report.status == Status::ok);
+  return tally;
+}
+
+/// Logs and checks what holds of every flight; the share of rows that fell back.
+double checked_share(std::uint64_t seed, double max_speed_m_s) {
+  const Tally tally = flown(seed, max_speed_m_s);
+  const int fallbacks = tally.of(Status::fell_back);
+  const double share = static_cast<double>(fallbacks) / tally.rows;
+  std::string features;
+  for (std::size_t i = 0; i < tally.worst.size(); ++i) {
+    if (tally.worst[i] > 0)
+      features += std::string(" ") + PaperFeatures::names[i] + " " + std::to_string(tally.worst[i]);
+  }
+  MESSAGE("seed ", seed, ", up to ", max_speed_m_s, " m/s: ", fallbacks, " of ", tally.rows, " rows fell back (",
+          (100 * share), " %), furthest outside:", features, "; network off the formula by ",
+          (1e3 * tally.network_error / tally.of(Status::ok)), "e-3");
+  CHECK(tally.rows == 15000);
+  CHECK(tally.of(Status::ok) + fallbacks == tally.rows);
+  CHECK(tally.fallback_error == 0);
+  CHECK(tally.network_error > 0);
+  CHECK(tally.network_error / tally.of(Status::ok) < 0.05);  // in commands
+  return share;
+}
+
+}  // namespace
+
+TEST_CASE("ordinary flights: the network flies nearly all of them, the formula the rest, and nobody declines") {
+  double sum = 0;
+  for (const std::uint64_t seed : {1001u, 1002u, 1003u}) {
+    const double share = checked_share(seed, PilotStyle{}.max_speed_m_s);
+    CHECK(share <= largest_fallback_share);
+    sum += share;
+  }
+  CHECK(sum > 0);  // or the fallback was not tried
+}
+
+TEST_CASE("flown faster than it was trained, the network gives way to the formula") {
+  CHECK(checked_share(1004, 1.5 * PilotStyle{}.max_speed_m_s) > 0.02);
+}
