@@ -4,7 +4,7 @@
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
 // CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
 // CASE NO_BACKWARD_RULE: pinnquad: this layer cannot be trained; specialise BackwardRule
-// CASE NO_SLOPE: pinnquad: this layer cannot be trained; BackwardRule needs slope
+// CASE NO_SLOPE: pinnquad: this layer cannot be trained; an element-wise layer needs slope
 // CASE NOT_AN_OPTIMIZER: pinnquad: Trainer's third argument is not an optimiser
 // CASE SCHEDULED_NOT_AN_OPTIMIZER: pinnquad: Scheduled's first argument is not an optimiser
 // CASE SCHEDULED_NOT_A_RATE: pinnquad: Scheduled's second argument is not a rate

@@ -15,6 +15,7 @@ namespace pinnquad::test {
 template <class ScalarType, int Size>
 struct LeakyReluLayer : ElementwiseLayer<LeakyReluLayer<ScalarType, Size>, ScalarType, Size> {
   static ScalarType activate(ScalarType v) noexcept { return v < ScalarType(0) ? v * ScalarType(0.125) : v; }
+  static ScalarType slope(ScalarType y) noexcept { return y < ScalarType(0) ? ScalarType(0.125) : ScalarType(1); }
 };
 struct LeakyRelu {
   template <class Scalar, int In>
@@ -63,11 +64,6 @@ struct Softmax {
 }  // namespace pinnquad::test
 
 namespace pinnquad {
-
-template <class Scalar, int Size>
-struct BackwardRule<test::LeakyReluLayer<Scalar, Size>> {
-  static Scalar slope(Scalar y) noexcept { return y < Scalar(0) ? Scalar(0.125) : Scalar(1); }
-};
 
 template <class Scalar, int Size>
 struct BackwardRule<test::ChannelScaleLayer<Scalar, Size>> {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every layer's backward rule, alone and in its mini-batch form, against central differences in double.
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/training/backward/backward.hpp"
 
 #include <doctest/doctest.h>
@@ -70,7 +72,7 @@ void check_rule() {
     std::vector<double> y(c.size());
     Layer::forward(parameters.data(), x.data(), y.data());
     if constexpr (is_elementwise<Layer>) {
-      for (std::size_t i = 0; i < x.size(); ++i) dx[i] = c[i] * BackwardRule<Layer>::slope(y[i]);
+      for (std::size_t i = 0; i < x.size(); ++i) dx[i] = c[i] * Layer::slope(y[i]);
     } else {
       for (double& v : dx) v = 99.0;  // the rule sets dx
       BackwardRule<Layer>::backward(parameters.data(), x.data(), y.data(), c.data(), dx.data(), gradient.data());
@@ -161,11 +163,11 @@ TEST_CASE_TEMPLATE("backward rule of every layer", Layer, Bound<Dense<1>, 1>, Bo
 TEST_CASE("the slope at the kink of ReLU is 0, on both forms") {
   using Layer = Bound<Relu, 4>;
   using Pack = GenericPack<double, 4>;
-  CHECK(BackwardRule<Layer>::slope(0.0) == 0.0);
+  CHECK(Layer::slope(0.0) == 0.0);
   const double y[4] = {0.0, 1.0, -0.0, 1e-300}, dy[4] = {2.0, 3.0, 4.0, 5.0};
   double dx[4] = {};
-  BackwardRule<Layer>::scaled(Pack::load(y), Pack::load(dy)).store(dx);
-  for (int i = 0; i < 4; ++i) CHECK(dx[i] == dy[i] * BackwardRule<Layer>::slope(y[i]));
+  Layer::scaled(Pack::load(y), Pack::load(dy)).store(dx);
+  for (int i = 0; i < 4; ++i) CHECK(dx[i] == dy[i] * Layer::slope(y[i]));
 }
 
 TEST_CASE("what can be trained") {

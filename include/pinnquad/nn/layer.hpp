@@ -52,6 +52,15 @@ template <class Layer, class = void>
 struct IsElementwise : std::false_type {};
 template <class Layer>
 struct IsElementwise<Layer, std::enable_if_t<Layer::elementwise>> : std::true_type {};
+template <class Layer, class = void>
+struct HasSlope : std::false_type {};
+template <class Layer>
+struct HasSlope<Layer, std::void_t<decltype(Layer::slope(std::declval<typename Layer::Scalar>()))>> : std::true_type {};
+template <class Layer, class Pack, class = void>
+struct ScalesPack : std::false_type {};
+template <class Layer, class Pack>
+struct ScalesPack<Layer, Pack, std::void_t<decltype(Layer::scaled(std::declval<Pack>(), std::declval<Pack>()))>>
+    : std::true_type {};
 }  // namespace detail
 
 /// True for a spec that fulfils the contract at the head of this file.
@@ -65,6 +74,14 @@ inline constexpr bool is_elementwise = detail::IsElementwise<Layer>::value;
 /// An element-wise layer whose activate() also takes a whole pack: it is fused into the layer before it.
 template <class Layer, class Pack>
 inline constexpr bool activates_pack = detail::ActivatesPack<Layer, Pack>::value;
+
+/// An element-wise layer that can be differentiated gives `slope(y)` = d activate / d v, from its output.
+template <class Layer>
+inline constexpr bool has_slope = detail::HasSlope<Layer>::value;
+
+/// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy for a whole pack.
+template <class Layer, class Pack>
+inline constexpr bool scales_pack = detail::ScalesPack<Layer, Pack>::value;
 
 /// Base of element-wise layers: the sizes and a forward pass from `Derived::activate`.
 template <class Derived, class ScalarType, int Size>

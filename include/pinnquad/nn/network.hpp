@@ -42,6 +42,12 @@ struct Sizes<std::tuple<Layers...>> {
     for (int i = 0; i < layer; ++i) sum += parameters[static_cast<std::size_t>(i)];
     return sum;
   }
+  /// Outputs of all layers before this one.
+  static constexpr int outputs_before(int layer) noexcept {
+    int sum = 0;
+    for (int i = 0; i < layer; ++i) sum += outputs[static_cast<std::size_t>(i)];
+    return sum;
+  }
   static constexpr int widest(int least) noexcept {
     for (int width : outputs) least = width > least ? width : least;
     return least;

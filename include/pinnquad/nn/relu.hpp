@@ -15,6 +15,14 @@ struct ReluLayer : ElementwiseLayer<ReluLayer<ScalarType, Size>, ScalarType, Siz
   static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
     return Pack::positive_part(v);
   }
+  /// 1 where y > 0, else 0 (0 at the kink).
+  static PINNQUAD_ALWAYS_INLINE ScalarType slope(ScalarType y) noexcept {
+    return y > ScalarType(0) ? ScalarType(1) : ScalarType(0);
+  }
+  template <class Pack>
+  static PINNQUAD_ALWAYS_INLINE Pack scaled(Pack y, Pack dy) noexcept {
+    return Pack::where_positive(y, dy);
+  }
 };
 
 struct Relu {

@@ -18,6 +18,12 @@ struct TanhLayer : ElementwiseLayer<TanhLayer<ScalarType, Size>, ScalarType, Siz
   static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
     return Pack::hyperbolic_tangent(v);
   }
+  /// 1 - y^2.
+  static PINNQUAD_ALWAYS_INLINE ScalarType slope(ScalarType y) noexcept { return ScalarType(1) - y * y; }
+  template <class Pack>
+  static PINNQUAD_ALWAYS_INLINE Pack scaled(Pack y, Pack dy) noexcept {
+    return dy - y * y * dy;
+  }
 };
 
 struct Tanh {

@@ -6,8 +6,6 @@
 #include "pinnquad/nn/kernel/tile.hpp"
 #include "pinnquad/training/backward/backward.hpp"
 #include "pinnquad/training/backward/dense.hpp"
-#include "pinnquad/training/backward/relu.hpp"
-#include "pinnquad/training/backward/tanh.hpp"
 
 namespace pinnquad {
 
@@ -128,7 +126,7 @@ struct BatchLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, BatchSize, void>
 template <class Layer, class Pack, int BatchSize>
 struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>>> {
   static_assert(is_trainable<Layer>,
-                "pinnquad: this layer cannot be trained; BackwardRule needs slope(y) (training/backward/backward.hpp)");
+                "pinnquad: this layer cannot be trained; an element-wise layer needs slope(y) (nn/layer.hpp)");
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = true;  ///< if the layer before does not need its output
   static constexpr bool needs_output = true;
@@ -149,21 +147,14 @@ struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>
     }
   }
   void backward(const Scalar* y, Scalar* delta, int samples) noexcept {
-    if constexpr (HasScaled<BackwardRule<Layer>>::value) {
+    if constexpr (scales_pack<Layer, Pack>) {
       for (int i = 0; i < samples * stride; i += Pack::width) {
-        BackwardRule<Layer>::scaled(Pack::load(y + i), Pack::load(delta + i)).store(delta + i);
+        Layer::scaled(Pack::load(y + i), Pack::load(delta + i)).store(delta + i);
       }
     } else {
-      for (int i = 0; i < samples * stride; ++i) delta[i] *= BackwardRule<Layer>::slope(y[i]);
+      for (int i = 0; i < samples * stride; ++i) delta[i] *= Layer::slope(y[i]);
     }
   }
-
- private:
-  template <class Rule, class = void>
-  struct HasScaled : std::false_type {};
-  template <class Rule>
-  struct HasScaled<Rule, std::void_t<decltype(Rule::scaled(std::declval<Pack>(), std::declval<Pack>()))>>
-      : std::true_type {};
 };
 
 }  // namespace pinnquad

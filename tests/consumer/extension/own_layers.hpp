@@ -11,6 +11,7 @@ namespace own {
 template <class ScalarType, int Size>
 struct LeakyReluLayer : pinnquad::ElementwiseLayer<LeakyReluLayer<ScalarType, Size>, ScalarType, Size> {
   static ScalarType activate(ScalarType v) noexcept { return v < ScalarType(0) ? v * ScalarType(0.0625) : v; }
+  static ScalarType slope(ScalarType y) noexcept { return y < ScalarType(0) ? ScalarType(0.0625) : ScalarType(1); }
 };
 struct LeakyRelu {
   template <class Scalar, int In>
@@ -39,11 +40,6 @@ struct ChannelScale {
 };
 
 }  // namespace own
-
-template <class Scalar, int Size>
-struct pinnquad::BackwardRule<own::LeakyReluLayer<Scalar, Size>> {
-  static Scalar slope(Scalar y) noexcept { return y < Scalar(0) ? Scalar(0.0625) : Scalar(1); }
-};
 
 template <class Scalar, int Size>
 struct pinnquad::BackwardRule<own::ChannelScaleLayer<Scalar, Size>> {

@@ -10,33 +10,79 @@ namespace pinnquad {
 
 namespace detail {
 
-/// C[r][v] = start[v] + sum_k A(r, k) B[k][v] for one tile; A(r, k) = a[r * RowStride + k * DepthStride].
-template <class Pack, int Rows, int Vectors, int RowStride, int DepthStride, int Stride>
-PINNQUAD_ALWAYS_INLINE void multiply_tile(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
-                                          const typename Pack::Scalar* start, typename Pack::Scalar* c) noexcept {
-  Pack sum[Rows][Vectors];
-  unroll<Vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-    const Pack first =
-        start != nullptr ? Pack::load(start + v * Pack::width) : Pack::broadcast(typename Pack::Scalar(0));
-    unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA { sum[r][v] = first; });
+/// The columns of a tile: `vectors` packs side by side.
+template <class PackType, int Vectors>
+struct Consecutive {
+  using Pack = PackType;
+  static constexpr int vectors = Vectors;
+  static constexpr int offset(int vector) noexcept { return vector * Pack::width; }
+};
+
+/// Packs [First, First + Vectors) of `Columns` columns without padding: the last pack ends at the last column and may overlap
+/// the one before, so that nothing behind a row is read or written.
+template <class PackType, int Columns, int First, int Vectors>
+struct Overlapping {
+  using Pack = PackType;
+  static_assert(Pack::width <= Columns, "pinnquad: a pack is wider than the matrix");
+  static constexpr int vectors = Vectors;
+  static constexpr int offset(int vector) noexcept {
+    const int begin = (First + vector) * Pack::width;
+    return begin + Pack::width > Columns ? Columns - Pack::width : begin;
+  }
+};
+
+/// C[r][v] = finish(r, v, start(r, v) + sum_k A(r, k) B[k][v]) for one tile; A(r, k) = a[r * RowStride + k * DepthStride].
+template <class Columns, int Rows, int RowStride, int DepthStride, class Scalar, class Start, class Finish>
+PINNQUAD_ALWAYS_INLINE void multiply_tile(const Scalar* a, const Scalar* b, int b_stride, int depth, const Start& start,
+                                          const Finish& finish, Scalar* c, int c_stride) noexcept {
+  using Pack = typename Columns::Pack;
+  constexpr int vectors = Columns::vectors;
+  Pack sum[Rows][vectors];
+  unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
+    unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { sum[r][v] = start(r, v); });
   });
   for (int k = 0; k < depth; ++k) {
-    Pack row[Vectors];
-    unroll<Vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { row[v] = Pack::load(b + v * Pack::width); });
+    Pack row[vectors];
+    unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { row[v] = Pack::load(b + Columns::offset(v)); });
     unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
       const Pack factor = Pack::broadcast(a[r * RowStride]);
-      unroll<Vectors>([&](auto v)
+      unroll<vectors>([&](auto v)
                           PINNQUAD_INLINE_LAMBDA { sum[r][v] = Pack::multiply_add(factor, row[v], sum[r][v]); });
     });
     a += DepthStride;
-    b += Stride;
+    b += b_stride;
   }
   unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
-    unroll<Vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { sum[r][v].store(c + r * Stride + v * Pack::width); });
+    unroll<vectors>(
+        [&](auto v) PINNQUAD_INLINE_LAMBDA { finish(r, v, sum[r][v]).store(c + r * c_stride + Columns::offset(v)); });
   });
 }
 
-/// One tile of rows over all columns.
+/// Cuts `Rows` into tiles of nearly equal height, at most `Largest`: body(first, rows) with compile-time values.
+template <int Rows, int Largest, class Body>
+PINNQUAD_ALWAYS_INLINE void in_even_tiles(const Body& body) noexcept {
+  constexpr int tiles = (Rows + Largest - 1) / Largest;
+  constexpr int height = Rows / tiles;
+  constexpr int taller = Rows % tiles;  // the first `taller` tiles have one row more
+  unroll<tiles>([&](auto i) PINNQUAD_INLINE_LAMBDA {
+    constexpr int index = decltype(i)::value;
+    body(std::integral_constant<int, index * height + (index < taller ? index : taller)>{},
+         std::integral_constant<int, height + (index < taller ? 1 : 0)>{});
+  });
+}
+
+/// The same into tiles of `Height`, and one of what is left.
+template <int Rows, int Height, class Body>
+PINNQUAD_ALWAYS_INLINE void in_full_tiles(const Body& body) noexcept {
+  unroll<Rows / Height>([&](auto i) PINNQUAD_INLINE_LAMBDA {
+    body(std::integral_constant<int, decltype(i)::value * Height>{}, std::integral_constant<int, Height>{});
+  });
+  if constexpr (Rows % Height > 0) {
+    body(std::integral_constant<int, Rows - Rows % Height>{}, std::integral_constant<int, Rows % Height>{});
+  }
+}
+
+/// One tile of rows over all columns; `start` is one row that all begin with, or null for zeros.
 template <class Pack, int Rows, int RowStride, int DepthStride, int Stride, int Columns>
 PINNQUAD_ALWAYS_INLINE void multiply_rows(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
                                           const typename Pack::Scalar* start, typename Pack::Scalar* c) noexcept {
@@ -44,16 +90,21 @@ PINNQUAD_ALWAYS_INLINE void multiply_rows(const typename Pack::Scalar* a, const 
   constexpr int block = vectors < Pack::tile_vectors ? vectors : Pack::tile_vectors;
   constexpr int blocks = vectors / block;
   constexpr int rest = vectors % block;
+  const auto tile = [&](auto count, int offset) PINNQUAD_INLINE_LAMBDA {
+    constexpr int tile_vectors = decltype(count)::value;
+    Pack first[tile_vectors];
+    unroll<tile_vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
+      first[v] =
+          start != nullptr ? Pack::load(start + offset + v * Pack::width) : Pack::broadcast(typename Pack::Scalar(0));
+    });
+    multiply_tile<Consecutive<Pack, tile_vectors>, Rows, RowStride, DepthStride>(
+        a, b + offset, Stride, depth, [&](auto, auto v) PINNQUAD_INLINE_LAMBDA { return first[v]; },
+        [](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum; }, c + offset, Stride);
+  };
   unroll<blocks>([&](auto i) PINNQUAD_INLINE_LAMBDA {
-    constexpr int offset = decltype(i)::value * block * Pack::width;
-    multiply_tile<Pack, Rows, block, RowStride, DepthStride, Stride>(
-        a, b + offset, depth, start != nullptr ? start + offset : nullptr, c + offset);
+    tile(std::integral_constant<int, block>{}, decltype(i)::value * block * Pack::width);
   });
-  if constexpr (rest > 0) {
-    constexpr int offset = blocks * block * Pack::width;
-    multiply_tile<Pack, Rows, rest, RowStride, DepthStride, Stride>(
-        a, b + offset, depth, start != nullptr ? start + offset : nullptr, c + offset);
-  }
+  if constexpr (rest > 0) tile(std::integral_constant<int, rest>{}, blocks * block * Pack::width);
 }
 
 }  // namespace detail
@@ -77,14 +128,9 @@ template <class Pack, int Rows, int AStride, int Columns>
 void multiply_transposed(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
                          typename Pack::Scalar* c) noexcept {
   constexpr int largest = Pack::tile_rows + Pack::tile_rows / 4;
-  constexpr int tiles = (Rows + largest - 1) / largest;
-  constexpr int height = Rows / tiles;
-  constexpr int taller = Rows % tiles;  // the first `taller` tiles have one row more
-  unroll<tiles>([&](auto i) PINNQUAD_INLINE_LAMBDA {
-    constexpr int index = decltype(i)::value;
-    constexpr int rows = height + (index < taller ? 1 : 0);
-    constexpr int first = index * height + (index < taller ? index : taller);
-    detail::multiply_rows<Pack, rows, 1, AStride, Columns, Columns>(a + first, b, depth, nullptr, c + first * Columns);
+  detail::in_even_tiles<Rows, largest>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
+    detail::multiply_rows<Pack, decltype(rows)::value, 1, AStride, Columns, Columns>(a + first, b, depth, nullptr,
+                                                                                     c + first * Columns);
   });
 }
 

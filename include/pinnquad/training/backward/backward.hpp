@@ -2,7 +2,7 @@
 // The contract of a layer's backward pass: a specialisation `BackwardRule<Layer>` for one sample,
 //   static void backward(const Scalar* parameters, const Scalar* x, const Scalar* y, const Scalar* dy, Scalar* dx,
 //                        Scalar* parameter_gradient) noexcept;
-// dx is set, parameter_gradient is added to. An element-wise layer gives `slope(y)` = d activate / d v from its output instead.
+// dx is set, parameter_gradient is added to. An element-wise layer needs none: it has its slope (nn/layer.hpp).
 #pragma once
 
 #include <type_traits>
@@ -25,16 +25,11 @@ struct HasSampleRule<Layer,
                          std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
                          std::declval<typename Layer::Scalar*>(), std::declval<typename Layer::Scalar*>()))>>
     : std::true_type {};
-template <class Layer, class = void>
-struct HasSlope : std::false_type {};
-template <class Layer>
-struct HasSlope<Layer, std::void_t<decltype(BackwardRule<Layer>::slope(std::declval<typename Layer::Scalar>()))>>
-    : std::true_type {};
 }  // namespace detail
 
 /// True for a bound layer that can be trained.
 template <class Layer>
 inline constexpr bool is_trainable =
-    is_elementwise<Layer> ? detail::HasSlope<Layer>::value : detail::HasSampleRule<Layer>::value;
+    is_elementwise<Layer> ? has_slope<Layer> : detail::HasSampleRule<Layer>::value;
 
 }  // namespace pinnquad

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// The forward pass over many samples at once, for rollouts (MPPI) and evaluation: one lane per sample, weights straight from
+// the row-major parameters. Each sample's sums are taken in the portable kernel's order.
+#pragma once
+
+#include "pinnquad/nn/kernel/tile.hpp"
+#include "pinnquad/nn/network.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+
+/// Twelve sums (six rows of two packs) hide the latency of the multiply-add; with many more the processor sees too little
+/// of the next tile to overlap the two. Sixteen registers hold twelve sums; where there are 32, a tile may be one row taller
+/// to save another.
+template <class Pack, int Rows, class Body>
+PINNQUAD_ALWAYS_INLINE void in_batched_tiles(const Body& body) noexcept {
+  if constexpr (sizeof(Pack) >= 64) {
+    in_even_tiles<Rows, 7>(body);
+  } else {
+    in_full_tiles<Rows, 6>(body);
+  }
+}
+
+/// How a layer runs over a block of `Lanes` samples, x and y by feature with strides: one sample after the other, unless
+/// specialised.
+template <class Layer, class Pack, int Lanes>
+struct BatchedLayer {
+  using Scalar = typename Layer::Scalar;
+  static constexpr bool fuses_activation = false;
+  static void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y, int y_stride) noexcept {
+    for (int lane = 0; lane < Lanes; ++lane) {
+      Scalar in[static_cast<std::size_t>(Layer::inputs)];
+      Scalar out[static_cast<std::size_t>(Layer::outputs)];
+      for (int i = 0; i < Layer::inputs; ++i) in[i] = x[i * x_stride + lane];
+      Layer::forward(parameters, in, out);
+      for (int i = 0; i < Layer::outputs; ++i) y[i * y_stride + lane] = out[i];
+    }
+  }
+};
+
+/// `Start(row)` is what a row's sum begins with.
+template <class Pack, int Lanes, int In, int Out, class Scalar, class Start, class Activation>
+PINNQUAD_ALWAYS_INLINE void multiply_block(const Scalar* weight, const Start& start, const Activation& activation,
+                                           const Scalar* x, int x_stride, Scalar* y, int y_stride) noexcept {
+  constexpr int vectors = Lanes / Pack::width;
+  in_batched_tiles<Pack, Out>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
+    multiply_tile<Consecutive<Pack, vectors>, decltype(rows)::value, In, 1>(
+        weight + first * In, x, x_stride, In, [&](auto r, auto) PINNQUAD_INLINE_LAMBDA { return start(first + r); },
+        [&](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return activation(sum); }, y + first * y_stride, y_stride);
+  });
+}
+
+template <class ScalarType, int In, int Out, class Pack, int Lanes>
+struct BatchedLayer<DenseLayer<ScalarType, In, Out>, Pack, Lanes> {
+  using Scalar = ScalarType;
+  static constexpr bool fuses_activation = true;
+  template <class Activation>
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y,
+                                             int y_stride, const Activation& activation) noexcept {
+    const Scalar* bias = parameters + In * Out;
+    multiply_block<Pack, Lanes, In, Out>(
+        parameters, [&](int row) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(bias[row]); }, activation, x, x_stride,
+        y, y_stride);
+  }
+};
+
+template <class ScalarType, int In, int Out, class Pack, int Lanes>
+struct BatchedLayer<DenseWithoutBiasLayer<ScalarType, In, Out>, Pack, Lanes> {
+  using Scalar = ScalarType;
+  static constexpr bool fuses_activation = true;
+  template <class Activation>
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y,
+                                             int y_stride, const Activation& activation) noexcept {
+    multiply_block<Pack, Lanes, In, Out>(
+        parameters, [](int) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(Scalar(0)); }, activation, x, x_stride, y,
+        y_stride);
+  }
+};
+
+/// A layer and the activation behind it (void: none) over a block. Out of line, so that equal layers share their code.
+template <class Layer, class Activation, class Pack, int Lanes>
+PINNQUAD_NOINLINE void batched_layer(const typename Layer::Scalar* parameters, const typename Layer::Scalar* x,
+                                     int x_stride, typename Layer::Scalar* y, int y_stride) noexcept {
+  using Batched = BatchedLayer<Layer, Pack, Lanes>;
+  if constexpr (!std::is_void_v<Activation>) {
+    Batched::forward(parameters, x, x_stride, y, y_stride,
+                     [](Pack v) PINNQUAD_INLINE_LAMBDA { return Activation::activate(v); });
+  } else if constexpr (Batched::fuses_activation) {
+    Batched::forward(parameters, x, x_stride, y, y_stride, [](Pack v) PINNQUAD_INLINE_LAMBDA { return v; });
+  } else {
+    Batched::forward(parameters, x, x_stride, y, y_stride);
+  }
+}
+
+}  // namespace detail
+
+/// y = network(x) for many samples. Both are by feature: x[i * samples + s] is input i of sample s, y likewise.
+/// Parameters as in Network, row-major. With fused multiply-add the bits are those of Network::forward, in any batch.
+template <class NetworkType, class PackType = NativePack<typename NetworkType::Scalar>>
+struct BatchedNetwork {
+  static_assert(is_network<NetworkType>, "pinnquad: BatchedNetwork<N> needs a Network (nn/network.hpp)");
+  using Scalar = typename NetworkType::Scalar;
+  using Pack = PackType;
+
+  /// Samples that are worked on at once.
+  static constexpr int lanes = 2 * Pack::width;
+  /// Stack that a call needs, about.
+  static constexpr std::size_t workspace_bytes =
+      sizeof(Scalar) * static_cast<std::size_t>(4 * NetworkType::widest * lanes);
+
+  /// Any number of samples, also none.
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y, int samples) noexcept {
+    if (samples >= lanes) {
+      int first = 0;
+      for (; first + lanes <= samples; first += lanes) block(parameters, x + first, samples, y + first, samples);
+      // the rest with some of the block before once more: it gives the same again
+      if (first < samples) block(parameters, x + (samples - lanes), samples, y + (samples - lanes), samples);
+    } else if (samples > 0) {
+      Scalar in[static_cast<std::size_t>(NetworkType::inputs * lanes)] = {};
+      Scalar out[static_cast<std::size_t>(NetworkType::outputs * lanes)];
+      for (int i = 0; i < NetworkType::inputs; ++i) {
+        for (int s = 0; s < samples; ++s) in[i * lanes + s] = x[i * samples + s];
+      }
+      block(parameters, in, lanes, out, lanes);
+      for (int i = 0; i < NetworkType::outputs; ++i) {
+        for (int s = 0; s < samples; ++s) y[i * samples + s] = out[i * lanes + s];
+      }
+    }
+  }
+
+ private:
+  static constexpr int layer_count = NetworkType::layer_count;
+  template <int Index>
+  using Layer = typename NetworkType::template Layer<Index>;
+  template <int Index>
+  static constexpr bool fused() noexcept {
+    if constexpr (Index + 1 < layer_count) {
+      return detail::BatchedLayer<Layer<Index>, Pack, lanes>::fuses_activation && is_elementwise<Layer<Index + 1>> &&
+             activates_pack<Layer<Index + 1>, Pack>;
+    } else {
+      return false;
+    }
+  }
+
+  static void block(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y, int y_stride) noexcept {
+    alignas(64) Scalar even[static_cast<std::size_t>(NetworkType::widest * lanes)];
+    alignas(64) Scalar odd[static_cast<std::size_t>(NetworkType::widest * lanes)];
+    run<0>(parameters, x, x_stride, even, odd, y, y_stride);
+  }
+
+  template <int Index>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* target,
+                                         Scalar* other, Scalar* y, int y_stride) noexcept {
+    constexpr int next = Index + (fused<Index>() ? 2 : 1);
+    Scalar* into = next == layer_count ? y : target;
+    const int stride = next == layer_count ? y_stride : lanes;
+    const Scalar* own = parameters + NetworkType::Sizes::offset(Index);
+    if constexpr (fused<Index>()) {
+      detail::batched_layer<Layer<Index>, Layer<Index + 1>, Pack, lanes>(own, x, x_stride, into, stride);
+    } else {
+      detail::batched_layer<Layer<Index>, void, Pack, lanes>(own, x, x_stride, into, stride);
+    }
+    if constexpr (next < layer_count) run<next>(parameters, into, stride, other, target, y, y_stride);
+  }
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/nn/jacobian.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/tanh.hpp"
+#include "support/own_layers.hpp"
+
+using namespace pinnquad;
+
+namespace {
+
+template <class Net>
+Net random_network(std::mt19937_64& engine) {
+  using Scalar = typename Net::Scalar;
+  Net net;
+  for (auto& v : net.parameters) v = static_cast<Scalar>(uniform(engine, -0.6, 0.6));
+  return net;
+}
+
+template <class Scalar, class... Specs>
+using From16 = Network<Scalar, Inputs<16>, Specs...>;
+
+/// A network whose batch norms have variances above zero.
+template <class Net>
+void spread_statistics(Net& net) {
+  for (auto& v : net.parameters) v = std::abs(v) + typename Net::Scalar(0.1);
+}
+
+/// Central differences in double: error of the order of the step squared, rounding of epsilon / step.
+template <class Net>
+void check_against_differences(const Net& net, const std::vector<double>& x) {
+  constexpr double step = 1e-6, tolerance = 1e-7;
+  constexpr auto in = static_cast<std::size_t>(Net::inputs), out = static_cast<std::size_t>(Net::outputs);
+  std::vector<double> y(out), jacobian(in * out), plain(out), above(out), below(out);
+  JacobianPass<Net>::run(net.parameters.data(), x.data(), y.data(), jacobian.data());
+  net.forward(x.data(), plain.data());
+  for (std::size_t i = 0; i < out; ++i) CHECK(y[i] == doctest::Approx(plain[i]).epsilon(1e-13));
+  for (std::size_t k = 0; k < in; ++k) {
+    std::vector<double> moved = x;
+    moved[k] = x[k] + step;
+    net.forward(moved.data(), above.data());
+    moved[k] = x[k] - step;
+    net.forward(moved.data(), below.data());
+    for (std::size_t i = 0; i < out; ++i) {
+      const double expected = (above[i] - below[i]) / (2 * step);
+      CHECK(std::abs(jacobian[i * in + k] - expected) <= tolerance * (1 + std::abs(expected)));
+    }
+  }
+}
+
+template <class Net>
+std::vector<double> some_input(std::mt19937_64& engine) {
+  std::vector<double> x(static_cast<std::size_t>(Net::inputs));
+  for (double& v : x) v = uniform(engine, -1.0, 1.0);
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("Jacobian against central differences", Net,
+                   Mlp<double, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>,
+                   Mlp<double, Inputs<17>, Hidden<3, 32>, Outputs<4>, Tanh>, From16<double, Dense<1>>,
+                   From16<double, Dense<7>, Tanh, Dense<9>>, From16<double, DenseWithoutBias<5>, Relu, Dense<13>, Tanh>,
+                   From16<double, Dense<6>, test::LeakyRelu, Dense<3>>,
+                   Network<double, Inputs<1>, Dense<3>, Tanh, Dense<2>>,
+                   Network<double, Inputs<3>, Tanh, Dense<40>, Relu, Relu, Dense<4>>) {
+  std::mt19937_64 engine(7);
+  for (int round = 0; round < 5; ++round) {
+    const auto net = random_network<Net>(engine);
+    check_against_differences(net, some_input<Net>(engine));
+  }
+}
+
+TEST_CASE("Jacobian through batch norm uses the running statistics") {
+  using Net = From16<double, DenseWithoutBias<6>, BatchNorm, Tanh, Dense<4>>;
+  std::mt19937_64 engine(8);
+  auto net = random_network<Net>(engine);
+  spread_statistics(net);
+  check_against_differences(net, some_input<Net>(engine));
+}
+
+TEST_CASE_TEMPLATE("float agrees with double, with every pack", Pack, NativePack<float>, GenericPack<float, 4>,
+                   GenericPack<float, 1>) {
+  using Net = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+  std::mt19937_64 engine(9);
+  const auto net = random_network<Net>(engine);
+  Net::Rebind<double> wide;
+  for (std::size_t i = 0; i < net.parameters.size(); ++i) wide.parameters[i] = static_cast<double>(net.parameters[i]);
+  std::array<float, 16> x{};
+  std::array<double, 16> x_wide{};
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x_wide[i] = static_cast<double>(x[i] = static_cast<float>(uniform(engine, -1.0, 1.0)));
+  float y[4], jacobian[64];
+  double y_wide[4], jacobian_wide[64];
+  JacobianPass<Net, Pack>::run(net.parameters.data(), x.data(), y, jacobian);
+  JacobianPass<Net::Rebind<double>>::run(wide.parameters.data(), x_wide.data(), y_wide, jacobian_wide);
+  double largest = 0;
+  for (const double j : jacobian_wide) largest = std::max(largest, std::abs(j));
+  REQUIRE(largest > 0.01);
+  constexpr double rounding = 2e-6;  // of 250 products in a chain of eleven layers
+  for (int i = 0; i < 64; ++i)
+    CHECK(std::abs(static_cast<double>(jacobian[i]) - jacobian_wide[i]) <= rounding * largest);
+}
+
+TEST_CASE("NaN in an input reaches the value") {
+  using Net = Mlp<float, Inputs<16>, Hidden<2, 25>, Outputs<4>, Relu>;
+  std::mt19937_64 engine(10);
+  const auto net = random_network<Net>(engine);
+  std::array<float, 16> x{};
+  x[3] = std::numeric_limits<float>::quiet_NaN();
+  float y[4] = {}, jacobian[64];
+  JacobianPass<Net>::run(net.parameters.data(), x.data(), y, jacobian);
+  for (const float v : y) CHECK(std::isnan(v));
+}
