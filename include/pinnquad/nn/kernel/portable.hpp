@@ -4,7 +4,7 @@
 // Inputs are held in registers and two rows run side by side: few loads, whole cache lines of weights in the order of flash.
 #pragma once
 
-#include <cmath>
+#include <cstddef>
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
