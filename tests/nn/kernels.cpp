@@ -218,6 +218,37 @@ TEST_CASE_TEMPLATE("every pack does what a scalar does, lane by lane", Pack, Gen
   }
 }
 
+TEST_CASE_TEMPLATE("portable: each output has the bits of one plain chain, held inputs or not, odd rows or not", Scalar,
+                   float, double) {
+  // narrower than what is held, as wide, one wider, two parts, three parts that differ in width
+  using Wide = ShapeList<Shape<1, 1>, Shape<2, 7>, Shape<3, 25>, Shape<25, 25>, Shape<4, 26>, Shape<5, 50>,
+                         Shape<3, 64>, Shape<2, 76>>;
+  std::mt19937_64 engine(24);
+  for_each_shape(Wide{}, [&engine](auto shape) {
+    constexpr int rows = decltype(shape)::rows, columns = decltype(shape)::columns;
+    CAPTURE(rows);
+    CAPTURE(columns);
+    const Problem<Scalar, rows, columns> problem(engine);
+    std::array<Scalar, rows> y{}, activated{}, without_bias{}, chain{}, chain_without_bias{};
+    const Scalar* const weight = problem.weight.data();
+    pinnquad::multiply_row_major<rows, columns>(weight, problem.bias.data(), problem.x.data(), y.data());
+    pinnquad::multiply_row_major<rows, columns>(weight, problem.bias.data(), problem.x.data(), activated.data(),
+                                                [](Scalar v) { return v + Scalar(1); });
+    pinnquad::multiply_row_major<rows, columns>(weight, problem.x.data(), without_bias.data());
+    for (std::size_t row = 0; row < rows; ++row) {
+      chain[row] = problem.bias[row];
+      for (std::size_t column = 0; column < columns; ++column) {
+        const Scalar w = weight[row * columns + column];
+        chain[row] = pinnquad::multiply_add(w, problem.x[column], chain[row]);
+        chain_without_bias[row] = pinnquad::multiply_add(w, problem.x[column], chain_without_bias[row]);
+      }
+      CHECK(activated[row] == chain[row] + Scalar(1));
+    }
+    CHECK(y == chain);
+    CHECK(without_bias == chain_without_bias);
+  });
+}
+
 TEST_CASE("the portable kernel has one order of operations: bias first, inputs ascending") {
   // 1e8 absorbs a 1 in float unless the 1e8 has gone before
   const float weight[3] = {1.0F, 1.0F, 1.0F};

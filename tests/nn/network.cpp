@@ -135,6 +135,58 @@ TEST_CASE_TEMPLATE("activations", Scalar, float, double) {
   CHECK(TanhLayer::activate(Scalar(-0.5)) == -TanhLayer::activate(Scalar(0.5)));
 }
 
+namespace {
+/// Layer by layer through Layer::forward, nothing fused or repeated.
+template <class Type, int Index = 0>
+std::vector<typename Type::Scalar> layer_by_layer(const Type& network, const std::vector<typename Type::Scalar>& x) {
+  if constexpr (Index == Type::layer_count) {
+    return x;
+  } else {
+    using Layer = typename Type::template Layer<Index>;
+    std::vector<typename Type::Scalar> y(Layer::outputs);
+    Layer::forward(network.parameters.data() + Type::Sizes::offset(Index), x.data(), y.data());
+    return layer_by_layer<Type, Index + 1>(network, y);
+  }
+}
+
+/// y_i = p_i x_i: a layer with parameters that nothing is fused with.
+template <class ScalarType, int Size>
+struct ScaleLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = Size, outputs = Size, parameter_count = Size;
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    for (int i = 0; i < Size; ++i) y[i] = parameters[i] * x[i];
+  }
+};
+struct Scale {
+  template <class Scalar, int In>
+  using Bind = ScaleLayer<Scalar, In>;
+};
+}  // namespace
+
+TEST_CASE_TEMPLATE("fused activations and loops over equal layers keep the bits of a pass layer by layer", Scalar,
+                   float, double) {
+  std::mt19937_64 engine(12);
+  const auto compare = [&engine](auto network) {
+    using Type = decltype(network);
+    CAPTURE(Type::layer_count);
+    fill_uniform(network.parameters, engine);
+    std::vector<Scalar> x(Type::inputs), y(Type::outputs);
+    fill_uniform(x, engine);
+    network.forward(x.data(), y.data());
+    CHECK(y == layer_by_layer(network, x));
+  };
+  using D6 = Dense<6>;
+  compare(Mlp<Scalar, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>{});  // first differs, nine equal, last
+  compare(Mlp<Scalar, Inputs<6>, Hidden<3, 6>, Outputs<6>, Tanh>{});     // all equal but for the last activation
+  compare(Network<Scalar, Inputs<6>, D6, D6, D6, D6>{});                 // equal, nothing to fuse, last writes y
+  compare(Network<Scalar, Inputs<6>, D6, Relu, D6, Tanh, D6, Tanh, D6, Relu>{});  // equal layers, other activations
+  compare(Network<Scalar, Inputs<6>, Relu, D6, Relu, Relu, D6, D6, Relu>{});      // activation first, twice, last
+  compare(Network<Scalar, Inputs<6>, Scale, Relu, Scale, Relu, Dense<3>>{});      // repeats in twos: no step of its own
+  compare(Network<Scalar, Inputs<6>, pinnquad::DenseWithoutBias<6>, Relu, pinnquad::DenseWithoutBias<6>, Relu, D6>{});
+  compare(Network<Scalar, Inputs<70>, Dense<60>, Relu, Dense<60>, Relu, Dense<60>, Relu, Dense<2>>{});
+}
+
 TEST_CASE("a network is a value: a copy has its own parameters") {
   Network<double, Inputs<2>, Dense<2>, Relu, Dense<1>> first;
   first.parameters.fill(0.5);

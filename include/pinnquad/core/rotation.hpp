@@ -120,7 +120,7 @@ Quaternion<Scalar> from_euler(const EulerAngles<Scalar>& angles) noexcept {
 /// (sin psi, cos psi). Straight up or down (cos theta = 0) yaw has no meaning: (0, 1) is returned.
 /// Like tilt() and to_euler() homogeneous in q: an error of the quaternion's norm does not turn the attitude.
 template <class Scalar>
-Heading<Scalar> heading(const Quaternion<Scalar>& q) noexcept {
+PINNQUAD_ALWAYS_INLINE Heading<Scalar> heading(const Quaternion<Scalar>& q) noexcept {
   using std::sqrt;
   const Scalar sine = Scalar(2) * (q.w * q.z + q.x * q.y);
   const Scalar cosine = q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z;
@@ -131,7 +131,7 @@ Heading<Scalar> heading(const Quaternion<Scalar>& q) noexcept {
 
 /// Roll in [-pi, pi] and pitch in [-pi/2, pi/2].
 template <class Scalar>
-Tilt<Scalar> tilt(const Quaternion<Scalar>& q) noexcept {
+PINNQUAD_ALWAYS_INLINE Tilt<Scalar> tilt(const Quaternion<Scalar>& q) noexcept {
   using std::atan2;
   using std::sqrt;
   const Scalar across = Scalar(2) * (q.w * q.x + q.y * q.z);             // |q|^2 sin phi cos theta

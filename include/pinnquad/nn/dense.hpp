@@ -19,6 +19,13 @@ struct DenseLayer {
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     multiply_row_major<Out, In>(parameters, parameters + weight_count, x, y);
   }
+
+  /// y = activate(W x + b), in one pass; `Activation` is an element-wise layer.
+  template <class Activation>
+  static PINNQUAD_ALWAYS_INLINE void forward_fused(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    multiply_row_major<Out, In>(parameters, parameters + weight_count, x, y,
+                                [](Scalar v) PINNQUAD_INLINE_LAMBDA { return Activation::activate(v); });
+  }
 };
 
 /// `Out` neurons; the number of inputs is deduced.

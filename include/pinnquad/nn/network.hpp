@@ -6,6 +6,7 @@
 #include <array>
 #include <tuple>
 
+#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "pinnquad/nn/layer.hpp"
 
@@ -54,7 +55,102 @@ struct Sizes<std::tuple<Layers...>> {
   }
 };
 
+template <class Layer, class Activation, class = void>
+struct FusesActivation : std::false_type {};
+template <class Layer, class Activation>
+struct FusesActivation<
+    Layer, Activation,
+    std::void_t<decltype(Layer::template forward_fused<Activation>(
+        static_cast<const typename Layer::Scalar*>(nullptr), static_cast<const typename Layer::Scalar*>(nullptr),
+        static_cast<typename Layer::Scalar*>(nullptr)))>> : std::true_type {};
+/// True for a layer that applies an element-wise layer to its sums before it stores them.
+template <class Layer, class Activation>
+inline constexpr bool fuses_activation = FusesActivation<Layer, Activation>::value;
+
 }  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// The forward pass of a Network, layer by layer. Code for flash: an activation is applied to the sums of the layer before
+/// it, and equal layers in a row are one loop.
+template <class NetworkType>
+class PortablePass {
+  using Scalar = typename NetworkType::Scalar;
+  using Sizes = typename NetworkType::Sizes;
+  template <int Index>
+  using Layer = typename NetworkType::template Layer<Index>;
+  static constexpr int layer_count = NetworkType::layer_count;
+
+ public:
+  /// y = network(x); out of line, so that an image holds it once.
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Scalar even[static_cast<std::size_t>(NetworkType::widest)];
+    Scalar odd[static_cast<std::size_t>(NetworkType::widest)];
+    run<0>(parameters, x, even, odd, y);
+  }
+
+ private:
+  /// Number of layers that run as one from `Index` on: two for a layer with the activation behind it.
+  template <int Index>
+  static constexpr int length() noexcept {
+    if constexpr (Index + 1 < layer_count) {
+      if constexpr (is_elementwise<Layer<Index + 1>>) {
+        return detail::fuses_activation<Layer<Index>, Layer<Index + 1>> ? 2 : 1;
+      } else {
+        return 1;
+      }
+    } else {
+      return 1;
+    }
+  }
+
+  /// How often what runs from `Index` on stands there in a row; what makes the network's outputs is not counted.
+  template <int Index, int Next>
+  static constexpr int repetitions() noexcept {
+    constexpr int step = length<Index>();
+    if constexpr (Next + step >= layer_count) {
+      return 0;
+    } else if constexpr (length<Next>() != step || !std::is_same_v<Layer<Index>, Layer<Next>> ||
+                         !std::is_same_v<Layer<Index + step - 1>, Layer<Next + step - 1>>) {
+      return 0;
+    } else {
+      return 1 + repetitions<Index, Next + step>();
+    }
+  }
+
+  template <int Index>
+  static PINNQUAD_ALWAYS_INLINE void apply(const Scalar* own, const Scalar* x, Scalar* y) noexcept {
+    if constexpr (length<Index>() == 2) {
+      Layer<Index>::template forward_fused<Layer<Index + 1>>(own, x, y);
+    } else {
+      Layer<Index>::forward(own, x, y);
+    }
+  }
+
+  /// The layers from `Index` on, whose parameters begin at `own`.
+  template <int Index>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* own, const Scalar* x, Scalar* target, Scalar* other,
+                                         Scalar* y) noexcept {
+    constexpr int step = length<Index>();
+    if constexpr (Index + step >= layer_count) {
+      apply<Index>(own, x, y);
+    } else {
+      constexpr int count = repetitions<Index, Index>();
+      constexpr int stride = Sizes::offset(Index + step) - Sizes::offset(Index);
+      for (int i = 0; i < count; ++i) {
+        Scalar* const made = target;
+        apply<Index>(own, x, made);
+        own += stride;
+        x = made;
+        target = other;
+        other = made;
+      }
+      run<Index + count * step>(own, x, target, other, y);
+    }
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 
 /// Layers in order behind `InputSize`; a value that owns its parameters.
 template <class ScalarType, class InputSize, class... Specs>
@@ -81,27 +177,14 @@ class Network {
   Parameters parameters{};
 
   /// y = network(x) with these parameters, by the portable kernel. x has `inputs`, y `outputs` entries.
-  void forward(const Scalar* x, Scalar* y) const noexcept { forward(parameters.data(), x, y); }
-
-  /// The same for parameters that live elsewhere (flash).
-  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    Scalar even[static_cast<std::size_t>(widest)];
-    Scalar odd[static_cast<std::size_t>(widest)];
-    run<0>(parameters, x, even, odd, y);
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    // parameters.data() would be a function of the standard library in an unoptimised build
+    forward(reinterpret_cast<const Scalar*>(&parameters), x, y);
   }
 
- private:
-  template <int Index>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* even, Scalar* odd,
-                                         Scalar* y) noexcept {
-    const Scalar* own = parameters + Sizes::offset(Index);
-    if constexpr (Index + 1 == layer_count) {
-      Layer<Index>::forward(own, x, y);
-    } else {
-      Scalar* target = Index % 2 == 0 ? even : odd;
-      Layer<Index>::forward(own, x, target);
-      run<Index + 1>(parameters, target, even, odd, y);
-    }
+  /// The same for parameters that live elsewhere (flash).
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    PortablePass<Network>::forward(parameters, x, y);
   }
 };
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Writes the model that is measured to the file named, by the library's own header writer: random weights that keep activations alive,
+// scalers and an envelope of an agile multirotor, golden vectors.
+#include <random>
+#include <string>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/nn/relu.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+void write(const std::string& path, const std::string& name) {
+  using Net = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+  using Model = TrainedModel<Net, Context<PaperFeatures, PaperQuadrotor>>;
+  std::mt19937_64 engine(7);
+  Model model;
+  int inputs = 16;
+  std::size_t next = 0;
+  for (const int outputs : {25, 25, 25, 25, 25, 25, 25, 25, 25, 25, 4}) {
+    const double limit = std::sqrt(6.0 / inputs);  // He et al. (2015): ReLU keeps the spread from layer to layer
+    for (int i = 0; i < inputs * outputs; ++i) model.network.parameters[next++] = float(uniform(engine, -limit, limit));
+    for (int i = 0; i < outputs; ++i) model.network.parameters[next++] = float(uniform(engine, -0.1, 0.1));
+    inputs = outputs;
+  }
+  // accelerations, velocity, rates, tilt, heading: spread in SI units
+  const double spread[16] = {4, 4, 4, 10, 10, 10, 3, 3, 3, 1.5, 1.5, 1.5, 0.8, 0.5, 0.7, 0.7};
+  for (std::size_t i = 0; i < 16; ++i) {
+    model.input.mean[i] = float(spread[i] * uniform(engine, -0.2, 0.2));
+    model.input.spread[i] = float(spread[i]);
+    model.envelope_lower[i] = float(-5.0 * spread[i]);
+    model.envelope_upper[i] = float(5.0 * spread[i]);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    model.output.mean[i] = 0.5F;
+    model.output.spread[i] = 0.1F;
+  }
+  std::vector<Model::FeatureVector> golden(4);
+  for (auto& x : golden) {
+    for (std::size_t i = 0; i < 16; ++i) x[i] = float(spread[i] * uniform(engine, -1.0, 1.0));
+  }
+  write_model_header(path, name, model, golden, {"random weights", 0, 0, 7, 0, "none"});
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) return 2;
+  write(arguments[1], "PaperModel");
+  return 0;
+}
