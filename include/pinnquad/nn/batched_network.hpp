@@ -9,6 +9,7 @@
 namespace pinnquad {
 
 namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// Twelve sums (six rows of two packs) hide the latency of the multiply-add; with many more the processor sees too little
 /// of the next tile to overlap the two. Sixteen registers hold twelve sums; where there are 32, a tile may be one row taller
@@ -93,7 +94,10 @@ PINNQUAD_NOINLINE void batched_layer(const typename Layer::Scalar* parameters, c
   }
 }
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// y = network(x) for many samples. Both are by feature: x[i * samples + s] is input i of sample s, y likewise.
 /// Parameters as in Network, row-major. With fused multiply-add the bits are those of Network::forward, in any batch.
@@ -164,5 +168,7 @@ struct BatchedNetwork {
     if constexpr (next < layer_count) run<next>(parameters, into, stride, other, target, y, y_stride);
   }
 };
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 
 }  // namespace pinnquad

@@ -7,14 +7,15 @@
 
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
-#include "pinnquad/nn/network.hpp"
+#include "pinnquad/nn/packed_network.hpp"
 
 namespace pinnquad {
 
 namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// What is left of a gradient when nothing has to be done with it.
-struct Unchanged {
+struct NoSlope {
   template <class Pack>
   PINNQUAD_ALWAYS_INLINE Pack operator()(int, Pack gradient) const noexcept {
     return gradient;
@@ -30,17 +31,21 @@ struct PullBack {
                 "pinnquad: this layer has no Jacobian; specialise pinnquad::detail::PullBack (nn/jacobian.hpp)");
 };
 
-/// by_input = by_output W for row-major W (Out x In).
-template <class Pack, int Rows, int Stride, int In, int Out, class Scalar, class Finish>
+/// by_input = by_output W for row-major W (Out x In), behind which `Behind` more scalars may be read.
+template <class Pack, int Rows, int Stride, int In, int Out, int Behind, class Scalar, class Finish>
 PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar* by_output, Scalar* by_input,
                                               const Finish& finish) noexcept {
-  using Lane =
-      std::conditional_t<(Pack::width <= In), Pack, GenericPack<Scalar, 1>>;  // a narrow matrix goes value by value
-  constexpr int packs = (In + Lane::width - 1) / Lane::width;
+  // Packs side by side read past the end of a row, into the next one, and leave nonsense past the end of `by_input`, where
+  // nobody looks. Overlapping stores would be slow to read back.
+  constexpr bool past_the_end = padded<Pack>(In) - In <= Behind;
+  using Lane = std::conditional_t<past_the_end || (Pack::width <= In), Pack, GenericPack<Scalar, 1>>;
+  constexpr int packs = padded<Lane>(In) / Lane::width;
   in_even_tiles<Rows, 6>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
     unroll<(packs + 1) / 2>([&](auto pair) PINNQUAD_INLINE_LAMBDA {
       constexpr int begin = 2 * decltype(pair)::value;
-      using Columns = Overlapping<Lane, In, begin, begin + 1 < packs ? 2 : 1>;
+      constexpr int vectors = begin + 1 < packs ? 2 : 1;
+      using Columns = std::conditional_t<past_the_end, Consecutive<Lane, vectors, begin>,
+                                         Overlapping<Lane, vectors, begin, (In > Lane::width ? In : Lane::width)>>;
       multiply_tile<Columns, decltype(rows)::value, Stride, 1>(
           by_output + first * Stride, weight, In, Out,
           [](auto, auto) PINNQUAD_INLINE_LAMBDA { return Lane::broadcast(Scalar(0)); },
@@ -55,12 +60,18 @@ struct PullBack<DenseLayer<Scalar, In, Out>> {
   template <class Pack, int Rows, int Stride, class Finish>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
                                          Scalar* by_input, const Finish& finish) noexcept {
-    pull_back_product<Pack, Rows, Stride, In, Out>(parameters, by_output, by_input, finish);
+    pull_back_product<Pack, Rows, Stride, In, Out, Out>(parameters, by_output, by_input, finish);  // the bias is behind
   }
 };
 
 template <class Scalar, int In, int Out>
-struct PullBack<DenseWithoutBiasLayer<Scalar, In, Out>> : PullBack<DenseLayer<Scalar, In, Out>> {};
+struct PullBack<DenseWithoutBiasLayer<Scalar, In, Out>> {
+  template <class Pack, int Rows, int Stride, class Finish>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
+                                         Scalar* by_input, const Finish& finish) noexcept {
+    pull_back_product<Pack, Rows, Stride, In, Out, 0>(parameters, by_output, by_input, finish);
+  }
+};
 
 /// With the running statistics: a factor per neuron.
 template <class Scalar, int Size>
@@ -92,7 +103,7 @@ PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const
                                  const typename Layer::Scalar* activated, const typename Layer::Scalar* by_output,
                                  typename Layer::Scalar* by_input) noexcept {
   if constexpr (std::is_void_v<Activation>) {
-    PullBack<Layer>::template run<Pack, Rows, Stride>(parameters, y, by_output, by_input, Unchanged{});
+    PullBack<Layer>::template run<Pack, Rows, Stride>(parameters, y, by_output, by_input, NoSlope{});
   } else {
     PullBack<Layer>::template run<Pack, Rows, Stride>(
         parameters, y, by_output, by_input, [activated](int column, auto gradient) PINNQUAD_INLINE_LAMBDA {
@@ -102,7 +113,10 @@ PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const
   }
 }
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// y = network(x) and J = dy/dx, row-major, outputs x inputs: J[i * inputs + k] = dy_i / dx_k. Exact; at the kink of a ReLU it
 /// is the derivative from below, 0. Time bounded, no heap; NaN in x reaches y.
@@ -116,15 +130,29 @@ class JacobianPass {
 
   /// Stack that a call needs, about: all activations and two sets of gradients.
   static constexpr std::size_t workspace_bytes =
-      sizeof(Scalar) * static_cast<std::size_t>(NetworkType::Sizes::outputs_before(NetworkType::layer_count) +
-                                                2 * NetworkType::outputs * NetworkType::widest);
+      sizeof(Scalar) *
+      static_cast<std::size_t>(NetworkType::Sizes::outputs_before(NetworkType::layer_count) + Pack::width +
+                               2 * NetworkType::outputs * padded<Pack>(NetworkType::widest));
 
+  /// Forward by the portable kernel.
   static void run(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* jacobian) noexcept {
-    Scalar values[static_cast<std::size_t>(NetworkType::Sizes::outputs_before(layer_count))];
+    Scalar values[static_cast<std::size_t>(all_values)];
     forward<0>(parameters, x, values);
     for (int i = 0; i < rows; ++i) y[i] = values[offset(layer_count - 1) + i];
+    back(parameters, values, jacobian);
+  }
 
-    Scalar gradients[2][static_cast<std::size_t>(rows * stride)] = {};
+  /// Forward by the vector unit; `packed` holds the same parameters.
+  static void run(const PackedNetwork<NetworkType, Pack>& packed, const Scalar* parameters, const Scalar* x, Scalar* y,
+                  Scalar* jacobian) noexcept {
+    Scalar values[static_cast<std::size_t>(all_values)];
+    packed.forward_keeping(x, y, values);
+    back(parameters, values, jacobian);
+  }
+
+ private:
+  static PINNQUAD_ALWAYS_INLINE void back(const Scalar* parameters, const Scalar* values, Scalar* jacobian) noexcept {
+    alignas(64) Scalar gradients[2][static_cast<std::size_t>(rows * stride)] = {};
     for (int i = 0; i < rows; ++i) gradients[0][i * stride + i] = Scalar(1);
     const Scalar* by_input = back<layer_count - 1>(parameters, values, gradients[0], gradients[1]);
     for (int row = 0; row < rows; ++row) {
@@ -133,10 +161,11 @@ class JacobianPass {
     }
   }
 
- private:
   static constexpr int layer_count = NetworkType::layer_count;
+  static constexpr int all_outputs = NetworkType::Sizes::outputs_before(layer_count);
   static constexpr int rows = NetworkType::outputs;
-  static constexpr int stride = NetworkType::widest;
+  static constexpr int stride = padded<Pack>(NetworkType::widest);
+  static constexpr int all_values = all_outputs + Pack::width;  ///< a whole pack may be read at the last value
   template <int Index>
   using Layer = typename NetworkType::template Layer<Index>;
   static constexpr int offset(int layer) noexcept { return NetworkType::Sizes::outputs_before(layer); }
@@ -187,5 +216,7 @@ class JacobianPass {
     }
   }
 };
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 
 }  // namespace pinnquad

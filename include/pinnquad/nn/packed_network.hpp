@@ -51,10 +51,26 @@ struct Activate {
     return Layer::activate(v);
   }
 };
-struct NoActivation {
-  template <class Value>
-  PINNQUAD_ALWAYS_INLINE Value operator()(const Value& v) const noexcept {
-    return v;
+/// For a forward pass whose layers' outputs nobody asks for.
+struct KeepNothing {
+  template <class Values>
+  PINNQUAD_ALWAYS_INLINE void operator()(int, const Values&) const noexcept {}
+};
+/// Stores each layer's outputs at their offset among the outputs of all layers.
+template <class Scalar>
+struct KeepOutputs {
+  Scalar* kept;
+  template <class Values>
+  PINNQUAD_ALWAYS_INLINE void operator()(int offset, const Values& values) const noexcept {
+    values.store(kept + offset);
+  }
+};
+/// `Size` outputs of a layer in memory.
+template <class Scalar, int Size>
+struct StoredOutputs {
+  const Scalar* values;
+  PINNQUAD_ALWAYS_INLINE void store(Scalar* y) const noexcept {
+    for (int i = 0; i < Size; ++i) y[i] = values[i];
   }
 };
 
@@ -73,7 +89,9 @@ struct FusedLayer {
   }
   static constexpr int next = Index + (fused() ? 2 : 1);
   static constexpr bool last = next == Network::layer_count;
-  using Activation = std::conditional_t<fused(), Activate<typename Network::template Layer<next - 1>>, NoActivation>;
+  using Activation = std::conditional_t<fused(), Activate<typename Network::template Layer<next - 1>>, Unchanged>;
+  /// Of this layer's outputs, activated, among those of all layers of the network.
+  static constexpr int outputs_offset = Network::Sizes::outputs_before(next - 1);
 };
 
 /// The layers from `Index` on, each from memory to memory: any layer, size and scalar.
@@ -96,18 +114,22 @@ struct MemoryRun {
     Packed::pack(parameters, packed);
     if constexpr (!Fused::last) Rest::pack(parameters + Fused::Layer::parameter_count, packed + Packed::size);
   }
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* y) noexcept {
+  template <class Keep>
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* y,
+                                             const Keep& keep) noexcept {
     alignas(64) Scalar even[width];
     alignas(64) Scalar odd[width];
-    forward(packed, x, even, odd, y);
+    forward(packed, x, even, odd, y, keep);
   }
+  template <class Keep>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* target, Scalar* other,
-                                             Scalar* y) noexcept {
+                                             Scalar* y, const Keep& keep) noexcept {
     Packed::forward(packed, x, target, typename Fused::Activation{});
+    keep(Fused::outputs_offset, StoredOutputs<Scalar, Fused::Layer::outputs>{target});
     if constexpr (Fused::last) {
       for (int i = 0; i < Network::outputs; ++i) y[i] = target[i];
     } else {
-      Rest::forward(packed + Packed::size, target, other, target, y);
+      Rest::forward(packed + Packed::size, target, other, target, y, keep);
     }
   }
 };
@@ -157,25 +179,35 @@ struct RegisterRun {
     }
     if constexpr (!last) Rest::pack(parameters + count * Layer::parameter_count, packed + count * Dense::size);
   }
-  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const Values& x, float* y) noexcept {
-    const Result result = multiply(packed, x);
+  template <class Keep>
+  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const Values& x, float* y,
+                                             const Keep& keep) noexcept {
+    const Result result = multiply(packed, x, keep);
     if constexpr (last) {
       result.store(y);
     } else {
-      Rest::forward(packed + count * Dense::size, result, y);
+      Rest::forward(packed + count * Dense::size, result, y, keep);
     }
   }
-  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const float* x, float* y) noexcept {
-    forward(packed, Values{x}, y);
+  template <class Keep>
+  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const float* x, float* y, const Keep& keep) noexcept {
+    forward(packed, Values{x}, y, keep);
   }
 
  private:
-  static PINNQUAD_ALWAYS_INLINE Result multiply(const float* packed, const Values& x) noexcept {
+  template <class Keep>
+  static PINNQUAD_ALWAYS_INLINE Result multiply(const float* packed, const Values& x, const Keep& keep) noexcept {
     if constexpr (count == 1) {
-      return Dense::multiply(packed, x, Activation{});
+      const Result result = Dense::multiply(packed, x, Activation{});
+      keep(Fused::outputs_offset, result);
+      return result;
     } else {
+      constexpr int step = Network::Sizes::outputs_before(Fused::next) - Network::Sizes::outputs_before(Index);
       Result result = x;
-      for (int i = 0; i < count; ++i) result = Dense::multiply(packed + i * Dense::size, result, Activation{});
+      for (int i = 0; i < count; ++i) {
+        result = Dense::multiply(packed + i * Dense::size, result, Activation{});
+        keep(Fused::outputs_offset + i * step, result);
+      }
       return result;
     }
   }
@@ -240,7 +272,14 @@ class PackedNetwork {
   constexpr void assign(const Scalar* parameters) noexcept { Run::pack(parameters, packed_); }
 
   /// y[0, outputs) = network(x[0, inputs)).
-  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept { Run::forward(packed_, x, y); }
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    Run::forward(packed_, x, y, detail::KeepNothing{});
+  }
+  /// The same; each layer's outputs are left in `kept`, layer by layer as Sizes::outputs_before() counts them. The outputs of a
+  /// layer whose activation is fused into it are not written.
+  PINNQUAD_ALWAYS_INLINE void forward_keeping(const Scalar* x, Scalar* y, Scalar* kept) const noexcept {
+    Run::forward(packed_, x, y, detail::KeepOutputs<Scalar>{kept});
+  }
 
  private:
   using Run = typename detail::ChooseRun<NetworkType, Pack>::type;

@@ -62,6 +62,8 @@ struct GenericPack {
     for (int i = 0; i < Width; ++i) a.lane[i] = detail::square_root(a.lane[i]);
     return a;
   }
+  /// See pack_avx512.hpp: plain loops are the compiler's to order.
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept {}
   /// v < 0 ? 0 : v. NaN goes through.
   static PINNQUAD_ALWAYS_INLINE GenericPack positive_part(GenericPack a) noexcept {
     for (int i = 0; i < Width; ++i) a.lane[i] = a.lane[i] < Scalar(0) ? Scalar(0) : a.lane[i];

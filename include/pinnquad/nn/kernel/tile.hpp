@@ -10,17 +10,17 @@ namespace pinnquad {
 
 namespace detail {
 
-/// The columns of a tile: `vectors` packs side by side.
-template <class PackType, int Vectors>
+/// The columns of a tile: packs [First, First + Vectors), side by side.
+template <class PackType, int Vectors, int First = 0>
 struct Consecutive {
   using Pack = PackType;
   static constexpr int vectors = Vectors;
-  static constexpr int offset(int vector) noexcept { return vector * Pack::width; }
+  static constexpr int offset(int vector) noexcept { return (First + vector) * Pack::width; }
 };
 
 /// Packs [First, First + Vectors) of `Columns` columns without padding: the last pack ends at the last column and may overlap
 /// the one before, so that nothing behind a row is read or written.
-template <class PackType, int Columns, int First, int Vectors>
+template <class PackType, int Vectors, int First, int Columns>
 struct Overlapping {
   using Pack = PackType;
   static_assert(Pack::width <= Columns, "pinnquad: a pack is wider than the matrix");
@@ -43,7 +43,10 @@ PINNQUAD_ALWAYS_INLINE void multiply_tile(const Scalar* a, const Scalar* b, int 
   });
   for (int k = 0; k < depth; ++k) {
     Pack row[vectors];
-    unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { row[v] = Pack::load(b + Columns::offset(v)); });
+    unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
+      row[v] = Pack::load(b + Columns::offset(v));
+      row[v].settle();
+    });
     unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
       const Pack factor = Pack::broadcast(a[r * RowStride]);
       unroll<vectors>([&](auto v)
