@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// An exported model asked for many motions at once, as rollouts (MPPI) and evaluation do: each with a Status of its own.
+#pragma once
+
+#include "pinnquad/inference/inverse_dynamics.hpp"
+#include "pinnquad/nn/batched_network.hpp"
+
+namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// For each sample s what InverseDynamics::predict_features() gives, to rounding: x[k * samples + s] is its feature k in
+/// physical units, commands[i * samples + s] its command i, statuses[s] its Status. Commands of a sample are written only if
+/// has_output(statuses[s]). Of the guard, all but its fallback applies. No heap; stack for 2 packs of samples.
+template <class Model, class GuardType>
+void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
+                   typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
+  static_assert(!GuardType::clamps_to_envelope,
+                "pinnquad: a batch refuses what is outside the envelope; it does not clamp");
+  using Scalar = typename Model::Scalar;
+  using Batched = BatchedNetwork<typename Model::Network>;
+  using Numbers = detail::ModelNumbers<Model>;
+  constexpr int size = Model::Features::size;
+  constexpr int lanes = Batched::lanes;
+  constexpr const Scalar* weights = Model::parameters.data();
+  constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();
+  const Scalar* input_mean = Numbers::input_mean(inverse.model());
+  const Scalar* input_spread = Numbers::input_spread(inverse.model());
+  const Scalar* output_mean = Numbers::output_mean(inverse.model());
+  const Scalar* output_spread = Numbers::output_spread(inverse.model());
+  const Scalar* lower = Numbers::lower(inverse.model());
+  const Scalar* upper = Numbers::upper(inverse.model());
+
+  for (int first = 0; first < samples; first += lanes) {
+    const int count = samples - first < lanes ? samples - first : lanes;
+    alignas(64) Scalar standardised[size * lanes] = {};
+    alignas(64) Scalar outputs[rotor_count * lanes];
+    int outside[lanes] = {};
+    for (int k = 0; k < size; ++k) {
+      const Scalar* feature = x + k * samples + first;
+      for (int s = 0; s < count; ++s) {
+        standardised[k * lanes + s] = (feature[s] - input_mean[k]) / input_spread[k];
+        const bool inside = is_finite(feature[s]) & (feature[s] >= lower[k]) & (feature[s] <= upper[k]);
+        outside[s] |= inside ? 0 : 1;
+      }
+    }
+    Batched::forward(weights, standardised, outputs, lanes);
+    for (int s = 0; s < count; ++s) {
+      Scalar sample[rotor_count];
+      for (int i = 0; i < rotor_count; ++i) {
+        sample[i] = Model::Outputs::command(outputs[i * lanes + s] * output_spread[i] + output_mean[i], airframe);
+      }
+      const Status checked = GuardType::check_commands(sample);
+      const Status status = outside[s] != 0 ? Status::outside_envelope : checked;
+      statuses[first + s] = status;
+      if (has_output(status)) {
+        for (int i = 0; i < rotor_count; ++i) commands[i * samples + first + s] = sample[i];
+      }
+    }
+  }
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad

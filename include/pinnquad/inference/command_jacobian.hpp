@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Commands and how they change with each feature, in one pass: for incremental control (u + du/dw' dw') and as the linear
+// model of an MPC step.
+#pragma once
+
+#include "pinnquad/inference/inverse_dynamics.hpp"
+#include "pinnquad/nn/jacobian.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+template <class Model, class = void>
+struct HasParametersInBlock : std::false_type {};
+template <class Model>
+struct HasParametersInBlock<Model, std::void_t<decltype(std::declval<const Model&>().parameters())>> : std::true_type {
+};
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// commands = u(x) and jacobian[i * Features::size + k] = du_i / dx_k, 4 x Features::size, row-major, in physical units
+/// (for the angular accelerations: per rad/s^2). Exact derivatives of the network.
+/// Of the guard, the envelope and the checks of the commands apply; a fallback has no derivatives here and is not asked. Where
+/// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. A model with weights in a block must be a
+/// ModelView. Both outputs are untouched unless has_output(status).
+template <class Model, class GuardType>
+Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
+                             typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
+  static_assert(!GuardType::clamps_to_envelope,
+                "pinnquad: outside the envelope a clamped feature has no influence; take a guard that refuses");
+  using Scalar = typename Model::Scalar;
+  using Network = typename Model::Network;
+  using Pass = JacobianPass<Network>;
+  using Numbers = detail::ModelNumbers<Model>;
+  constexpr int size = Model::Features::size;
+  if (!inverse.inside_envelope(x)) return Status::outside_envelope;
+
+  const Scalar* input_mean = Numbers::input_mean(inverse.model());
+  const Scalar* input_spread = Numbers::input_spread(inverse.model());
+  const Scalar* output_mean = Numbers::output_mean(inverse.model());
+  const Scalar* output_spread = Numbers::output_spread(inverse.model());
+  Scalar standardised[size];
+  for (int i = 0; i < size; ++i) standardised[i] = (x[i] - input_mean[i]) / input_spread[i];
+  Scalar outputs[rotor_count];
+  Scalar slopes[rotor_count * size];
+  if constexpr (detail::HasParametersInBlock<Model>::value) {
+    Pass::run(inverse.model().parameters(), standardised, outputs, slopes);
+  } else {
+    constexpr const Scalar* weights = Model::parameters.data();
+    if constexpr (has_vector_unit<Scalar>) {
+      Pass::run(detail::packed_model<Model>, weights, standardised, outputs, slopes);
+    } else {
+      Pass::run(weights, standardised, outputs, slopes);
+    }
+  }
+
+  constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();
+  Scalar result[rotor_count];
+  for (int i = 0; i < rotor_count; ++i) {
+    const Scalar output = outputs[i] * output_spread[i] + output_mean[i];
+    result[i] = Model::Outputs::command(output, airframe);
+    const Scalar slope = Model::Outputs::command_slope(output, airframe) * output_spread[i];
+    for (int k = 0; k < size; ++k) slopes[i * size + k] *= slope / input_spread[k];
+  }
+  if (!all_finite(slopes, rotor_count * size)) return Status::output_not_finite;
+  const Status status = GuardType::check_commands(result);
+  if (!has_output(status)) return status;
+  for (int i = 0; i < rotor_count; ++i) commands[i] = result[i];
+  for (int i = 0; i < rotor_count * size; ++i) jacobian[i] = slopes[i];
+  return status;
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad
