@@ -10,6 +10,8 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/inference/inverse_dynamics.hpp"
+#include "support/small_model.hpp"
 
 namespace {
 
@@ -65,6 +67,12 @@ struct FakeInverseDynamics {
 
 using Network = NetworkInverse<FakeInverseDynamics>;
 
+/// A model whose envelope is empty.
+struct NowhereTrained : test::SmallModel {
+  static constexpr std::array<float, 16> envelope_lower = Scaler<float, 16>::ones();
+  static constexpr std::array<float, 16> envelope_upper{};
+};
+
 template <class FeedForward>
 TrackingResult<double> tracked(const FeedForward& feed_forward) {
   return track(vehicle(), course(), FlightController<double>{}, feed_forward);
@@ -113,6 +121,26 @@ TEST_CASE("where the network declines the fallback flies, and is counted by Stat
   CHECK(slow_only.fallback.fallbacks() > 0);
   CHECK(slow_only.fallback.of(Status::ok) > slow_only.fallback.fallbacks());
   CHECK(slow_only.rmse_m < 0.05);
+}
+
+TEST_CASE("one way to fall back: the guard's, in the loop too") {
+  using Formula = AnalyticInverse<Vehicle>;
+  using Falling = InverseDynamics<NowhereTrained, Extend<TrainingGuard, Fallback<Formula>>>;
+  const Formula formula(vehicle());
+  const TrackingResult<double> analytic = tracked(formula);
+  const TrackingResult<double> fallen = tracked(NetworkInverse<Falling>(Falling(Falling::Guard(formula))));
+  constexpr double float_rounding_m = 1e-6;
+  CHECK(fallen.status == Status::ok);
+  CHECK(std::abs(fallen.rmse_m - analytic.rmse_m) <= float_rounding_m);
+  CHECK(fallen.fallback.asked == 15000);
+  CHECK(fallen.fallback.of(Status::outside_envelope) == 15000);
+
+  // without a fallback the policy declines, and the flight ends where the network does
+  using Declining = InverseDynamics<NowhereTrained>;
+  const TrackingResult<double> declined = tracked(NetworkInverse<Declining>(Declining{}));
+  CHECK(declined.status == Status::outside_envelope);
+  CHECK(declined.flown_s == 0);
+  CHECK(declined.fallback.fallbacks() == 1);
 }
 
 TEST_CASE("a circle, and a hover that stays") {
