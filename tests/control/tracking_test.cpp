@@ -65,7 +65,7 @@ struct FakeInverseDynamics {
   }
 };
 
-using Network = NetworkInverse<FakeInverseDynamics>;
+using FakeNetwork = NetworkInverse<FakeInverseDynamics>;
 
 /// A model whose envelope is empty.
 struct NowhereTrained : test::SmallModel {
@@ -98,8 +98,8 @@ TEST_CASE("feed-forward policies under one feedback law: analytic inverse < hove
 
 TEST_CASE("a network that knows the formula tracks like the formula; a broken one visibly worse") {
   const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
-  const TrackingResult<double> network = tracked(Network({}));
-  const TrackingResult<double> zeroed = tracked(Network({0.0f, 100.0f}));
+  const TrackingResult<double> network = tracked(FakeNetwork({}));
+  const TrackingResult<double> zeroed = tracked(FakeNetwork({0.0f, 100.0f}));
   REQUIRE(network.status == Status::ok);
   constexpr double float_rounding_m = 1e-3;  // float commands, and sea-level density instead of 20 m up: 0.2 %
   CHECK(std::abs(network.rmse_m - analytic.rmse_m) <= float_rounding_m);
@@ -110,14 +110,14 @@ TEST_CASE("a network that knows the formula tracks like the formula; a broken on
 
 TEST_CASE("where the network declines the fallback flies, and is counted by Status") {
   const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
-  const TrackingResult<double> never = tracked(Network({0.0f, -1.0f}));
+  const TrackingResult<double> never = tracked(FakeNetwork({0.0f, -1.0f}));
   constexpr double float_rounding_m = 1e-6;  // the guard's inputs and commands are float, the formula between is not
   CHECK(std::abs(never.rmse_m - analytic.rmse_m) <= float_rounding_m);
   CHECK(never.status == Status::ok);
   CHECK(never.fallback.fallbacks() == never.fallback.asked);
   CHECK(never.fallback.of(Status::outside_envelope) == never.fallback.asked);
 
-  const TrackingResult<double> slow_only = tracked(Network({1.0f, 4.0f}));
+  const TrackingResult<double> slow_only = tracked(FakeNetwork({1.0f, 4.0f}));
   CHECK(slow_only.fallback.fallbacks() > 0);
   CHECK(slow_only.fallback.of(Status::ok) > slow_only.fallback.fallbacks());
   CHECK(slow_only.rmse_m < 0.05);
