@@ -75,10 +75,12 @@ class Network {
   Parameters parameters{};
 
   /// y = network(x) with these parameters, by the portable kernel. x has `inputs`, y `outputs` entries.
-  void forward(const Scalar* x, Scalar* y) const noexcept { forward(parameters.data(), x, y); }
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    forward(reinterpret_cast<const Scalar*>(&parameters), x, y);  // data() would be a function of its own at -O0
+  }
 
   /// The same for parameters that live elsewhere (flash).
-  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Scalar even[static_cast<std::size_t>(widest)];
     Scalar odd[static_cast<std::size_t>(widest)];
     run<0>(parameters, x, even, odd, y);
@@ -88,7 +90,8 @@ class Network {
   template <int Index>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* even, Scalar* odd,
                                          Scalar* y) noexcept {
-    const Scalar* own = parameters + Sizes::offset(Index);
+    constexpr int first = Sizes::offset(Index);
+    const Scalar* own = parameters + first;
     if constexpr (Index + 1 == layer_count) {
       Layer<Index>::forward(own, x, y);
     } else {
