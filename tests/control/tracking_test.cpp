@@ -10,6 +10,8 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/inference/inverse_dynamics.hpp"
+#include "support/small_model.hpp"
 
 namespace {
 
@@ -63,7 +65,13 @@ struct FakeInverseDynamics {
   }
 };
 
-using Network = NetworkInverse<FakeInverseDynamics>;
+using FakeNetwork = NetworkInverse<FakeInverseDynamics>;
+
+/// A model whose envelope is empty.
+struct NowhereTrained : test::SmallModel {
+  static constexpr std::array<float, 16> envelope_lower = Scaler<float, 16>::ones();
+  static constexpr std::array<float, 16> envelope_upper{};
+};
 
 template <class FeedForward>
 TrackingResult<double> tracked(const FeedForward& feed_forward) {
@@ -90,8 +98,8 @@ TEST_CASE("feed-forward policies under one feedback law: analytic inverse < hove
 
 TEST_CASE("a network that knows the formula tracks like the formula; a broken one visibly worse") {
   const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
-  const TrackingResult<double> network = tracked(Network({}));
-  const TrackingResult<double> zeroed = tracked(Network({0.0f, 100.0f}));
+  const TrackingResult<double> network = tracked(FakeNetwork({}));
+  const TrackingResult<double> zeroed = tracked(FakeNetwork({0.0f, 100.0f}));
   REQUIRE(network.status == Status::ok);
   constexpr double float_rounding_m = 1e-3;  // float commands, and sea-level density instead of 20 m up: 0.2 %
   CHECK(std::abs(network.rmse_m - analytic.rmse_m) <= float_rounding_m);
@@ -102,17 +110,37 @@ TEST_CASE("a network that knows the formula tracks like the formula; a broken on
 
 TEST_CASE("where the network declines the fallback flies, and is counted by Status") {
   const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
-  const TrackingResult<double> never = tracked(Network({0.0f, -1.0f}));
+  const TrackingResult<double> never = tracked(FakeNetwork({0.0f, -1.0f}));
   constexpr double float_rounding_m = 1e-6;  // the guard's inputs and commands are float, the formula between is not
   CHECK(std::abs(never.rmse_m - analytic.rmse_m) <= float_rounding_m);
   CHECK(never.status == Status::ok);
   CHECK(never.fallback.fallbacks() == never.fallback.asked);
   CHECK(never.fallback.of(Status::outside_envelope) == never.fallback.asked);
 
-  const TrackingResult<double> slow_only = tracked(Network({1.0f, 4.0f}));
+  const TrackingResult<double> slow_only = tracked(FakeNetwork({1.0f, 4.0f}));
   CHECK(slow_only.fallback.fallbacks() > 0);
   CHECK(slow_only.fallback.of(Status::ok) > slow_only.fallback.fallbacks());
   CHECK(slow_only.rmse_m < 0.05);
+}
+
+TEST_CASE("one way to fall back: the guard's, in the loop too") {
+  using Formula = AnalyticInverse<Vehicle>;
+  using Falling = InverseDynamics<NowhereTrained, Extend<TrainingGuard, Fallback<Formula>>>;
+  const Formula formula(vehicle());
+  const TrackingResult<double> analytic = tracked(formula);
+  const TrackingResult<double> fallen = tracked(NetworkInverse<Falling>(Falling(Falling::Guard(formula))));
+  constexpr double float_rounding_m = 1e-6;
+  CHECK(fallen.status == Status::ok);
+  CHECK(std::abs(fallen.rmse_m - analytic.rmse_m) <= float_rounding_m);
+  CHECK(fallen.fallback.asked == 15000);
+  CHECK(fallen.fallback.of(Status::outside_envelope) == 15000);
+
+  // without a fallback the policy declines, and the flight ends where the network does
+  using Declining = InverseDynamics<NowhereTrained>;
+  const TrackingResult<double> declined = tracked(NetworkInverse<Declining>(Declining{}));
+  CHECK(declined.status == Status::outside_envelope);
+  CHECK(declined.flown_s == 0);
+  CHECK(declined.fallback.fallbacks() == 1);
 }
 
 TEST_CASE("a circle, and a hover that stays") {

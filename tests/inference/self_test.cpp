@@ -195,6 +195,16 @@ TEST_CASE("the report: how close a sound model comes, and which vector a broken 
   CHECK(pinnquad::self_test(InverseDynamics<SmallDoubleModel>{}) == Status::ok);
 }
 
+TEST_CASE("a model without golden vectors fails: nothing was tried") {
+  struct Untried : SmallInstance {
+    std::array<std::array<float, 16>, 0> golden_features{};
+    std::array<std::array<float, 4>, 0> golden_commands{};
+  };
+  SelfTestReport<float> report;
+  CHECK(pinnquad::self_test(InverseDynamics<Untried>(Untried{}), report) == Status::self_test_failed);
+  CHECK(report.vector == -1);
+}
+
 TEST_CASE("a wrong kernel fails") {
   SelfTestReport<float> report;
   CHECK(pinnquad::self_test(InverseDynamics<WrongKernel>(WrongKernel{}), report) == Status::self_test_failed);

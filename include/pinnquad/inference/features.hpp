@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Raw inputs -> X: the feature set as a type. The network's input count, names and order are said here, once.
 // Contract: `Inputs<Scalar>` (raw, a named struct), `size`, `names`, `units`, `angular_acceleration` (index of p_dot in X, -1
-// if X has none), `extract(inputs, x)` and `check(inputs)`.
+// if X has none), `extract(inputs, x)` and `check(inputs)`. An input that is not finite makes a feature that is not: a Guard
+// without FiniteInputs relies on it.
 #pragma once
 
 #include <array>

@@ -121,11 +121,11 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     }
   }
 
-  /// True if every feature lies in what the model was trained on, margin included; false for NaN.
+  /// True if every feature lies in what the model was trained on, margin included; false for NaN, under -ffast-math too.
   PINNQUAD_ALWAYS_INLINE bool inside_envelope(const Scalar* x) const noexcept {
     const Scalar* lower = Numbers::lower(model());
     const Scalar* upper = Numbers::upper(model());
-    bool inside = true;
+    bool inside = all_finite(x, Features::size);
     for (int i = 0; i < Features::size; ++i) inside &= x[i] >= lower[i] && x[i] <= upper[i];
     return inside;
   }
@@ -181,8 +181,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     if constexpr (reports<ReportType>) measure(x, report);
     if constexpr (Guard::refuses_outside_envelope) {
       if (!inside_envelope(x)) return Status::outside_envelope;
-    }
-    if constexpr (Guard::checks_inputs) {
+    } else {
       if (!all_finite(x, Features::size)) return Status::not_finite;
     }
     bool moved = false;
@@ -251,7 +250,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
       if (x[i] >= lower[i] && x[i] <= upper[i]) excess = Scalar(0);
       report.excess[static_cast<std::size_t>(i)] = excess;
       // what is not finite outdoes every number, the first of them all
-      if (is_finite(worst) && !(excess <= worst)) {
+      if (is_finite(worst) && (!is_finite(excess) || excess > worst)) {
         worst = excess;
         report.worst_feature = i;
       }
