@@ -18,6 +18,8 @@
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
+#include "pinnquad/inference/analytic_inverse.hpp"
+#include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/inference/loaded_model.hpp"
 #include "pinnquad/inference/model_view.hpp"

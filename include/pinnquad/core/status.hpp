@@ -20,11 +20,11 @@ enum class [[nodiscard]] Status : std::uint8_t{
     invalid_airframe,     ///< mass, inertia, rotors or allocation can't be those of a quadrotor that flies
     self_test_failed,     ///< a golden vector was not reproduced
     outside_limits,       ///< a command lies outside the output limits, and the guard refuses it
-    limited,          ///< features were clamped to the envelope or commands clipped to their limits; they are written
-    fell_back,        ///< the network declined; the commands written are the fallback's
-    block_truncated,  ///< a model block is shorter than it says, or not aligned
-    block_incompatible,  ///< a block of another format, network or feature set
-    block_corrupt,       ///< a block whose checksum or contents are wrong
+    limited,              ///< features clamped to the envelope or commands clipped to limits; they are written
+    fell_back,            ///< the network declined; the commands written are the fallback's
+    block_truncated,      ///< a model block is shorter than it says, or not aligned
+    block_incompatible,   ///< a block of another format, network or feature set
+    block_corrupt,        ///< a block whose checksum or contents are wrong
 };
 
 /// Number of Status values, for counters by Status.
