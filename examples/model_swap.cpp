@@ -46,7 +46,7 @@ class ModelSlots {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
     Inverse& free = current == &slots_[0] ? slots_[1] : slots_[0];
     if (staging_.load(view) != Status::ok) return Status::block_corrupt;
-    free = Inverse(staging_);
+    free = Inverse(staging_);  // by way of this thread's stack: 35 kB
     const Status tested = self_test(free);
     if (tested == Status::ok) published_.store(&free, std::memory_order_release);
     return tested;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// CASE NO_SHAPE: pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle
+// CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
+// CASE LONG_DOUBLE: pinnquad: a model block is read in place: float or double of IEEE 754, on a little-endian machine
+// CASE BLOCK_OF_FIRST_FORMAT: pinnquad: a header of format 1 does not check its own names; export it again
+#include "../support/described_model.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/inference/self_test.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+struct Sound {
+  using Scalar = float;
+  using Network = test::SmallModel::Network;
+  using Features = PaperFeatures;
+  using Outputs = CommandOutputs;
+  using Vehicle = PaperQuadrotor;
+};
+
+#if defined(NO_SHAPE)
+struct Shape {
+  using Scalar = float;
+  using Network = Sound::Network;
+};
+#elif defined(INPUTS_DIFFER)
+struct Shape : Sound {
+  using Features = PaperFeaturesWithAltitude;
+};
+#elif defined(LONG_DOUBLE)
+struct Shape : Sound {
+  using Scalar = long double;
+  using Network = Sound::Network::Rebind<long double>;
+};
+#else
+using Shape = Sound;
+#endif
+
+#if defined(BLOCK_OF_FIRST_FORMAT)
+using Header = test::SmallModel;
+#else
+using Header = test::DescribedModel;
+#endif
+
+}  // namespace
+
+int main() {
+  const std::vector<unsigned char> block = model_block<Header>();
+  ModelView<Shape> view;
+  if (ModelView<Shape>::open(block.data(), block.size(), view) != Status::ok) return 1;
+  LoadedModel<Shape> loaded;
+  if (loaded.load(view) != Status::ok) return 1;
+  return self_test(InverseDynamics<LoadedModel<Shape>>(loaded)) == Status::ok ? 0 : 1;
+}
