@@ -11,6 +11,7 @@
 #include "pinnquad/nn/kernel/column_broadcast.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
+#include "support/packs.hpp"
 #include "support/random_network.hpp"
 #include "support/tolerances.hpp"
 
@@ -35,10 +36,13 @@ struct Shape {
 template <class... Shapes>
 struct ShapeList {};
 
-/// One to forty, on both sides of a pack's width, and the sizes of the paper's network. Unrolled kernels compile
-/// slowly: each shape is there for a remainder of its own.
+/// One to forty, on both sides of a pack's width, and the sizes of the paper's network: each shape is there for a remainder
+/// of its own.
 using Shapes = ShapeList<Shape<1, 1>, Shape<3, 2>, Shape<2, 40>, Shape<4, 25>, Shape<7, 3>, Shape<9, 5>, Shape<16, 4>,
                          Shape<25, 16>, Shape<33, 9>, Shape<40, 1>>;
+
+/// More rows than one block of packs, more columns than one round of chains.
+using LargeShapes = ShapeList<Shape<64, 64>, Shape<100, 37>, Shape<37, 100>, Shape<256, 256>>;
 
 template <class Function, class... Each>
 void for_each_shape(ShapeList<Each...>, const Function& function) {
@@ -96,14 +100,13 @@ TEST_CASE_TEMPLATE("packed matrix-vector product: values, zero padding, nothing 
                    GenericPack<float, 4>, GenericPack<double, 4>, NativePack<float>) {
   using Scalar = typename Pack::Scalar;
   std::mt19937_64 engine(22);
-  for_each_shape(Shapes{}, [&engine](auto shape) {
+  const auto check = [&engine](auto shape) {
     constexpr int rows = decltype(shape)::rows, columns = decltype(shape)::columns;
     constexpr int stride = padded<Pack>(rows);
     CAPTURE(rows);
     CAPTURE(columns);
     const Problem<Scalar, rows, columns> problem(engine);
     std::array<Scalar, pinnquad::packed_size<Pack, rows, columns>> packed{};
-    packed.fill(Scalar(canary));
     pinnquad::pack_columns<Pack, rows, columns>(problem.weight.data(), problem.bias.data(), packed.data());
     std::array<Scalar, stride + 1> y{};
     y.fill(Scalar(canary));
@@ -117,7 +120,9 @@ TEST_CASE_TEMPLATE("packed matrix-vector product: values, zero padding, nothing 
       }
     }
     CHECK(y[stride] == Scalar(canary));
-  });
+  };
+  for_each_shape(Shapes{}, check);
+  if constexpr (std::is_same_v<Pack, NativePack<float>>) for_each_shape(LargeShapes{}, check);
 }
 
 TEST_CASE_TEMPLATE("mini-batch products: values, and padding that never leaks", Pack, GenericPack<float, 4>,
@@ -176,8 +181,8 @@ TEST_CASE_TEMPLATE("mini-batch products: values, and padding that never leaks", 
   });
 }
 
-TEST_CASE_TEMPLATE("every pack does what a scalar does, lane by lane", Pack, GenericPack<float, 4>,
-                   GenericPack<double, 4>, GenericPack<float, 1>, NativePack<float>) {
+TEST_CASE_TEMPLATE("every pack does what a scalar does, lane by lane", Pack, PINNQUAD_TEST_REGISTER_PACKS,
+                   GenericPack<float, 4>, GenericPack<double, 4>, GenericPack<float, 1>) {
   using Scalar = typename Pack::Scalar;
   const Scalar infinity = std::numeric_limits<Scalar>::infinity();
   const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();

@@ -12,6 +12,12 @@
 #define PINNQUAD_INSTRUCTION_SET neon
 #elif defined(__FMA__) || defined(__ARM_FEATURE_FMA)
 #define PINNQUAD_INSTRUCTION_SET portable_fma
+#elif defined(__AVX__)
+#define PINNQUAD_INSTRUCTION_SET avx
+#elif defined(__SSE4_1__)
+#define PINNQUAD_INSTRUCTION_SET sse4
+#elif defined(__SSE2__)
+#define PINNQUAD_INSTRUCTION_SET sse2
 #else
 #define PINNQUAD_INSTRUCTION_SET portable
 #endif

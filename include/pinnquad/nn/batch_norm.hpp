@@ -3,8 +3,7 @@
 // Training by batch statistics: training/batch_norm.hpp. An exported network has none left: training/folding.hpp.
 #pragma once
 
-#include <cmath>
-
+#include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/network.hpp"
 
 namespace pinnquad {
@@ -23,13 +22,12 @@ struct BatchNormLayer {
   static constexpr int parameter_count = 4 * Size;
 
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    using std::sqrt;
     const Scalar* gamma = parameters;
     const Scalar* beta = parameters + Size;
     const Scalar* mean = parameters + 2 * Size;
     const Scalar* variance = parameters + 3 * Size;
     for (int i = 0; i < Size; ++i) {
-      y[i] = gamma[i] * ((x[i] - mean[i]) / sqrt(variance[i] + Scalar(batch_norm_epsilon))) + beta[i];
+      y[i] = gamma[i] * ((x[i] - mean[i]) / detail::square_root(variance[i] + Scalar(batch_norm_epsilon))) + beta[i];
     }
   }
 

@@ -2,18 +2,16 @@
 // Hyperbolic tangent activation: y = tanh(v). Calls the C library once per neuron.
 #pragma once
 
-#include <cmath>
-
+#include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {
 
 template <class ScalarType, int Size>
 struct TanhLayer : ElementwiseLayer<TanhLayer<ScalarType, Size>, ScalarType, Size> {
-  static PINNQUAD_ALWAYS_INLINE ScalarType activate(ScalarType v) noexcept {
-    using std::tanh;
-    return tanh(v);
-  }
+  static constexpr bool lane_by_lane = true;  ///< a pack is no faster than its scalars
+
+  static PINNQUAD_ALWAYS_INLINE ScalarType activate(ScalarType v) noexcept { return detail::hyperbolic_tangent(v); }
   template <class Pack>
   static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
     return Pack::hyperbolic_tangent(v);

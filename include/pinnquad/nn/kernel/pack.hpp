@@ -7,40 +7,47 @@
 
 #if defined(__AVX512F__)
 #include "pinnquad/nn/kernel/pack_avx512.hpp"
+#define PINNQUAD_FLOAT_PACK PackAvx512
 #elif defined(__AVX2__) && defined(__FMA__)
 #include "pinnquad/nn/kernel/pack_avx2.hpp"
+#define PINNQUAD_FLOAT_PACK PackAvx2
+#elif defined(__SSE2__)
+#include "pinnquad/nn/kernel/pack_sse2.hpp"
+#define PINNQUAD_FLOAT_PACK PackSse2
+#elif defined(__ARM_NEON) && defined(__aarch64__)
+#include "pinnquad/nn/kernel/pack_neon.hpp"
+#define PINNQUAD_FLOAT_PACK PackNeon
 #endif
 
 namespace pinnquad {
 
 namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Scalar>
 struct NativePack {
   using type = GenericPack<Scalar, 4>;
   static constexpr bool vector_unit = false;
 };
-#if defined(__AVX512F__)
+#if defined(PINNQUAD_FLOAT_PACK)
 template <>
 struct NativePack<float> {
-  using type = PackAvx512;
+  using type = PINNQUAD_FLOAT_PACK;
   static constexpr bool vector_unit = true;
 };
-#elif defined(__AVX2__) && defined(__FMA__)
-template <>
-struct NativePack<float> {
-  using type = PackAvx2;
-  static constexpr bool vector_unit = true;
-};
+#undef PINNQUAD_FLOAT_PACK
 #endif
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
 /// The widest pack that this translation unit may use.
 template <class Scalar>
 using NativePack = typename detail::NativePack<Scalar>::type;
 
+inline namespace PINNQUAD_INSTRUCTION_SET {
 /// True if NativePack has its own instructions.
 template <class Scalar>
 inline constexpr bool has_vector_unit = detail::NativePack<Scalar>::vector_unit;
+}  // namespace PINNQUAD_INSTRUCTION_SET
 
 /// `size` rounded up to whole packs.
 template <class Pack>

@@ -5,11 +5,12 @@
 
 #include <immintrin.h>
 
-#include <cmath>
-
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/nn/kernel/scalar_math.hpp"
 
 namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 8 floats in one register.
 struct PackAvx2 {
@@ -50,9 +51,73 @@ struct PackAvx2 {
   static PINNQUAD_ALWAYS_INLINE PackAvx2 hyperbolic_tangent(PackAvx2 a) noexcept {
     alignas(32) float lane[width];
     _mm256_store_ps(lane, a.value);
-    for (float& v : lane) v = std::tanh(v);
+    for (float& v : lane) v = detail::hyperbolic_tangent(v);
     return {_mm256_load_ps(lane)};
+  }
+
+  // A layer in registers (register_layer.hpp): four rows, each in two neighbouring lanes that take two inputs; two such
+  // sums make a register of eight values.
+  static constexpr int columns = 2;
+  static constexpr int values = 8;
+  static constexpr int blocks_per_register = 2;
+  static constexpr int blocks_at_once = 2;
+  static constexpr int chains = 4;
+
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  /// The row whose products stand in lanes 2 pair and 2 pair + 1 of a block, such that collect() puts it in its place.
+  static constexpr int row_of_pair(int block, int pair) noexcept { return 4 * (pair / 2) + 2 * block + pair % 2; }
+
+  /// Values First and First + 1, in turn.
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackAvx2 spread() const noexcept {
+    return {_mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(value), First / 2 * 0x55))};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx2 spread(const float* x) noexcept {
+    double both;
+    __builtin_memcpy(&both, x, sizeof both);
+    return {_mm256_castpd_ps(_mm256_set1_pd(both))};
+  }
+  /// `v`, the last of an odd count, and 1 in turn.
+  static PINNQUAD_ALWAYS_INLINE PackAvx2 spread_last(PackAvx2 v) noexcept {
+    return PackAvx2{_mm256_broadcastss_ps(_mm256_castps256_ps128(v.value))}.with_one();
+  }
+  PINNQUAD_ALWAYS_INLINE PackAvx2 with_one() const noexcept {
+    return {_mm256_blend_ps(value, _mm256_set1_ps(1.0f), 0xaa)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx2 from_scalar(float v) noexcept { return {_mm256_set1_ps(v)}; }
+  /// The sums of two blocks, both lanes of a row added, as values.
+  static PINNQUAD_ALWAYS_INLINE PackAvx2 collect(const PackAvx2* sum) noexcept {
+    return {_mm256_add_ps(_mm256_shuffle_ps(sum[0].value, sum[1].value, 0x88),
+                          _mm256_shuffle_ps(sum[0].value, sum[1].value, 0xdd))};
+  }
+  /// The first Count values, zero behind them.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE PackAvx2 keep() const noexcept {
+    return {_mm256_blend_ps(_mm256_setzero_ps(), value, (1 << Count) - 1)};
+  }
+  /// Sum over the lanes, in the first.
+  PINNQUAD_ALWAYS_INLINE PackAvx2 sum_of_values() const noexcept {
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(value), _mm256_extractf128_ps(value, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return {_mm256_castps128_ps256(_mm_add_ps(two, _mm_movehdup_ps(two)))};
+  }
+  /// Is worked out here: the compiler may not put it off to where it is used.
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
+  PINNQUAD_ALWAYS_INLINE float first_value() const noexcept { return _mm256_cvtss_f32(value); }
+  /// y[0, Count) and nothing behind.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(float* y) const noexcept {
+    if constexpr (Count == 8) {
+      store(y);
+    } else if constexpr (Count == 4) {
+      _mm_storeu_ps(y, _mm256_castps256_ps128(value));
+    } else {
+      alignas(32) float lane[width];
+      _mm256_store_ps(lane, value);
+      for (int i = 0; i < Count; ++i) y[i] = lane[i];
+    }
   }
 };
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad

@@ -5,11 +5,12 @@
 
 #include <immintrin.h>
 
-#include <cmath>
-
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/nn/kernel/scalar_math.hpp"
 
 namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 16 floats in one register.
 struct PackAvx512 {
@@ -54,9 +55,77 @@ struct PackAvx512 {
   static PINNQUAD_ALWAYS_INLINE PackAvx512 hyperbolic_tangent(PackAvx512 a) noexcept {
     alignas(64) float lane[width];
     _mm512_store_ps(lane, a.value);
-    for (float& v : lane) v = std::tanh(v);
+    for (float& v : lane) v = detail::hyperbolic_tangent(v);
     return {_mm512_load_ps(lane)};
+  }
+
+  // A layer in registers (register_layer.hpp): eight rows, each in two neighbouring lanes that take two inputs.
+  static constexpr int columns = 2;
+  static constexpr int values = 8;
+  static constexpr int blocks_per_register = 1;
+  static constexpr int blocks_at_once = 1;
+  static constexpr int chains = 4;
+
+  /// Place of a value in its register: both lanes hold it.
+  static constexpr int lane_of_value(int value) noexcept { return 2 * value; }
+  /// The row whose products stand in lanes 2 pair and 2 pair + 1.
+  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
+
+  /// Values First and First + 1, in turn.
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackAvx512 spread() const noexcept {
+    constexpr long long two_lanes = 2 * First | static_cast<long long>(2 * First + 2) << 32;
+    const __m512i index = _mm512_maskz_set1_epi64(0xff, two_lanes);
+    return {_mm512_maskz_permutexvar_ps(all, index, value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 spread(const float* x) noexcept {
+    double both;
+    __builtin_memcpy(&both, x, sizeof both);
+    return {_mm512_castpd_ps(_mm512_set1_pd(both))};
+  }
+  /// `v`, the last of an odd count, and 1 in turn.
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 spread_last(PackAvx512 v) noexcept {
+    return {_mm512_mask_broadcastss_ps(_mm512_set1_ps(1.0f), 0x5555, v.lowest_four())};
+  }
+  PINNQUAD_ALWAYS_INLINE PackAvx512 with_one() const noexcept {
+    return {_mm512_mask_blend_ps(0xaaaa, value, _mm512_set1_ps(1.0f))};
+  }
+  /// The first lane, no matter what the others hold.
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 from_scalar(float v) noexcept {
+    return {_mm512_zextps128_ps512(_mm_set_ss(v))};
+  }
+  PINNQUAD_ALWAYS_INLINE __m128 lowest_four() const noexcept { return _mm512_maskz_extractf32x4_ps(0xf, value, 0); }
+  /// The sums of a block, both lanes of a row added, as values.
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 collect(const PackAvx512* sum) noexcept {
+    return {_mm512_add_ps(sum->value, _mm512_maskz_permute_ps(all, sum->value, 0xb1))};
+  }
+  /// The first Count values, zero behind them.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE PackAvx512 keep() const noexcept {
+    return {_mm512_maskz_mov_ps(static_cast<__mmask16>((1u << (2 * Count)) - 1u), value)};
+  }
+  /// Sum over the lanes of values, in the first.
+  PINNQUAD_ALWAYS_INLINE PackAvx512 sum_of_values() const noexcept {
+    const __m512d pairs = _mm512_castps_pd(value);
+    const __m256 eight = _mm256_add_ps(_mm256_castpd_ps(_mm512_maskz_extractf64x4_pd(0xf, pairs, 0)),
+                                       _mm256_castpd_ps(_mm512_maskz_extractf64x4_pd(0xf, pairs, 1)));
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
+    return {_mm512_zextps128_ps512(_mm_add_ps(four, _mm_movehl_ps(four, four)))};
+  }
+  /// Is worked out here: the compiler may not put it off to where it is used.
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+v"(value)); }
+  PINNQUAD_ALWAYS_INLINE float first_value() const noexcept { return _mm512_cvtss_f32(value); }
+  /// y[0, Count) and nothing behind.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(float* y) const noexcept {
+    const __m512 dense = _mm512_maskz_compress_ps(0x5555, value);
+    if constexpr (Count == 4) {
+      _mm_storeu_ps(y, PackAvx512{dense}.lowest_four());  // a masked store would not forward to the next load
+    } else {
+      _mm512_mask_storeu_ps(y, static_cast<__mmask16>((1u << Count) - 1u), dense);
+    }
   }
 };
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad

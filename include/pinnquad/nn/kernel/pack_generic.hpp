@@ -3,11 +3,12 @@
 // The interface that every pack has; used for double, for other scalars, and where no vector unit is targeted.
 #pragma once
 
-#include <cmath>
-
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/nn/kernel/scalar_math.hpp"
 
 namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// `Width` scalars that are computed with at once. Product and sum are rounded separately.
 template <class ScalarType, int Width>
@@ -58,8 +59,7 @@ struct GenericPack {
     return a;
   }
   static PINNQUAD_ALWAYS_INLINE GenericPack square_root(GenericPack a) noexcept {
-    using std::sqrt;
-    for (int i = 0; i < Width; ++i) a.lane[i] = sqrt(a.lane[i]);
+    for (int i = 0; i < Width; ++i) a.lane[i] = detail::square_root(a.lane[i]);
     return a;
   }
   /// v < 0 ? 0 : v. NaN goes through.
@@ -73,10 +73,10 @@ struct GenericPack {
     return a;
   }
   static PINNQUAD_ALWAYS_INLINE GenericPack hyperbolic_tangent(GenericPack a) noexcept {
-    using std::tanh;
-    for (int i = 0; i < Width; ++i) a.lane[i] = tanh(a.lane[i]);
+    for (int i = 0; i < Width; ++i) a.lane[i] = detail::hyperbolic_tangent(a.lane[i]);
     return a;
   }
 };
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Four floats with NEON (aarch64).
+// Same interface as pack_generic.hpp; include only where the compiler targets aarch64.
+#pragma once
+
+#include <arm_neon.h>
+
+#include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/nn/kernel/scalar_math.hpp"
+
+namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// 4 floats in one register.
+struct PackNeon {
+  using Scalar = float;
+  static constexpr int width = 4;
+  static constexpr int tile_rows = 4;
+  static constexpr int tile_vectors = 2;
+
+  float32x4_t value;
+
+  static PINNQUAD_ALWAYS_INLINE PackNeon load(const float* p) noexcept { return {vld1q_f32(p)}; }
+  static PINNQUAD_ALWAYS_INLINE PackNeon broadcast(float v) noexcept { return {vdupq_n_f32(v)}; }
+  PINNQUAD_ALWAYS_INLINE void store(float* p) const noexcept { vst1q_f32(p, value); }
+  /// a * b + c
+  static PINNQUAD_ALWAYS_INLINE PackNeon multiply_add(PackNeon a, PackNeon b, PackNeon c) noexcept {
+    return {vfmaq_f32(c.value, a.value, b.value)};
+  }
+  friend PINNQUAD_ALWAYS_INLINE PackNeon operator+(PackNeon a, PackNeon b) noexcept {
+    return {vaddq_f32(a.value, b.value)};
+  }
+  friend PINNQUAD_ALWAYS_INLINE PackNeon operator-(PackNeon a, PackNeon b) noexcept {
+    return {vsubq_f32(a.value, b.value)};
+  }
+  friend PINNQUAD_ALWAYS_INLINE PackNeon operator*(PackNeon a, PackNeon b) noexcept {
+    return {vmulq_f32(a.value, b.value)};
+  }
+  friend PINNQUAD_ALWAYS_INLINE PackNeon operator/(PackNeon a, PackNeon b) noexcept {
+    return {vdivq_f32(a.value, b.value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackNeon square_root(PackNeon a) noexcept { return {vsqrtq_f32(a.value)}; }
+  /// v < 0 ? 0 : v. FMAX returns NaN when either is.
+  static PINNQUAD_ALWAYS_INLINE PackNeon positive_part(PackNeon a) noexcept {
+    return {vmaxq_f32(a.value, vdupq_n_f32(0.0f))};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackNeon where_positive(PackNeon gate, PackNeon a) noexcept {
+    return {vreinterpretq_f32_u32(vandq_u32(vcgtzq_f32(gate.value), vreinterpretq_u32_f32(a.value)))};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackNeon hyperbolic_tangent(PackNeon a) noexcept {
+    alignas(16) float lane[width];
+    a.store(lane);
+    for (float& v : lane) v = detail::hyperbolic_tangent(v);
+    return load(lane);
+  }
+
+  // A layer in registers (register_layer.hpp): four rows, one input.
+  static constexpr int columns = 1;
+  static constexpr int values = 4;
+  static constexpr int blocks_per_register = 1;
+  static constexpr int blocks_at_once = 6;
+  static constexpr int chains = 2;
+
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
+
+  /// Value First in every lane.
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackNeon spread() const noexcept {
+    return {vdupq_laneq_f32(value, First)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackNeon spread(const float* x) noexcept { return broadcast(*x); }
+  static PINNQUAD_ALWAYS_INLINE PackNeon spread_last(PackNeon v) noexcept { return v.spread<0>(); }
+  static PINNQUAD_ALWAYS_INLINE PackNeon from_scalar(float v) noexcept { return broadcast(v); }
+  static PINNQUAD_ALWAYS_INLINE PackNeon collect(const PackNeon* sum) noexcept { return *sum; }
+  /// The first Count values, zero behind them.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE PackNeon keep() const noexcept {
+    const uint32x4_t lane = {0, 1, 2, 3};
+    const uint32x4_t used = vcltq_u32(lane, vdupq_n_u32(Count));
+    return {vreinterpretq_f32_u32(vandq_u32(used, vreinterpretq_u32_f32(value)))};
+  }
+  /// Sum over the lanes, in every one.
+  PINNQUAD_ALWAYS_INLINE PackNeon sum_of_values() const noexcept { return broadcast(vaddvq_f32(value)); }
+  /// Is worked out here: the compiler may not put it off to where it is used.
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+w"(value)); }
+  PINNQUAD_ALWAYS_INLINE float first_value() const noexcept { return vgetq_lane_f32(value, 0); }
+  /// y[0, Count) and nothing behind.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(float* y) const noexcept {
+    if constexpr (Count == width) {
+      store(y);
+    } else {
+      alignas(16) float lane[width];
+      store(lane);
+      for (int i = 0; i < Count; ++i) y[i] = lane[i];
+    }
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Four floats with SSE2, which every x86-64 has.
+// Same interface as pack_generic.hpp; include only where the compiler targets SSE2.
+#pragma once
+
+#include <emmintrin.h>
+
+#include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/nn/kernel/scalar_math.hpp"
+
+namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// 4 floats in one register. Product and sum are rounded separately.
+struct PackSse2 {
+  using Scalar = float;
+  static constexpr int width = 4;
+  static constexpr int tile_rows = 4;
+  static constexpr int tile_vectors = 1;
+
+  __m128 value;
+
+  static PINNQUAD_ALWAYS_INLINE PackSse2 load(const float* p) noexcept { return {_mm_loadu_ps(p)}; }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 broadcast(float v) noexcept { return {_mm_set1_ps(v)}; }
+  PINNQUAD_ALWAYS_INLINE void store(float* p) const noexcept { _mm_storeu_ps(p, value); }
+  /// a * b + c
+  static PINNQUAD_ALWAYS_INLINE PackSse2 multiply_add(PackSse2 a, PackSse2 b, PackSse2 c) noexcept { return a * b + c; }
+  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator+(PackSse2 a, PackSse2 b) noexcept {
+    return {_mm_add_ps(a.value, b.value)};
+  }
+  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator-(PackSse2 a, PackSse2 b) noexcept {
+    return {_mm_sub_ps(a.value, b.value)};
+  }
+  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator*(PackSse2 a, PackSse2 b) noexcept {
+    return {_mm_mul_ps(a.value, b.value)};
+  }
+  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator/(PackSse2 a, PackSse2 b) noexcept {
+    return {_mm_div_ps(a.value, b.value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 square_root(PackSse2 a) noexcept { return {_mm_sqrt_ps(a.value)}; }
+  /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
+  static PINNQUAD_ALWAYS_INLINE PackSse2 positive_part(PackSse2 a) noexcept {
+    return {_mm_max_ps(_mm_setzero_ps(), a.value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 where_positive(PackSse2 gate, PackSse2 a) noexcept {
+    return {_mm_and_ps(_mm_cmpgt_ps(gate.value, _mm_setzero_ps()), a.value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 hyperbolic_tangent(PackSse2 a) noexcept {
+    alignas(16) float lane[width];
+    a.store(lane);
+    for (float& v : lane) v = detail::hyperbolic_tangent(v);
+    return load(lane);
+  }
+
+  // A layer in registers (register_layer.hpp): four rows, one input.
+  static constexpr int columns = 1;
+  static constexpr int values = 4;
+  static constexpr int blocks_per_register = 1;
+  static constexpr int blocks_at_once = 3;
+  static constexpr int chains = 2;
+
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
+
+  /// Value First in every lane.
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackSse2 spread() const noexcept {
+    return {_mm_shuffle_ps(value, value, First * 0x55)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 spread(const float* x) noexcept { return broadcast(*x); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 spread_last(PackSse2 v) noexcept { return v.spread<0>(); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 from_scalar(float v) noexcept { return broadcast(v); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 collect(const PackSse2* sum) noexcept { return *sum; }
+  /// The first Count values, zero behind them.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE PackSse2 keep() const noexcept {
+    const __m128i used = _mm_set_epi32(Count > 3 ? -1 : 0, Count > 2 ? -1 : 0, Count > 1 ? -1 : 0, Count > 0 ? -1 : 0);
+    return {_mm_and_ps(_mm_castsi128_ps(used), value)};
+  }
+  /// Sum over the lanes, in the first.
+  PINNQUAD_ALWAYS_INLINE PackSse2 sum_of_values() const noexcept {
+    const __m128 two = _mm_add_ps(value, _mm_movehl_ps(value, value));
+    return {_mm_add_ps(two, _mm_shuffle_ps(two, two, 0x55))};
+  }
+  /// Is worked out here: the compiler may not put it off to where it is used.
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
+  PINNQUAD_ALWAYS_INLINE float first_value() const noexcept { return _mm_cvtss_f32(value); }
+  /// y[0, Count) and nothing behind.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(float* y) const noexcept {
+    if constexpr (Count == width) {
+      store(y);
+    } else {
+      alignas(16) float lane[width];
+      store(lane);
+      for (int i = 0; i < Count; ++i) y[i] = lane[i];
+    }
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad

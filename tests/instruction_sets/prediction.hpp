@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The model that every instruction set predicts with: sizes with a remainder, weights worked out by the compiler.
+#pragma once
+
+#include "pinnquad/nn/packed_network.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/tanh.hpp"
+
+namespace instruction_sets {
+
+using Net = pinnquad::Mlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<3, 25>, pinnquad::Outputs<4>, pinnquad::Relu>;
+/// Runs from memory to memory: too wide for registers, with an activation that calls the C library.
+using WideNet = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<70>, pinnquad::Tanh, pinnquad::Dense<4>>;
+
+/// Numbers in +-0.5 without a pattern that a sum would cancel: a linear congruence.
+template <class Network>
+constexpr typename Network::Parameters some_parameters() noexcept {
+  typename Network::Parameters parameters{};
+  unsigned state = 12345;
+  for (auto& p : parameters) {
+    state = state * 1664525u + 1013904223u;
+    p = static_cast<float>(state >> 8) / 16777216.0f - 0.5f;
+  }
+  return parameters;
+}
+
+/// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel.
+inline constexpr int outputs = 12;
+
+}  // namespace instruction_sets

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// Layers in registers against plain loops in double: every size from 1 to 40 as rows and as columns, every pack.
+#include "pinnquad/nn/kernel/register_layer.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "pinnquad/nn/packed_network.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "support/packs.hpp"
+#include "support/random_network.hpp"
+
+using pinnquad::Dense;
+using pinnquad::Inputs;
+using pinnquad::Network;
+using pinnquad::PackedNetwork;
+using pinnquad::Relu;
+using pinnquad::test::fill_uniform;
+
+namespace {
+
+/// A value in double, and how far a float computation in any order of its sums may be from it.
+struct Bounded {
+  double value = 0.0;
+  double bound = 0.0;
+};
+
+/// y = W x + b in double. A sum of n products, in any order and with one or two roundings each, is off by at most
+/// (n + 2) eps times the sum of the magnitudes (Higham 2002, section 3.1); errors of the inputs pass through |W|.
+std::vector<Bounded> plain_layer(const float* weight, const std::vector<Bounded>& x, std::size_t rows) {
+  const double eps = static_cast<double>(std::numeric_limits<float>::epsilon());
+  const float* bias = weight + rows * x.size();
+  std::vector<Bounded> y(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    double sum = static_cast<double>(bias[row]), magnitude = std::fabs(sum), passed = 0.0;
+    for (std::size_t column = 0; column < x.size(); ++column) {
+      const double w = static_cast<double>(weight[row * x.size() + column]);
+      sum += w * x[column].value;
+      magnitude += std::fabs(w) * (std::fabs(x[column].value) + x[column].bound);
+      passed += std::fabs(w) * x[column].bound;
+    }
+    y[row] = {sum, passed + (static_cast<double>(x.size()) + 2.0) * eps * magnitude};
+  }
+  return y;
+}
+
+bool agrees(float actual, const Bounded& expected) {
+  if (std::isnan(expected.value)) return std::isnan(actual);
+  if (std::isinf(expected.value)) return static_cast<double>(actual) == expected.value;
+  return std::fabs(static_cast<double>(actual) - expected.value) <= expected.bound;
+}
+
+/// A network of dense layers with ReLU between them: what is under test and what it should be.
+struct Case {
+  std::vector<std::size_t> sizes;
+  const float* parameters;
+  std::function<void(const float*, float*)> forward;
+
+  bool agrees_at(const std::vector<float>& inputs) const {
+    std::vector<Bounded> values;
+    for (const float v : inputs) values.push_back({static_cast<double>(v), 0.0});
+    const float* weight = parameters;
+    for (std::size_t layer = 1; layer < sizes.size(); ++layer) {
+      if (layer > 1) {
+        for (Bounded& v : values) v.value = v.value < 0.0 ? 0.0 : v.value;
+      }
+      values = plain_layer(weight, values, sizes[layer]);
+      weight += sizes[layer] * (sizes[layer - 1] + 1);
+    }
+    // what stands behind the inputs must not be read, or must not matter; nothing is written behind the outputs
+    std::vector<float> x = inputs;
+    x.resize(inputs.size() + 16, std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> y(values.size() + 1, 42.0f);
+    forward(x.data(), y.data());
+    bool all = y.back() == 42.0f;
+    for (std::size_t i = 0; i < values.size(); ++i) all = all && agrees(y[i], values[i]);
+    return all;
+  }
+};
+
+void check_case(const Case& network, std::mt19937_64& engine) {
+  CAPTURE(network.sizes[0]);
+  CAPTURE(network.sizes[1]);
+  std::vector<float> inputs(network.sizes[0]);
+  fill_uniform(inputs, engine);
+  CHECK(network.agrees_at(inputs));
+  for (const float special : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                              -std::numeric_limits<float>::infinity()}) {
+    for (float& input : inputs) {
+      CAPTURE(special);
+      const float kept = input;
+      input = special;
+      CHECK(network.agrees_at(inputs));
+      input = kept;
+    }
+  }
+}
+
+/// From memory, A values; in registers, B and C of them.
+template <class Pack, int A, int B, int C>
+void check_sizes(std::mt19937_64& engine) {
+  using Net = Network<float, Inputs<A>, Dense<B>, Relu, Dense<C>, Relu, Dense<A>>;
+  static_assert(pinnquad::detail::fits_registers<Net, Pack>());
+  Net network;
+  fill_uniform(network.parameters, engine);
+  const PackedNetwork<Net, Pack> packed(network.parameters);
+  check_case({{A, B, C, A}, network.parameters.data(), [&](const float* x, float* y) { packed.forward(x, y); }},
+             engine);
+}
+
+/// B is 1 to 20 and C is 40 to 21; A is odd and even, small and large: 17 is prime to 40.
+template <class Pack, int... Each>
+void check_all_sizes(std::integer_sequence<int, Each...>) {
+  std::mt19937_64 engine(41);
+  (check_sizes<Pack, (17 * Each + 15) % 40 + 1, Each + 1, 40 - Each>(engine), ...);
+}
+
+/// 1 / v, with a pack form: infinite in lanes that hold nothing.
+template <class Scalar, int Size>
+struct ReciprocalLayer : pinnquad::ElementwiseLayer<ReciprocalLayer<Scalar, Size>, Scalar, Size> {
+  static Scalar activate(Scalar v) noexcept { return Scalar(1) / v; }
+  template <class Pack>
+  static Pack activate(Pack v) noexcept {
+    return Pack::broadcast(Scalar(1)) / v;
+  }
+};
+struct Reciprocal {
+  template <class Scalar, int In>
+  using Bind = ReciprocalLayer<Scalar, In>;
+};
+
+}  // namespace
+
+TEST_CASE("any size from 1 to 40: values, NaN and infinity from any input, nothing read or written behind") {
+  check_all_sizes<pinnquad::NativePack<float>>(std::make_integer_sequence<int, 20>{});
+}
+
+TEST_CASE_TEMPLATE("every pack: sizes on both sides of its registers", Pack, PINNQUAD_TEST_REGISTER_PACKS) {
+  std::mt19937_64 engine(43);
+  check_sizes<Pack, 16, 25, 4>(engine);
+  check_sizes<Pack, 5, 9, 17>(engine);
+  check_sizes<Pack, 8, 7, 33>(engine);
+}
+
+TEST_CASE_TEMPLATE("an activation that is infinite at zero does not leak from unused lanes", Pack,
+                   PINNQUAD_TEST_REGISTER_PACKS) {
+  const auto check = [](auto size) {
+    constexpr int count = decltype(size)::value;
+    CAPTURE(count);
+    using Net = Network<float, Inputs<3>, Dense<count>, Reciprocal, Dense<25>, Reciprocal, Dense<2>>;
+    std::mt19937_64 engine(42);
+    Net network;
+    for (auto& p : network.parameters)
+      p = static_cast<float>(pinnquad::uniform(engine, 0.5, 1.0));  // no pole, no cancelling
+    std::array<float, 3> x = {0.5f, 1.0f, 0.75f};
+    std::array<float, 2> expected{}, y{};
+    network.forward(x.data(), expected.data());
+    PackedNetwork<Net, Pack>(network.parameters).forward(x.data(), y.data());
+    // three sums of at most 25 positive terms and two quotients: each error relative
+    for (std::size_t i = 0; i < 2; ++i)
+      CHECK(std::fabs(y[i] / expected[i] - 1.0f) <= 70 * std::numeric_limits<float>::epsilon());
+  };
+  check(pinnquad::Index<2>{});
+  check(pinnquad::Index<13>{});
+  check(pinnquad::Index<27>{});
+}
