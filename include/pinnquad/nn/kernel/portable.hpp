@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Matrix-vector product straight from row-major weights. Every output is one chain: bias, then its inputs ascending. Where the
-// target multiplies and adds in one rounding, so does this: the same bits on all such targets, at any optimisation level.
-// Inputs are held in registers and two rows run side by side: few loads, whole cache lines of weights in the order of flash.
+// Matrix-vector product straight from row-major weights. Every output is one chain: bias, then its inputs ascending.
+// Where the target multiplies and adds in one rounding, so does this: the same bits on all such targets, at any
+// optimisation level. Inputs are held in registers and two rows run side by side: few loads, whole cache lines of
+// weights in the order of flash.
 #pragma once
 
 #include <cstddef>
@@ -101,7 +102,8 @@ PINNQUAD_ALWAYS_INLINE void multiply_parts(const Scalar* weight, Start start, co
 
 }  // namespace detail
 
-/// y = activate(W x + b), entry by entry; W is Rows x Columns, row-major (row = output, column = input). y may not overlap x.
+/// y = activate(W x + b), entry by entry; W is Rows x Columns, row-major (row = output, column = input). y may not
+/// overlap x.
 template <int Rows, int Columns, class Scalar, class Activate = detail::Unchanged>
 PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* bias, const Scalar* x, Scalar* y,
                                                Activate activate = {}) noexcept {
