@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Prints the output bits of the portable kernel for networks that take each of its paths: same_bits.sh compiles this for several
-// machines, by several compilers, and compares.
+// Prints the output bits of the portable kernel for networks that take each of its paths: same_bits.sh compiles this
+// for several machines, by several compilers, and compares.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>

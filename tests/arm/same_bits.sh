@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# same_bits.sh <repository> <working folder> <host | aarch64 | armhf>: the portable kernel has the same bits wherever the hardware
-# multiplies and adds in one rounding: g++ and clang++, -O0 to -O3, x86-64, 64-bit and 32-bit ARM (under qemu-user). Compiled
-# as another project would, without this one's flags.
+# same_bits.sh <repository> <working folder> <host | aarch64 | armhf>: the portable kernel has the same bits wherever
+# the hardware multiplies and adds in one rounding: g++ and clang++, -O0 to -O3, x86-64, 64-bit and 32-bit ARM (under
+# qemu-user). Compiled as another project would, without this one's flags.
 set -euo pipefail
 root=$1 work=$2/$3 machine=$3
 mkdir -p "$work"
@@ -53,7 +53,8 @@ case $machine in
       build_and_run "clang++$optimisation" env clang++ "$optimisation" $host_flags
       compare "clang++$optimisation"
     done
-    # Must differ, or nothing is compared: two roundings instead of one where the machine's baseline has no fused operation.
+    # Must differ, or nothing is compared: two roundings instead of one where the machine's baseline has no fused
+    # operation.
     if [ -n "$host_flags" ]; then
       build_and_run rounded_twice env g++ -O2 -DROUNDED_TWICE
       if cmp -s "$work/reference" "$work/rounded_twice"; then

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a measurement needs of the machine: text to the host, instructions executed, stack used. On a Cortex-M by semihosting,
-// SysTick and a painted stack, without a C library; on the host only the text.
+// What a measurement needs of the machine: text to the host, instructions executed, stack used. On a Cortex-M by
+// semihosting, SysTick and a painted stack, without a C library; on the host only the text.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ inline void print(const char* text) {
   __asm__ volatile("bkpt 0xab" : "+r"(operation) : "r"(argument) : "memory");
 }
 
-/// Counts down at 25 MHz of QEMU's clock. Under `-icount shift=0` an instruction takes 1 ns: one tick is 40 instructions.
+/// Counts down at 25 MHz of QEMU's clock. Under `-icount shift=0` an instruction takes 1 ns: one tick is 40
+/// instructions.
 struct SysTick {
   volatile std::uint32_t control, reload, value;
 };
@@ -50,7 +51,8 @@ std::uint32_t instructions(Function function, Nothing nothing) {
   return (own + calls / 2) / calls + 1;
 }
 
-/// Bytes of stack that one call touches below its caller's frame. A painted window that is used up says more than it holds.
+/// Bytes of stack that one call touches below its caller's frame. A painted window that is used up says more than it
+/// holds.
 template <class Function>
 __attribute__((noinline)) std::uint32_t stack_bytes(Function function) {
   constexpr std::uint32_t window = 16384, paint = 0xa5c3965a;

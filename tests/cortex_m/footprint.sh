@@ -22,14 +22,15 @@ thousands() { sed ':again; s/\([0-9]\)\([0-9]\{3\}\)\($\|,\)/\1,\2\3/; t again' 
 estimate() { awk -v n="$1" -v mhz="$2" -v cycles="$3" 'BEGIN { printf "%.0f", n * cycles / mhz }'; }
 
 table() {
-  local layers width target optimisation object image name counts code stack most
+  local layers width target optimisation object image name part count stack most
   echo "Measured with $compiler. Each cell of three: -Os / -O2 / -O3."
   echo
-  echo "| network | weights, B | workspace, B | code, B | stack, B | static RAM, B | M4F, instructions | M7, instructions | M4F, µs* | M7, µs* |"
+  echo "| network | weights, B | workspace, B | code, B | stack, B | static RAM, B" \
+    "| M4F, instructions | M7, instructions | M4F, µs* | M7, µs* |"
   echo "|---|---|---|---|---|---|---|---|---|---|"
   for name in 2x16 3x25 10x25 2x64; do
     layers=${name%x*} width=${name#*x}
-    declare -A counts=() code=() slowest=()
+    local -A counts=() slowest=()
     stack=0 most=0
     for target in m4f m7_dp; do
       slowest[$target]=0
@@ -38,26 +39,29 @@ table() {
       done
       for optimisation in -Os -O2 -O3; do
         object=$work/$target$optimisation.$name.o image=$work/$target$optimisation.$name.elf
-        compile "$target" "$optimisation" "$here/sized_network.cpp" "$object" "-DHIDDEN_LAYERS=$layers" "-DHIDDEN_WIDTH=$width"
+        compile "$target" "$optimisation" "$here/sized_network.cpp" "$object" \
+          "-DHIDDEN_LAYERS=$layers" "-DHIDDEN_WIDTH=$width"
         link_image "$target" "$image" "$work/$target.start_up.o" "$work/$target.measure_forward.o" "$object"
         run_image "$target" "$image" "$image.txt"
         if [ "$(largest instructions "$image.txt")" != "$(smallest instructions "$image.txt")" ]; then
           echo "$name on $target $optimisation: instructions depend on the data" >&2
           return 1
         fi
-        counts[$target]+="${counts[$target]:+ / }$(thousands "$(largest instructions "$image.txt")")"
-        [ "$(largest instructions "$image.txt")" -le "${slowest[$target]}" ] || slowest[$target]=$(largest instructions "$image.txt")
+        count=$(largest instructions "$image.txt")
+        counts[$target]+="${counts[$target]:+ / }$(thousands "$count")"
+        [ "$count" -le "${slowest[$target]}" ] || slowest[$target]=$count
         [ "$(largest stack "$image.txt")" -le "$stack" ] || stack=$(largest stack "$image.txt")
         [ "$(code_bytes "$image")" -le "$most" ] || most=$(code_bytes "$image")
       done
     done
-    echo "| 16-$layers x $width-4 | $(thousands "$(weight_bytes "$image")") | $(awk '$1 == "workspace" { print $3 }' "$image.txt") |" \
+    echo "| 16-$layers x $width-4 | $(thousands "$(weight_bytes "$image")") |" \
+      "$(awk '$1 == "workspace" { print $3 }' "$image.txt") |" \
       "$(thousands "$most") | $stack | $(ram_bytes "$image") | ${counts[m4f]} | ${counts[m7_dp]} |" \
       "$(estimate "${slowest[m4f]}" $m4_clock $m4_cycles) | $(estimate "${slowest[m7_dp]}" $m7_clock $m7_cycles) |"
   done
   echo
-  echo "\\* Estimates until a board is measured: M4F at $m4_clock MHz and $m4_cycles cycles per instruction, M7 at $m7_clock MHz and" \
-    "$m7_cycles, memory without wait states."
+  echo "\\* Estimates until a board is measured: M4F at $m4_clock MHz and $m4_cycles cycles per instruction,"
+  echo "M7 at $m7_clock MHz and $m7_cycles, memory without wait states."
 }
 
 begin='<!-- table: tests/cortex_m/footprint.sh --write -->' end='<!-- end of table -->'

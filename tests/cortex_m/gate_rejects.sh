@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# gate_rejects.sh <repository> <working folder> <Eigen>: each limit of the gate refuses what breaks it, by name; the honest
-# network passes through the same steps.
+# gate_rejects.sh <repository> <working folder> <Eigen>: each limit of the gate refuses what breaks it, by name; the
+# honest network passes through the same steps.
 set -euo pipefail
 root=$1 work=$2 eigen=$3
 # shellcheck source=machine.sh

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Prints features and commands of predict() as bits, its Status for good and bad inputs and the self-test's; on a Cortex-M also
-// instructions and stack.
+// Prints features and commands of predict() as bits, its Status for good and bad inputs and the self-test's; on a
+// Cortex-M also instructions and stack.
 #include "board.hpp"
 #include "samples.hpp"
 #include "under_test.hpp"

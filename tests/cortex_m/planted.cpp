@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Forward passes that break one rule each: gate_rejects.sh must see the gate refuse every one, by name. PLANTED says which.
+// Forward passes that break one rule each: gate_rejects.sh must see the gate refuse every one, by name. PLANTED says
+// which.
 #include <cstdlib>
 
 #include "under_test.hpp"

@@ -5,8 +5,9 @@
 # hardware FMA makes of them.
 set -euo pipefail
 root=$1 work=$2 compiler=$3 eigen=$4
+rm -rf -- "$work"
 mkdir -p "$work"
-rm -f "$work"/*
+
 # shellcheck source=machine.sh
 source "$root/tests/cortex_m/machine.sh"
 need_tools

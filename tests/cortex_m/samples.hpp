@@ -48,7 +48,8 @@ void fill(const Kind& kind, std::uint32_t seed, float (&x)[Size]) {
   x[Size / 2] = kind.planted;
 }
 
-/// Raw inputs of predict(): accelerations, velocity, rates inside the envelope of write_model.cpp, and a unit quaternion.
+/// Raw inputs of predict(): accelerations, velocity, rates inside the envelope of write_model.cpp, and a unit
+/// quaternion.
 inline void fill_raw(std::uint32_t seed, float (&raw)[16]) {
   Numbers numbers(seed);
   constexpr float scale[4] = {8.0F, 20.0F, 6.0F, 3.0F};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A network of another size for docs/footprint.md: HIDDEN_LAYERS x HIDDEN_WIDTH between 16 inputs and 4 outputs, with weights in
-// flash that no compiler can fold away. Instructions don't depend on their values.
+// A network of another size for docs/footprint.md: HIDDEN_LAYERS x HIDDEN_WIDTH between 16 inputs and 4 outputs, with
+// weights in flash that no compiler can fold away. Instructions don't depend on their values.
 #include <cstdint>
 
 #include "pinnquad/nn/network.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is measured, behind C functions in a file of its own: compiled as firmware compiles it, called from measure_*.cpp.
+// What is measured, behind C functions in a file of its own: compiled as firmware compiles it, called from
+// measure_*.cpp.
 #pragma once
 
 extern "C" {
@@ -10,8 +11,8 @@ void pinnquad_forward(const float* x, float* y);
 /// Network::workspace_bytes.
 unsigned pinnquad_workspace_bytes();
 
-/// predict() on raw inputs: linear and angular acceleration, velocity, body rates, attitude (w, x, y, z), 16 numbers. Returns
-/// the Status; `commands` are untouched unless there is an output.
+/// predict() on raw inputs: linear and angular acceleration, velocity, body rates, attitude (w, x, y, z), 16 numbers.
+/// Returns the Status; `commands` are untouched unless there is an output.
 unsigned char pinnquad_predict(const float* raw, float* commands);
 
 /// The model's feature vector from the same raw inputs.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes the model that is measured to the file named, by the library's own header writer: random weights that keep activations alive,
-// scalers and an envelope of an agile multirotor, golden vectors.
+// Writes the model that is measured to the file named, by the library's own header writer: random weights that keep
+// activations alive, scalers and an envelope of an agile multirotor, golden vectors.
 #include <random>
 #include <string>
 

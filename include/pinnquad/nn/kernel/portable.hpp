@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Matrix-vector product straight from row-major weights. Every output is one chain: bias, then its inputs ascending. Where the
-// target multiplies and adds in one rounding, so does this: the same bits on all such targets, at any optimisation level.
-// Inputs are held in registers and two rows run side by side: few loads, whole cache lines of weights in the order of flash.
+// Matrix-vector product straight from row-major weights. Every output is one chain: bias, then its inputs ascending.
+// Where the target multiplies and adds in one rounding, so does this: the same bits on all such targets, at any
+// optimisation level. Inputs are held in registers and two rows run side by side: few loads, whole cache lines of
+// weights in the order of flash.
 #pragma once
 
 #include <cstddef>
@@ -51,18 +52,19 @@ struct Unchanged {
   }
 };
 
-/// y[0, Rows) = activate(start + weight x); rows of `weight` are `stride` apart.
+/// y[0, Rows) = activate(start + weight x), one row or two; rows of `weight` are `stride` apart.
 template <int Rows, int Columns, class Scalar, class Start, class Activate>
 PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start start, const Scalar (&x)[Columns],
                                      Scalar* y, Activate activate) noexcept {
-  Scalar sum[Rows];
-  unroll<Rows>([&](auto row) PINNQUAD_INLINE_LAMBDA { sum[row] = start[row]; });
+  static_assert(Rows == 1 || Rows == rows_at_once);
+  Scalar sum = start[0];
+  Scalar below = Rows == 2 ? start[Rows - 1] : Scalar(0);
   unroll<Columns>([&](auto column) PINNQUAD_INLINE_LAMBDA {
-    unroll<Rows>([&](auto row) PINNQUAD_INLINE_LAMBDA {
-      sum[row] = multiply_add(weight[row * stride + column], x[column], sum[row]);
-    });
+    sum = multiply_add(weight[column], x[column], sum);
+    if constexpr (Rows == 2) below = multiply_add(weight[stride + column], x[column], below);
   });
-  unroll<Rows>([&](auto row) PINNQUAD_INLINE_LAMBDA { y[row] = activate(sum[row]); });
+  y[0] = activate(sum);
+  if constexpr (Rows == 2) y[1] = activate(below);
 }
 
 /// y[0, Rows) = activate(start + weight x) for as many columns as are held.
@@ -100,7 +102,8 @@ PINNQUAD_ALWAYS_INLINE void multiply_parts(const Scalar* weight, Start start, co
 
 }  // namespace detail
 
-/// y = activate(W x + b), entry by entry; W is Rows x Columns, row-major (row = output, column = input). y may not overlap x.
+/// y = activate(W x + b), entry by entry; W is Rows x Columns, row-major (row = output, column = input). y may not
+/// overlap x.
 template <int Rows, int Columns, class Scalar, class Activate = detail::Unchanged>
 PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* bias, const Scalar* x, Scalar* y,
                                                Activate activate = {}) noexcept {
