@@ -3,6 +3,8 @@
 // Same interface as pack_generic.hpp; include only where the compiler targets AVX-512F.
 #pragma once
 
+#if defined(__AVX512F__)  // elsewhere this header is empty
+
 #include <immintrin.h>
 
 #include "pinnquad/core/attributes.hpp"
@@ -134,3 +136,5 @@ struct PackAvx512 {
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad
+
+#endif
