@@ -17,24 +17,26 @@ namespace pinnquad::bench {
 template <int Order>
 class NaiveEigenNetwork {
  public:
+  using Scalar = PaperNetwork::Scalar;
+
   explicit NaiveEigenNetwork(const PaperNetwork& network) {
     load<16, 25>(network, 0, first_);
     for (std::size_t i = 0; i < hidden_.size(); ++i) load<25, 25>(network, 2 * static_cast<int>(i) + 2, hidden_[i]);
     load<25, 4>(network, 20, last_);
   }
 
-  void forward(const float* x, float* y) const {
-    Eigen::Matrix<float, 16, 1> input = Eigen::Map<const Eigen::Matrix<float, 16, 1>>(x);
-    Eigen::Matrix<float, 25, 1> h, g;
+  void forward(const Scalar* x, Scalar* y) const {
+    Eigen::Matrix<Scalar, 16, 1> input = Eigen::Map<const Eigen::Matrix<Scalar, 16, 1>>(x);
+    Eigen::Matrix<Scalar, 25, 1> h, g;
     g = first_.bias;
     g.noalias() += first_.weight * input;
-    h = g.cwiseMax(0.0f);
+    h = g.cwiseMax(Scalar(0));
     for (const Layer<25, 25>& layer : hidden_) {
       g = layer.bias;
       g.noalias() += layer.weight * h;
-      h = g.cwiseMax(0.0f);
+      h = g.cwiseMax(Scalar(0));
     }
-    Eigen::Map<Eigen::Matrix<float, 4, 1>> output(y);
+    Eigen::Map<Eigen::Matrix<Scalar, 4, 1>> output(y);
     output = last_.bias;
     output.noalias() += last_.weight * h;
   }
@@ -42,15 +44,15 @@ class NaiveEigenNetwork {
  private:
   template <int In, int Out>
   struct Layer {
-    Eigen::Matrix<float, Out, In, Order> weight;
-    Eigen::Matrix<float, Out, 1> bias;
+    Eigen::Matrix<Scalar, Out, In, Order> weight;
+    Eigen::Matrix<Scalar, Out, 1> bias;
   };
 
   template <int In, int Out>
   static void load(const PaperNetwork& network, int index, Layer<In, Out>& layer) {
-    const float* parameters = network.parameters.data() + PaperNetwork::Sizes::offset(index);
-    layer.weight = Eigen::Map<const Eigen::Matrix<float, Out, In, Eigen::RowMajor>>(parameters);
-    layer.bias = Eigen::Map<const Eigen::Matrix<float, Out, 1>>(parameters + Out * In);
+    const Scalar* parameters = network.parameters.data() + PaperNetwork::Sizes::offset(index);
+    layer.weight = Eigen::Map<const Eigen::Matrix<Scalar, Out, In, Eigen::RowMajor>>(parameters);
+    layer.bias = Eigen::Map<const Eigen::Matrix<Scalar, Out, 1>>(parameters + Out * In);
   }
 
   Layer<16, 25> first_;
@@ -58,12 +60,22 @@ class NaiveEigenNetwork {
   Layer<25, 4> last_;
 };
 
-/// Latency of anything with forward(const float* x, float* y).
+/// `some_input` in another scalar.
+template <class Scalar>
+std::array<Scalar, PaperNetwork::inputs> paper_input(std::uint64_t seed = 2) {
+  std::array<Scalar, PaperNetwork::inputs> x{};
+  const PaperInput drawn = some_input(seed);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Scalar>(drawn[i]);
+  return x;
+}
+
+/// Latency of anything with forward(const Scalar* x, Scalar* y) and the paper's sizes: the output is fed into the next input.
 template <class Model>
 void predict(benchmark::State& state, const Model& model) {
-  const PaperInput start = some_input();
-  PaperInput x = start;
-  PaperOutput y{};
+  using Scalar = typename Model::Scalar;
+  const auto start = paper_input<Scalar>();
+  auto x = start;
+  std::array<Scalar, PaperNetwork::outputs> y{};
   for (auto _ : state) {
     model.forward(x.data(), y.data());
     feed_back(start, y.data(), x.data());
@@ -72,18 +84,41 @@ void predict(benchmark::State& state, const Model& model) {
   }
 }
 
-/// Ends the program unless the model gives the portable kernel's numbers, to rounding, over a few steps of feedback.
+/// Time per prediction of independent inputs, which the processor may overlap.
+template <class Model>
+void predict_throughput(benchmark::State& state, const Model& model) {
+  using Scalar = typename Model::Scalar;
+  std::array<std::array<Scalar, PaperNetwork::inputs>, 64> inputs{};
+  for (std::size_t i = 0; i < inputs.size(); ++i) inputs[i] = paper_input<Scalar>(i + 2);
+  std::array<Scalar, PaperNetwork::outputs> y{};
+  std::size_t next = 0;
+  for (auto _ : state) {
+    model.forward(inputs[next].data(), y.data());
+    next = (next + 1) % inputs.size();
+    benchmark::DoNotOptimize(y.data());
+    benchmark::ClobberMemory();
+  }
+}
+
+/// Ends the program unless the model gives the portable kernel's numbers in double, to rounding, over a few steps of feedback.
 template <class Model>
 void require_paper_outputs(const char* name, const Model& model, const PaperNetwork& network) {
-  const PaperInput start = some_input();
-  PaperInput x = start;
+  using Scalar = typename Model::Scalar;
+  const auto reference = rebind<double>(network);
+  const auto start = paper_input<double>();
+  auto x = start;
   for (int step = 0; step < 16; ++step) {
-    PaperOutput expected{}, y{};
-    network.forward(x.data(), expected.data());
-    model.forward(x.data(), y.data());
+    std::array<double, PaperNetwork::outputs> expected{};
+    std::array<Scalar, PaperNetwork::inputs> inputs{};
+    std::array<Scalar, PaperNetwork::outputs> y{};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      inputs[i] = static_cast<Scalar>(x[i]);
+      x[i] = static_cast<double>(inputs[i]);
+    }
+    reference.forward(x.data(), expected.data());
+    model.forward(inputs.data(), y.data());
     for (std::size_t i = 0; i < y.size(); ++i) {
-      const double target = static_cast<double>(expected[i]);
-      require_close(name, target, static_cast<double>(y[i]), 1e-5 * (1.0 + std::abs(target)));
+      require_close(name, expected[i], static_cast<double>(y[i]), 1e-5 * (1.0 + std::abs(expected[i])));
     }
     feed_back(start, expected.data(), x.data());
   }

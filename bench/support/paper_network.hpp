@@ -48,10 +48,21 @@ inline PaperInput some_input(std::uint64_t seed = 2) {
   return x;
 }
 
+/// The same weights in another scalar.
+template <class Scalar>
+typename PaperNetwork::Rebind<Scalar> rebind(const PaperNetwork& network) {
+  typename PaperNetwork::Rebind<Scalar> other;
+  for (std::size_t i = 0; i < network.parameters.size(); ++i) {
+    other.parameters[i] = static_cast<Scalar>(network.parameters[i]);
+  }
+  return other;
+}
+
 /// The next input, made from the last output: what is timed is the latency of a control loop, not a stream of
 /// independent samples that the processor would overlap.
-inline void feed_back(const PaperInput& start, const float* y, float* x) noexcept {
-  for (std::size_t i = 0; i < PaperNetwork::outputs; ++i) x[i] = start[i] + 0.125f * y[i];
+template <class Scalar, std::size_t In>
+void feed_back(const std::array<Scalar, In>& start, const Scalar* y, Scalar* x, std::size_t outputs = 4) noexcept {
+  for (std::size_t i = 0; i < outputs && i < In; ++i) x[i] = start[i] + Scalar(0.125) * y[i];
 }
 
 }  // namespace pinnquad::bench

@@ -3,6 +3,8 @@
 // Same interface as pack_generic.hpp; include only where the compiler targets AVX2 and FMA.
 #pragma once
 
+#if defined(__AVX2__) && defined(__FMA__)  // elsewhere this header is empty
+
 #include <immintrin.h>
 
 #include "pinnquad/core/attributes.hpp"
@@ -121,3 +123,5 @@ struct PackAvx2 {
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad
+
+#endif

@@ -3,6 +3,8 @@
 // Same interface as pack_generic.hpp; include only where the compiler targets AVX-512F.
 #pragma once
 
+#if defined(__AVX512F__)  // elsewhere this header is empty
+
 #include <immintrin.h>
 
 #include "pinnquad/core/attributes.hpp"
@@ -118,14 +120,21 @@ struct PackAvx512 {
   /// y[0, Count) and nothing behind.
   template <int Count>
   PINNQUAD_ALWAYS_INLINE void store_values(float* y) const noexcept {
-    const __m512 dense = _mm512_maskz_compress_ps(0x5555, value);
-    if constexpr (Count == 4) {
-      _mm_storeu_ps(y, PackAvx512{dense}.lowest_four());  // a masked store would not forward to the next load
+    // whole stores: a load of what a masked one wrote would wait
+    const PackAvx512 dense{_mm512_maskz_compress_ps(0x5555, value)};
+    if constexpr (Count == 8) {
+      _mm256_storeu_ps(y, _mm256_castpd_ps(_mm512_maskz_extractf64x4_pd(0xf, _mm512_castps_pd(dense.value), 0)));
+    } else if constexpr (Count == 4) {
+      _mm_storeu_ps(y, dense.lowest_four());
     } else {
-      _mm512_mask_storeu_ps(y, static_cast<__mmask16>((1u << Count) - 1u), dense);
+      alignas(64) float lane[width];
+      dense.store(lane);
+      for (int i = 0; i < Count; ++i) y[i] = lane[i];
     }
   }
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad
+
+#endif

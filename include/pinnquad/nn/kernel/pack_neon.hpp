@@ -3,6 +3,8 @@
 // Same interface as pack_generic.hpp; include only where the compiler targets aarch64.
 #pragma once
 
+#if defined(__ARM_NEON) && defined(__aarch64__)  // elsewhere this header is empty
+
 #include <arm_neon.h>
 
 #include "pinnquad/core/attributes.hpp"
@@ -101,3 +103,5 @@ struct PackNeon {
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad
+
+#endif

@@ -3,6 +3,8 @@
 // Same interface as pack_generic.hpp; include only where the compiler targets SSE2.
 #pragma once
 
+#if defined(__SSE2__)  // elsewhere this header is empty
+
 #include <emmintrin.h>
 
 #include "pinnquad/core/attributes.hpp"
@@ -101,3 +103,5 @@ struct PackSse2 {
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad
+
+#endif
