@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Back-propagation through whole networks against central differences, in double.
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/training/network_gradient.hpp"
 
 #include <doctest/doctest.h>
