@@ -162,6 +162,34 @@ TEST_CASE("packing happens at compile time for parameters that are known then") 
   CHECK(y == 32.5F);
 }
 
+namespace {
+using Large = Network<float, Inputs<256>, Dense<256>>;
+/// Weight (row, column) = row - column, bias = 1: small integers, so that any order of a sum is exact.
+constexpr Large::Parameters large_parameters() {
+  Large::Parameters parameters{};
+  for (std::size_t row = 0; row < 256; ++row) {
+    for (std::size_t column = 0; column < 256; ++column) {
+      parameters[row * 256 + column] = static_cast<float>(row) - static_cast<float>(column);
+    }
+    parameters[256 * 256 + row] = 1.0F;
+  }
+  return parameters;
+}
+}  // namespace
+
+TEST_CASE("a layer of 256 x 256 is packed at compile time, within the compilers' default limits") {
+  static constexpr Large::Parameters parameters = large_parameters();
+  static constexpr PackedNetwork<Large> packed{parameters};
+  std::array<float, 256> x{}, y{};
+  x[3] = 2.0F;
+  x[255] = -1.0F;
+  packed.forward(x.data(), y.data());
+  for (std::size_t row = 0; row < 256; ++row) {
+    const float value = static_cast<float>(row);
+    CHECK(y[row] == 2.0F * (value - 3.0F) - (value - 255.0F) + 1.0F);
+  }
+}
+
 TEST_CASE("inputs need not be aligned") {
   using Net = Network<float, Inputs<16>, Dense<9>, Relu, Dense<4>>;
   std::mt19937_64 engine(34);
