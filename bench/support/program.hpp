@@ -25,6 +25,7 @@ inline int run_benchmarks(int argc, char** argv) {
   benchmark::AddCustomContext("compiler", programs::compiler_name());
   benchmark::AddCustomContext("flags", programs::compiler_flags());
   benchmark::AddCustomContext("instruction_set", programs::instruction_set());
+  benchmark::AddCustomContext("cpu", programs::cpu_name());
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

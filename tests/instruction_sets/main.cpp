@@ -45,6 +45,17 @@ bool agrees(const std::vector<std::size_t>& sizes, const Parameters& parameters,
   return true;
 }
 
+bool golden_commands(const float* commands) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const float difference = commands[i] - instruction_sets::Model::golden_commands[0][i];
+    if (!(std::fabs(static_cast<double>(difference)) <= pinnquad::golden_tolerance)) {
+      std::printf("command %zu of the exported model is off by %.3g\n", i, static_cast<double>(difference));
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -65,7 +76,7 @@ int main(int argc, char** argv) {
   const auto tanh = [](double v) { return std::tanh(v); };
   const bool ok = agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y, relu) &&
                   agrees({16, 70, 4}, some_parameters<WideNet>(), x, y + 4, tanh) &&
-                  agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y + 8, relu);
+                  agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y + 8, relu) && golden_commands(y + 12);
   std::puts(ok ? "predicts" : "predicts something else");
   return ok ? 0 : 1;
 }

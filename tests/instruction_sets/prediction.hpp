@@ -2,6 +2,8 @@
 // The model that every instruction set predicts with: sizes with a remainder, weights worked out by the compiler.
 #pragma once
 
+#include "../support/small_model.hpp"
+#include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
@@ -24,7 +26,10 @@ constexpr typename Network::Parameters some_parameters() noexcept {
   return parameters;
 }
 
-/// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel.
-inline constexpr int outputs = 12;
+/// An exported model: its first golden vector's commands come from a program that does not know this library.
+using Model = pinnquad::test::SmallModel;
+
+/// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel, y[12, 16) of the exported model.
+inline constexpr int outputs = 16;
 
 }  // namespace instruction_sets

@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The Markdown table of a run of bench/run: one column per instruction set, medians of CPU time in ns, and the ratios that
+matter, each within one run.
+
+    bench/table.py DIR MACHINE...
+"""
+import json
+import pathlib
+import sys
+
+PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_simulation", "bench_torch"]
+# (what, numerator, denominator, program): a ratio of two medians of one run; "fastest:a|b" takes the smaller
+RATIOS = [
+    ("prediction, over the multiply-add peak", "Predict/paper_network", "Peak/fma", "bench_inference"),
+    ("naive Eigen (fastest order), over ours", "fastest:Predict/naive_eigen|Predict/naive_eigen_rowmajor",
+     "Predict/paper_network", "bench_inference"),
+    ("batch of 256, per sample, over the peak", "Batched/paper_network/256", "Peak/fma", "bench_rollout"),
+    ("batch of 256, Eigen over ours", "Batched/naive_eigen/256", "Batched/paper_network/256", "bench_rollout"),
+    ("value and Jacobian, over one prediction", "Jacobian/paper_network", "Predict/paper_network", "bench_rollout"),
+    ("guarded predict() with features, over the bare network", "Model/predict", "Model/predict_features",
+     "bench_model"),
+    ("training epoch, naive Eigen over ours", "TrainEpoch/naive_eigen", "TrainEpoch/vanilla", "bench_training"),
+    ("training epoch, physics-informed over vanilla", "TrainEpoch/physics_informed", "TrainEpoch/vanilla",
+     "bench_training"),
+    ("1 kHz simulation step, over one naive Eigen prediction", "SimulationStep/full", "Predict/naive_eigen",
+     "bench_simulation"),
+    ("libtorch, frozen, over ours", "Predict/libtorch_frozen", "Predict/paper_network", "bench_torch"),
+]
+NANOSECONDS = {"ns": 1.0, "us": 1e3, "ms": 1e6, "s": 1e9}
+
+
+def medians(path):
+    """Name -> (median, relative deviation) in ns; per sample or per pass where a benchmark counts that."""
+    data = json.loads(path.read_text())
+    found = {}
+    for row in data["benchmarks"]:
+        unit = NANOSECONDS[row["time_unit"]]
+        name = row["run_name"]
+        counted = next((row[c] for c in ("per_sample_ns", "forward_pass_ns") if c in row), None)
+        if row["aggregate_name"] == "median":
+            found.setdefault(name, {})["median"] = counted if counted is not None else row["cpu_time"] * unit
+        if row["aggregate_name"] == "stddev":
+            found.setdefault(name, {})["deviation"] = counted if counted is not None else row["cpu_time"] * unit
+    return data["context"], found
+
+
+def pick(found, name):
+    if name.startswith("fastest:"):
+        return min(found[n]["median"] for n in name[8:].split("|"))
+    return found[name]["median"]
+
+
+def text(value):
+    return f"{value:,.0f}" if value >= 1000 else (f"{value:.0f}" if value >= 100 else f"{value:.1f}")
+
+
+def main():
+    folder, machines = pathlib.Path(sys.argv[1]), sys.argv[2:]
+    runs = {(m, p): medians(folder / f"{m}.{p}.json") for m in machines for p in PROGRAMS
+            if (folder / f"{m}.{p}.json").exists()}
+    if not runs:
+        sys.exit(f"table.py: {folder}: no results of bench/run")
+    context = next(iter(runs.values()))[0]
+    kinds = {m: runs[m, "bench_inference"][0]["instruction_set"] for m in machines}
+    print(f"{context['compiler']}, {context['flags']}; {context.get('cpu', 'CPU not stated')}; medians of "
+          f"CPU time.\n")
+    head = "| | " + " | ".join(f"{kinds[m]} (`-march={m}`)" for m in machines) + " |\n" + "|---" * (1 + len(machines)) + "|"
+
+    print("Ratios, each within one run:\n\n" + head)
+    for what, above, below, program in RATIOS:
+        cells = []
+        for machine in machines:
+            try:
+                found = runs[machine, program][1]
+                cells.append(f"{pick(found, above) / pick(found, below):.2f}")
+            except KeyError:
+                cells.append("")
+        if any(cells):
+            print(f"| {what} | " + " | ".join(cells) + " |")
+
+    print("\nTimes, ns (relative deviation):\n\n" + head)
+    seen = set()
+    for program in PROGRAMS:
+        names = []
+        for machine in machines:
+            if (machine, program) in runs:
+                names += [n for n in runs[machine, program][1] if n not in names]
+        for name in names:
+            if name in seen:
+                continue
+            seen.add(name)
+            cells = []
+            for machine in machines:
+                row = runs[machine, program][1].get(name) if (machine, program) in runs else None
+                cells.append(f"{text(row['median'])} ({100 * row['deviation'] / row['median']:.0f} %)" if row else "")
+            print(f"| {name} | " + " | ".join(cells) + " |")
+
+    compile_time = folder / "compile_time.json"
+    if compile_time.exists():
+        data = json.loads(compile_time.read_text())
+        print(f"\nCompiling one unit with `flight.hpp`, an exported model, `predict()` and `self_test()`, {data['compiler']}:\n")
+        print("| flags | Eigen/Core alone, s | with the model, s | ratio |\n|---|---|---|---|")
+        for row in data["rows"]:
+            print(f"| `{row['flags']}` | {row['eigen_s']:.2f} | {row['model_s']:.2f} | {row['ratio']:.2f} |")
+
+
+if __name__ == "__main__":
+    main()
