@@ -41,7 +41,7 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
   const Scalar* output_spread = Numbers::output_spread(inverse.model());
   Scalar standardised[size];
   for (int i = 0; i < size; ++i) standardised[i] = (x[i] - input_mean[i]) / input_spread[i];
-  Scalar outputs[rotor_count];
+  Scalar outputs[rotor_count] = {};
   Scalar slopes[rotor_count * size];
   if constexpr (detail::HasParametersInBlock<Model>::value) {
     Pass::run(inverse.model().parameters(), standardised, outputs, slopes);

@@ -97,7 +97,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// The same into four numbers.
   Status predict_features(const Scalar* x, Scalar* commands) const noexcept {
     detail::NoReport none;
-    Scalar outputs[rotor_count];
+    Scalar outputs[rotor_count] = {};
     const Status status = ask_network(x, outputs, none);
     if (has_output(status)) {
       for (int i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
@@ -108,7 +108,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// The network alone, without any check: features X -> commands. For self_test(), not for motors.
   PINNQUAD_ALWAYS_INLINE void evaluate(const Scalar* x, Scalar* commands) const noexcept {
     Scalar standardised[Features::size];
-    Scalar outputs[rotor_count];
+    Scalar outputs[rotor_count] = {};
     const Scalar* input_mean = Numbers::input_mean(model());
     const Scalar* input_spread = Numbers::input_spread(model());
     for (int i = 0; i < Features::size; ++i) standardised[i] = (x[i] - input_mean[i]) / input_spread[i];
@@ -151,7 +151,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   template <class ReportType, class... Place>
   PINNQUAD_ALWAYS_INLINE Status guarded(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
                                         const Place&... place) const noexcept {
-    Scalar outputs[rotor_count];
+    Scalar outputs[rotor_count] = {};
     const Status status = ask_network(inputs, outputs, report);
     if constexpr (reports<ReportType>) report.cause = status;
     if (has_output(status)) {
