@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a flight stack tells the controller, sample by sample, and how old it may be. A bad sample is a sample that did not
-// come: the last good one stays and ages, so that silence and NaN meet the same limits.
+// What a flight stack tells the controller, sample by sample, and how old it may be. A bad sample is a sample that did
+// not come: the last good one stays and ages, so that silence and NaN meet the same limits.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,8 @@
 
 namespace flight_stacks {
 
-/// `Inverse` is an InverseDynamics of a ModelView. A block that was accepted must stay where it is while its model flies.
+/// `Inverse` is an InverseDynamics of a ModelView. A block that was accepted must stay where it is while its model
+/// flies.
 /// How the old slot is known to be free: the control thread says at each tick which slot it took, and its loads of one
 /// atomic never go back in time; once it has said the new one it will not read the old one again.
 template <class Inverse>
@@ -29,11 +30,17 @@ class ModelSlots {
     return current;
   }
 
-  /// The other thread. What ModelView::open() and self_test() say of the block; `out_of_range` while the control thread has
-  /// not yet taken the model accepted last: try again after its next tick.
+  /// The other thread. True once the control thread has taken the model accepted last: the block of the one before is
+  /// free.
+  bool settled() const noexcept {
+    return taken_.load(std::memory_order_acquire) == published_.load(std::memory_order_relaxed);
+  }
+
+  /// The other thread. What ModelView::open() and self_test() say of the block; `out_of_range` while not settled(): try
+  /// again after the control thread's next tick.
   pinnquad::Status offer(const void* block, std::size_t length) noexcept {
+    if (!settled()) return pinnquad::Status::out_of_range;
     const Inverse* current = published_.load(std::memory_order_relaxed);  // only this thread writes it
-    if (taken_.load(std::memory_order_acquire) != current) return pinnquad::Status::out_of_range;
     View view;
     const pinnquad::Status opened = View::open(block, length, view);
     if (opened != pinnquad::Status::ok) return opened;

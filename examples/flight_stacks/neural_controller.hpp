@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The controller that px4_module and crazyflie_app share: state and set point -> wanted accelerations (FlightController) ->
-// motor commands (the network behind its guard, the formula where it declines) -> output limits.
+// The controller that px4_module and crazyflie_app share: state and set point -> wanted accelerations (FlightController)
+// -> motor commands (the network behind its guard, the formula where it declines) -> output limits.
 // NED, FRD, SI units; no heap, no exceptions, no clock of its own.
 #pragma once
 
@@ -47,8 +47,8 @@ class NeuralController {
  public:
   using Vehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
   using Formula = pinnquad::AnalyticInverse<Vehicle>;
-  using Guard = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<AbsurdCommands>,
-                                 pinnquad::Fallback<Formula>>;
+  using Guard =
+      pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<AbsurdCommands>, pinnquad::Fallback<Formula>>;
   using Inverse = pinnquad::InverseDynamics<pinnquad::ModelView<Shape>, Guard>;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
 
@@ -64,6 +64,7 @@ class NeuralController {
 
   /// At boot, and in flight from another thread: see ModelSlots::offer().
   pinnquad::Status offer_model(const void* block, std::size_t length) noexcept { return models_.offer(block, length); }
+  bool model_settled() const noexcept { return models_.settled(); }
 
   /// Each input: `not_finite`, `out_of_range`, `not_unit_quaternion` for a sample that is refused.
   pinnquad::Status body_rates(std::uint64_t time_us, const pinnquad::Vector3<float>& rates_rad_s) noexcept {
@@ -97,8 +98,8 @@ class NeuralController {
     return set_point_.accept(time_us, wanted, checked);
   }
 
-  /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where the
-  /// reaction is gives_up. The time between two calls does not matter; `now_us` is of the samples' clock.
+  /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
+  /// the reaction is gives_up. The time between two calls does not matter; `now_us` is of the samples' clock.
   Reaction step(std::uint64_t now_us, pinnquad::Commands<float>& commands, StepReport& report) noexcept {
     report = {};
     const Inverse* inverse = models_.take();

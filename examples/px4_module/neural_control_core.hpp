@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The module without PX4: messages in, motor commands and a status message out. Pure C++17; the glue (pinnquad_control.cpp)
-// copies the fields of the uORB messages of the same names.
+// The module without PX4: messages in, motor commands and a status message out. Pure C++17; the glue
+// (pinnquad_control.cpp) copies the fields of the uORB messages of the same names.
 #pragma once
 
 #include "flight_stacks/neural_controller.hpp"
@@ -57,12 +57,12 @@ struct PinnquadStatus {
   std::uint32_t inference_time_us{0};  ///< of the step, outer loop and inverse
   std::uint32_t asked{0};              ///< predictions since the start
   std::uint32_t refused_samples{0};
-  float fallback_share{0};  ///< of the predictions
+  float fallback_share{0};   ///< of the predictions
   float envelope_excess{0};  ///< how far the worst feature lay outside, in half-widths of its range
   std::int8_t envelope_feature{-1};
-  std::uint8_t reaction{0};     ///< flight_stacks::Reaction
-  std::uint8_t status{0};       ///< pinnquad::Status
-  std::uint8_t cause{0};        ///< pinnquad::Status of the network alone
+  std::uint8_t reaction{0};      ///< flight_stacks::Reaction
+  std::uint8_t status{0};        ///< pinnquad::Status
+  std::uint8_t cause{0};         ///< pinnquad::Status of the network alone
   std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point
 };
 
@@ -77,14 +77,16 @@ class NeuralControl {
                          const flight_stacks::OutputLimits& outputs = {}) noexcept
       : clock_(clock), controller_(ages, outputs) {}
 
-  /// Before the module registers its mode, and with the next model in flight, from another thread: opens the block, checks
-  /// every number, replays the golden vectors. The module may register once this was ok.
+  /// Before the module registers its mode, and with the next model in flight, from another thread: opens the block,
+  /// checks every number, replays the golden vectors. The module may register once this was ok.
   pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
     const pinnquad::Status status = controller_.offer_model(block, length);
-    if (status == pinnquad::Status::ok) ready_ = true;
+    if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
     return status;
   }
   bool ready() const noexcept { return ready_; }
+  /// True once run() has taken the model accepted last: the memory of the one before may be written.
+  bool model_settled() const noexcept { return controller_.model_settled(); }
 
   pinnquad::Status take(const VehicleAngularVelocity& m) noexcept {
     return controller_.body_rates(m.timestamp_sample, {m.xyz[0], m.xyz[1], m.xyz[2]});
@@ -102,8 +104,8 @@ class NeuralControl {
                                                vector(m.jerk), m.yaw, m.yawspeed});
   }
 
-  /// One tick, after the messages. False: the module has no commands, nothing is to be published to the motors, and PX4's own
-  /// controllers must take over. `status` is written either way.
+  /// One tick, after the messages. False: the module has no commands, nothing is to be published to the motors, and
+  /// PX4's own controllers must take over. `status` is written either way.
   bool run(ActuatorMotors& motors, PinnquadStatus& status) noexcept {
     const std::uint64_t start_us = clock_();
     pinnquad::Commands<float> commands{};

@@ -24,16 +24,16 @@ struct FlightFigures {
   bool crashed = false;
   double min_altitude_m = 1e9;
   double max_tilt_rad = 0;
-  double max_error_m = 0;       ///< position, over the whole flight from 3 s on
-  double rmse_m = 0;            ///< the same
+  double max_error_m = 0;  ///< position, over the whole flight from 3 s on
+  double rmse_m = 0;       ///< the same
   double flown_s = 0;
-  double module_share = 0;      ///< of the ticks
+  double module_share = 0;  ///< of the ticks
   int takeovers = 0;
   float fallback_share = 0;
   unsigned refused_samples = 0;
-  std::vector<Reaction> worst;  ///< of each fault
+  std::vector<Reaction> worst;        ///< of each fault
   std::vector<int> fell_back, asked;  ///< ticks of each fault
-  std::vector<Status> offered;  ///< what became of the models offered, in order
+  std::vector<Status> offered;        ///< what became of the models offered, in order
   std::vector<std::string> log;
 };
 

@@ -14,8 +14,8 @@ using flight_stacks::AgeLimits;
 using flight_stacks::Reaction;
 
 constexpr double duration_s = 33, calm_duration_s = 20;
-constexpr double lowest_m = 9;            // 10.9 m is flown; the lowest place asked for is 9.9 m
-constexpr double steepest_rad = 1.05;     // 60 deg; the outer loop asks for 49
+constexpr double lowest_m = 9;         // 10.9 m is flown; the lowest place asked for is 9.9 m
+constexpr double steepest_rad = 1.05;  // 60 deg; the outer loop asks for 49
 constexpr std::array<Fault, 0> no_faults = {};
 
 TrajectoryPoint<double> hover(double /*time_s*/) { return pinnquad::Hover<double>{{0, 0, -10}}.sample(0); }
@@ -73,8 +73,9 @@ void through_all_faults(const std::string& path, const Target& target, double fa
   CHECK(flown.module_share > 0.96);
   CHECK(flown.refused_samples > 30);
   using pinnquad::Status;
-  const std::vector<Status> offered = {Status::block_corrupt, Status::ok, Status::ok, Status::ok, Status::block_corrupt,
-                                       Status::self_test_failed, Status::ok, Status::ok};
+  const std::vector<Status> offered = {
+      Status::block_corrupt,    Status::ok, Status::ok, Status::ok, Status::block_corrupt,
+      Status::self_test_failed, Status::ok, Status::ok};
   CHECK(flown.offered == offered);
   for (std::size_t i = 0; i < fault_script.size(); ++i) {
     INFO(fault_script[i].text, ": ", to_string(flown.worst[i]));

@@ -2,11 +2,13 @@
 // The controller behind its C interface: one, in static memory.
 #include "neural_control_core.hpp"
 
+#include <new>
+
 #include "models/crazyflie_2_1.hpp"
 
 namespace {
 
-/// Made by the first call and not before main(): the firmware may run no constructors.
+/// Made by the first call, which must have returned before another thread calls; the firmware may run no constructors.
 pinnquad_crazyflie::NeuralControl<CrazyflieModel>& controller() noexcept {
   using Controller = pinnquad_crazyflie::NeuralControl<CrazyflieModel>;
   alignas(Controller) static unsigned char memory[sizeof(Controller)];

@@ -22,7 +22,7 @@ class NeuralControl {
 
   pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
     const pinnquad::Status status = controller_.offer_model(block, length);
-    if (status == pinnquad::Status::ok) ready_ = true;
+    if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
     return status;
   }
   bool ready() const noexcept { return ready_; }
@@ -32,10 +32,7 @@ class NeuralControl {
     flight_stacks::StepReport why;
     pinnquad::Commands<float> commands{};
     bool has_commands = false;
-    if (stopped(setpoint)) {
-      has_commands = ready_;
-      why.reaction = flight_stacks::Reaction::flies;  // as the set point says: not at all
-    } else {
+    if (asks_for_a_place(setpoint)) {
       take(state);
       take(setpoint);
       has_commands = controller_.step(in_us(now_ms), commands, why) != flight_stacks::Reaction::gives_up;
@@ -51,9 +48,9 @@ class NeuralControl {
   static pinnquad::Vector3<float> ned(const float (&v)[3]) noexcept {
     return pinnquad::swap_enu_ned<float>({v[0], v[1], v[2]});
   }
-  static bool stopped(const CrazyflieSetpoint& s) noexcept {
-    return s.mode[0] == crazyflie_mode_disable && s.mode[1] == crazyflie_mode_disable &&
-           s.mode[2] == crazyflie_mode_disable;
+  static bool asks_for_a_place(const CrazyflieSetpoint& s) noexcept {
+    return s.mode[0] != crazyflie_mode_disable || s.mode[1] != crazyflie_mode_disable ||
+           s.mode[2] != crazyflie_mode_disable;
   }
 
   // what is refused is counted by the controller, and ages
