@@ -143,6 +143,30 @@ TEST_CASE("PX4: without a model nothing is commanded; a refused sample is counte
   CHECK(px4.status.refused_samples == 4);
 }
 
+TEST_CASE("PX4: a model that is refused changes no bit of what flies; one that is accepted does") {
+  Px4 px4;
+  px4.set_point.position[0] = 0.5f;
+  REQUIRE(px4.run());
+  const pinnquad_px4::ActuatorMotors before = px4.motors;
+  const auto same_commands = [&] {
+    REQUIRE(px4.run());
+    return std::memcmp(px4.motors.control, before.control, sizeof before.control) == 0;
+  };
+  CHECK(same_commands());
+  const Block corrupt = corrupt_block<DemoQuadModel>(), wrong = wrong_block<DemoQuadModel>();
+  CHECK(px4.core.offer_model(corrupt.data(), corrupt.size()) == Status::block_corrupt);
+  CHECK(same_commands());
+  CHECK(px4.core.offer_model(wrong.data(), wrong.size()) == Status::self_test_failed);
+  CHECK(same_commands());
+  CHECK(static_cast<Status>(px4.status.status) == Status::ok);
+  const Block other = other_block<DemoQuadModel>();
+  CHECK(px4.core.offer_model(other.data(), other.size()) == Status::ok);
+  CHECK_FALSE(px4.core.model_settled());
+  CHECK(px4.core.offer_model(other.data(), other.size()) == Status::out_of_range);  // the last one is not yet taken
+  CHECK_FALSE(same_commands());
+  CHECK(px4.core.model_settled());
+}
+
 TEST_CASE("PX4: silence, step by step: holds, levels, keeps, gives up") {
   using flight_stacks::AgeLimits;
   const auto last_at = [](std::uint64_t rates_age, std::uint64_t attitude_age, std::uint64_t local_age,

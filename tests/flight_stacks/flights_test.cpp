@@ -83,6 +83,8 @@ void through_all_faults(const std::string& path, const Target& target, double fa
     if (fault_script[i].kind == FaultKind::model_too_narrow) {
       CHECK(flown.asked[i] > 0);
       CHECK(flown.fell_back[i] == flown.asked[i]);
+    } else if (path == "hover") {
+      CHECK(flown.fell_back[i] == 0);
     }
   }
 }
