@@ -2,8 +2,10 @@
 // The cores of the example modules, message by message: frames, units, motor order, what is refused, what is stale.
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <cstring>
 #include <random>
+#include <thread>
 
 #include "model_blocks.hpp"
 #include "stacks.hpp"
@@ -74,7 +76,7 @@ TEST_CASE("PX4: at rest on its set point the vehicle hovers") {
   Px4 px4;
   REQUIRE(px4.run());
   CHECK(px4.reaction() == Reaction::flies);
-  const pinnquad::Airframe<float> airframe = pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>();
+  const auto airframe = pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>();
   for (const float u : px4.motors.control) CHECK(u == doctest::Approx(1 / airframe.thrust_to_weight()).epsilon(0.05));
   CHECK(px4.motors.timestamp == 1'000'000);
 }
@@ -296,4 +298,44 @@ TEST_CASE("whatever comes in, what goes out is a command within its limits") {
   CHECK(px4_answers > 50'000);
   CHECK(cf_answers > 50'000);
   CHECK(px4.status.refused_samples > 10'000);
+}
+
+TEST_CASE("another thread changes models while the module flies: each answer is one model's, whole") {
+  Px4 px4;
+  px4.set_point.position[0] = 0.5f;
+  using Control = std::array<float, 4>;
+  const auto control = [&px4] {
+    Control u{};
+    REQUIRE(px4.run());
+    std::memcpy(u.data(), px4.motors.control, sizeof u);
+    return u;
+  };
+  const Block first = sound_block<DemoQuadModel>(), other = other_block<DemoQuadModel>();
+  const Control of_first = control();
+  REQUIRE(px4.core.offer_model(other.data(), other.size()) == Status::ok);
+  const Control of_other = control();
+  REQUIRE(of_first != of_other);
+
+  std::atomic<bool> over{false};
+  int swaps = 0, refused = 0;
+  std::thread loader([&] {
+    while (!over.load()) {
+      const Block& next = swaps % 2 == 0 ? first : other;
+      const Status status = px4.core.offer_model(next.data(), next.size());
+      if (status == Status::ok) ++swaps;
+      if (status != Status::ok && status != Status::out_of_range) ++refused;
+    }
+  });
+  int by_first = 0, by_other = 0, by_neither = 0;
+  for (const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+       std::chrono::steady_clock::now() < end || by_first == 0 || by_other == 0;) {
+    const Control u = control();
+    ++(u == of_first ? by_first : u == of_other ? by_other : by_neither);
+  }
+  over = true;
+  loader.join();
+  MESSAGE(swaps, " swaps, ", by_first, " answers of the first model, ", by_other, " of the other");
+  CHECK(by_neither == 0);
+  CHECK(refused == 0);
+  CHECK(swaps >= 2);
 }
