@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The Crazyflie's units, frames and motor order on one side, the shared controller on the other.
+#pragma once
+
+#include <limits>
+
+#include "flight_stacks/neural_controller.hpp"
+#include "neural_control_core.h"
+
+namespace pinnquad_crazyflie {
+
+inline constexpr float rad_per_deg = 0.017453292519943295f;
+
+/// Which of pinnquad's rotors a motor is. M1 front right, M2 rear right, M3 rear left, M4 front left; M1 and M3 turn
+/// counter-clockwise seen from above.
+inline constexpr std::size_t rotor_of_motor[4] = {0, 3, 1, 2};
+
+template <class Model>
+class NeuralControl {
+ public:
+  explicit NeuralControl(const flight_stacks::AgeLimits& ages = {}) noexcept : controller_(ages) {}
+
+  pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
+    const pinnquad::Status status = controller_.offer_model(block, length);
+    if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
+    return status;
+  }
+  bool ready() const noexcept { return ready_; }
+
+  bool step(std::uint32_t now_ms, const CrazyflieState& state, const CrazyflieSetpoint& setpoint, float (&forces)[4],
+            CrazyflieReport& report) noexcept {
+    flight_stacks::StepReport why;
+    pinnquad::Commands<float> commands{};
+    bool has_commands = false;
+    if (asks_for_a_place(setpoint)) {
+      take(state);
+      take(setpoint);
+      has_commands = controller_.step(in_us(now_ms), commands, why) != flight_stacks::Reaction::gives_up;
+    }
+    describe(why, report);
+    if (!has_commands) return false;
+    for (std::size_t motor = 0; motor < 4; ++motor) forces[motor] = commands[rotor_of_motor[motor]];
+    return true;
+  }
+
+ private:
+  static std::uint64_t in_us(std::uint32_t time_ms) noexcept { return std::uint64_t{time_ms} * 1000; }
+  static pinnquad::Vector3<float> ned(const float (&v)[3]) noexcept {
+    return pinnquad::swap_enu_ned<float>({v[0], v[1], v[2]});
+  }
+  static bool asks_for_a_place(const CrazyflieSetpoint& s) noexcept {
+    return s.mode[0] != crazyflie_mode_disable || s.mode[1] != crazyflie_mode_disable ||
+           s.mode[2] != crazyflie_mode_disable;
+  }
+
+  // what is refused is counted by the controller, and ages
+  void take(const CrazyflieState& s) noexcept {
+    const pinnquad::Vector3<float> gyro(s.gyro[0] * rad_per_deg, s.gyro[1] * rad_per_deg, s.gyro[2] * rad_per_deg);
+    const pinnquad::Quaternion<float> q{s.attitude_quaternion[3], s.attitude_quaternion[0], s.attitude_quaternion[1],
+                                        s.attitude_quaternion[2]};
+    heading_ = pinnquad::heading(q);
+    static_cast<void>(controller_.body_rates(in_us(s.gyro_timestamp), pinnquad::swap_flu_frd<float>(gyro)));
+    static_cast<void>(controller_.attitude(in_us(s.attitude_timestamp), pinnquad::swap_enu_flu_ned_frd(q)));
+    static_cast<void>(controller_.local(in_us(s.position_timestamp), {ned(s.position), ned(s.velocity)}));
+  }
+
+  /// NaN where a mode does not ask.
+  void take(const CrazyflieSetpoint& s) noexcept {
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    constexpr float quarter_turn = 1.5707963267948966f;
+    float velocity[3] = {s.velocity[0], s.velocity[1], s.velocity[2]};
+    if (s.velocity_body) {
+      velocity[0] = heading_.cosine * s.velocity[0] - heading_.sine * s.velocity[1];
+      velocity[1] = heading_.sine * s.velocity[0] + heading_.cosine * s.velocity[1];
+    }
+    float position[3] = {none, none, none};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (s.mode[i] == crazyflie_mode_abs) position[i] = s.position[i];
+      if (s.mode[i] == crazyflie_mode_disable) velocity[i] = none;
+    }
+    flight_stacks::SetPoint wanted;
+    wanted.position_m = ned(position);
+    wanted.velocity_m_s = ned(velocity);
+    wanted.acceleration_m_s2 = ned(s.acceleration);
+    // yaw counts from x (east) counter-clockwise there, from north clockwise here
+    wanted.yaw_rad = s.mode_yaw == crazyflie_mode_abs ? quarter_turn - s.yaw * rad_per_deg : none;
+    wanted.yaw_rate_rad_s = s.mode_yaw == crazyflie_mode_disable ? none : -s.yaw_rate * rad_per_deg;
+    static_cast<void>(controller_.set_point(in_us(s.timestamp), wanted));
+  }
+
+  void describe(const flight_stacks::StepReport& why, CrazyflieReport& report) const noexcept {
+    const pinnquad::FallbackCount& count = controller_.count();
+    report.asked = count.asked;
+    report.refused_samples = controller_.refused_samples();
+    report.fallback_share =
+        count.asked > 0 ? static_cast<float>(count.fallbacks()) / static_cast<float>(count.asked) : 0.0f;
+    report.envelope_excess = why.worst_excess;
+    report.envelope_feature = static_cast<std::int8_t>(why.worst_feature);
+    report.reaction = static_cast<std::uint8_t>(why.reaction);
+    report.status = static_cast<std::uint8_t>(why.status);
+    report.cause = static_cast<std::uint8_t>(why.cause);
+    report.stale_inputs = why.stale_inputs();
+  }
+
+  flight_stacks::NeuralController<Model> controller_;
+  pinnquad::Heading<float> heading_{};  ///< of the body in the firmware's world
+  bool ready_ = false;
+};
+
+}  // namespace pinnquad_crazyflie

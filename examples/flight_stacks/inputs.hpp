@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// What a flight stack tells the controller, sample by sample, and how old it may be. A bad sample is a sample that did
+// not come: the last good one stays and ages, so that silence and NaN meet the same limits.
+#pragma once
+
+#include <cstdint>
+
+#include "pinnquad/flight.hpp"
+
+namespace flight_stacks {
+
+/// How old an input may be, each after its time stamp, and what follows from it (Reaction).
+struct AgeLimits {
+  std::uint64_t body_rates_us = 10'000;  ///< older: keeps its commands
+  std::uint64_t attitude_us = 20'000;    ///< older: keeps its commands
+  std::uint64_t local_us = 100'000;      ///< position and velocity; older: levels
+  std::uint64_t set_point_us = 500'000;  ///< older: holds its place
+  std::uint64_t keep_us = 40'000;        ///< commands are kept this long; then it gives up
+  std::uint64_t level_us = 1'000'000;    ///< it levels this long without a position; then it gives up
+};
+
+/// What the controller does, from good to bad.
+enum class Reaction : std::uint8_t {
+  flies,           ///< to the set point
+  holds_position,  ///< no set point: stays where it was when the last one went stale
+  levels,          ///< no position: level attitude, hover thrust
+  keeps_commands,  ///< no attitude or body rates, or neither network nor formula had an answer: the last commands again
+  gives_up,        ///< no commands: the flight stack must take over
+};
+
+constexpr const char* to_string(Reaction reaction) noexcept {
+  switch (reaction) {
+    case Reaction::flies: return "flies";
+    case Reaction::holds_position: return "holds position";
+    case Reaction::levels: return "levels";
+    case Reaction::keeps_commands: return "keeps commands";
+    case Reaction::gives_up: return "gives up";
+  }
+  return "unknown reaction";
+}
+
+/// Position and velocity, NED.
+struct LocalState {
+  pinnquad::Vector3<float> position_m = pinnquad::Vector3<float>::Zero();
+  pinnquad::Vector3<float> velocity_m_s = pinnquad::Vector3<float>::Zero();
+};
+
+/// Where to go, NED. A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
+struct SetPoint {
+  pinnquad::Vector3<float> position_m = pinnquad::Vector3<float>::Zero();
+  pinnquad::Vector3<float> velocity_m_s = pinnquad::Vector3<float>::Zero();
+  pinnquad::Vector3<float> acceleration_m_s2 = pinnquad::Vector3<float>::Zero();  ///< without gravity: zero in hover
+  pinnquad::Vector3<float> jerk_m_s3 = pinnquad::Vector3<float>::Zero();
+  float yaw_rad = 0;
+  float yaw_rate_rad_s = 0;
+};
+
+/// What no estimator or pilot means: their overflow would be infinity.
+inline constexpr float most_plausible = 1e6f;
+
+/// `not_finite`, or `out_of_range` beyond most_plausible.
+inline pinnquad::Status check_sample(const pinnquad::Vector3<float>& v) noexcept {
+  if (!pinnquad::all_finite(v)) return pinnquad::Status::not_finite;
+  for (int i = 0; i < 3; ++i) {
+    if (v[i] > most_plausible || v[i] < -most_plausible) return pinnquad::Status::out_of_range;
+  }
+  return pinnquad::Status::ok;
+}
+
+/// The last good sample of an input.
+template <class Value>
+class Input {
+ public:
+  /// Takes the sample if `checked` is ok; what was there before stays otherwise.
+  pinnquad::Status accept(std::uint64_t time_us, const Value& value, pinnquad::Status checked) noexcept {
+    if (checked != pinnquad::Status::ok) {
+      ++refused_;
+      return checked;
+    }
+    value_ = value;
+    time_us_ = time_us;
+    came_ = true;
+    return checked;
+  }
+
+  /// A time stamp of the future is as stale as one long past.
+  bool fresh(std::uint64_t now_us, std::uint64_t limit_us) const noexcept {
+    return came_ && now_us - time_us_ <= limit_us;
+  }
+  const Value& value() const noexcept { return value_; }
+  std::uint32_t refused() const noexcept { return refused_; }
+
+ private:
+  Value value_{};
+  std::uint64_t time_us_ = 0;
+  std::uint32_t refused_ = 0;
+  bool came_ = false;
+};
+
+}  // namespace flight_stacks

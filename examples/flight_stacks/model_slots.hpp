@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// The model that flies and the place for the next one: two slots, one atomic pointer. The control thread never waits;
+// another thread opens a block, tests the model and publishes it, or says why not and all stays as it was.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <type_traits>
+
+#include "pinnquad/flight.hpp"
+
+namespace flight_stacks {
+
+/// `Inverse` is an InverseDynamics of a ModelView. A block that was accepted must stay where it is while its model
+/// flies.
+/// How the old slot is known to be free: the control thread says at each tick which slot it took, and its loads of one
+/// atomic never go back in time; once it has said the new one it will not read the old one again.
+template <class Inverse>
+class ModelSlots {
+  using View = typename Inverse::Model;
+
+ public:
+  explicit ModelSlots(const typename Inverse::Guard& guard) noexcept
+      : slots_{Inverse(View{}, guard), Inverse(View{}, guard)} {}
+
+  /// Control thread, once per tick: the model of this tick, or null before the first was accepted.
+  const Inverse* take() noexcept {
+    const Inverse* current = published_.load(std::memory_order_acquire);  // its numbers were written before
+    taken_.store(current, std::memory_order_release);                     // reads of the other slot lie before this
+    return current;
+  }
+
+  /// The other thread. True once the control thread has taken the model accepted last: the block of the one before is
+  /// free.
+  bool settled() const noexcept {
+    return taken_.load(std::memory_order_acquire) == published_.load(std::memory_order_relaxed);
+  }
+
+  /// The other thread. What ModelView::open() and self_test() say of the block; `out_of_range` while not settled(): try
+  /// again after the control thread's next tick.
+  pinnquad::Status offer(const void* block, std::size_t length) noexcept {
+    if (!settled()) return pinnquad::Status::out_of_range;
+    const Inverse* current = published_.load(std::memory_order_relaxed);  // only this thread writes it
+    View view;
+    const pinnquad::Status opened = View::open(block, length, view);
+    if (opened != pinnquad::Status::ok) return opened;
+    Inverse& free = current == &slots_[0] ? slots_[1] : slots_[0];
+    free = Inverse(view, free.guard());
+    const pinnquad::Status tested = pinnquad::self_test(free);
+    if (tested == pinnquad::Status::ok) published_.store(&free, std::memory_order_release);
+    return tested;
+  }
+
+ private:
+  static_assert(std::atomic<const Inverse*>::is_always_lock_free);
+
+  Inverse slots_[2];
+  std::atomic<const Inverse*> published_{nullptr};
+  std::atomic<const Inverse*> taken_{nullptr};
+};
+
+}  // namespace flight_stacks

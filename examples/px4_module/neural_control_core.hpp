@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// The module without PX4: messages in, motor commands and a status message out. Pure C++17; the glue
+// (pinnquad_control.cpp) copies the fields of the uORB messages of the same names.
+#pragma once
+
+#include "flight_stacks/neural_controller.hpp"
+
+namespace pinnquad_px4 {
+
+// Of PX4's messages, the fields that are used: names, units and frames are theirs. Times are in us since boot.
+
+struct VehicleAttitude {
+  std::uint64_t timestamp_sample{0};
+  float q[4]{1, 0, 0, 0};  ///< (w, x, y, z), FRD -> NED
+};
+
+struct VehicleAngularVelocity {
+  std::uint64_t timestamp_sample{0};
+  float xyz[3]{};  ///< FRD, rad/s
+};
+
+struct VehicleLocalPosition {
+  std::uint64_t timestamp_sample{0};
+  bool xy_valid{false};
+  bool z_valid{false};
+  bool v_xy_valid{false};
+  bool v_z_valid{false};
+  float x{0};  ///< NED, m
+  float y{0};
+  float z{0};
+  float vx{0};  ///< NED, m/s
+  float vy{0};
+  float vz{0};
+};
+
+/// NaN: not asked for.
+struct TrajectorySetpoint {
+  std::uint64_t timestamp{0};
+  float position[3]{};      ///< NED, m
+  float velocity[3]{};      ///< NED, m/s
+  float acceleration[3]{};  ///< NED, m/s^2
+  float jerk[3]{};          ///< NED, m/s^3
+  float yaw{0};             ///< rad
+  float yawspeed{0};        ///< rad/s
+};
+
+/// Thrust of each motor over its greatest, 0..1. The motor order of a PX4 quadrotor in X is pinnquad's.
+struct ActuatorMotors {
+  std::uint64_t timestamp{0};
+  std::uint64_t timestamp_sample{0};
+  float control[4]{};
+};
+
+/// What the module says of itself (msg/PinnquadStatus.msg).
+struct PinnquadStatus {
+  std::uint64_t timestamp{0};
+  std::uint32_t inference_time_us{0};  ///< of the step, outer loop and inverse
+  std::uint32_t asked{0};              ///< predictions since the start
+  std::uint32_t refused_samples{0};
+  float fallback_share{0};   ///< of the predictions
+  float envelope_excess{0};  ///< how far the worst feature lay outside, in half-widths of its range
+  std::int8_t envelope_feature{-1};
+  std::uint8_t reaction{0};      ///< flight_stacks::Reaction
+  std::uint8_t status{0};        ///< pinnquad::Status
+  std::uint8_t cause{0};         ///< pinnquad::Status of the network alone
+  std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point
+};
+
+/// `Model` is an exported header; the weights come as a model block.
+template <class Model>
+class NeuralControl {
+ public:
+  using ClockUs = std::uint64_t (*)();
+
+  /// `clock` is that of the messages: hrt_absolute_time.
+  explicit NeuralControl(ClockUs clock, const flight_stacks::AgeLimits& ages = {},
+                         const flight_stacks::OutputLimits& outputs = {}) noexcept
+      : clock_(clock), controller_(ages, outputs) {}
+
+  /// Before the module registers its mode, and with the next model in flight, from another thread: opens the block,
+  /// checks every number, replays the golden vectors. The module may register once this was ok.
+  pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
+    const pinnquad::Status status = controller_.offer_model(block, length);
+    if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
+    return status;
+  }
+  bool ready() const noexcept { return ready_; }
+  /// True once run() has taken the model accepted last: the memory of the one before may be written.
+  bool model_settled() const noexcept { return controller_.model_settled(); }
+
+  pinnquad::Status take(const VehicleAngularVelocity& m) noexcept {
+    return controller_.body_rates(m.timestamp_sample, {m.xyz[0], m.xyz[1], m.xyz[2]});
+  }
+  pinnquad::Status take(const VehicleAttitude& m) noexcept {
+    return controller_.attitude(m.timestamp_sample, {m.q[0], m.q[1], m.q[2], m.q[3]});
+  }
+  /// `out_of_range` where the estimator itself calls a part of it invalid.
+  pinnquad::Status take(const VehicleLocalPosition& m) noexcept {
+    if (!(m.xy_valid && m.z_valid && m.v_xy_valid && m.v_z_valid)) return pinnquad::Status::out_of_range;
+    return controller_.local(m.timestamp_sample, {{m.x, m.y, m.z}, {m.vx, m.vy, m.vz}});
+  }
+  pinnquad::Status take(const TrajectorySetpoint& m) noexcept {
+    return controller_.set_point(m.timestamp, {vector(m.position), vector(m.velocity), vector(m.acceleration),
+                                               vector(m.jerk), m.yaw, m.yawspeed});
+  }
+
+  /// One tick, after the messages. False: the module has no commands, nothing is to be published to the motors, and
+  /// PX4's own controllers must take over. `status` is written either way.
+  bool run(ActuatorMotors& motors, PinnquadStatus& status) noexcept {
+    const std::uint64_t start_us = clock_();
+    pinnquad::Commands<float> commands{};
+    flight_stacks::StepReport report;
+    const flight_stacks::Reaction reaction = controller_.step(start_us, commands, report);
+    const std::uint64_t end_us = clock_();
+    describe(end_us, static_cast<std::uint32_t>(end_us - start_us), report, status);
+    if (reaction == flight_stacks::Reaction::gives_up) return false;
+    motors.timestamp = end_us;
+    motors.timestamp_sample = start_us;
+    for (std::size_t i = 0; i < commands.size(); ++i) motors.control[i] = commands[i];
+    return true;
+  }
+
+ private:
+  static pinnquad::Vector3<float> vector(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
+
+  void describe(std::uint64_t now_us, std::uint32_t time_us, const flight_stacks::StepReport& report,
+                PinnquadStatus& status) const noexcept {
+    const pinnquad::FallbackCount& count = controller_.count();
+    status.timestamp = now_us;
+    status.inference_time_us = time_us;
+    status.asked = count.asked;
+    status.refused_samples = controller_.refused_samples();
+    status.fallback_share =
+        count.asked > 0 ? static_cast<float>(count.fallbacks()) / static_cast<float>(count.asked) : 0.0f;
+    status.envelope_excess = report.worst_excess;
+    status.envelope_feature = static_cast<std::int8_t>(report.worst_feature);
+    status.reaction = static_cast<std::uint8_t>(report.reaction);
+    status.status = static_cast<std::uint8_t>(report.status);
+    status.cause = static_cast<std::uint8_t>(report.cause);
+    status.stale_inputs = report.stale_inputs();
+  }
+
+  ClockUs clock_;
+  flight_stacks::NeuralController<Model> controller_;
+  bool ready_ = false;
+};
+
+}  // namespace pinnquad_px4

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// What goes wrong in a flight, when, and the worst that the module may do about it.
+#pragma once
+
+#include <array>
+
+#include "flight_stacks/inputs.hpp"
+
+namespace flight_stacks::test {
+
+enum class FaultKind {
+  rates_stop,
+  attitude_stops,
+  local_stops,
+  set_point_stops,
+  nan_everywhere,
+  infinite_rates,
+  denormal_motion,   ///< body rates and velocity
+  attitude_scaled,   ///< by `value`
+  stamps_ahead,      ///< all, by `value` seconds
+  commands_lost,     ///< the motors keep what they were told last
+  model_swapped,     ///< for another sound one
+  model_corrupt,     ///< offered, with a flipped bit
+  model_wrong,       ///< offered, with a weight that is wrong under a right checksum
+  model_too_narrow,  ///< a sound one whose envelope holds hardly any motion: all is the formula's
+};
+
+struct Fault {
+  double start_s;
+  double duration_s;
+  FaultKind kind;
+  double value;
+  const char* text;
+  Reaction worst;  ///< exactly this is the worst reaction while it lasts
+};
+
+/// The same for every flight; limits are those of AgeLimits{}.
+inline constexpr std::array<Fault, 19> fault_script = {{
+    {4.0, 0.008, FaultKind::rates_stop, 0, "body rates stop for 8 ms", Reaction::flies},
+    {5.0, 0.015, FaultKind::attitude_stops, 0, "attitude stops for 15 ms", Reaction::flies},
+    {6.0, 0.080, FaultKind::local_stops, 0, "position and velocity stop for 80 ms", Reaction::flies},
+    {8.0, 0.600, FaultKind::local_stops, 0, "position and velocity stop for 600 ms", Reaction::levels},
+    {11.0, 1.500, FaultKind::set_point_stops, 0, "set points stop for 1.5 s", Reaction::holds_position},
+    {15.0, 0.030, FaultKind::rates_stop, 0, "body rates stop for 30 ms", Reaction::keeps_commands},
+    {16.0, 0.030, FaultKind::nan_everywhere, 0, "NaN in all samples for 30 ms", Reaction::keeps_commands},
+    {17.0, 0.006, FaultKind::infinite_rates, 0, "infinite body rates for 6 ms", Reaction::flies},
+    {18.0, 0.010, FaultKind::denormal_motion, 0, "denormal body rates and velocity for 10 ms", Reaction::flies},
+    {19.0, 0.500, FaultKind::attitude_scaled, 1.0004, "attitude of norm 1.0004 for 500 ms", Reaction::flies},
+    {20.0, 0.040, FaultKind::attitude_scaled, 1.2, "attitude of norm 1.2 for 40 ms", Reaction::keeps_commands},
+    {21.0, 0.030, FaultKind::stamps_ahead, 1.0, "time stamps 1 s ahead for 30 ms", Reaction::keeps_commands},
+    {22.0, 0.030, FaultKind::commands_lost, 0, "commands don't reach the motors for 30 ms", Reaction::flies},
+    {23.0, 0.500, FaultKind::model_swapped, 0, "another model", Reaction::flies},
+    {23.6, 0.100, FaultKind::model_corrupt, 0, "a corrupt model offered", Reaction::flies},
+    {23.8, 0.100, FaultKind::model_wrong, 0, "a model with a wrong weight offered", Reaction::flies},
+    {24.5, 1.500, FaultKind::model_too_narrow, 0, "a model that declines nearly everything", Reaction::flies},
+    {27.0, 0.030, FaultKind::attitude_stops, 0, "attitude stops for 30 ms", Reaction::keeps_commands},
+    {28.0, 0.300, FaultKind::attitude_stops, 0, "attitude stops for 300 ms", Reaction::gives_up},
+}};
+
+}  // namespace flight_stacks::test

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// Software in the loop: a module flies a simulated vehicle through a fault script; what happened is a log and some figures.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "fault_script.hpp"
+#include "model_blocks.hpp"
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "stacks.hpp"
+
+namespace flight_stacks::test {
+
+using pinnquad::Status;
+using pinnquad::TrajectoryPoint;
+using pinnquad::Vector3;
+
+struct FlightFigures {
+  bool crashed = false;
+  double min_altitude_m = 1e9;
+  double max_tilt_rad = 0;
+  double max_error_m = 0;  ///< position, over the whole flight from 3 s on
+  double rmse_m = 0;       ///< the same
+  double flown_s = 0;
+  double module_share = 0;  ///< of the ticks
+  int takeovers = 0;
+  float fallback_share = 0;
+  unsigned refused_samples = 0;
+  std::vector<Reaction> worst;        ///< of each fault
+  std::vector<int> fell_back, asked;  ///< ticks of each fault
+  std::vector<Status> offered;        ///< what became of the models offered, in order
+  std::vector<std::string> log;
+};
+
+/// One flight. `Stack` is of stacks.hpp; `target(time_s)` gives the set point.
+template <class Stack>
+class FaultyFlight {
+ public:
+  using Model = typename Stack::Model;
+  using Vehicle = pinnquad::AgileFlight::Vehicle;
+
+  static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20;
+
+  explicit FaultyFlight(const AgeLimits& ages = {})
+      : stack_(ages),
+        vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), pinnquad::paper_site<double>()),
+        own_({}, pinnquad::flight_limits(vehicle_.airframe(), 1.0)) {}
+
+  /// Boot: a corrupt model is refused and the module stays out; then a sound one.
+  bool boot() {
+    say("boot", "a corrupt model offered");
+    offer(corrupt_);
+    const bool stayed_out = !stack_.ready() && !stack_.run(0).has_commands;
+    say("module", stayed_out ? "not ready: does not register, gives no commands" : "READY ALL THE SAME");
+    say("boot", "a sound model offered");
+    offer(sound_);
+    return stayed_out && stack_.ready();
+  }
+
+  template <class Target, class Faults>
+  FlightFigures fly(const Target& target, double duration_s, const Faults& faults) {
+    figures_.worst.assign(faults.size(), Reaction::flies);
+    figures_.fell_back.assign(faults.size(), 0);
+    figures_.asked.assign(faults.size(), 0);
+    std::vector<bool> began(faults.size(), false), ended(faults.size(), false);
+    start(target(0.0));
+    double squares = 0;
+    long counted = 0, ticks = 0, by_module = 0;
+    for (long ms = 0; static_cast<double>(ms) < 1000 * duration_s; ms += Stack::period_ms, ++ticks) {
+      time_s_ = 1e-3 * static_cast<double>(ms);
+      const auto now_us = static_cast<std::uint64_t>(boot_us + ms * 1000);
+      active_ = {};
+      for (std::size_t i = 0; i < faults.size(); ++i) {
+        const Fault& fault = faults[i];
+        const bool on = time_s_ >= fault.start_s - 1e-9 && time_s_ < fault.start_s + fault.duration_s - 1e-9;
+        if (on) active_.push_back(&fault);
+        if (on && !began[i]) began[i] = true, begin(fault);
+        if (!on && began[i] && !ended[i]) ended[i] = true, end(fault, i);
+      }
+      feed(ms, now_us, target(time_s_));
+      const Answer answer = stack_.run(now_us);
+      note(answer, faults);
+      choose(answer, ms);
+      by_module += own_flies_ ? 0 : 1;
+      if (!step_vehicle()) {
+        figures_.crashed = true;
+        break;
+      }
+      measure(target(time_s_), squares, counted);
+      if (figures_.crashed) break;
+    }
+    figures_.flown_s = time_s_;
+    figures_.rmse_m = counted > 0 ? std::sqrt(squares / static_cast<double>(counted)) : 0;
+    figures_.module_share = static_cast<double>(by_module) / static_cast<double>(ticks);
+    figures_.fallback_share = last_.fallback_share;
+    figures_.refused_samples = last_.refused_samples;
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "%s; altitude from %.2f m, tilt up to %.1f deg, error up to %.2f m, RMSE %.3f m; formula %.2f %% "
+                  "of the answers, %u samples refused",
+                  figures_.crashed ? "CRASHED" : "in the air", figures_.min_altitude_m,
+                  figures_.max_tilt_rad * 57.29577951308232, figures_.max_error_m, figures_.rmse_m,
+                  100 * static_cast<double>(figures_.fallback_share), figures_.refused_samples);
+    say("end", line);
+    return figures_;
+  }
+
+ private:
+  static constexpr long boot_us = 5'000'000;
+
+  void say(const char* who, const std::string& what) {
+    char head[40];
+    std::snprintf(head, sizeof head, "%8.3f s  %-7s ", time_s_, who);
+    figures_.log.push_back(head + what);
+  }
+
+  void offer(const Block& block) {
+    const Status status = stack_.offer(block.data(), block.size());
+    figures_.offered.push_back(status);
+    say("module", std::string(status == Status::ok ? "takes the model: " : "refuses the model: ") + to_string(status));
+  }
+
+  void start(const TrajectoryPoint<double>& at) {
+    body_.body.position_m = at.position_m;
+    body_.body.velocity_m_s = at.velocity_m_s;
+    body_.body.attitude = pinnquad::from_euler<double>({0, 0, at.yaw_rad});
+    pinnquad::HoverTrim<double> trim;
+    if (pinnquad::hover_trim(vehicle_, at.position_m, trim) != Status::ok) figures_.crashed = true;
+    body_.rotors = trim.commands;
+    commands_ = trim.commands;
+  }
+
+  void begin(const Fault& fault) {
+    say("fault", fault.text);
+    switch (fault.kind) {
+      case FaultKind::model_swapped: offer(other_); break;
+      case FaultKind::model_corrupt: offer(corrupt_); break;
+      case FaultKind::model_wrong: offer(wrong_); break;
+      case FaultKind::model_too_narrow: offer(narrow_); break;
+      default: break;
+    }
+  }
+
+  void end(const Fault& fault, std::size_t i) {
+    say("over", std::string(fault.text) + "; at worst the module " + to_string(figures_.worst[i]) + "; " +
+                    std::to_string(figures_.fell_back[i]) + " of " + std::to_string(figures_.asked[i]) +
+                    " answers by the formula");
+    if (fault.kind == FaultKind::model_swapped || fault.kind == FaultKind::model_too_narrow) offer(sound_);
+  }
+
+  bool faulty(FaultKind kind) const {
+    return std::any_of(active_.begin(), active_.end(), [kind](const Fault* fault) { return fault->kind == kind; });
+  }
+  double value_of(FaultKind kind, double otherwise) const {
+    for (const Fault* fault : active_) {
+      if (fault->kind == kind) return fault->value;
+    }
+    return otherwise;
+  }
+  Vector3<double> noise(double deviation) {
+    Vector3<double> result;
+    for (int i = 0; i < 3; ++i) result[i] = deviation * pinnquad::standard_normal(engine_);
+    return result;
+  }
+
+  /// What the estimator says this tick, faults included.
+  void feed(long ms, std::uint64_t now_us, const TrajectoryPoint<double>& point) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double denormal = 1e-41;
+    const auto due = [ms](long period_ms) { return ms % period_ms == 0; };
+    const auto ahead_us = static_cast<std::uint64_t>(1e6 * value_of(FaultKind::stamps_ahead, 0));
+    const std::uint64_t stamp_us = now_us + ahead_us;
+    Vector3<double> rates = body_.body.body_rates_rad_s + noise(0.02);
+    Vector3<double> position = body_.body.position_m + noise(0.005);
+    Vector3<double> velocity = body_.body.velocity_m_s + noise(0.02);
+    pinnquad::Quaternion<double> q = body_.body.attitude;
+    if (faulty(FaultKind::infinite_rates)) rates[1] = std::numeric_limits<double>::infinity();
+    if (faulty(FaultKind::denormal_motion)) {
+      rates = Vector3<double>(denormal, -denormal, denormal);
+      velocity = rates;
+    }
+    const double scale = value_of(FaultKind::attitude_scaled, 1);
+    q = {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
+    if (faulty(FaultKind::nan_everywhere)) {
+      rates[0] = position[2] = velocity[0] = nan;
+      q.y = nan;
+    }
+    if (!faulty(FaultKind::rates_stop)) stack_.rates(stamp_us, rates);
+    if (due(attitude_period_ms) && !faulty(FaultKind::attitude_stops)) stack_.attitude(stamp_us, q);
+    if (due(local_period_ms) && !faulty(FaultKind::local_stops)) stack_.local(stamp_us, position, velocity);
+    if (due(set_point_period_ms) && !faulty(FaultKind::set_point_stops)) stack_.set_point(stamp_us, point);
+  }
+
+  template <class Faults>
+  void note(const Answer& answer, const Faults& faults) {
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+      if (time_s_ < faults[i].start_s - 1e-9 || time_s_ >= faults[i].start_s + faults[i].duration_s) continue;
+      figures_.worst[i] = std::max(figures_.worst[i], answer.reaction);
+      if (answer.reaction <= Reaction::levels) ++figures_.asked[i];
+      if (answer.reaction <= Reaction::levels && answer.status == Status::fell_back) ++figures_.fell_back[i];
+    }
+    if (answer.reaction != last_.reaction || answer.stale_inputs != last_.stale_inputs) {
+      constexpr const char* names[4] = {"body rates", "attitude", "position", "set point"};
+      std::string stale;
+      for (unsigned i = 0; i < 4; ++i) {
+        if (answer.stale_inputs >> i & 1u) stale += std::string(stale.empty() ? " (stale: " : ", ") + names[i];
+      }
+      std::string line = to_string(answer.reaction) + (stale.empty() ? "" : stale + ")");
+      if (answer.reaction <= Reaction::levels) {
+        line += std::string("; status: ") + to_string(answer.status) + "; network: " + to_string(answer.cause);
+      }
+      say("module", line);
+    }
+    last_ = answer;
+  }
+
+  /// Whose commands reach the motors: the module's, or the stack's own controller's for a second where it gave up.
+  void choose(const Answer& answer, long ms) {
+    if (!own_flies_ && !answer.has_commands) {
+      own_flies_ = true;
+      own_since_ms_ = ms;
+      held_.position_m = body_.body.position_m;
+      const pinnquad::Heading<double> heading = pinnquad::heading(body_.body.attitude);
+      held_.yaw_rad = std::atan2(heading.sine, heading.cosine);
+      ++figures_.takeovers;
+      say("stack", "its own controller takes over");
+    }
+    if (own_flies_ && answer.has_commands && ms - own_since_ms_ >= 1000) {
+      own_flies_ = false;
+      say("stack", "the pilot selects the module again");
+    }
+    if (faulty(FaultKind::commands_lost)) return;
+    if (!own_flies_) {
+      commands_ = answer.commands;
+      return;
+    }
+    pinnquad::TrackingDemand<double> demand;
+    if (own_(body_.body, held_, demand) != Status::ok) return;
+    pinnquad::Accelerations<double> wanted = demand.reference;
+    wanted.linear_m_s2 += demand.feedback_acceleration_m_s2;
+    wanted.angular_rad_s2 += demand.feedback_angular_acceleration_rad_s2;
+    pinnquad::Commands<double> commands{};
+    if (pinnquad::inverse_commands(vehicle_, body_.body, wanted, body_.time_s, commands) == Status::ok) {
+      commands_ = pinnquad::clipped(pinnquad::keep_torque(commands));
+    }
+  }
+
+  bool step_vehicle() {
+    for (int i = 0; i < Stack::period_ms; ++i) {
+      if (vehicle_.step(body_, commands_, 1e-3) != Status::ok) return false;
+    }
+    return true;
+  }
+
+  void measure(const TrajectoryPoint<double>& point, double& squares, long& counted) {
+    const double altitude_m = vehicle_.site().ground_z_m - body_.body.position_m[2];
+    figures_.min_altitude_m = std::min(figures_.min_altitude_m, altitude_m);
+    const double upright = pinnquad::body_down_axis(body_.body.attitude)[2];
+    figures_.max_tilt_rad = std::max(figures_.max_tilt_rad, std::acos(std::min(1.0, upright)));
+    const double error_m = (point.position_m - body_.body.position_m).norm();
+    if (time_s_ > 3) {
+      figures_.max_error_m = std::max(figures_.max_error_m, error_m);
+      squares += error_m * error_m;
+      ++counted;
+    }
+    if (altitude_m <= 0) {
+      figures_.crashed = true;
+      say("ground", "the vehicle has hit the ground");
+    }
+  }
+
+  const Block sound_ = sound_block<Model>(), other_ = other_block<Model>(), narrow_ = narrow_block<Model>(),
+              corrupt_ = corrupt_block<Model>(), wrong_ = wrong_block<Model>();
+  Stack stack_;
+  Vehicle vehicle_;
+  pinnquad::FlightController<double> own_;
+  TrajectoryPoint<double> held_;
+  bool own_flies_ = false;
+  long own_since_ms_ = 0;
+  pinnquad::VehicleState<double> body_{};
+  pinnquad::Commands<double> commands_{};
+  std::mt19937_64 engine_{7};
+  double time_s_ = 0;
+  std::vector<const Fault*> active_;
+  Answer last_{};
+  FlightFigures figures_;
+};
+
+}  // namespace flight_stacks::test

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Both example modules fly their airframe in the simulator, through the fault script: hover, figure-eight, random places.
+// Each flight's log of events is printed and written beside the test program.
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "flight.hpp"
+
+namespace {
+
+using namespace flight_stacks::test;
+using flight_stacks::AgeLimits;
+using flight_stacks::Reaction;
+
+constexpr double duration_s = 33, calm_duration_s = 20;
+constexpr double lowest_m = 9;         // 10.9 m is flown; the lowest place asked for is 9.9 m
+constexpr double steepest_rad = 1.05;  // 60 deg; the outer loop asks for 49
+constexpr std::array<Fault, 0> no_faults = {};
+
+TrajectoryPoint<double> hover(double /*time_s*/) { return pinnquad::Hover<double>{{0, 0, -10}}.sample(0); }
+
+/// A lying eight around the start; its length says how fast.
+struct Eight {
+  pinnquad::FigureEight<double> path;
+  Eight(double half_length_m, double period_s) {
+    path.center_m = {0, 0, -10};
+    path.half_length_m = half_length_m;
+    path.half_width_m = half_length_m / 2;
+    path.half_height_m = half_length_m / 8;
+    path.period_s = period_s;
+  }
+  TrajectoryPoint<double> operator()(double time_s) const { return path.sample(time_s); }
+};
+
+/// Another place and yaw every 2 s, in a box: steps, no path.
+struct RandomPlaces {
+  std::vector<TrajectoryPoint<double>> places;
+  explicit RandomPlaces(double half_box_m) {
+    std::mt19937_64 engine(3);
+    for (int i = 0; i < 20; ++i) {
+      TrajectoryPoint<double> point;
+      const auto draw = [&](double half) { return pinnquad::uniform(engine, -half, half); };
+      point.position_m = {draw(half_box_m), draw(half_box_m), -10 + draw(half_box_m / 4)};
+      point.yaw_rad = draw(1.0);
+      places.push_back(point);
+    }
+    places[0] = hover(0);
+  }
+  TrajectoryPoint<double> operator()(double time_s) const { return places[static_cast<std::size_t>(time_s / 2)]; }
+};
+
+/// `farthest_m`: of the figure-eight the set points fly on for 1.5 s while the module, told nothing, holds its place.
+template <class Stack, class Target>
+void through_all_faults(const std::string& path, const Target& target, double farthest_m) {
+  FaultyFlight<Stack> flight;
+  CHECK(flight.boot());
+  const FlightFigures flown = flight.fly(target, duration_s, fault_script);
+  const std::string name = std::string("flight_stacks_") + Stack::name + "_" + path + ".log";
+  std::ofstream file(name);
+  std::printf("%s\n", name.c_str());
+  for (const std::string& line : flown.log) {
+    std::printf("%s\n", line.c_str());
+    file << line << '\n';
+  }
+  CHECK(file.good());
+  INFO(name);
+  CHECK_FALSE(flown.crashed);
+  CHECK(flown.min_altitude_m > lowest_m);
+  CHECK(flown.max_tilt_rad < steepest_rad);
+  CHECK(flown.max_error_m < farthest_m);
+  CHECK(flown.takeovers == 1);
+  CHECK(flown.module_share > 0.96);
+  CHECK(flown.refused_samples > 30);
+  using pinnquad::Status;
+  const std::vector<Status> offered = {
+      Status::block_corrupt,    Status::ok, Status::ok, Status::ok, Status::block_corrupt,
+      Status::self_test_failed, Status::ok, Status::ok};
+  CHECK(flown.offered == offered);
+  for (std::size_t i = 0; i < fault_script.size(); ++i) {
+    INFO(fault_script[i].text, ": ", to_string(flown.worst[i]));
+    CHECK(flown.worst[i] == fault_script[i].worst);
+    if (fault_script[i].kind == FaultKind::model_too_narrow) {
+      CHECK(flown.asked[i] > 0);
+      CHECK(flown.fell_back[i] == flown.asked[i]);
+    } else if (path == "hover") {
+      CHECK(flown.fell_back[i] == 0);
+    }
+  }
+}
+
+/// Without faults: how well it tracks, the network against the formula alone.
+template <class Stack, class Target>
+void calm(const std::string& path, const Target& target, double most_rmse_m, float most_fallback_share) {
+  FaultyFlight<Stack> flight, by_formula;
+  REQUIRE(flight.boot());
+  REQUIRE(by_formula.boot());
+  const FlightFigures flown = flight.fly(target, calm_duration_s, no_faults);
+  const std::array<Fault, 1> narrow = {{{0.5, 100, FaultKind::model_too_narrow, 0, "", Reaction::flies}}};
+  const FlightFigures formula = by_formula.fly(target, calm_duration_s, narrow);
+  std::printf("%s %s without faults: RMSE %.3f m, formula in %.2f %% of the answers; by the formula alone %.3f m\n",
+              Stack::name, path.c_str(), flown.rmse_m, 100 * static_cast<double>(flown.fallback_share), formula.rmse_m);
+  CHECK_FALSE(flown.crashed);
+  CHECK(flown.takeovers == 0);
+  CHECK(flown.module_share == 1);
+  CHECK(flown.rmse_m < most_rmse_m);
+  CHECK(flown.fallback_share <= most_fallback_share);
+  CHECK(formula.fallback_share > 0.97f);
+}
+
+}  // namespace
+
+TEST_CASE("px4_module flies the paper's quadrotor through all faults") {
+  through_all_faults<Px4Stack>("hover", hover, 0.5);
+  through_all_faults<Px4Stack>("eight", Eight(4, 9), 6);
+  through_all_faults<Px4Stack>("random_places", RandomPlaces(1.5), 3);
+}
+
+TEST_CASE("crazyflie_app flies the Crazyflie through all faults") {
+  through_all_faults<CrazyflieStack>("hover", hover, 0.5);
+  through_all_faults<CrazyflieStack>("eight", Eight(1.5, 6), 3);
+  through_all_faults<CrazyflieStack>("random_places", RandomPlaces(1), 2.5);
+}
+
+TEST_CASE("without faults the network flies, and tracks") {
+  calm<Px4Stack>("hover", hover, 0.05, 0.0f);
+  calm<Px4Stack>("eight", Eight(4, 9), 0.12, 0.01f);
+  calm<Px4Stack>("random_places", RandomPlaces(1.5), 1, 0.02f);
+  calm<CrazyflieStack>("hover", hover, 0.06, 0.0f);
+  calm<CrazyflieStack>("eight", Eight(1.5, 6), 0.15, 0.01f);
+  calm<CrazyflieStack>("random_places", RandomPlaces(1), 0.8, 0.06f);
+}
+
+/// What these flights prove: with the age limits out of reach the same outage, alone, ends on the ground.
+TEST_CASE("without the age limits a module falls") {
+  AgeLimits none;
+  none.body_rates_us = none.attitude_us = none.local_us = none.set_point_us = 1'000'000'000;
+  for (const FaultKind kind : {FaultKind::attitude_stops, FaultKind::rates_stop}) {
+    const std::array<Fault, 1> outage = {{{6, 4, kind, 0, "outage", Reaction::flies}}};
+    FaultyFlight<Px4Stack> with, without(none);
+    FaultyFlight<CrazyflieStack> small_with, small_without(none);
+    const FlightFigures a = with.boot() ? with.fly(Eight(4, 9), 12, outage) : FlightFigures{};
+    const FlightFigures b = without.boot() ? without.fly(Eight(4, 9), 12, outage) : FlightFigures{};
+    const FlightFigures c = small_with.boot() ? small_with.fly(Eight(1.5, 6), 12, outage) : FlightFigures{};
+    const FlightFigures d = small_without.boot() ? small_without.fly(Eight(1.5, 6), 12, outage) : FlightFigures{};
+    for (const FlightFigures* f : {&a, &b, &c, &d}) std::printf("%s\n", f->log.back().c_str());
+    CHECK_FALSE(a.crashed);
+    CHECK(a.max_tilt_rad < steepest_rad);
+    CHECK(b.crashed);
+    CHECK_FALSE(c.crashed);
+    CHECK(c.max_tilt_rad < steepest_rad);
+    CHECK(d.crashed);
+  }
+}

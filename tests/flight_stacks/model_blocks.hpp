@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Blocks of an exported model, sound and broken ones, as a flight's fault script offers them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pinnquad/deploy/weight_file.hpp"
+
+namespace flight_stacks::test {
+
+/// Aligned as a block must be: vectors of bytes come from the heap, which aligns by 16.
+using Block = std::vector<unsigned char>;
+
+template <class Model>
+using Trained = pinnquad::TrainedModel<typename Model::Network,
+                                       pinnquad::Context<typename Model::Features, typename Model::Vehicle>>;
+
+template <class Model>
+Trained<Model> trained_model() {
+  Trained<Model> model;
+  model.network.parameters = Model::parameters;
+  model.input = Model::input;
+  model.output = Model::output;
+  model.envelope_lower = Model::envelope_lower;
+  model.envelope_upper = Model::envelope_upper;
+  return model;
+}
+
+/// The exported model.
+template <class Model>
+Block sound_block() {
+  return pinnquad::model_block<Model>();
+}
+
+/// The model after a training that went on: its weights moved by a thousandth each.
+template <class Model>
+Block other_block() {
+  Trained<Model> model = trained_model<Model>();
+  for (float& weight : model.network.parameters) weight *= 1.001f;
+  return pinnquad::model_block(model, {Model::golden_features.begin(), Model::golden_features.end()}, {});
+}
+
+/// Its envelope holds one golden vector and nothing else: passes the self test, declines every flight.
+template <class Model>
+Block narrow_block() {
+  Trained<Model> model = trained_model<Model>();
+  const auto& golden = Model::golden_features[0];
+  for (std::size_t i = 0; i < golden.size(); ++i) {
+    model.envelope_lower[i] = golden[i] - 1e-3f;
+    model.envelope_upper[i] = golden[i] + 1e-3f;
+  }
+  return pinnquad::model_block(model, {golden}, {});
+}
+
+template <class Model>
+Block corrupt_block() {
+  Block block = sound_block<Model>();
+  block[block.size() / 2] ^= 0x10;
+  return block;
+}
+
+/// A weight that is wrong under a checksum that is right.
+template <class Model>
+Block wrong_block() {
+  Block block = sound_block<Model>();
+  block[block.size() - 6] ^= 0x40;  // in the exponent of the last bias
+  const std::uint32_t sum = pinnquad::crc32(block.data(), block.size() - 4);
+  for (std::size_t byte = 0; byte < 4; ++byte) block[block.size() - 4 + byte] = (sum >> (8 * byte)) & 0xffu;
+  return block;
+}
+
+}  // namespace flight_stacks::test
