@@ -193,6 +193,19 @@ unsigned char pinnquad_flight_loaded_predict(const void* block, unsigned long le
   return static_cast<unsigned char>(inverse.predict_features(x, u));
 }
 
+unsigned char pinnquad_flight_predict_with_jacobian(const float* x, float* u, float* jacobian) {
+  return static_cast<unsigned char>(
+      pinnquad::predict_with_jacobian(pinnquad::InverseDynamics<SmallModel>{}, x, u, jacobian));
+}
+
+unsigned char pinnquad_flight_predict_batch(const float* x, float* u, unsigned char* statuses, int samples) {
+  Status each[64] = {};
+  if (samples > 64) return 1;
+  pinnquad::predict_batch(pinnquad::InverseDynamics<SmallModel>{}, x, u, each, samples);
+  for (int s = 0; s < samples; ++s) statuses[s] = static_cast<unsigned char>(each[s]);
+  return 0;
+}
+
 float pinnquad_flight_output_schema(float output) {
   constexpr auto airframe = pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>();
   using Schema = pinnquad::RotorSpeedOutputs;

@@ -37,3 +37,9 @@ extern "C" Layer* pinnquad_flight_news() { return new Layer; }
 extern "C" void* pinnquad_flight_mallocs(std::size_t bytes) { return std::malloc(bytes); }
 
 extern "C" void pinnquad_flight_prints(float input) { std::cout << input << '\n'; }
+
+extern "C" float pinnquad_flight_allocas(unsigned count) {
+  auto* values = static_cast<volatile float*>(__builtin_alloca(count * sizeof(float)));
+  values[count - 1] = 1.0F;
+  return values[0];
+}
