@@ -11,6 +11,19 @@
 
 namespace pinnquad {
 
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// How a layer turns the gradients by its outputs into those by its inputs, `Rows` of them, both row-major with `Stride`:
+///   static void run<Pack, Rows, Stride>(parameters, y, by_output, by_input, finish)
+/// where `finish(column, pack)` is applied to what is stored. Specialise it for a layer of your own that is not element-wise.
+template <class Layer>
+struct PullBack {
+  static_assert(is_elementwise<Layer>,
+                "pinnquad: this layer has no Jacobian; specialise pinnquad::PullBack (nn/jacobian.hpp)");
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
@@ -20,15 +33,6 @@ struct NoSlope {
   PINNQUAD_ALWAYS_INLINE Pack operator()(int, Pack gradient) const noexcept {
     return gradient;
   }
-};
-
-/// How a layer turns the gradients by its outputs into those by its inputs, `Rows` of them, both row-major with `Stride`:
-///   static void run<Pack, Rows, Stride>(parameters, y, by_output, by_input, finish)
-/// where `finish(column, pack)` is applied to what is stored. Specialise it for a layer of your own that is not element-wise.
-template <class Layer>
-struct PullBack {
-  static_assert(is_elementwise<Layer>,
-                "pinnquad: this layer has no Jacobian; specialise pinnquad::detail::PullBack (nn/jacobian.hpp)");
 };
 
 /// by_input = by_output W for row-major W (Out x In), behind which `Behind` more scalars may be read.
@@ -55,12 +59,16 @@ PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar
   });
 }
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
 template <class Scalar, int In, int Out>
 struct PullBack<DenseLayer<Scalar, In, Out>> {
   template <class Pack, int Rows, int Stride, class Finish>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
                                          Scalar* by_input, const Finish& finish) noexcept {
-    pull_back_product<Pack, Rows, Stride, In, Out, Out>(parameters, by_output, by_input, finish);  // the bias is behind
+    detail::pull_back_product<Pack, Rows, Stride, In, Out, Out>(parameters, by_output, by_input,
+                                                                finish);  // the bias is behind
   }
 };
 
@@ -69,7 +77,7 @@ struct PullBack<DenseWithoutBiasLayer<Scalar, In, Out>> {
   template <class Pack, int Rows, int Stride, class Finish>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
                                          Scalar* by_input, const Finish& finish) noexcept {
-    pull_back_product<Pack, Rows, Stride, In, Out, 0>(parameters, by_output, by_input, finish);
+    detail::pull_back_product<Pack, Rows, Stride, In, Out, 0>(parameters, by_output, by_input, finish);
   }
 };
 
@@ -89,6 +97,9 @@ struct PullBack<BatchNormLayer<Scalar, Size>> {
     }
   }
 };
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// One layer forward. Out of line, so that equal layers share their code.
 template <class Layer>
