@@ -131,8 +131,8 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   }
 
   /// The bare network, standardised in and out: the model's own forward() if it has one; else the vector unit's kernel where
-  /// there is one, else the portable one.
-  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
+  /// there is one, else the portable one. Out of line: all ways to the network share its code.
+  PINNQUAD_NOINLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
     if constexpr (detail::HasOwnForward<Model>::value) {
       model().forward(standardised, outputs);
     } else if constexpr (has_vector_unit<Scalar>) {
