@@ -125,7 +125,7 @@ PINNQUAD_ALWAYS_INLINE Heading<Scalar> heading(const Quaternion<Scalar>& q) noex
   const Scalar sine = Scalar(2) * (q.w * q.z + q.x * q.y);
   const Scalar cosine = q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z;
   const Scalar norm = sqrt(sine * sine + cosine * cosine);  // = |q|^2 cos theta
-  if (norm <= Scalar(0)) return {};  // NaN passes through
+  if (norm <= Scalar(0)) return {};                         // NaN passes through
   return {sine / norm, cosine / norm};
 }
 

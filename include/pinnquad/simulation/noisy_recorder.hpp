@@ -24,7 +24,7 @@ struct RecorderErrors {
 /// The paper's Fig. 2 states a correlation of 0.67 between roll acceleration and signed command sum; exact rows have
 /// 0.98. Two errors that bring the default random pilot's flights there; the paper's own cause is unknown. Measured
 /// over 15,000 rows, flight seeds 1, 2, 3 (docs/simulator.md has more settings):
-///   noisy_gyro_errors      roll 0.67 0.69 0.64   pitch 0.67 0.67 0.67   yaw 0.11 0.11 0.11
+///   noisy_gyro_errors      roll 0.67 0.68 0.64   pitch 0.67 0.67 0.67   yaw 0.12 0.11 0.11
 ///   late_command_errors    roll 0.68 0.69 0.67   pitch 0.68 0.68 0.68   yaw 0.83 0.83 0.84
 /// The first drowns yaw, whose accelerations are eight times smaller; the paper calls yaw strongly correlated too,
 /// which speaks for the second.
