@@ -18,7 +18,7 @@ RATIOS = [
     ("batch of 256, per sample, over the peak", "Batched/paper_network/256", "Peak/fma", "bench_rollout"),
     ("batch of 256, Eigen over ours", "Batched/naive_eigen/256", "Batched/paper_network/256", "bench_rollout"),
     ("value and Jacobian, over one prediction", "Jacobian/paper_network", "Predict/paper_network", "bench_rollout"),
-    ("guarded predict() with features, over the bare network", "Model/predict", "Model/predict_features",
+    ("predict() with named inputs, over predict_features()", "Model/predict", "Model/predict_features",
      "bench_model"),
     ("training epoch, naive Eigen over ours", "TrainEpoch/naive_eigen", "TrainEpoch/vanilla", "bench_training"),
     ("training epoch, physics-informed over vanilla", "TrainEpoch/physics_informed", "TrainEpoch/vanilla",
@@ -86,7 +86,7 @@ def main():
         for machine in machines:
             if (machine, program) in runs:
                 names += [n for n in runs[machine, program][1] if n not in names]
-        for name in names:
+        for name in sorted(names):
             if name in seen:
                 continue
             seen.add(name)

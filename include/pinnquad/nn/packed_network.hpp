@@ -51,14 +51,14 @@ struct Activate {
     return Layer::activate(v);
   }
 };
-/// For a forward pass whose layers' outputs nobody asks for.
+/// For a forward pass whose layers' outputs nobody asks for. Not called: a reference to registers would cost some of them.
 struct KeepNothing {
-  template <class Values>
-  PINNQUAD_ALWAYS_INLINE void operator()(int, const Values&) const noexcept {}
+  static constexpr bool keeps = false;
 };
 /// Stores each layer's outputs at their offset among the outputs of all layers.
 template <class Scalar>
 struct KeepOutputs {
+  static constexpr bool keeps = true;
   Scalar* kept;
   template <class Values>
   PINNQUAD_ALWAYS_INLINE void operator()(int offset, const Values& values) const noexcept {
@@ -125,7 +125,7 @@ struct MemoryRun {
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* target, Scalar* other,
                                              Scalar* y, const Keep& keep) noexcept {
     Packed::forward(packed, x, target, typename Fused::Activation{});
-    keep(Fused::outputs_offset, StoredOutputs<Scalar, Fused::Layer::outputs>{target});
+    if constexpr (Keep::keeps) keep(Fused::outputs_offset, StoredOutputs<Scalar, Fused::Layer::outputs>{target});
     if constexpr (Fused::last) {
       for (int i = 0; i < Network::outputs; ++i) y[i] = target[i];
     } else {
@@ -183,6 +183,7 @@ struct RegisterRun {
   static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const Values& x, float* y,
                                              const Keep& keep) noexcept {
     const Result result = multiply(packed, x, keep);
+    if constexpr (Keep::keeps && count == 1) keep(Fused::outputs_offset, result);
     if constexpr (last) {
       result.store(y);
     } else {
@@ -198,15 +199,13 @@ struct RegisterRun {
   template <class Keep>
   static PINNQUAD_ALWAYS_INLINE Result multiply(const float* packed, const Values& x, const Keep& keep) noexcept {
     if constexpr (count == 1) {
-      const Result result = Dense::multiply(packed, x, Activation{});
-      keep(Fused::outputs_offset, result);
-      return result;
+      return Dense::multiply(packed, x, Activation{});
     } else {
       constexpr int step = Network::Sizes::outputs_before(Fused::next) - Network::Sizes::outputs_before(Index);
       Result result = x;
       for (int i = 0; i < count; ++i) {
         result = Dense::multiply(packed + i * Dense::size, result, Activation{});
-        keep(Fused::outputs_offset + i * step, result);
+        if constexpr (Keep::keeps) keep(Fused::outputs_offset + i * step, result);
       }
       return result;
     }
