@@ -27,3 +27,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
    AND CMAKE_CXX_FLAGS MATCHES "-march=|-mavx512")
   target_compile_options(pinnquad_warnings INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
+
+# pinnquad_state_build_flags(<target>): its reports name the flags that the build was configured with.
+function(pinnquad_state_build_flags target)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+  string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" build_flags)
+  string(REGEX REPLACE " +" " " build_flags "${build_flags}")
+  target_compile_definitions(${target} PRIVATE "PINNQUAD_BUILD_FLAGS=\"${build_flags}\"")
+endfunction()
