@@ -38,14 +38,15 @@ Answer answer_of(bool has_commands, const Report& report) {
   return answer;
 }
 
-/// PX4: 1 kHz, the paper's quadrotor.
-class Px4Stack {
+/// PX4: 1 kHz.
+template <class ModelType>
+class Px4StackOf {
  public:
-  using Model = DemoQuadModel;
+  using Model = ModelType;
   static constexpr const char* name = "px4_module";
   static constexpr int period_ms = 1;
 
-  explicit Px4Stack(const AgeLimits& ages = {}) : core_(&Px4Stack::clock, ages) {}
+  explicit Px4StackOf(const AgeLimits& ages = {}) : core_(&Px4StackOf::clock, ages) {}
 
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
@@ -101,14 +102,18 @@ class Px4Stack {
   pinnquad_px4::NeuralControl<Model> core_;
 };
 
-/// Crazyflie: 500 Hz; x east, y north, z up; degrees.
-class CrazyflieStack {
+/// The paper's quadrotor.
+using Px4Stack = Px4StackOf<DemoQuadModel>;
+
+/// Crazyflie's firmware: 500 Hz; x east, y north, z up; degrees.
+template <class ModelType>
+class CrazyflieStackOf {
  public:
-  using Model = CrazyflieModel;
+  using Model = ModelType;
   static constexpr const char* name = "crazyflie_app";
   static constexpr int period_ms = 2;
 
-  explicit CrazyflieStack(const AgeLimits& ages = {}) : core_(ages) {}
+  explicit CrazyflieStackOf(const AgeLimits& ages = {}) : core_(ages) {}
 
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
@@ -181,5 +186,7 @@ class CrazyflieStack {
   CrazyflieState state_{};
   CrazyflieSetpoint setpoint_{};
 };
+
+using CrazyflieStack = CrazyflieStackOf<CrazyflieModel>;
 
 }  // namespace flight_stacks::test
