@@ -35,17 +35,8 @@ std::vector<Scalar> some_inputs(int samples) {
 }
 
 template <class Scalar>
-PaperNetwork::Rebind<Scalar> in_scalar(const PaperNetwork& network) {
-  PaperNetwork::Rebind<Scalar> result;
-  for (std::size_t i = 0; i < network.parameters.size(); ++i) {
-    result.parameters[i] = static_cast<Scalar>(network.parameters[i]);
-  }
-  return result;
-}
-
-template <class Scalar>
 void batched(benchmark::State& state, int samples) {
-  static const auto network = in_scalar<Scalar>(healthy_network());
+  static const auto network = rebind<Scalar>(healthy_network());
   const auto x = some_inputs<Scalar>(samples);
   std::vector<Scalar> y(static_cast<std::size_t>(PaperNetwork::outputs * samples));
   for (auto _ : state) {

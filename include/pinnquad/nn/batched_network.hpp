@@ -40,44 +40,32 @@ struct BatchedLayer {
   }
 };
 
-/// `Start(row)` is what a row's sum begins with.
-template <class Pack, int Lanes, int In, int Out, class Scalar, class Start, class Activation>
-PINNQUAD_ALWAYS_INLINE void multiply_block(const Scalar* weight, const Start& start, const Activation& activation,
-                                           const Scalar* x, int x_stride, Scalar* y, int y_stride) noexcept {
-  constexpr int vectors = Lanes / Pack::width;
-  in_batched_tiles<Pack, Out>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
-    multiply_tile<Consecutive<Pack, vectors>, decltype(rows)::value, In, 1>(
-        weight + first * In, x, x_stride, In, [&](auto r, auto) PINNQUAD_INLINE_LAMBDA { return start(first + r); },
-        [&](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return activation(sum); }, y + first * y_stride, y_stride);
-  });
-}
-
-template <class ScalarType, int In, int Out, class Pack, int Lanes>
-struct BatchedLayer<DenseLayer<ScalarType, In, Out>, Pack, Lanes> {
+/// Each row's sum begins with its bias, or with 0.
+template <class ScalarType, int In, int Out, bool HasBias, class Pack, int Lanes>
+struct BatchedDense {
   using Scalar = ScalarType;
   static constexpr bool fuses_activation = true;
   template <class Activation>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y,
                                              int y_stride, const Activation& activation) noexcept {
-    const Scalar* bias = parameters + In * Out;
-    multiply_block<Pack, Lanes, In, Out>(
-        parameters, [&](int row) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(bias[row]); }, activation, x, x_stride,
-        y, y_stride);
+    const auto start = [parameters](int row) PINNQUAD_INLINE_LAMBDA {
+      return Pack::broadcast(HasBias ? parameters[In * Out + row] : Scalar(0));
+    };
+    in_batched_tiles<Pack, Out>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
+      multiply_tile<Consecutive<Pack, Lanes / Pack::width>, decltype(rows)::value, In, 1>(
+          parameters + first * In, x, x_stride, In,
+          [&](auto r, auto) PINNQUAD_INLINE_LAMBDA { return start(first + r); },
+          [&](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return activation(sum); }, y + first * y_stride, y_stride);
+    });
   }
 };
 
-template <class ScalarType, int In, int Out, class Pack, int Lanes>
-struct BatchedLayer<DenseWithoutBiasLayer<ScalarType, In, Out>, Pack, Lanes> {
-  using Scalar = ScalarType;
-  static constexpr bool fuses_activation = true;
-  template <class Activation>
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y,
-                                             int y_stride, const Activation& activation) noexcept {
-    multiply_block<Pack, Lanes, In, Out>(
-        parameters, [](int) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(Scalar(0)); }, activation, x, x_stride, y,
-        y_stride);
-  }
-};
+template <class Scalar, int In, int Out, class Pack, int Lanes>
+struct BatchedLayer<DenseLayer<Scalar, In, Out>, Pack, Lanes> : BatchedDense<Scalar, In, Out, true, Pack, Lanes> {};
+
+template <class Scalar, int In, int Out, class Pack, int Lanes>
+struct BatchedLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, Lanes>
+    : BatchedDense<Scalar, In, Out, false, Pack, Lanes> {};
 
 /// A layer and the activation behind it (void: none) over a block. Out of line, so that equal layers share their code.
 template <class Layer, class Activation, class Pack, int Lanes>
