@@ -63,7 +63,13 @@ class NeuralController {
   NeuralController& operator=(const NeuralController&) = delete;
 
   /// At boot, and in flight from another thread: see ModelSlots::offer().
-  pinnquad::Status offer_model(const void* block, std::size_t length) noexcept { return models_.offer(block, length); }
+  pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
+    const pinnquad::Status status = models_.offer(block, length);
+    if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
+    return status;
+  }
+  /// True once a model was accepted.
+  bool ready() const noexcept { return ready_; }
   bool model_settled() const noexcept { return models_.settled(); }
 
   /// Each input: `not_finite`, `out_of_range`, `not_unit_quaternion` for a sample that is refused.
@@ -127,6 +133,20 @@ class NeuralController {
   const pinnquad::FallbackCount& count() const noexcept { return count_; }
   std::uint32_t refused_samples() const noexcept {
     return rates_.refused() + attitude_.refused() + local_.refused() + set_point_.refused();
+  }
+  /// Fills what both stacks publish, in messages whose fields have the same names.
+  template <class Message>
+  void describe(const StepReport& report, Message& message) const noexcept {
+    message.asked = count_.asked;
+    message.refused_samples = refused_samples();
+    message.fallback_share =
+        count_.asked > 0 ? static_cast<float>(count_.fallbacks()) / static_cast<float>(count_.asked) : 0.0f;
+    message.envelope_excess = report.worst_excess;
+    message.envelope_feature = static_cast<std::int8_t>(report.worst_feature);
+    message.reaction = static_cast<std::uint8_t>(report.reaction);
+    message.status = static_cast<std::uint8_t>(report.status);
+    message.cause = static_cast<std::uint8_t>(report.cause);
+    message.stale_inputs = report.stale_inputs();
   }
   const Vehicle& vehicle() const noexcept { return vehicle_; }
 
@@ -226,6 +246,7 @@ class NeuralController {
   pinnquad::Commands<float> last_commands_{};
   std::uint64_t answered_us_ = 0;
   bool answered_ = false;
+  bool ready_ = false;
   pinnquad::FallbackCount count_{};
 };
 

@@ -80,11 +80,9 @@ class NeuralControl {
   /// Before the module registers its mode, and with the next model in flight, from another thread: opens the block,
   /// checks every number, replays the golden vectors. The module may register once this was ok.
   pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
-    const pinnquad::Status status = controller_.offer_model(block, length);
-    if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
-    return status;
+    return controller_.offer_model(block, length);
   }
-  bool ready() const noexcept { return ready_; }
+  bool ready() const noexcept { return controller_.ready(); }
   /// True once run() has taken the model accepted last: the memory of the one before may be written.
   bool model_settled() const noexcept { return controller_.model_settled(); }
 
@@ -112,7 +110,9 @@ class NeuralControl {
     flight_stacks::StepReport report;
     const flight_stacks::Reaction reaction = controller_.step(start_us, commands, report);
     const std::uint64_t end_us = clock_();
-    describe(end_us, static_cast<std::uint32_t>(end_us - start_us), report, status);
+    controller_.describe(report, status);
+    status.timestamp = end_us;
+    status.inference_time_us = static_cast<std::uint32_t>(end_us - start_us);
     if (reaction == flight_stacks::Reaction::gives_up) return false;
     motors.timestamp = end_us;
     motors.timestamp_sample = start_us;
@@ -123,26 +123,8 @@ class NeuralControl {
  private:
   static pinnquad::Vector3<float> vector(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
 
-  void describe(std::uint64_t now_us, std::uint32_t time_us, const flight_stacks::StepReport& report,
-                PinnquadStatus& status) const noexcept {
-    const pinnquad::FallbackCount& count = controller_.count();
-    status.timestamp = now_us;
-    status.inference_time_us = time_us;
-    status.asked = count.asked;
-    status.refused_samples = controller_.refused_samples();
-    status.fallback_share =
-        count.asked > 0 ? static_cast<float>(count.fallbacks()) / static_cast<float>(count.asked) : 0.0f;
-    status.envelope_excess = report.worst_excess;
-    status.envelope_feature = static_cast<std::int8_t>(report.worst_feature);
-    status.reaction = static_cast<std::uint8_t>(report.reaction);
-    status.status = static_cast<std::uint8_t>(report.status);
-    status.cause = static_cast<std::uint8_t>(report.cause);
-    status.stale_inputs = report.stale_inputs();
-  }
-
   ClockUs clock_;
   flight_stacks::NeuralController<Model> controller_;
-  bool ready_ = false;
 };
 
 }  // namespace pinnquad_px4

@@ -21,11 +21,9 @@ class NeuralControl {
   explicit NeuralControl(const flight_stacks::AgeLimits& ages = {}) noexcept : controller_(ages) {}
 
   pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
-    const pinnquad::Status status = controller_.offer_model(block, length);
-    if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
-    return status;
+    return controller_.offer_model(block, length);
   }
-  bool ready() const noexcept { return ready_; }
+  bool ready() const noexcept { return controller_.ready(); }
 
   bool step(std::uint32_t now_ms, const CrazyflieState& state, const CrazyflieSetpoint& setpoint, float (&forces)[4],
             CrazyflieReport& report) noexcept {
@@ -37,7 +35,7 @@ class NeuralControl {
       take(setpoint);
       has_commands = controller_.step(in_us(now_ms), commands, why) != flight_stacks::Reaction::gives_up;
     }
-    describe(why, report);
+    controller_.describe(why, report);
     if (!has_commands) return false;
     for (std::size_t motor = 0; motor < 4; ++motor) forces[motor] = commands[rotor_of_motor[motor]];
     return true;
@@ -88,23 +86,8 @@ class NeuralControl {
     static_cast<void>(controller_.set_point(in_us(s.timestamp), wanted));
   }
 
-  void describe(const flight_stacks::StepReport& why, CrazyflieReport& report) const noexcept {
-    const pinnquad::FallbackCount& count = controller_.count();
-    report.asked = count.asked;
-    report.refused_samples = controller_.refused_samples();
-    report.fallback_share =
-        count.asked > 0 ? static_cast<float>(count.fallbacks()) / static_cast<float>(count.asked) : 0.0f;
-    report.envelope_excess = why.worst_excess;
-    report.envelope_feature = static_cast<std::int8_t>(why.worst_feature);
-    report.reaction = static_cast<std::uint8_t>(why.reaction);
-    report.status = static_cast<std::uint8_t>(why.status);
-    report.cause = static_cast<std::uint8_t>(why.cause);
-    report.stale_inputs = why.stale_inputs();
-  }
-
   flight_stacks::NeuralController<Model> controller_;
   pinnquad::Heading<float> heading_{};  ///< of the body in the firmware's world
-  bool ready_ = false;
 };
 
 }  // namespace pinnquad_crazyflie
