@@ -14,8 +14,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Model, class GuardType>
 void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
-  static_assert(!GuardType::clamps_to_envelope,
-                "pinnquad: a batch refuses what is outside the envelope; it does not clamp");
+  static_assert(GuardType::refuses_outside_envelope,
+                "pinnquad: a batch refuses what is outside the envelope; take a guard with TrainingEnvelope");
   using Scalar = typename Model::Scalar;
   using Batched = BatchedNetwork<typename Model::Network>;
   using Numbers = detail::ModelNumbers<Model>;

@@ -26,8 +26,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Model, class GuardType>
 Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                              typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
-  static_assert(!GuardType::clamps_to_envelope,
-                "pinnquad: outside the envelope a clamped feature has no influence; take a guard that refuses");
+  static_assert(GuardType::refuses_outside_envelope,
+                "pinnquad: derivatives outside the envelope mean nothing; take a guard with TrainingEnvelope");
   using Scalar = typename Model::Scalar;
   using Network = typename Model::Network;
   using Pass = JacobianPass<Network>;
