@@ -32,7 +32,7 @@ static float force_scale = 1.0f;   /* greatest thrust of the airframe's rotor ov
 
 static uint32_t now_ms(void) { return T2M(xTaskGetTickCount()); }
 
-/* In the app's task, whose stack is ours to choose: opening and testing a model takes 1.5 kB of it. */
+/* In the app's task, whose stack is ours to choose: opening and testing a model takes some. */
 void appMain(void) {
   model_status =
       pinnquad_flight_offer_model(pinnquad_model_block, (size_t)(pinnquad_model_block_end - pinnquad_model_block));
