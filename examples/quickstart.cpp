@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The README's example: an exported model in flight code.
 #include <cstdio>
-#include "models/demo_quadrotor.hpp"  // written by ./scripts/demo; includes pinnquad/flight.hpp
+#include "model.hpp"  // demo_out/model.hpp, written by ./scripts/demo; includes pinnquad/flight.hpp
 
 int main() {
-  const pinnquad::InverseDynamics<DemoQuadModel> inverse;  // no state, no heap; weights stay in flash
+  const pinnquad::InverseDynamics<TrainedQuadModel> inverse;  // no state, no heap; weights stay in flash
   if (pinnquad::self_test(inverse) != pinnquad::Status::ok) return 1;
 
-  DemoQuadModel::Inputs wanted;                    // hover, level, and ...
+  TrainedQuadModel::Inputs wanted;                 // hover, level, and ...
   wanted.angular_acceleration_rad_s2[0] = 5.0f;    // ... roll to the right
   pinnquad::Commands<float> u{};                   // motor commands, 0..1
   const pinnquad::Status status = inverse.predict(wanted, u);  // noexcept; u untouched unless ok
