@@ -12,9 +12,9 @@
 namespace pinnquad {
 
 /// One row of a recorded flight: the motion at one instant and the commands that cause it.
-/// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world.
+/// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world. docs/guide.md has the same as columns of a CSV.
 struct Sample {
-  double time_s = 0;
+  double time_s = 0;  ///< strictly increasing from row to row; any start
   /// Derivative of the body-frame velocity, FRD: v_dot_B = R^T a_world - omega x v_B (Eq. (1)).
   Vector3<double> linear_acceleration_m_s2 = Vector3<double>::Zero();
   Vector3<double> angular_acceleration_rad_s2 = Vector3<double>::Zero();  ///< body, FRD
@@ -23,8 +23,10 @@ struct Sample {
   double roll_rad = 0;
   double pitch_rad = 0;
   double yaw_rad = 0;
-  double altitude_m = 0;        ///< positive up
-  Commands<double> commands{};  ///< normalised, one per rotor, in the order of Eq. (2)
+  double altitude_m = 0;  ///< of the vehicle's centre above the ground below it, positive up
+  /// u_i = (n_i / n_max)^2, 0..1: thrust over the greatest thrust, as told to the motor at this instant, before its lag.
+  /// Front right, rear left, front left, rear right: the order of Eq. (2).
+  Commands<double> commands{};
 };
 
 inline constexpr std::size_t sample_value_count = 21;
