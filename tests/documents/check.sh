@@ -143,6 +143,15 @@ while IFS=$'\t' read -r line language action argument; do
       fault "$line" "differs from $argument:"
       cat "$work/difference"
     fi
+  elif [ "$action" = output ]; then
+    if ! (cd "$tree" && bash -euo pipefail -c "$argument") >"$work/output" 2>"$work/$line.log" </dev/null; then
+      fault "$line" "the command fails: $argument"
+      tail -n 20 "$work/$line.log"
+    elif ! [ -s "$work/output" ] || grep -vxF -f <(sed 's/^ *//; s/ *$//' "$parts/$line.code") \
+      <(sed 's/^ *//; s/ *$//' "$work/output") >"$work/difference"; then
+      fault "$line" "$argument writes something else:"
+      cat "$work/difference"
+    fi
   elif [ "$language:$action" = sh:skip ]; then
     check_commands "$line"
   elif [ "$action" = run ]; then
