@@ -8,6 +8,6 @@ macro(pinnquad_require_package name)
   if(NOT ${name}_FOUND)
     message(FATAL_ERROR
       "pinnquad: ${_require_NEEDED_FOR} need(s) ${name} ${_require_VERSION}, which was not found. "
-      "On Debian or Ubuntu: sudo apt-get install ${_require_DEBIAN}")
+      "On Debian or Ubuntu, as root: apt-get install ${_require_DEBIAN}")
   endif()
 endmacro()

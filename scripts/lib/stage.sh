@@ -45,3 +45,14 @@ parallel_jobs() {
   if [ "$memory_gib" -lt 1 ]; then memory_gib=1; fi
   if [ "$memory_gib" -lt "$cores" ]; then echo "$memory_gib"; else echo "$cores"; fi
 }
+
+# cpu_seconds: what this script and all that it has waited for have computed so far, user and system; 0 where the
+# kernel does not say.
+cpu_seconds() {
+  local stat ticks
+  read -r stat 2>/dev/null </proc/$$/stat || { echo 0; return; }
+  ticks=$(getconf CLK_TCK 2>/dev/null || echo 100)
+  # after the name, which may hold anything, utime stime cutime cstime are words 12 to 15
+  read -ra stat <<<"${stat##*) }"
+  echo $(((stat[11] + stat[12] + stat[13] + stat[14]) / ticks))
+}

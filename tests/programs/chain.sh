@@ -22,8 +22,9 @@ cmp a/model.hpp b/model.hpp || fail "the same seeds trained other weights"
 cmp a/model.block b/model.block || fail "the same seeds wrote another block"
 
 # the exported header in a project of its own
-cmake -S "$source_dir/examples/fly_export" -B fly_export -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" \
-  -DCMAKE_CXX_FLAGS="$compiler_flags" -DPINNQUAD_MODEL_HEADER="$work/a/model.hpp" >configure.txt
+cmake -S "$source_dir/examples/fly_export" -B fly_export -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS="$compiler_flags" \
+  -DPINNQUAD_MODEL_HEADER="$work/a/model.hpp" >configure.txt
 cmake --build fly_export >build.txt || { cat build.txt; fail "the exported header does not compile"; }
 fly_export/fly_export --replay a/replay.txt >flown.txt 2>flown_errors.txt || true # 8 epochs need not fly well
 cat flown.txt
