@@ -277,8 +277,12 @@ inline bool plot_wind(const std::string& svg, const std::vector<TraceRow>& trace
   return draw_svg(svg, 1000, 900, out.str());
 }
 
+/// The files that draw_flight may write.
+inline constexpr std::array<const char*, 4> flight_picture_names = {"trajectory.svg", "correlation.svg",
+                                                                    "ground_effect.svg", "wind.svg"};
+
 /// All of them into a folder that is there: trajectory.svg, correlation.svg, ground_effect.svg where there is one, wind.svg
-/// if `windy`. False, after one line on stderr, where gnuplot is missing.
+/// if `windy`. False, after one line on stderr, where gnuplot is missing or failed.
 inline bool draw_flight(const std::string& folder, const pinnquad::Flight& flight, const std::vector<TraceRow>& trace,
                         const pinnquad::Airframe<double>& airframe, pinnquad::GroundEffectModel ground_effect,
                         bool windy) {

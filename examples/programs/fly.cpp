@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Flies a simulated quadrotor on one of the paper's flights and writes the recorded flight as CSV.
 //   fly d1 --out flight.csv --seed 1
-#include <CLI/CLI.hpp>
-
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -15,6 +12,9 @@
 #include <vector>
 
 #include "airframes.hpp"
+#include "command_line.hpp"
+#include "console.hpp"
+#include "file_roles.hpp"
 #include "flight_choice.hpp"
 #include "flight_pictures.hpp"
 #include "flight_statistics.hpp"
@@ -29,9 +29,6 @@
 namespace {
 
 using namespace pinnquad;
-
-constexpr int exit_flight_failed = 1;
-constexpr int exit_bad_input = 2;
 
 struct Options {
   std::string flight = AgileFlight::name;
@@ -65,13 +62,21 @@ void list_airframes() {
   });
 }
 
-/// The folder of an output must exist before minutes are spent on what goes there.
-void require_folder(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code ignored;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
-    throw OutputError(path, "its folder does not exist");
-  }
+/// No output takes the place of the sticks or of another output.
+void require_separate_files(const Options& options) {
+  programs::FileRoles roles;
+  roles.reads("--sticks", options.sticks);
+  roles.writes("--out", options.out);
+  roles.writes("--record-sticks", options.record_sticks);
+  roles.writes("--replay", options.replay);
+  if (options.pictures.empty()) return;
+  roles.writes("--pictures", options.pictures);
+  for (const char* name : programs::flight_picture_names) roles.writes("--pictures", options.pictures + "/" + name);
+}
+
+/// An output must be writable before minutes are spent on what goes there.
+void require_writable(const std::string& path) {
+  if (!path.empty()) AtomicFile probe(path);
 }
 
 /// The folder for pictures, made if its own folder is there.
@@ -122,8 +127,8 @@ class Campaign {
     });
     progress.clear();
     if (recorded.report.end != FlightEnd::completed) {
-      std::fprintf(stderr, "fly: %s\n", why_it_ended(recorded.report).c_str());
-      return exit_flight_failed;
+      programs::complain("fly", why_it_ended(recorded.report));
+      return programs::exit_failed;
     }
     if (!options_.out.empty()) write_flight_csv(options_.out, recorded.flight);
     if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
@@ -132,7 +137,7 @@ class Campaign {
     const bool drawn =
         options_.pictures.empty() || programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_,
                                                            ground_effect_, std::is_same_v<PaperFlight, WindyFlight>);
-    return drawn ? 0 : exit_flight_failed;
+    return drawn ? 0 : programs::exit_failed;
   }
 
  private:
@@ -202,9 +207,8 @@ class Campaign {
     programs::print_flight_table(figures);
     for (const programs::FlightFigures& f : figures) {
       if (f.report.end == FlightEnd::completed) continue;
-      std::fprintf(stderr, "fly: seed %llu: %s\n", static_cast<unsigned long long>(f.seed),
-                   why_it_ended(f.report).c_str());
-      return exit_flight_failed;
+      programs::complain("fly", "seed " + std::to_string(f.seed) + ": " + why_it_ended(f.report));
+      return programs::exit_failed;
     }
     return 0;
   }
@@ -279,9 +283,26 @@ void with_all_choices(const Options& options, const Function& function) {
   }
 }
 
-}  // namespace
+/// Flies what the options ask for: the exit code.
+int fly_chosen(const Options& options) {
+  const std::string fault = contradiction(options);
+  if (!fault.empty()) throw std::invalid_argument(fault);
+  require_separate_files(options);
+  int code = programs::exit_bad_input;
+  with_all_choices(options, [&](auto tag, const Airframe<double>& airframe, GroundEffectModel ground_effect) {
+    Campaign<typename decltype(tag)::type> campaign(options, airframe, ground_effect);
+    for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_writable(file);
+    if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);
+    if (!options.pictures.empty()) make_folder(options.pictures);
+    programs::catch_interrupt();
+    code = campaign.run();
+  });
+  return code;
+}
 
-int main(int argument_count, char** arguments) {
+int run(int argument_count, char** arguments) {
+  using programs::add_number;
+  using programs::add_path;
   Options options;
   bool list = false;
   std::string flights = "the flight";
@@ -294,69 +315,52 @@ int main(int argument_count, char** arguments) {
       "  fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
       "  fly d3 --statistics 20",
       "fly"};
+  app.footer(
+      "Exit codes: 0; 1 the flight ended early, or gnuplot is missing or failed; 2 bad input or a file that can't be "
+      "read or\nwritten; 130 interrupted, nothing was written.");
   app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3")->capture_default_str();
-  app.add_option("--out", options.out, "the flight, or with --statistics the table")->type_name("FILE.csv");
-  app.add_option("--seed", options.seed, "seed of pilot and recorder noise; the same seed gives the same flight")
-      ->capture_default_str();
-  app.add_option(
-         "--samples", options.samples,
-         "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{10000000}));
+  add_path(app, "--out", options.out, "FILE.csv", "the flight, or with --statistics the table");
+  add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
+             "seed of pilot and recorder noise; the same seed gives the same flight")
+      ->type_name("N");
+  add_number(app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
+             "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)");
   app.add_option("--airframe", options.airframe, "one of: " + programs::airframe_names())->capture_default_str();
-  app.add_option("--max-speed", options.max_speed_m_s, "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)")
-      ->check(CLI::Range(0.5, 8.0));
+  add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0,
+             "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)");
   app.add_option("--ground-effect", options.ground_effect,
                  "none, cheeseman-bennett or conyers (default: d2 conyers, else none)");
-  app.add_option("--gyro-noise", options.gyro_noise_rad_s, "of the recording, standard deviation, rad/s")
-      ->check(CLI::Range(0.0, 10.0));
-  app.add_option("--latency", options.latency_ms, "of the recorded commands, ms")->check(CLI::Range(0.0, 1000.0));
-  app.add_option("--jitter", options.jitter_ms, "up to this much more latency, uniform, row by row, ms")
-      ->check(CLI::Range(0.0, 1000.0));
-  app.add_option("--sticks", options.sticks, "fly this stick recording instead of the random pilot (docs/flights.md)")
-      ->type_name("FILE.csv");
-  app.add_option("--record-sticks", options.record_sticks, "write down what the pilot asks for")->type_name("FILE.csv");
-  app.add_option("--stick-interval", options.stick_interval_ms,
-                 "a row of it at most this often, ms; 0: every control tick, which flies the same flight again")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
-  app.add_option("--statistics", options.statistics, "fly this many seeds from --seed on, and print what they reach")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100000}));
-  app.add_option("--pictures", options.pictures,
-                 "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)")
-      ->type_name("DIR");
-  app.add_option("--replay", options.replay, "page that replays the flight in 3D in a browser (docs/replay.md)")
-      ->type_name("FILE.html");
+  add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
+  add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");
+  add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0, "up to this much more latency, uniform, row by row, ms");
+  add_path(app, "--sticks", options.sticks, "FILE.csv",
+           "fly this stick recording instead of the random pilot (docs/flights.md)");
+  add_path(app, "--record-sticks", options.record_sticks, "FILE.csv", "write down what the pilot asks for");
+  add_number(app, "--stick-interval", options.stick_interval_ms, 0.0, 1000.0,
+             "a row of it at most this often, ms; 0: every control tick, which flies the same flight again");
+  add_number(app, "--statistics", options.statistics, std::size_t{1}, std::size_t{100000},
+             "fly this many seeds from --seed on, and print what they reach")
+      ->default_str("");
+  add_path(app, "--pictures", options.pictures, "DIR",
+           "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)");
+  add_path(app, "--replay", options.replay, "FILE.html",
+           "page that replays the flight in 3D in a browser (docs/replay.md)");
   app.add_flag("--list-airframes", list, "print the airframes and where their values are from, and stop");
-  try {
-    app.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    std::fprintf(stderr, "fly: %s\n", error.what());
-    return exit_bad_input;
-  }
+  if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
   if (list) {
     list_airframes();
     return 0;
   }
   try {
-    const std::string fault = contradiction(options);
-    if (!fault.empty()) throw std::invalid_argument(fault);
-    int code = exit_bad_input;
-    with_all_choices(options, [&](auto tag, const Airframe<double>& airframe, GroundEffectModel ground_effect) {
-      Campaign<typename decltype(tag)::type> campaign(options, airframe, ground_effect);
-      for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_folder(file);
-      if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);
-      if (!options.pictures.empty()) make_folder(options.pictures);
-      programs::catch_interrupt();
-      code = campaign.run();
-    });
-    return code;
+    return fly_chosen(options);
   } catch (const Interrupted&) {
-    std::fprintf(stderr, "fly: interrupted; nothing was written\n");
+    programs::complain("fly", "interrupted; nothing was written");
     return programs::exit_interrupted;
-  } catch (const std::exception& error) {  // InputError, OutputError, contradictions: one line
-    std::fprintf(stderr, "fly: %s\n", error.what());
-    return exit_bad_input;
   }
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  return programs::run_program("fly", [&] { return run(argument_count, arguments); });
 }

@@ -227,7 +227,9 @@ inline void write_report(const std::string& path, nlohmann::json settings, const
     rows.push_back(std::move(row));
   }
   pinnquad::AtomicFile file(path);
-  file.stream() << nlohmann::json{{"settings", std::move(settings)}, {"results", std::move(rows)}}.dump(2) << "\n";
+  file.stream() << nlohmann::json{{"settings", std::move(settings)}, {"results", std::move(rows)}}.dump(
+                       2, ' ', false, nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
+                << "\n";
   file.commit();
 }
 

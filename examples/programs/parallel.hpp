@@ -17,14 +17,14 @@
 namespace programs {
 
 /// Calls `work(0)` to `work(count - 1)` on up to `threads` threads, in the order of the indices but not one after the
-/// other; `job` and `share_done()`, 0..1, are for the progress line. Once a call returned false or threw, no further index
+/// other, and on fewer threads where the system gives no more; `job` and `share_done()`, 0..1, are for the progress line. Once a call returned false or threw, no further index
 /// is started; the first exception is thrown again when all threads are back. The time that it took, s.
 template <class Work, class ShareDone>
 double run_parallel(const std::string& job, std::size_t count, std::size_t threads, const ShareDone& share_done,
                     const Work& work) {
   std::mutex mutex;
   std::exception_ptr failure;
-  std::atomic<std::size_t> next{0}, running{std::min(threads, count)};
+  std::atomic<std::size_t> next{0}, running{0};
   const auto take_turns = [&] {
     try {
       for (std::size_t i = next.fetch_add(1); i < count; i = next.fetch_add(1)) {
@@ -39,7 +39,17 @@ double run_parallel(const std::string& job, std::size_t count, std::size_t threa
   };
   ProgressLine progress(job);
   std::vector<std::thread> workers;
-  for (std::size_t i = running.load(); i > 0; --i) workers.emplace_back(take_turns);
+  const std::size_t wanted = std::min(threads, count);
+  workers.reserve(wanted);
+  try {
+    while (workers.size() < wanted) {
+      running.fetch_add(1);
+      workers.emplace_back(take_turns);
+    }
+  } catch (const std::exception&) {  // the system has no more threads, or no memory for one
+    if (!workers.empty()) running.fetch_sub(1);
+    if (workers.empty()) take_turns();
+  }
   while (running.load() > 0) {
     progress.update(share_done());
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

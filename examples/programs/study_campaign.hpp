@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string>
 #include <vector>
 
-#include <sys/file.h>
-
+#include "console.hpp"
+#include "folder_lock.hpp"
 #include "interrupt.hpp"
 #include "parallel.hpp"
 #include "study_configuration.hpp"
@@ -68,25 +69,16 @@ inline Flights fly_all(const Plan& plan) {
   return flights;
 }
 
-/// A folder that one program works in; the lock ends with the program, however it ends.
+/// The folder of a study, held by one program.
 class StudyFolder {
  public:
   /// Makes the folder if it is not there. Throws OutputError: not writable, or another program is at work in it.
-  explicit StudyFolder(const std::string& path) : path_(path) {
+  explicit StudyFolder(const std::string& path) : path_(path), lock_(path) {
     std::error_code error;
     std::filesystem::create_directories(path + "/series", error);
-    if (error) throw pinnquad::OutputError(path, error.message());
-    lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock_ < 0) throw pinnquad::OutputError(path, pinnquad::detail::system_reason(errno, "it does not open"));
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-      ::close(lock_);
-      throw pinnquad::OutputError(path, "another paper_study is at work in it");
-    }
+    if (error) throw pinnquad::OutputError(path + "/series", error.message());
     remove_partial_files();
   }
-  StudyFolder(const StudyFolder&) = delete;
-  StudyFolder& operator=(const StudyFolder&) = delete;
-  ~StudyFolder() { ::close(lock_); }
 
   std::string rows() const { return path_ + "/rows.csv"; }
   std::string configuration() const { return path_ + "/study.json"; }
@@ -94,7 +86,7 @@ class StudyFolder {
   const std::string& path() const { return path_; }
 
  private:
-  /// What a killed run was writing: with the lock held, nobody still is.
+  /// What a killed run was writing; a report that is being written holds its own.
   void remove_partial_files() const {
     std::error_code error;
     for (const std::string& folder : {path_, path_ + "/series"}) {
@@ -102,14 +94,13 @@ class StudyFolder {
         const std::string name = entry.path().filename().string();
         if (name.find(".csv.partial-") == std::string::npos && name.find(".json.partial-") == std::string::npos)
           continue;
-        std::error_code ignored;
-        std::filesystem::remove(entry.path(), ignored);
+        pinnquad::detail::PartialFile::remove_abandoned(entry.path().string());
       }
     }
   }
 
   std::string path_;
-  int lock_ = -1;
+  programs::FolderLock lock_;
 };
 
 /// What a model predicts on its test rows, beside what was flown.
@@ -152,8 +143,9 @@ class Campaign {
 
  private:
   int told_interrupted(std::size_t finished) const {
-    std::fprintf(stderr, "paper_study: interrupted; %zu of %zu trainings are in %s; the same command goes on\n",
-                 finished, jobs_.size(), folder_.rows().c_str());
+    programs::complain("paper_study", "interrupted; " + std::to_string(finished) + " of " +
+                                          std::to_string(jobs_.size()) + " trainings are in " + folder_.rows() +
+                                          "; the same command goes on");
     return programs::exit_interrupted;
   }
 
@@ -178,9 +170,12 @@ class Campaign {
     earlier_s_ = earlier_s;
     configuration_["started"] = started;
     stored_ = read_rows(folder_.rows());
+    std::map<RowId, int> own;
+    for (const Job& job : jobs_) own[job.id()] = job.assignment.epochs;
+    require_own_rows(folder_.rows(), stored_, own, plan_.best_weights);
     if (stored_.broken > 0) {
-      std::fprintf(stderr, "paper_study: %s: %zu row%s not whole; run again\n", folder_.rows().c_str(), stored_.broken,
-                   stored_.broken == 1 ? " is" : "s are");
+      programs::complain("paper_study", folder_.rows() + ": " + std::to_string(stored_.broken) +
+                                            (stored_.broken == 1 ? " row is" : " rows are") + " not whole; run again");
     }
     note_run();
     write_rows(folder_.rows(), lines());

@@ -123,7 +123,15 @@ inline std::string difference(const nlohmann::json& there, const nlohmann::json&
 /// Reads DIR/study.json. Throws InputError if it is not one.
 inline nlohmann::json read_configuration(const std::string& path) {
   const nlohmann::json read = nlohmann::json::parse(pinnquad::detail::file_text(path), nullptr, false);
-  if (!read.is_object()) throw pinnquad::InputError(path, 0, 0, "the settings of a study as JSON", "something else");
+  const auto facts_are_usual = [&read] {
+    const auto fact = [&read](const char* name, const nlohmann::json& otherwise) {
+      return read.value(name, otherwise);
+    };
+    return fact("wall_s", 0.0).is_number() && fact("threads", 1).is_number() && fact("started", "").is_string() &&
+           fact("cpu", "").is_string() && fact("weights", "").is_string();
+  };
+  if (!read.is_object() || !facts_are_usual())
+    throw pinnquad::InputError(path, 0, 0, "the settings of a study as JSON", "something else");
   return read;
 }
 

@@ -9,17 +9,21 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "console.hpp"
+#include "file_roles.hpp"
 #include "study_campaign.hpp"
 
 namespace study {
 
 namespace detail {
 
-/// The trainings of a study, from its settings: models in order, flights, seeds.
-inline std::vector<RowId> expected_rows(const nlohmann::json& configuration) {
-  std::vector<RowId> rows;
+/// The trainings of a study and their epochs, from its settings: models in order, flights, seeds.
+inline std::vector<std::pair<RowId, int>> expected_rows(const nlohmann::json& configuration) {
+  std::vector<std::pair<RowId, int>> rows;
+  const auto epochs = configuration.at("epochs").get<int>();
   const auto first_flight = configuration.at("flight_seed").get<std::uint64_t>();
   const auto first = configuration.at("first_seed").get<std::uint64_t>();
   for (const nlohmann::json& model : configuration.at("models")) {
@@ -28,7 +32,8 @@ inline std::vector<RowId> expected_rows(const nlohmann::json& configuration) {
     const auto seeds = trained ? configuration.at("seeds").get<std::uint64_t>() : 1;
     for (std::uint64_t flight = 0; flight < flights; ++flight) {
       for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        rows.push_back({model.at("id"), model.at("flight"), first_flight + flight, trained ? first + seed : 0});
+        rows.push_back({{model.at("id"), model.at("flight"), first_flight + flight, trained ? first + seed : 0},
+                        trained ? epochs : 0});
       }
     }
   }
@@ -46,14 +51,17 @@ inline Part read_part(const std::string& path) {
   Part part;
   part.path = path;
   part.configuration = read_configuration(path + "/study.json");
+  std::map<RowId, int> own;
   try {
-    expected_rows(part.configuration);
+    for (const auto& [id, epochs] : expected_rows(part.configuration)) own[id] = epochs;
   } catch (const nlohmann::json::exception&) {
     throw pinnquad::InputError(path + "/study.json", 0, 0, "the settings of a study", "something else");
   }
   part.stored = read_rows(path + "/rows.csv");
+  require_own_rows(path + "/rows.csv", part.stored, own, part.configuration.value("weights", "") == weights_name(true));
   if (part.stored.broken > 0) {
-    std::fprintf(stderr, "paper_study: %s/rows.csv: %zu not whole; left out\n", path.c_str(), part.stored.broken);
+    programs::complain("paper_study",
+                       path + "/rows.csv: " + std::to_string(part.stored.broken) + " not whole; left out");
   }
   return part;
 }
@@ -92,10 +100,12 @@ inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
 /// different studies and for two different rows of one training.
 inline int merge(const std::vector<std::string>& paths, const std::string& out) {
   std::vector<detail::Part> parts;
+  programs::FileRoles roles;
   for (const std::string& path : paths) {
     std::error_code error;
     if (std::filesystem::equivalent(path, out, error))
       throw std::invalid_argument("merge: " + path + " is the folder to write");
+    for (const char* name : {"/study.json", "/rows.csv"}) roles.reads("merge", path + name);
     parts.push_back(detail::read_part(path));
     const std::string differs = difference(parts.front().configuration, parts.back().configuration, {"shard"});
     if (!differs.empty()) {
@@ -112,19 +122,29 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
       }
     }
   }
+  std::error_code error;
+  std::set<std::string> series;
+  for (const detail::Part& part : parts) {
+    for (const auto& entry : std::filesystem::directory_iterator(part.path + "/series", error)) {
+      if (entry.path().extension() != ".csv") continue;
+      roles.reads("merge", entry.path().string());
+      series.insert(entry.path().filename().string());
+    }
+  }
+  for (const char* name : {"/study.json", "/rows.csv"}) roles.writes("--out", out + name);
+  for (const std::string& name : series) roles.writes("--out", out + "/series/" + name);
   nlohmann::json joined = detail::joined_configuration(parts);
   const StudyFolder folder(out);
-  std::error_code error;
   if (std::filesystem::exists(folder.configuration(), error)) {
     const std::string differs = difference(read_configuration(folder.configuration()), joined);
     if (!differs.empty()) {
       throw std::invalid_argument(folder.configuration() + ": of another study: " + differs + "; give another --out");
     }
   }
-  const std::vector<RowId> expected = detail::expected_rows(joined);
+  const std::vector<std::pair<RowId, int>> expected = detail::expected_rows(joined);
   std::vector<std::string> lines;
   const RowId* missing = nullptr;
-  for (const RowId& id : expected) {
+  for (const auto& [id, epochs] : expected) {
     const auto row = rows.find(id);
     if (row != rows.end()) {
       lines.push_back(row->second);
@@ -148,9 +168,9 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   std::printf("%zu of %zu trainings from %zu folders are in %s\n", lines.size(), expected.size(), parts.size(),
               folder.rows().c_str());
   if (missing == nullptr) return 0;
-  std::fprintf(stderr, "paper_study: merge: %zu trainings are missing, the first is %s\n",
-               expected.size() - lines.size(), to_string(*missing).c_str());
-  return 1;
+  programs::complain("paper_study", "merge: " + std::to_string(expected.size() - lines.size()) +
+                                        " trainings are missing, the first is " + to_string(*missing));
+  return programs::exit_failed;
 }
 
 }  // namespace study

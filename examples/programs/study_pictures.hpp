@@ -5,17 +5,19 @@
 #include <filesystem>
 #include <random>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <vector>
 
 #include "flight_pictures.hpp"
 #include "flight_trace.hpp"
+#include "pinnquad/data/file_error.hpp"
 #include "study_flights.hpp"
 
 namespace study {
 
 /// Flies d1, d2 and d3 of one seed again, forces taken apart, and draws `folder`/flights/{d1,d2,d3}/*.svg as
-/// `fly NAME --pictures` does. False, after one line on stderr, where gnuplot is missing; the report then leaves them out.
+/// `fly NAME --pictures` does. False, after one line on stderr, where gnuplot is missing or failed; the report then leaves them out.
 inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
   using namespace pinnquad;
   const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();
@@ -30,7 +32,9 @@ inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
         fly(vehicle, PaperFlight::pilot(vehicle, std::mt19937_64(seed)), PaperFlight::plan(),
             [&](const FlightRow& row) { trace.push_back(programs::trace_row(vehicle, without, row.vehicle)); });
     const std::string into = folder + "/flights/" + PaperFlight::name;
-    std::filesystem::create_directories(into);
+    std::error_code error;
+    std::filesystem::create_directories(into, error);
+    if (error) throw pinnquad::OutputError(into, error.message());
     drawn = programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
                                   std::is_same_v<PaperFlight, WindyFlight>);
   });

@@ -17,7 +17,7 @@
 namespace programs {
 
 /// Writes DIR/report.html, DIR/table3.csv, DIR/comparisons.csv and DIR/claims.csv from DIR/rows.csv, DIR/study.json and
-/// DIR/series/; all of them or, where input is refused, none. Throws InputError, OutputError: one line each.
+/// DIR/series/; all of them or, where input is refused or one can't be written, none. Throws InputError, OutputError: one line each.
 inline void write_study_report(const std::string& folder) {
   const detail::ReportInput input = detail::read_report_input(folder);
   const std::vector<Comparison> comparisons = all_comparisons(input.study);
@@ -28,10 +28,11 @@ inline void write_study_report(const std::string& folder) {
       {"table3.csv", detail::table3_csv(input.study)},
       {"comparisons.csv", detail::comparisons_csv(comparisons, flights)},
       {"claims.csv", detail::claims_csv(claims)}};
-  std::vector<std::unique_ptr<pinnquad::AtomicFile>> open;  // all are open before one is put in its place
+  std::vector<std::unique_ptr<pinnquad::AtomicFile>> open;  // all are whole before one is put in its place
   for (const auto& [name, text] : files) {
     open.push_back(std::make_unique<pinnquad::AtomicFile>(folder + "/" + name));
-    open.back()->stream() << text << std::flush;
+    open.back()->stream() << text;
+    open.back()->close();
   }
   for (const auto& file : open) file->commit();
 }

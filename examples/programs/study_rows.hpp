@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -69,6 +70,8 @@ inline std::string without_time(const std::string& row) { return row.substr(0, r
 
 namespace detail {
 
+constexpr std::size_t epochs_field = 4, weights_field = 5;
+
 inline bool parse_seed(std::string_view text, std::uint64_t& value) {
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
@@ -80,7 +83,7 @@ inline bool parse_row(const std::string& line, std::size_t columns, RowId& id) {
   pinnquad::detail::split_fields(line, fields);
   constexpr std::size_t first_number = 6;
   if (fields.size() != columns || fields[0].empty() ||
-      (fields[5] != weights_name(false) && fields[5] != weights_name(true)))
+      (fields[weights_field] != weights_name(false) && fields[weights_field] != weights_name(true)))
     return false;
   for (std::size_t i = first_number; i < fields.size(); ++i) {
     double value = 0;
@@ -100,7 +103,8 @@ struct StoredRows {
   std::size_t broken = 0;
 };
 
-/// Reads a rows.csv; an absent or empty file has no rows. Throws InputError: not readable, another header.
+/// Reads a rows.csv; an absent or empty file has no rows. Throws InputError: not readable, another
+/// header, two rows of one training with different figures.
 inline StoredRows read_rows(const std::string& path) {
   StoredRows stored;
   std::error_code error;
@@ -122,12 +126,40 @@ inline StoredRows read_rows(const std::string& path) {
     }
     RowId id;
     if (ended && detail::parse_row(line, columns, id)) {
-      stored.rows[id] = line;
+      const auto [kept, is_new] = stored.rows.emplace(id, line);
+      if (!is_new && without_time(kept->second) != without_time(line)) {
+        throw pinnquad::InputError(path, line_number, 0, "one row of " + to_string(id),
+                                   "a second one with other figures");
+      }
     } else {
       ++stored.broken;
     }
   }
   return stored;
+}
+
+/// Throws std::invalid_argument, one line, for a row of a training that is not in `own` (trainings and their epochs), that
+/// had other epochs, or whose weights were chosen where `best_weights` does not allow it.
+inline void require_own_rows(const std::string& path, const StoredRows& stored, const std::map<RowId, int>& own,
+                             bool best_weights) {
+  for (const auto& [id, line] : stored.rows) {
+    std::vector<std::string_view> fields;
+    pinnquad::detail::split_fields(line, fields);
+    const std::string epochs(fields[detail::epochs_field]), weights(fields[detail::weights_field]);
+    const auto training = own.find(id);
+    std::string differs;
+    if (training == own.end()) {
+      differs = "there is no such training here";
+    } else if (epochs != std::to_string(training->second)) {
+      differs = "epochs is " + epochs + " there and " + std::to_string(training->second) + " here";
+    } else if (weights != weights_name(false) && !best_weights) {
+      differs = "weights is " + weights + " there and " + weights_name(false) + " here";
+    } else {
+      continue;
+    }
+    throw std::invalid_argument(path + ": a row of another study: " + to_string(id) + ": " + differs +
+                                "; give another --out");
+  }
 }
 
 /// Replaces a rows.csv by these lines; the file appears whole or not at all.

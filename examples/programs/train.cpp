@@ -2,18 +2,22 @@
 // Trains the linearized model's rivals on a recorded flight, judges all on its test block, exports the best
 // physics-informed network as a header.
 //   train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
-#include <CLI/CLI.hpp>
-
+#include <array>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "airframes.hpp"
 #include "campaign.hpp"
+#include "command_line.hpp"
+#include "console.hpp"
+#include "file_roles.hpp"
+#include "folder_lock.hpp"
 #include "judgement.hpp"
 #include "model_predictions.hpp"
 #include "pinnquad/data/csv.hpp"
@@ -24,7 +28,6 @@ namespace {
 
 using namespace pinnquad;
 
-constexpr int exit_bad_input = 2;
 constexpr const char* linear_name = "linearized";
 constexpr std::size_t golden_count = 8;
 /// Fewer rows than this can't train 6,379 weights to anything worth flying: 20 batches of 64 in the 60 % that train.
@@ -160,8 +163,8 @@ int train_judge_export(const Options& options, const Flight& flight) {
   };
   const std::size_t best_vanilla = best_of(vanilla), best_informed = best_of(informed);
   if (best_informed == results.size()) {
-    std::fprintf(stderr, "train: no physics-informed network was finished; nothing to export\n");
-    return programs::interrupted() ? programs::exit_interrupted : 1;
+    programs::complain("train", "no physics-informed network was finished; nothing to export");
+    return programs::interrupted() ? programs::exit_interrupted : programs::exit_failed;
   }
   std::vector<std::size_t> shown;
   if (best_vanilla < results.size()) shown.push_back(best_vanilla);
@@ -214,53 +217,67 @@ int train_judge_export(const Options& options, const Flight& flight) {
   return 0;
 }
 
-}  // namespace
+/// The files of --out.
+constexpr std::array<const char*, 7> output_names = {"results.csv",    "report.json", "ellipses.svg", "errors.svg",
+                                                     "prediction.svg", "model.hpp",   "replay.txt"};
 
-int main(int argument_count, char** arguments) {
+/// No output takes the place of the flight or of another output.
+void require_separate_files(const Options& options) {
+  programs::FileRoles roles;
+  roles.reads("--flight", options.flight);
+  roles.writes("--out", options.out);
+  for (const char* name : output_names) roles.writes("--out", options.out + "/" + name);
+  roles.writes("--block", options.block);
+}
+
+/// Trains on the flight of the options: the exit code.
+int train_chosen(const Options& options) {
+  if (!is_identifier(options.model_name)) {
+    throw std::invalid_argument("--name " + options.model_name + ": a C++ identifier was expected");
+  }
+  if (!programs::with_airframe(options.airframe, [](auto) {})) {
+    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
+  }
+  require_separate_files(options);
+  const Flight flight = read_flight_csv(options.flight, minimum_rows);
+  const programs::FolderLock folder(options.out);
+  // what cannot be written is found before the training
+  for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
+  if (!options.block.empty()) AtomicFile probe(options.block);
+  int code = programs::exit_bad_input;
+  programs::with_airframe(options.airframe,
+                          [&](auto tag) { code = train_judge_export<typename decltype(tag)::type>(options, flight); });
+  return code;
+}
+
+int run(int argument_count, char** arguments) {
+  using programs::add_number;
+  using programs::add_path;
   Options options;
   CLI::App app{"Trains vanilla and physics-informed networks on a flight, judges them, exports the best as a header.",
                "train"};
-  app.add_option("--flight", options.flight, "recorded flight, CSV as `fly` writes it")
-      ->type_name("FILE.csv")
-      ->required();
+  app.footer(
+      "Exit codes: 0; 1 no network was finished; 2 bad input or a file that can't be read or written; 130 interrupted, "
+      "what is\nfinished is kept.");
+  add_path(app, "--flight", options.flight, "FILE.csv", "recorded flight, CSV as `fly` writes it")->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
       ->capture_default_str();
-  app.add_option("--out", options.out, "folder for results, pictures and the exported header")->capture_default_str();
+  add_path(app, "--out", options.out, "DIR", "folder for results, pictures and the exported header")
+      ->default_str(options.out);
   app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
-  app.add_option("--block", options.block, "also write the exported weights as a model block")->type_name("FILE");
-  app.add_option("--seeds", options.seeds, "networks per kind")
-      ->capture_default_str()
-      ->check(CLI::Range(1, static_cast<int>(pinnquad::most_pairs)));
-  app.add_option("--epochs", options.epochs, "training epochs")->capture_default_str()->check(CLI::Range(1, 100000));
-  app.add_option("--seed", options.seed, "first seed (initialisation and batch order)")->capture_default_str();
-  app.add_option("--threads", options.threads, "trainings at once (default: all cores)")->check(CLI::Range(1u, 1024u));
-  try {
-    app.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    std::fprintf(stderr, "train: %s\n", error.what());
-    return exit_bad_input;
-  }
-  if (!is_identifier(options.model_name)) {
-    std::fprintf(stderr, "train: --name %s: a C++ identifier was expected\n", options.model_name.c_str());
-    return exit_bad_input;
-  }
-  try {
-    const Flight flight = read_flight_csv(options.flight, minimum_rows);
-    std::error_code error;
-    std::filesystem::create_directories(options.out, error);
-    AtomicFile probe(options.out + "/results.csv");  // an unwritable folder is found before the training
-    if (!options.block.empty()) AtomicFile block_probe(options.block);
-    int code = exit_bad_input;
-    const bool known = programs::with_airframe(
-        options.airframe, [&](auto tag) { code = train_judge_export<typename decltype(tag)::type>(options, flight); });
-    if (!known) {
-      std::fprintf(stderr, "train: no airframe named '%s'; known: %s\n", options.airframe.c_str(),
-                   programs::airframe_names().c_str());
-    }
-    return code;
-  } catch (const std::exception& error) {  // InputError, OutputError: one line
-    std::fprintf(stderr, "train: %s\n", error.what());
-    return exit_bad_input;
-  }
+  add_path(app, "--block", options.block, "FILE", "also write the exported weights as a model block");
+  add_number(app, "--seeds", options.seeds, 1, static_cast<int>(most_pairs), "networks per kind");
+  add_number(app, "--epochs", options.epochs, 1, 100000, "training epochs");
+  add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
+             "first seed (initialisation and batch order)")
+      ->type_name("N");
+  add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
+  if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
+  return train_chosen(options);
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  return programs::run_program("train", [&] { return run(argument_count, arguments); });
 }

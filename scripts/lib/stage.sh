@@ -23,12 +23,15 @@ need_value() {
   if [ "$2" -lt 2 ]; then die 2 "option $1 needs a value (see --help)"; fi
 }
 
-# need_natural <option> <value> <least>
+# need_natural <option> <value> <least> [<most>]: written as a program takes it, without leading zeros
 need_natural() {
+  local most=${4:-999999999}
   case $2 in
-    '' | *[!0-9]*) die 2 "option $1 needs a whole number, not '$2'" ;;
+    '' | *[!0-9]* | 0?*) die 2 "option $1 needs a whole number from $3 to $most, not '$2'" ;;
   esac
-  if [ "${#2}" -gt 9 ] || [ "$((10#$2))" -lt "$3" ]; then die 2 "option $1 needs a whole number from $3 to 999999999, not '$2'"; fi
+  if [ "${#2}" -gt 9 ] || [ "$2" -lt "$3" ] || [ "$2" -gt "$most" ]; then
+    die 2 "option $1 needs a whole number from $3 to $most, not '$2'"
+  fi
 }
 
 # parallel_jobs: how many compilers at a time. PINNQUAD_JOBS overrides; a heavy translation unit takes about a

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -74,20 +76,95 @@ TEST_CASE("without commit the old file stays as it was, and the folder too") {
   CHECK(folder.read("out.txt") == "old");
 }
 
-TEST_CASE("commit replaces a file; two writers and left-over partial files do not meet") {
+TEST_CASE("commit replaces a file; two writers do not meet") {
   const TemporaryFolder folder;
   folder.write("out.txt", "old and longer than the new one");
-  folder.write("out.txt.partial-1", "left over");
   AtomicFile first(folder.path("out.txt"));
   AtomicFile second(folder.path("out.txt"));
+  CHECK(folder.listing() == Names{"out.txt", "out.txt.partial-1", "out.txt.partial-2"});
   first.stream() << "first";
   second.stream() << "second";
   first.commit();
   CHECK(folder.read("out.txt") == "first");
+  AtomicFile third(folder.path("out.txt"));
   second.commit();
   CHECK(folder.read("out.txt") == "second");
-  CHECK(folder.read("out.txt.partial-1") == "left over");
   CHECK(folder.listing() == Names{"out.txt", "out.txt.partial-1"});
+  third.stream() << "third";
+  third.commit();
+  CHECK(folder.read("out.txt") == "third");
+  CHECK(folder.listing() == Names{"out.txt"});
+}
+
+TEST_CASE("what killed writers leave does not pile up, and what a living one has is not taken") {
+  const TemporaryFolder folder;
+  const auto killed = [&folder] {  // a writer that dies in the middle of its file
+    const pid_t child = fork();
+    if (child == 0) {
+      AtomicFile file(folder.path("out.txt"));
+      file.stream() << "left over, and longer than what comes" << std::flush;
+      std::raise(SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status);
+  };
+  AtomicFile living(folder.path("out.txt"));
+  living.stream() << "living" << std::flush;
+  for (int i = 0; i < 3; ++i) REQUIRE(killed());
+  CHECK(folder.listing() == Names{"out.txt.partial-1", "out.txt.partial-2"});
+  AtomicFile next(folder.path("out.txt"));
+  next.stream() << "next";
+  next.commit();
+  CHECK(folder.read("out.txt") == "next");
+  living.commit();
+  CHECK(folder.read("out.txt") == "living");
+  CHECK(folder.listing() == Names{"out.txt"});
+
+  using pinnquad::detail::PartialFile;
+  REQUIRE(killed());
+  PartialFile::remove_abandoned(folder.path("out.txt.partial-1"));
+  CHECK(folder.listing() == Names{"out.txt"});
+  const AtomicFile held(folder.path("out.txt"));
+  PartialFile::remove_abandoned(folder.path("out.txt.partial-1"));
+  CHECK(folder.listing() == Names{"out.txt", "out.txt.partial-1"});
+}
+
+TEST_CASE("files of partial names that no writer left are neither read, emptied nor removed") {
+  const TemporaryFolder folder;
+  folder.write("other", "of somebody");
+  std::filesystem::create_directory(folder.path("out.txt.partial-1"));
+  std::filesystem::create_symlink("other", folder.path("out.txt.partial-2"));
+  std::filesystem::create_symlink("nowhere", folder.path("out.txt.partial-3"));
+  std::filesystem::create_hard_link(folder.path("other"), folder.path("out.txt.partial-4"));
+  const Names before = folder.listing();
+  AtomicFile file(folder.path("out.txt"));
+  file.stream() << "text";
+  file.commit();
+  for (const std::string& name : before) {
+    if (name != "other") pinnquad::detail::PartialFile::remove_abandoned(folder.path(name));
+  }
+  CHECK(folder.read("out.txt") == "text");
+  CHECK(folder.read("other") == "of somebody");
+  Names expected = before;
+  expected.insert(expected.begin() + 1, "out.txt");
+  CHECK(folder.listing() == expected);
+}
+
+TEST_CASE("of files that belong together none appears where one cannot be written") {
+  const TemporaryFolder folder;
+  AtomicFile first(folder.path("a.txt")), second(folder.path("b.txt"));
+  first.stream() << "first";
+  second.stream() << std::string(500, 'x');
+  const auto put_in_place = [&] {
+    const FullDisk disk(100);
+    for (AtomicFile* file : {&first, &second}) file->close();
+    for (AtomicFile* file : {&first, &second}) file->commit();
+  };
+  CHECK_THROWS_AS(put_in_place(), OutputError);
+  CHECK(folder.listing() == Names{"a.txt.partial-1"});
+  first.commit();  // closed and whole
+  CHECK(folder.read("a.txt") == "first");
 }
 
 TEST_CASE("a link stays a link; the file it names is replaced") {

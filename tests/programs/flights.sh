@@ -78,7 +78,7 @@ expect_line 2 '--statistics' "$fly" d1 --statistics 2 --pictures out
 expect_line 2 '--max-speed' "$fly" d1 --max-speed 3 --sticks sticks.csv --out out/f.csv
 expect_line 2 '--gyro-noise' "$fly" d1 --gyro-noise -1 --out out/f.csv
 expect_line 2 '--latency' "$fly" d1 --latency much --out out/f.csv
-expect_line 2 'absent/s\.csv: its folder' "$fly" d1 --record-sticks absent/s.csv --out out/f.csv
+expect_line 2 'absent/s\.csv: No such file or directory' "$fly" d1 --record-sticks absent/s.csv --out out/f.csv
 expect_line 2 '--pictures needs 20 rows' "$fly" d2 --samples 5 --pictures pictures --out out/f.csv
 expect_line 2 'absent/pictures' "$fly" d1 --pictures absent/pictures --out out/f.csv
 

@@ -103,6 +103,23 @@ broken head -c 20
 broken head -n 4
 broken true
 
+# rows of other trainings: refused by name, and kept
+foreign() { # <pattern> <awk program>: makes rows.csv of the copy
+  rm -rf foreign
+  cp -r whole foreign
+  awk -F, -v OFS=, "$2" whole/rows.csv >foreign/rows.csv
+  cp foreign/rows.csv before.csv
+  expect_line 2 "foreign/rows.csv.*: .*$1" "$study" "${options[@]}" --out foreign
+  cmp before.csv foreign/rows.csv || fail "a refused resume changed the rows: $1"
+  expect_line 2 "foreign/rows.csv.*: .*$1" "$study" merge foreign --out no
+}
+foreign 'model 7, flight d1 of seed 101, seed 1: epochs is 300 there and 12 here' '$1 == 7 && $4 == 1 { $5 = 300 } { print }'
+foreign 'model 7, flight d1 of seed 101, seed 9: there is no such training here' '$1 == 7 && $4 == 1 { $4 = 9 } { print }'
+foreign 'model 9, flight d1 of seed 102, seed 1: there is no such training here' '$1 == 9 { $3 = 102 } { print }'
+foreign 'model 4, flight d1 of seed 101, seed 1: there is no such training here' '$1 == 7 { $1 = 4 } { print }'
+foreign 'model 13, flight d3 of seed 101, seed 2: weights is best there and final here' '$1 == 13 && $4 == 2 { $6 = "best" } { print }'
+foreign 'expected one row of model 7, flight d1 of seed 101, seed 2, found a second one' '{ print } $1 == 7 && $4 == 2 { $7 = "0.5"; print }'
+
 # a full disk (a file that may not grow): what was finished is kept
 cp -r whole full
 head -n -2 whole/rows.csv >full/rows.csv
@@ -153,7 +170,7 @@ mkdir garbage/rows.csv
 expect_line 2 'garbage/rows.csv: expected a readable file, found a folder' "$study" "${options[@]}" --out garbage
 exec 9<whole
 flock 9
-expect_line 2 'cannot write whole: another paper_study is at work in it' "$study" "${options[@]}" --out whole
+expect_line 2 'cannot write whole: another program is at work in it' "$study" "${options[@]}" --out whole
 exec 9<&-
 
 # the ablation runs, the weights of the least validation error are others

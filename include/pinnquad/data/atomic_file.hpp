@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
@@ -12,19 +11,23 @@
 #include <system_error>
 
 #include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/partial_file.hpp"
 
 namespace pinnquad {
 
 /// Writes `path.partial-N` in the folder of `path` and renames it to `path` on commit(). A file that was there stays as
-/// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file.
+/// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file; one that
+/// a killed program left is taken up again by the next writer of that path, one of a living writer is left alone.
 /// A link is followed: its target is replaced. Whole after a crash of the program, not after a loss of power (no sync).
 /// Throws OutputError, one line: folder missing or not writable, path is a folder or a device, disk full.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path) : path_(path), target_(resolve(path)) {
-    reserve_partial();
+    if (const int reason = partial_.claim(target_)) {
+      throw OutputError(path_, detail::system_reason(reason, "no partial file can be made"));
+    }
     errno = 0;
-    stream_.open(partial_, std::ios::binary | std::ios::trunc);
+    stream_.open(partial_.path(), std::ios::binary | std::ios::trunc);
     if (!stream_) {
       const int reason = errno;
       discard();
@@ -40,8 +43,9 @@ class AtomicFile {
   /// Where to write; binary, so line ends stay as written. Write errors are kept and reported by commit().
   std::ostream& stream() noexcept { return stream_; }
 
-  /// Flushes, closes, checks and puts the file in its place. To be called once.
-  void commit() {
+  /// Flushes, closes and checks: all is written, and what is left to do is to put the file in its place.
+  void close() {
+    if (closed_) return;
     stream_.exceptions(std::ios::goodbit);  // whatever the user set: this class reports in its own words
     const bool written = stream_.good();
     errno = 0;
@@ -54,19 +58,22 @@ class AtomicFile {
     const bool flushed = stream_.good();
     errno = 0;
     stream_.close();
-    const bool closed = stream_.good();
-    if (!written || !flushed || !closed) {
+    closed_ = stream_.good();
+    if (!written || !flushed || !closed_) {
       const int reason = flush_reason != 0 ? flush_reason : errno;
       discard();
       throw OutputError(path_, detail::system_reason(reason, "writing failed"));
     }
-    std::error_code error;
-    std::filesystem::rename(partial_, target_, error);
-    if (error) {
+  }
+
+  /// close(), then puts the file in its place. To be called once. Of several files that belong together close() all
+  /// before the first commit().
+  void commit() {
+    close();
+    if (const int reason = partial_.move_to(target_)) {
       discard();
-      throw OutputError(path_, error.message());
+      throw OutputError(path_, detail::system_reason(reason, "it does not get its name"));
     }
-    partial_.clear();
   }
 
  private:
@@ -91,38 +98,18 @@ class AtomicFile {
     return target;
   }
 
-  /// Creates the partial file under a name that no other writer holds.
-  void reserve_partial() {
-    constexpr int most_names = 1000;  // left over by killed programs; more means that something else is wrong
-    int reason = 0;
-    for (int number = 1; number <= most_names; ++number) {
-      const std::string name = target_.string() + ".partial-" + std::to_string(number);
-      errno = 0;
-      if (std::FILE* file = std::fopen(name.c_str(), "wbx")) {
-        std::fclose(file);
-        partial_ = name;
-        return;
-      }
-      reason = errno;
-      if (reason != EEXIST) break;
-    }
-    throw OutputError(path_, detail::system_reason(reason, "no partial file can be made"));
-  }
-
   /// Removes the partial file, if there still is one.
   void discard() noexcept {
-    if (partial_.empty()) return;
     stream_.exceptions(std::ios::goodbit);
     stream_.close();
-    std::error_code ignored;
-    std::filesystem::remove(partial_, ignored);
-    partial_.clear();
+    partial_.remove();
   }
 
   std::string path_;
   std::filesystem::path target_;
-  std::filesystem::path partial_;
+  detail::PartialFile partial_;
   std::ofstream stream_;
+  bool closed_{false};
 };
 
 }  // namespace pinnquad

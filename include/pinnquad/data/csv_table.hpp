@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -19,6 +18,7 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/regular_file.hpp"
 
 namespace pinnquad {
 
@@ -75,8 +75,7 @@ inline void split_fields(std::string_view line, std::vector<std::string_view>& f
 
 inline std::string file_text(const std::string& path) {
   const std::string expected = "a readable file";
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(path, 0, 0, expected, "a folder");
+  require_regular_file(path);
   errno = 0;
   struct CloseFile {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
@@ -87,6 +86,7 @@ inline std::string file_text(const std::string& path) {
   std::vector<char> block(std::size_t{1} << 16);
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
     text.append(block.data(), count);
+    if (text.size() > most_input_bytes) refuse_size(path);
   }
   if (std::ferror(file.get())) {
     throw InputError(path, 0, 0, expected, "a read error (" + system_reason(errno, "reason unknown") + ")");
