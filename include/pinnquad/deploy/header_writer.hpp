@@ -32,8 +32,8 @@ struct Provenance {
   std::size_t training_rows = 0;
   std::uint64_t seed = 0;
   int epochs = 0;
-  std::string loss;                ///< in words
-  std::optional<Verdict> verdict;  ///< how the model was judged; none: the header says nothing of it
+  std::string loss;                               ///< in words
+  std::optional<Verdict> verdict = std::nullopt;  ///< how the model was judged; none: the header says nothing of it
 };
 
 namespace detail {
