@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -175,7 +176,7 @@ inline void print_table(const std::vector<Result>& results, const std::vector<st
   per_axis("sign violations, % of pairs", "sign_violation_share", 100, 2);
 }
 
-/// Prints candidate against baseline, seed by seed.
+/// Prints candidate against baseline, seed by seed. A seed that has no finite figure of both is left out and counted.
 inline void print_paired(const std::vector<Result>& results, const std::string& candidate,
                          const std::string& baseline) {
   std::printf("  %s against %s, paired over seeds (lower is better):\n", candidate.c_str(), baseline.c_str());
@@ -185,13 +186,20 @@ inline void print_paired(const std::vector<Result>& results, const std::string& 
                           figure.name.rfind("slope_error", 0) == 0 || figure.name.rfind("sign_violation_share", 0) == 0;
     if (!compared) continue;
     std::vector<double> of_candidate, of_baseline;
+    std::size_t undefined = 0;
     for (const Result& a : results) {
       for (const Result& b : results) {
         if (a.model != candidate || b.model != baseline || a.seed != b.seed) continue;
-        of_candidate.push_back(figure.of(a.test, figure.index));
-        of_baseline.push_back(figure.of(b.test, figure.index));
+        const double x = figure.of(a.test, figure.index), y = figure.of(b.test, figure.index);
+        if (!std::isfinite(x - y)) {
+          ++undefined;
+          continue;
+        }
+        of_candidate.push_back(x);
+        of_baseline.push_back(y);
       }
     }
+    if (undefined > 0) std::printf("    %-32s undefined for %zu seeds\n", figure.name.c_str(), undefined);
     if (of_candidate.empty()) continue;
     const pinnquad::PairedComparison c = pinnquad::compare_paired(of_candidate, of_baseline);
     std::printf("    %-32s %+7.2f %%   better in %zu of %zu, p = %.3f\n", figure.name.c_str(),
@@ -216,8 +224,10 @@ inline void write_results(const std::string& path, const std::vector<Result>& re
   file.commit();
 }
 
-/// report.json: settings and every result.
-inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results) {
+/// report.json: settings, every result, and what became of the best network (null if none was finished). A figure that is not
+/// finite is null.
+inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results,
+                         nlohmann::json verdict) {
   nlohmann::json rows = nlohmann::json::array();
   for (const Result& result : results) {
     nlohmann::json row = {{"model", result.model}, {"seed", result.seed}};
@@ -227,8 +237,11 @@ inline void write_report(const std::string& path, nlohmann::json settings, const
     rows.push_back(std::move(row));
   }
   pinnquad::AtomicFile file(path);
-  file.stream() << nlohmann::json{{"settings", std::move(settings)}, {"results", std::move(rows)}}.dump(
-                       2, ' ', false, nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
+  file.stream() << nlohmann::json{{"settings", std::move(settings)},
+                                  {"results", std::move(rows)},
+                                  {"verdict", std::move(verdict)}}
+                       .dump(2, ' ', false,
+                             nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
                 << "\n";
   file.commit();
 }

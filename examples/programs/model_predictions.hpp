@@ -5,10 +5,12 @@
 #include "judgement.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/sample_inputs.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/dynamics/site.hpp"
+#include "pinnquad/evaluation/linear_regression.hpp"
 
 namespace programs {
 
@@ -26,6 +28,24 @@ Predictions linear_predictions(const pinnquad::Flight& flight, const pinnquad::I
     result.push_back(linearized_commands(
         airframe, rotors, Accelerations<double>{sample.linear_acceleration_m_s2, sample.angular_acceleration_rad_s2},
         site.gravity_m_s2, density / standard_air_density_kg_m3<double>));
+  }
+  return result;
+}
+
+/// Linear regression of the commands on the features, fitted on the training rows, on a block of rows.
+template <class Features>
+Predictions regression_predictions(const pinnquad::Flight& flight, const pinnquad::IndexRange& training,
+                                   const pinnquad::IndexRange& range) {
+  std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
+  Predictions commands;
+  for (std::size_t row = training.begin; row < training.end; ++row) {
+    features.push_back(pinnquad::sample_features<Features, double>(flight[row]));
+    commands.push_back(flight[row].commands);
+  }
+  const auto regression = pinnquad::fit_linear_regression(features, commands);
+  Predictions result;
+  for (std::size_t row = range.begin; row < range.end; ++row) {
+    result.push_back(regression.predict(pinnquad::sample_features<Features, double>(flight[row])));
   }
   return result;
 }

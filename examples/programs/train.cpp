@@ -3,6 +3,7 @@
 // physics-informed network as a header.
 //   train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -21,6 +22,7 @@
 #include "judgement.hpp"
 #include "model_predictions.hpp"
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "plots.hpp"
 
@@ -43,6 +45,7 @@ struct Options {
   int epochs = 300;
   std::uint64_t seed = 1;
   unsigned threads = 0;
+  bool allow_poor = false;  ///< export what is worse than the mean, marked as such
 };
 
 /// The test flight as the flight side is asked it, and what the trainer predicts: a line of counts, then a row of numbers per
@@ -80,11 +83,134 @@ std::vector<typename Model::FeatureVector> golden_features(const Flight& flight,
   return golden;
 }
 
+/// Warns of features that stand still in the training rows: they are exported, and flown only where they stood.
+template <class Features>
+void warn_of_still_features(const Flight& flight, const IndexRange& training) {
+  std::string names;
+  for (const std::string& name : still_features<Features>(flight, training))
+    names += (names.empty() ? "" : ", ") + name;
+  if (names.empty()) return;
+  std::fprintf(stderr,
+               "train: warning: %s: nothing changes in the training rows; the model will not know what it does, and "
+               "answers only near the value flown\n",
+               names.c_str());
+}
+
+/// The best of a kind by its validation error, the test block has no say; none if no error is finite.
+std::optional<std::size_t> best_of(const std::vector<programs::Result>& results, const std::string& kind) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results[i].model != kind || !std::isfinite(results[i].validation_error)) continue;
+    if (!best || results[i].validation_error < results[*best].validation_error) best = i;
+  }
+  return best;
+}
+
+/// The linearized model and every network on the test rows; predictions in the order of the results.
+template <class Context, class Model>
+std::vector<programs::Result> judge_all(const Flight& flight, const DatasetSplit& split,
+                                        const std::vector<programs::Training>& trainings,
+                                        const std::vector<Model>& models,
+                                        std::vector<programs::Predictions>& predictions) {
+  const auto judged = [&](const std::string& name, std::uint64_t seed, double training_s, const auto& predict) {
+    predictions.push_back(predict(split.test));
+    programs::Result result{name, seed, {}, 0, training_s};
+    result.test = programs::judge<Context>(flight, split.test, predictions.back());
+    result.validation_error =
+        programs::judge<Context>(flight, split.validation, predict(split.validation)).errors.mean.mean_absolute;
+    return result;
+  };
+  std::vector<programs::Result> results;
+  results.push_back(judged(linear_name, 0, 0, [&](const IndexRange& range) {
+    return programs::linear_predictions<typename Context::Vehicle>(flight, range);
+  }));
+  for (std::size_t i = 0; i < trainings.size(); ++i) {
+    const programs::Training& training = trainings[i];
+    results.push_back(
+        judged(programs::kind_name(training.kind), training.seed, training.training_s,
+               [&](const IndexRange& range) { return programs::network_predictions(models[i], flight, range); }));
+  }
+  return results;
+}
+
+/// The pictures of the networks `shown` (indices of results), the best of each kind.
+template <class Context>
+void draw(const std::string& folder, const Flight& flight, const IndexRange& test,
+          const std::vector<programs::Result>& results, const std::vector<programs::Predictions>& predictions,
+          const std::vector<std::size_t>& shown, const std::vector<std::string>& kinds) {
+  std::vector<std::string> shown_names;
+  std::vector<std::array<programs::AxisSeries, 3>> series;
+  std::vector<programs::Judgement> judged;
+  std::vector<double> time_s, target;
+  std::vector<std::vector<double>> command(shown.size());
+  const IndexRange excerpt = {test.begin, std::min(test.end, test.begin + 200)};
+  for (std::size_t row = excerpt.begin; row < excerpt.end; ++row) {
+    time_s.push_back(flight[row].time_s);
+    target.push_back(flight[row].commands[0]);
+  }
+  for (std::size_t s = 0; s < shown.size(); ++s) {
+    shown_names.push_back(results[shown[s]].model);
+    series.push_back(programs::axis_series<Context>(flight, test, predictions[shown[s]]));
+    judged.push_back(results[shown[s]].test);
+    for (std::size_t i = 0; i < excerpt.size(); ++i) command[s].push_back(predictions[shown[s]][i][0]);
+  }
+  const bool drawn = programs::plot_ellipses(folder + "ellipses.svg", shown_names, series, judged) &&
+                     programs::plot_errors(folder + "errors.svg", results, kinds) &&
+                     programs::plot_prediction(folder + "prediction.svg", time_s, target, shown_names, command);
+  if (drawn) std::printf("  pictures: %sellipses.svg, errors.svg, prediction.svg\n", folder.c_str());
+}
+
+/// Says how the best network stands beside the mean and linear regression. False if it must not be exported.
+bool fit_for_export(const Options& options, const Verdict& verdict) {
+  std::printf("  best network on the test rows: R^2 %.4f; linear regression on the same features: R^2 %.4f\n",
+              verdict.test_r_squared, verdict.linear_regression_r_squared);
+  std::fflush(stdout);
+  if (verdict.worse_than_mean()) {
+    if (!options.allow_poor) {
+      const std::string header = options.out + "/model.hpp";
+      std::error_code ignored;
+      std::fprintf(stderr,
+                   "train: not exported: on the test rows the best network is worse than the mean of the commands "
+                   "(R^2 %.4f); more epochs or a better flight, or --allow-poor%s\n",
+                   verdict.test_r_squared,
+                   std::filesystem::exists(header, ignored) ? "; the model.hpp there is of an earlier training" : "");
+      return false;
+    }
+    std::fprintf(stderr, "train: warning: NOT FOR FLIGHT: the best network is worse than the mean of the commands\n");
+  } else if (!verdict.beats_linear_regression()) {
+    std::fprintf(stderr,
+                 "train: warning: the best network does not beat linear regression on the same features (R^2 %.4f "
+                 "against %.4f): a linear map would fly as well\n",
+                 verdict.test_r_squared, verdict.linear_regression_r_squared);
+  }
+  return true;
+}
+
+template <class Model>
+void export_model(const Options& options, const Model& model, const Flight& flight, const DatasetSplit& split,
+                  const Provenance& provenance) {
+  const auto golden = golden_features<Model>(flight, split.train);
+  write_model_header(options.out + "/model.hpp", options.model_name, model, golden, provenance);
+  write_replay(options.out + "/replay.txt", model, flight, split.test);
+  std::printf("  %s/model.hpp: struct %s, %s of seed %llu (least error on the validation rows)%s\n",
+              options.out.c_str(), options.model_name.c_str(), programs::kind_name(programs::Kind::physics_informed),
+              static_cast<unsigned long long>(provenance.seed),
+              provenance.verdict->worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
+  if (options.block.empty()) return;
+  const std::vector<unsigned char> block = model_block(model, golden, provenance);
+  write_weight_file(options.block, block);
+  std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), block.size());
+}
+
 template <class Vehicle>
 int train_judge_export(const Options& options, const Flight& flight) {
   using Context = Context<PaperFeatures, Vehicle>;
   using Model = TrainedModel<programs::PaperNetwork, Context>;
   const DatasetSplit split = split_contiguous(flight.size());
+  require_varied_commands(options.flight, flight, split.train, "training");
+  require_varied_commands(options.flight, flight, split.validation, "validation");
+  require_varied_commands(options.flight, flight, split.test, "test");
+  warn_of_still_features<PaperFeatures>(flight, split.train);
   const Context context = make_context<Context>(flight, split.train);
   const auto data = standardised<float>(context, flight, split.train);
   std::printf("      %zu rows: %zu train, %zu validate, %zu test, in contiguous blocks\n", flight.size(),
@@ -100,32 +226,36 @@ int train_judge_export(const Options& options, const Flight& flight) {
       programs::train_all(context, data, options.epochs, options.seed, options.seeds, threads);
 
   std::printf("[3/5] judge\n");
-  std::vector<programs::Result> results;
   std::vector<Model> models;
-  std::vector<programs::Predictions> predictions;
-  results.push_back({linear_name, 0, {}, 0, 0});
-  predictions.push_back(programs::linear_predictions<Vehicle>(flight, split.test));
-  results.back().test = programs::judge<Context>(flight, split.test, predictions.back());
-  results.back().validation_error =
-      programs::judge<Context>(flight, split.validation,
-                               programs::linear_predictions<Vehicle>(flight, split.validation))
-          .errors.mean.mean_absolute;
   for (const programs::Training& training : trainings) {
     models.push_back(make_trained_model(training.network, context, flight, split.train));
-    predictions.push_back(programs::network_predictions(models.back(), flight, split.test));
-    programs::Result result{programs::kind_name(training.kind), training.seed, {}, 0, training.training_s};
-    result.test = programs::judge<Context>(flight, split.test, predictions.back());
-    result.validation_error =
-        programs::judge<Context>(flight, split.validation,
-                                 programs::network_predictions(models.back(), flight, split.validation))
-            .errors.mean.mean_absolute;
-    results.push_back(result);
+  }
+  std::vector<programs::Predictions> predictions;
+  const auto results = judge_all<Context>(flight, split, trainings, models, predictions);
+  const auto regression = programs::regression_predictions<PaperFeatures>(flight, split.train, split.test);
+  const double regression_r_squared = programs::judge<Context>(flight, split.test, regression).errors.mean.r_squared;
+
+  const std::string vanilla = programs::kind_name(programs::Kind::vanilla);
+  const std::string informed = programs::kind_name(programs::Kind::physics_informed);
+  const std::optional<std::size_t> best_vanilla = best_of(results, vanilla), best = best_of(results, informed);
+  Verdict verdict;
+  nlohmann::json verdict_row;
+  if (best) {
+    verdict = {results[*best].test.errors.mean.r_squared, regression_r_squared};
+    verdict_row = {{"model", informed},
+                   {"seed", results[*best].seed},
+                   {"r2", verdict.test_r_squared},
+                   {"linear_regression_r2", verdict.linear_regression_r_squared},
+                   {"worse_than_mean", verdict.worse_than_mean()},
+                   {"beats_linear_regression", verdict.beats_linear_regression()},
+                   {"exported", !verdict.worse_than_mean() || options.allow_poor}};
   }
   const std::string folder = options.out + "/";
+  const std::string flight_name = printable(std::filesystem::path(options.flight).filename().string());
   programs::write_results(folder + "results.csv", results);
   programs::write_report(folder + "report.json",
                          {{"version", PINNQUAD_VERSION},
-                          {"flight", std::filesystem::path(options.flight).filename().string()},
+                          {"flight", flight_name},
                           {"flight_hash", detail::hexadecimal(content_hash(flight))},
                           {"rows", flight.size()},
                           {"airframe", Vehicle::name},
@@ -140,10 +270,8 @@ int train_judge_export(const Options& options, const Flight& flight) {
                           {"hold", CyclicalAnnealing{}.hold},
                           {"step_gain", TanhStep{}.gain},
                           {"finished", trainings.size()}},
-                         results);
+                         results, verdict_row);
 
-  const std::string vanilla = programs::kind_name(programs::Kind::vanilla);
-  const std::string informed = programs::kind_name(programs::Kind::physics_informed);
   programs::print_table(results, {linear_name, vanilla, informed});
   programs::print_paired(results, informed, vanilla);
   double seconds = 0;
@@ -151,70 +279,32 @@ int train_judge_export(const Options& options, const Flight& flight) {
   if (!trainings.empty()) {
     std::printf("  training took %.2f s per network and core\n", seconds / static_cast<double>(trainings.size()));
   }
-
-  // The best of each kind by its validation error; the test block has no say.
-  const auto best_of = [&](const std::string& kind) {
-    std::size_t best = results.size();
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      if (results[i].model != kind) continue;
-      if (best == results.size() || results[i].validation_error < results[best].validation_error) best = i;
-    }
-    return best;
-  };
-  const std::size_t best_vanilla = best_of(vanilla), best_informed = best_of(informed);
-  if (best_informed == results.size()) {
-    programs::complain("train", "no physics-informed network was finished; nothing to export");
+  if (!best) {
+    const bool none = programs::over_seeds(results, informed, programs::figures().front()).empty();
+    programs::complain("train", std::string(none ? "no physics-informed network was finished"
+                                                 : "no physics-informed network predicts finite commands on the "
+                                                   "validation rows") +
+                                    "; nothing to export");
     return programs::interrupted() ? programs::exit_interrupted : programs::exit_failed;
   }
   std::vector<std::size_t> shown;
-  if (best_vanilla < results.size()) shown.push_back(best_vanilla);
-  shown.push_back(best_informed);
-  std::vector<std::string> shown_names;
-  std::vector<std::array<programs::AxisSeries, 3>> series;
-  std::vector<programs::Judgement> judged;
-  std::vector<double> time_s, target;
-  std::vector<std::vector<double>> command(shown.size());
-  const IndexRange excerpt = {split.test.begin, std::min(split.test.end, split.test.begin + 200)};
-  for (std::size_t row = excerpt.begin; row < excerpt.end; ++row) {
-    time_s.push_back(flight[row].time_s);
-    target.push_back(flight[row].commands[0]);
-  }
-  for (std::size_t s = 0; s < shown.size(); ++s) {
-    shown_names.push_back(results[shown[s]].model);
-    series.push_back(programs::axis_series<Context>(flight, split.test, predictions[shown[s]]));
-    judged.push_back(results[shown[s]].test);
-    for (std::size_t i = 0; i < excerpt.size(); ++i) command[s].push_back(predictions[shown[s]][i][0]);
-  }
-  const bool drawn = programs::plot_ellipses(folder + "ellipses.svg", shown_names, series, judged) &&
-                     programs::plot_errors(folder + "errors.svg", results, {linear_name, vanilla, informed}) &&
-                     programs::plot_prediction(folder + "prediction.svg", time_s, target, shown_names, command);
-  if (drawn) std::printf("  pictures: %sellipses.svg, errors.svg, prediction.svg\n", folder.c_str());
+  if (best_vanilla) shown.push_back(*best_vanilla);
+  shown.push_back(*best);
+  draw<Context>(folder, flight, split.test, results, predictions, shown, {linear_name, vanilla, informed});
 
-  std::printf("[4/5] export\n");
-  const Model& best = models[best_informed - 1];  // results[0] is the linearized model
-  const Provenance provenance = {std::filesystem::path(options.flight).filename().string(),
-                                 content_hash(flight),
-                                 split.train.size(),
-                                 results[best_informed].seed,
-                                 options.epochs,
-                                 "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"};
-  const auto golden = golden_features<Model>(flight, split.train);
-  write_model_header(folder + "model.hpp", options.model_name, best, golden, provenance);
-  write_replay(folder + "replay.txt", best, flight, split.test);
-  std::printf("  %smodel.hpp: struct %s, %s of seed %llu (least error on the validation rows)\n", folder.c_str(),
-              options.model_name.c_str(), informed.c_str(),
-              static_cast<unsigned long long>(results[best_informed].seed));
-  if (!options.block.empty()) {
-    const std::vector<unsigned char> block = model_block(best, golden, provenance);
-    write_weight_file(options.block, block);
-    std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), block.size());
+  const bool exported = fit_for_export(options, verdict);
+  if (exported) {
+    std::printf("[4/5] export\n");
+    export_model(options, models[*best - 1], flight, split,  // results[0] is the linearized model
+                 {flight_name, content_hash(flight), split.train.size(), results[*best].seed, options.epochs,
+                  "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing", verdict});
   }
   if (programs::interrupted()) {
     std::fprintf(stderr, "train: interrupted; %zu of %d trainings were finished and kept\n", trainings.size(),
                  2 * options.seeds);
     return programs::exit_interrupted;
   }
-  return 0;
+  return exported ? 0 : programs::exit_failed;
 }
 
 /// The files of --out.
@@ -233,13 +323,15 @@ void require_separate_files(const Options& options) {
 /// Trains on the flight of the options: the exit code.
 int train_chosen(const Options& options) {
   if (!is_identifier(options.model_name)) {
-    throw std::invalid_argument("--name " + options.model_name + ": a C++ identifier was expected");
+    throw std::invalid_argument("--name " + options.model_name +
+                                ": a C++ identifier was expected, no keyword and no name that C++ reserves");
   }
   if (!programs::with_airframe(options.airframe, [](auto) {})) {
     throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
   }
   require_separate_files(options);
   const Flight flight = read_flight_csv(options.flight, minimum_rows);
+  require_plausible(options.flight, flight);
   const programs::FolderLock folder(options.out);
   // what cannot be written is found before the training
   for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
@@ -257,7 +349,8 @@ int run(int argument_count, char** arguments) {
   CLI::App app{"Trains vanilla and physics-informed networks on a flight, judges them, exports the best as a header.",
                "train"};
   app.footer(
-      "Exit codes: 0; 1 no network was finished; 2 bad input or a file that can't be read or written; 130 interrupted, "
+      "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean; 2 bad input or "
+      "a file that can't be read or written; 130 interrupted, "
       "what is\nfinished is kept.");
   add_path(app, "--flight", options.flight, "FILE.csv", "recorded flight, CSV as `fly` writes it")->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
@@ -272,6 +365,8 @@ int run(int argument_count, char** arguments) {
              "first seed (initialisation and batch order)")
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
+  app.add_flag("--allow-poor", options.allow_poor,
+               "export the best network even if it is worse than the mean of the commands; its header says so");
   if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
   return train_chosen(options);
 }

@@ -5,14 +5,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <locale>
 #include <random>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "data/temporary_folder.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/initialization.hpp"
@@ -129,7 +132,7 @@ TEST_CASE("provenance is told, and no text can break out of its string") {
   from.epochs = 300;
   from.loss = "MSE";
   const std::string header = written(some_model(1), {Model::FeatureVector{}}, from);
-  CHECK(header.find("training_data = \"flight \\\"one\\\"\\\\ .csv\";") != std::string::npos);
+  CHECK(header.find("training_data = \"flight \\\"one\\\"\\\\?.csv\";") != std::string::npos);
   CHECK(header.find("training_data_hash = 0x0000000000000abc;") != std::string::npos);
   CHECK(header.find("training_rows = 9000;") != std::string::npos);
   CHECK(header.find("seed = 42u;") != std::string::npos);
@@ -151,14 +154,9 @@ TEST_CASE("what the model was trained for is told as data") {
 }
 
 TEST_CASE("a struct needs a name and a model golden vectors; a refused export leaves no file") {
-  CHECK(is_identifier("MyQuadModel"));
-  CHECK(is_identifier("_x9"));
-  CHECK_FALSE(is_identifier(""));
-  CHECK_FALSE(is_identifier("9lives"));
-  CHECK_FALSE(is_identifier("my-model"));
-  CHECK_FALSE(is_identifier("a b"));
   std::ostringstream out;
   CHECK_THROWS_AS(write_model(out, "my model", some_model(1), {Model::FeatureVector{}}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(write_model(out, "class", some_model(1), {Model::FeatureVector{}}, {}), std::invalid_argument);
   CHECK_THROWS_AS(write_model(out, "Model", some_model(1), {}, {}), std::invalid_argument);
   CHECK_THROWS_WITH(write_model(out, "Model", some_model(1), {Model::FeatureVector{7.0f}}, {}),
                     "export: golden vector 1 lies outside the envelope");
@@ -168,4 +166,113 @@ TEST_CASE("a struct needs a name and a model golden vectors; a refused export le
   CHECK(folder.listing().empty());
   write_model_header(folder.path("model.hpp"), "Model", some_model(1), {Model::FeatureVector{}}, {});
   CHECK(folder.listing().size() == 1);
+}
+
+TEST_CASE("a number that is not finite is not written: it has no literal") {
+  const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const auto said = [](const Model& model) -> std::string {
+    std::ostringstream out;
+    std::string message;
+    try {
+      write_model(out, "Model", model, {Model::FeatureVector{}}, {});
+    } catch (const std::invalid_argument& error) {
+      message = error.what();
+    }
+    CHECK(out.str().empty() == !message.empty());
+    CHECK_THROWS_AS(model_block(model, {Model::FeatureVector{}}, {}), std::invalid_argument);
+    return message;
+  };
+  const Model sound = some_model(1);
+  Model model = sound;
+  model.envelope_upper[2] = infinity;
+  CHECK(said(model) == "export: number 3 of the upper envelope is not finite");
+  model = sound;
+  model.envelope_lower[0] = -infinity;
+  CHECK(said(model) == "export: number 1 of the lower envelope is not finite");
+  model = sound;
+  model.input.spread[15] = infinity;
+  CHECK(said(model) == "export: number 16 of the input spreads is not finite");
+  model = sound;
+  model.output.mean[1] = nan;
+  CHECK(said(model) == "export: number 2 of the output means is not finite");
+  model = sound;
+  model.network.parameters[7] = nan;
+  CHECK(said(model) == "export: number 8 of the parameters is not finite");
+  model = sound;
+  for (float& weight : model.network.parameters) weight = std::numeric_limits<float>::max();
+  CHECK(said(model) == "export: number 1 of the commands of golden vector 1 is not finite");
+}
+
+namespace {
+
+/// Groups digits, as the locales of many countries do.
+struct GroupedDigits : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+}  // namespace
+
+TEST_CASE("no locale plays a part, whether it is the stream's or the program's") {
+  Provenance from;
+  from.training_rows = 1234567;
+  from.seed = 7654321;
+  from.epochs = 300000;
+  from.verdict = Verdict{0.875, 1234.5};
+  const std::vector<Model::FeatureVector> golden(3, Model::FeatureVector{0.5f, 1.5f, -2.5f});
+  const std::string plain = written(some_model(1), golden, from);
+  CHECK(plain.find("training_rows = 1234567;") != std::string::npos);
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new GroupedDigits));
+  const std::string grouped = written(some_model(1), golden, from);  // its stream has the global locale
+  const std::vector<unsigned char> block = model_block(some_model(1), golden, from);
+  std::locale::global(before);
+  CHECK(grouped == plain);
+  CHECK(block == model_block(some_model(1), golden, from));
+}
+
+TEST_CASE("a model tells how it was judged, and at its head if it is not for flight") {
+  Provenance from;
+  CHECK(written(some_model(1), {Model::FeatureVector{}}, from).find("worse_than_mean") == std::string::npos);
+  from.verdict = Verdict{0.75, 0.5};
+  std::string header = written(some_model(1), {Model::FeatureVector{}}, from);
+  for (const char* line : {"double test_r_squared = 0.75;", "double linear_regression_r_squared = 0.5;",
+                           "bool worse_than_mean = false;", "bool beats_linear_regression = true;"}) {
+    CHECK(header.find(line) != std::string::npos);
+  }
+  CHECK(header.find("NOT FOR FLIGHT") == std::string::npos);
+  from.verdict = Verdict{-0.25, 0.5};
+  header = written(some_model(1), {Model::FeatureVector{}}, from);
+  CHECK(header.find("// NOT FOR FLIGHT: ") < header.find("#pragma once"));
+  CHECK(header.find("bool worse_than_mean = true;") != std::string::npos);
+  CHECK(header.find("bool beats_linear_regression = false;") != std::string::npos);
+  from.verdict = Verdict{std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()};
+  header = written(some_model(1), {Model::FeatureVector{}}, from);
+  CHECK(header.find("r_squared") == std::string::npos);  // no literal for that
+  CHECK(header.find("bool worse_than_mean = true;") != std::string::npos);
+}
+
+TEST_CASE("names from outside stay inside their quotes, whatever they hold") {
+  Provenance from;
+  for (const auto& [name, literal] :
+       std::vector<std::pair<std::string, std::string>>{{"a*/ int x; /*", "a*/ int x; /*"},
+                                                        {"a\\\nint x;", "a\\\\?int x;"},
+                                                        {"a\"; int x; //", "a\\\"; int x; //"},
+                                                        {"a?"
+                                                         "?/\";?"
+                                                         "?'",
+                                                         "a?\\?/\\\";?\\?'"},
+                                                        {"???", "?\\?\\?"},
+                                                        {"\xff\xfe", "?\\?"},
+                                                        {"M\xc3\xbcnchen", "M\xc3\xbcnchen"},
+                                                        {"\xe2\x80\xae};", "?};"},
+                                                        {"a\r\n#error", "a?\\?#error"}}) {
+    from.training_data = name;
+    from.loss = name;
+    const std::string header = written(some_model(1), {Model::FeatureVector{}}, from);
+    CAPTURE(name);
+    CHECK(header.find(" training_data = \"" + literal + "\";\n") != std::string::npos);
+    CHECK(header.find(" loss = \"" + literal + "\";\n") != std::string::npos);
+    CHECK(header.find("??") == std::string::npos);  // no trigraph
+  }
 }

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <type_traits>
 
 #include "../examples/models/demo_quadrotor.hpp"
 #include "models/v2/crazyflie_tanh.hpp"
@@ -38,14 +40,24 @@ Trained<Header> trained() {
   return model;
 }
 
+template <class Header, class = void>
+struct HasVerdict : std::false_type {};
+template <class Header>
+struct HasVerdict<Header, std::void_t<decltype(Header::test_r_squared)>> : std::true_type {};
+
 template <class Header>
 Provenance provenance() {
+  std::optional<Verdict> verdict;
+  if constexpr (HasVerdict<Header>::value) {
+    verdict = Verdict{Header::test_r_squared, Header::linear_regression_r_squared};
+  }
   return {Header::training_data,
           Header::training_data_hash,
           static_cast<std::size_t>(Header::training_rows),
           Header::seed,
           Header::epochs,
-          Header::loss};
+          Header::loss,
+          verdict};
 }
 
 template <class Header>

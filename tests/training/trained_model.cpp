@@ -85,6 +85,41 @@ TEST_CASE("the envelope: the range of the training rows, a tenth wider on both s
   }
 }
 
+TEST_CASE("the envelope of a feature that stands still: about where it stood, by its unit") {
+  Flight flight = random_flight_rows(100, 158);
+  for (auto& sample : flight) {
+    sample.yaw_rad = 0;
+    sample.velocity_m_s[2] = 1.25;
+    sample.roll_rad = -0.1;
+    sample.angular_acceleration_rad_s2[2] = 0;
+  }
+  std::mt19937_64 engine(159);
+  const auto context = make_context<PaperContext>(flight, {0, 60});
+  const auto model = make_trained_model(initialised<Small<float>>(engine), context, flight, {0, 60});
+  const auto stands = [&](std::size_t i, double value, double margin) {
+    CHECK(double(model.envelope_lower[i]) == doctest::Approx(value - margin).epsilon(1e-6));
+    CHECK(double(model.envelope_upper[i]) == doctest::Approx(value + margin).epsilon(1e-6));
+  };
+  stands(5, 0, 0.5);       // rad/s^2
+  stands(8, 1.25, 0.1);    // m/s
+  stands(12, -0.1, 0.05);  // rad
+  stands(14, 0, 0.05);     // 1
+  stands(15, 1, 0.05);
+  // every row, and rows near it, lie inside as the flight side computes them: in float, through a quaternion
+  for (const double moved : {0.0, 0.04, -0.04}) {
+    for (auto sample : flight) {
+      sample.yaw_rad += moved;
+      sample.roll_rad += moved;
+      sample.velocity_m_s[2] += moved;
+      const auto x = pinnquad::sample_features<PaperFeatures, float>(sample);
+      for (const std::size_t i : {std::size_t{5}, std::size_t{8}, std::size_t{12}, std::size_t{14}, std::size_t{15}}) {
+        CHECK(x[i] >= model.envelope_lower[i]);
+        CHECK(x[i] <= model.envelope_upper[i]);
+      }
+    }
+  }
+}
+
 TEST_CASE("weights that weigh nothing are exported as 0, no others") {
   const Flight flight = random_flight_rows(10, 155);
   Small<float> net{};

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "support/training_sets.hpp"
@@ -118,6 +120,32 @@ TEST_CASE("rotor speeds: outputs in rev/s") {
       const double n_max_rev_s = 8500.0 / 60.0;
       CHECK(speed_rev_s == doctest::Approx(n_max_rev_s * std::sqrt(flight[static_cast<std::size_t>(row)].commands[k])));
     }
+  }
+}
+
+TEST_CASE("a column that varies only by rounding or noise gets the spread 1, one that varies more its own") {
+  // m/s: below 0.01 it stands still
+  for (const double noise : {1e-17, 1e-12, 1e-6, 0.005}) {
+    CAPTURE(noise);
+    Flight flight = random_flight_rows(60, 146);
+    for (std::size_t i = 0; i < 60; ++i) flight[i].velocity_m_s[1] = 2.5 + (i % 2 == 0 ? noise : -noise);
+    CHECK(make_context<PaperContext>(flight, {0, 60}).input.spread[7] == 1.0);
+    CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}) == std::vector<std::string>{"v_by"});
+  }
+  Flight flight = random_flight_rows(60, 146);
+  for (std::size_t i = 0; i < 60; ++i) flight[i].velocity_m_s[1] = 2.5 + (i % 2 == 0 ? 0.02 : -0.02);
+  CHECK(make_context<PaperContext>(flight, {0, 60}).input.spread[7] == doctest::Approx(0.02));
+  CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}).empty());
+}
+
+TEST_CASE("yaw 0 all flight: sine and cosine stand still, and so does a yaw that is not 0") {
+  for (const double yaw : {0.0, 0.7, -2.1}) {
+    Flight flight = random_flight_rows(60, 147);
+    for (auto& sample : flight) sample.yaw_rad = yaw;
+    CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}) == std::vector<std::string>{"sin_yaw", "cos_yaw"});
+    const auto context = make_context<PaperContext>(flight, {0, 60});
+    CHECK(context.input.spread[14] == 1.0);
+    CHECK(context.input.spread[15] == 1.0);
   }
 }
 

@@ -3,16 +3,22 @@
 // envelope, golden vectors, provenance. Every number reads back bit for bit.
 #pragma once
 
-#include <cctype>
 #include <charconv>
 #include <cstdint>
+#include <locale>
+#include <optional>
 #include <ostream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/atomic_file.hpp"
+#include "pinnquad/data/printable.hpp"
+#include "pinnquad/deploy/identifier.hpp"
 #include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/evaluation/verdict.hpp"
 #include "pinnquad/inference/model.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/version.hpp"
@@ -26,7 +32,8 @@ struct Provenance {
   std::size_t training_rows = 0;
   std::uint64_t seed = 0;
   int epochs = 0;
-  std::string loss;  ///< in words
+  std::string loss;                               ///< in words
+  std::optional<Verdict> verdict = std::nullopt;  ///< how the model was judged; none: the header says nothing of it
 };
 
 namespace detail {
@@ -47,11 +54,12 @@ inline std::string literal(double value) {
   return result;
 }
 
+/// A C++ string literal of printable(text). A second '?' in a row is escaped: no trigraph.
 inline std::string quoted(const std::string& text) {
   std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
+  for (const char c : printable(text)) {
+    if (c == '"' || c == '\\' || (c == '?' && result.back() == '?')) result += '\\';
+    result += c;
   }
   return result + '"';
 }
@@ -83,12 +91,36 @@ inline std::string hexadecimal(std::uint64_t value) {
   return "0x" + std::string(16 - digits.size(), '0') + digits;
 }
 
+/// Throws std::invalid_argument, one line, for a number that is not finite: it has no literal and must not fly.
+template <class Numbers>
+void require_finite(const Numbers& numbers, const std::string& name) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!is_finite(numbers[i])) {
+      throw std::invalid_argument("export: number " + std::to_string(i + 1) + " of " + name + " is not finite");
+    }
+  }
+}
+
+/// All numbers of a model but its golden vectors.
+template <class Model>
+void require_finite_model(const Model& model) {
+  require_finite(model.network.parameters, "the parameters");
+  require_finite(model.input.mean, "the input means");
+  require_finite(model.input.spread, "the input spreads");
+  require_finite(model.output.mean, "the output means");
+  require_finite(model.output.spread, "the output spreads");
+  require_finite(model.envelope_lower, "the lower envelope");
+  require_finite(model.envelope_upper, "the upper envelope");
+}
+
 /// The commands of golden feature vectors, by the portable kernel.
-/// Throws std::invalid_argument for none, and for one outside the envelope: no self test could pass it.
+/// Throws std::invalid_argument for none, for one outside the envelope, which no self test could pass, and for a model or
+/// a command that is not finite.
 template <class Model>
 std::vector<Commands<typename Model::Scalar>> golden_commands(
     const Model& model, const std::vector<typename Model::FeatureVector>& golden) {
   if (golden.empty()) throw std::invalid_argument("export: a model needs at least one golden vector");
+  require_finite_model(model);
   std::vector<Commands<typename Model::Scalar>> commands;
   for (const auto& x : golden) {
     if (!between(model.envelope_lower, x, model.envelope_upper)) {
@@ -96,32 +128,28 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
                                   " lies outside the envelope");
     }
     commands.push_back(model.predict(x));
+    require_finite(commands.back(), "the commands of golden vector " + std::to_string(commands.size()));
   }
   return commands;
 }
 
 }  // namespace detail
 
-/// True for a name that a struct may have.
-inline bool is_identifier(const std::string& name) {
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0) return false;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_') return false;
-  }
-  return true;
-}
-
 /// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
-/// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp. Throws
-/// std::invalid_argument for a name that is no identifier, for no golden vector, and for one outside the envelope.
+/// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp; no locale plays
+/// a part. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
+/// name that no struct may have, for no golden vector, for one outside the envelope, and for a number that is not finite.
 template <class NetworkType, class ContextType>
-void write_model(std::ostream& out, const std::string& struct_name, const TrainedModel<NetworkType, ContextType>& model,
+void write_model(std::ostream& stream, const std::string& struct_name,
+                 const TrainedModel<NetworkType, ContextType>& model,
                  const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
                  const Provenance& provenance) {
   using Model = TrainedModel<NetworkType, ContextType>;
   using Scalar = typename Model::Scalar;
   if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
   const auto golden_commands = detail::golden_commands(model, golden);
+  std::ostringstream out;
+  out.imbue(std::locale::classic());  // a global locale may group digits
 
   const std::string scalar = type_name<Scalar>();
   const auto array = [&](const std::string& type, const char* name, const auto& values) {
@@ -152,8 +180,11 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
 
   out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
       << ". Generated: export again rather than edit.\n"
-      << "// SI units, rad. Commands in the order of the airframe's rotors.\n"
-      << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n"
+      << "// SI units, rad. Commands in the order of the airframe's rotors.\n";
+  if (provenance.verdict && provenance.verdict->worse_than_mean()) {
+    out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
+  }
+  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n"
       << "struct " << struct_name << " {\n"
       << "  using Scalar = " << scalar << ";\n"
       << "  using Network = " << type_name<NetworkType>() << ";\n"
@@ -171,6 +202,20 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
       << "  static constexpr std::uint64_t seed = " << provenance.seed << "u;\n"
       << "  static constexpr int epochs = " << provenance.epochs << ";\n";
   text("loss", provenance.loss);
+  if (provenance.verdict) {
+    const Verdict& verdict = *provenance.verdict;
+    const auto figure = [&](const char* name, double value) {
+      if (is_finite(value)) out << "  static constexpr double " << name << " = " << detail::literal(value) << ";\n";
+    };
+    const auto fact = [&](const char* name, bool value) {
+      out << "  static constexpr bool " << name << " = " << (value ? "true" : "false") << ";\n";
+    };
+    out << "\n  // how it was judged, on rows that it was not trained on: R^2, mean over the commands\n";
+    figure("test_r_squared", verdict.test_r_squared);
+    figure("linear_regression_r_squared", verdict.linear_regression_r_squared);
+    fact("worse_than_mean", verdict.worse_than_mean());
+    fact("beats_linear_regression", verdict.beats_linear_regression());
+  }
   out << "\n  // what it was trained for; require_model() compares with Features, Outputs and Vehicle\n";
   text("frame", model_frame);
   array("const char*", "feature_names", Model::Features::names);
@@ -194,6 +239,7 @@ void write_model(std::ostream& out, const std::string& struct_name, const Traine
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
   array(scalar, "parameters", model.network.parameters);
   out << "};\n\nstatic_assert(pinnquad::require_model<" << struct_name << ">());\n";
+  stream << out.str();
 }
 
 /// The same into a file that appears whole or not at all.

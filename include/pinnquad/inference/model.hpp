@@ -17,7 +17,8 @@ namespace pinnquad {
 ///   1  types Scalar, Network, Features, Outputs, Vehicle; arrays parameters, envelope_lower, envelope_upper,
 ///      golden_features, golden_commands; scalers input, output; format_version
 ///   2  besides: frame, feature_names, feature_units, output_names, output_unit, vehicle_name, motor_torque_signs,
-///      training_data_hash
+///      training_data_hash; optional, of a model that was judged: test_r_squared, linear_regression_r_squared (finite),
+///      worse_than_mean, beats_linear_regression (evaluation/verdict.hpp)
 inline constexpr int model_format_version = 2;
 
 /// The oldest format that still flies.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/sample_inputs.hpp"
@@ -11,12 +10,17 @@
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/training/folding.hpp"
+#include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
 
 /// Values of the network's own scalar type, as the exported header holds them.
 template <class NetworkType, class ContextType>
 struct TrainedModel {
+  static_assert(NetworkType::outputs == rotor_count,
+                "pinnquad: a trained model's network has one output per rotor: its answer is four commands");
+  static_assert(NetworkType::inputs == ContextType::Features::size,
+                "pinnquad: a trained model's network has one input per feature of its context");
   using Network = NetworkType;
   using Scalar = typename Network::Scalar;
   using Features = typename ContextType::Features;
@@ -46,14 +50,12 @@ struct TrainedModel {
   }
 };
 
-/// Share of a feature's range in the training set by which the envelope is wider on both sides.
-inline constexpr double envelope_margin = 0.1;
-
 /// Weights smaller than this become 0. Weight decay leaves a dead neuron weights of 1e-30 and below: no prediction changes by a
 /// bit that matters, but their products would be denormal and cost a hundred times an ordinary operation in flight.
 inline constexpr double negligible_weight = 1e-20;
 
-/// Joins a network with the scalers of its context and the envelope of its training rows. Batch norm is folded away: what is
+/// Joins a network with the scalers of its context and the envelope of its training rows: their range, wider by
+/// ColumnStatistics::margin(). Batch norm is folded away: what is
 /// judged and exported is the network that flies.
 template <class NetworkType, class ContextType>
 TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
@@ -74,21 +76,11 @@ TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkT
   };
   cast(context.input, model.input);
   cast(context.output, model.output);
-  constexpr std::size_t size = Model::Features::size;
-  std::array<double, size> lower{}, upper{};
-  lower.fill(std::numeric_limits<double>::infinity());
-  upper.fill(-std::numeric_limits<double>::infinity());
-  for (std::size_t row = training.begin; row < training.end; ++row) {
-    const auto x = sample_features<typename Model::Features, double>(flight[row]);
-    for (std::size_t i = 0; i < size; ++i) {
-      lower[i] = x[i] < lower[i] ? x[i] : lower[i];
-      upper[i] = x[i] > upper[i] ? x[i] : upper[i];
-    }
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    const double margin = envelope_margin * (upper[i] - lower[i]);
-    model.envelope_lower[i] = static_cast<Scalar>(lower[i] - margin);
-    model.envelope_upper[i] = static_cast<Scalar>(upper[i] + margin);
+  const auto rows = detail::feature_rows<typename Model::Features>(flight, training);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(Model::Features::size); ++i) {
+    const ColumnStatistics column = column_statistics(rows, i, Model::Features::units[i]);
+    model.envelope_lower[i] = static_cast<Scalar>(column.lowest - column.margin());
+    model.envelope_upper[i] = static_cast<Scalar>(column.highest + column.margin());
   }
   return model;
 }

@@ -2,7 +2,8 @@
 // A flight as the trainer wants it: standardised features and outputs, and the context that knows what they mean.
 #pragma once
 
-#include <cmath>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "pinnquad/data/sample_inputs.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/loss/loss.hpp"
+#include "pinnquad/training/resolution.hpp"
 
 namespace pinnquad {
 
@@ -26,23 +28,29 @@ struct TrainingData {
 
 namespace detail {
 
-/// Mean and spread (divisor n) by two passes. A column that does not vary gets the spread 1.
-template <std::size_t Size>
-Scaler<double, static_cast<int>(Size)> column_scaler(const std::vector<std::array<double, Size>>& rows) {
-  constexpr double rounding = 1e-12;  // what a constant column's spread may come to by rounding, relative to its mean
+/// Mean and scale of every column; `unit_of(i)` is the unit of column i.
+template <std::size_t Size, class UnitOf>
+Scaler<double, static_cast<int>(Size)> column_scaler(const std::vector<std::array<double, Size>>& rows,
+                                                     const UnitOf& unit_of) {
   Scaler<double, static_cast<int>(Size)> scaler;
-  const double count = static_cast<double>(rows.size());
   for (std::size_t i = 0; i < Size; ++i) {
-    double sum = 0;
-    for (const auto& row : rows) sum += row[i];
-    const double mean = sum / count;
-    double squares = 0;
-    for (const auto& row : rows) squares += (row[i] - mean) * (row[i] - mean);
-    const double spread = std::sqrt(squares / count);
-    scaler.mean[i] = mean;
-    scaler.spread[i] = spread > rounding * std::abs(mean) ? spread : 1.0;
+    const ColumnStatistics column = column_statistics(rows, i, unit_of(i));
+    scaler.mean[i] = column.mean;
+    scaler.spread[i] = column.scale();
   }
   return scaler;
+}
+
+/// Feature vectors of a block of rows, physical units.
+template <class Features>
+std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> feature_rows(const Flight& flight,
+                                                                                       const IndexRange& range) {
+  std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> rows;
+  rows.reserve(range.size());
+  for (std::size_t row = range.begin; row < range.end; ++row) {
+    rows.push_back(sample_features<Features, double>(flight[row]));
+  }
+  return rows;
 }
 
 /// Outputs of a sample in the schema's physical units.
@@ -58,26 +66,37 @@ std::array<double, rotor_count> sample_outputs(const Sample& sample) {
 
 }  // namespace detail
 
-/// The context of a training set: scalers and spreads of its rows.
+/// Names of the features that stand still in the training rows (training/resolution.hpp): the network can't learn what they
+/// do, and its model answers only where they stay.
+template <class Features>
+std::vector<std::string> still_features(const Flight& flight, const IndexRange& training) {
+  const auto rows = detail::feature_rows<Features>(flight, training);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(Features::size); ++i) {
+    if (column_statistics(rows, i, Features::units[i]).still()) names.emplace_back(Features::names[i]);
+  }
+  return names;
+}
+
+/// The context of a training set: scalers and spreads of its rows. A column that stands still gets the spread 1.
 template <class ContextType>
 ContextType make_context(const Flight& flight, const IndexRange& range) {
   using Features = typename ContextType::Features;
-  std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
   std::vector<std::array<double, rotor_count>> outputs;
   std::vector<std::array<double, 3>> sums;
   const std::array<std::array<double, rotor_count>, 3> signs = {
       ContextType::template signs<Roll>(), ContextType::template signs<Pitch>(), ContextType::template signs<Yaw>()};
   for (std::size_t row = range.begin; row < range.end; ++row) {
-    features.push_back(sample_features<Features, double>(flight[row]));
     outputs.push_back(detail::sample_outputs<ContextType>(flight[row]));
     std::array<double, 3> sum{};
     for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = signed_sum(signs[axis], flight[row].commands);
     sums.push_back(sum);
   }
   ContextType context;
-  context.input = detail::column_scaler(features);
-  context.output = detail::column_scaler(outputs);
-  context.signed_sum_spread = detail::column_scaler(sums).spread;
+  const auto feature_unit = [](std::size_t i) { return Features::units[i]; };
+  context.input = detail::column_scaler(detail::feature_rows<Features>(flight, range), feature_unit);
+  context.output = detail::column_scaler(outputs, [](std::size_t) { return ContextType::Outputs::unit; });
+  context.signed_sum_spread = detail::column_scaler(sums, [](std::size_t) { return CommandOutputs::unit; }).spread;
   return context;
 }
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Are angles or body rates in degrees? Asked of the motion, not of the range: from row to row the attitude turns by the body
+// rates. In radians throughout the slope between the two is 1; with one of them in degrees it is 57.3 or 1 / 57.3.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "pinnquad/core/rotation.hpp"
+#include "pinnquad/data/dataset.hpp"
+
+namespace pinnquad {
+
+/// Which columns are in degrees.
+struct DegreesFound {
+  std::array<bool, 3> angle{};  ///< roll, pitch, yaw
+  bool body_rates = false;      ///< all three
+};
+
+namespace detail {
+
+inline constexpr double degrees_per_radian = 57.295779513082320877;
+
+/// Body rates, mean over a step of `dt_s`, that turn the attitude (roll, pitch, yaw, rad) of its begin into that of its end.
+inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const std::array<double, 3>& end, double dt_s) {
+  const auto quaternion = [](const std::array<double, 3>& angles) {
+    return from_euler(EulerAngles<double>{angles[0], angles[1], angles[2]});
+  };
+  const Quaternion<double> q = conjugate(quaternion(begin)) * quaternion(end);
+  const double shorter_way = q.w < 0 ? -1 : 1;
+  const double w = shorter_way * q.w;
+  const Vector3<double> v = shorter_way * Vector3<double>(q.x, q.y, q.z);
+  const double sine = v.norm();
+  const double turn = sine > 1e-12 ? 2 * std::atan2(sine, w) / sine : 2.0;
+  return v * (turn / dt_s);
+}
+
+}  // namespace detail
+
+/// Tries every choice of angles in degrees with rates in rad/s and in deg/s: the share of the rates' squares that the turning
+/// of the attitude leaves unexplained. Degrees are found only where radians explain nothing (above 0.8) and degrees nearly
+/// all (below 0.25): a flight that hardly turns, noise and steps above half a second decide nothing.
+inline DegreesFound find_degrees_by_motion(const Flight& flight) {
+  constexpr double longest_step_s = 0.5, largest = 1e4;  // beyond is no angle and no rate, in whatever unit
+  constexpr double unexplained = 0.8, explained = 0.25;
+  constexpr std::size_t enough_rows = 20000;
+  constexpr double smallest_rates = 1e-6;  // sum of squares per row
+  constexpr std::size_t choices = 8;
+  std::array<std::array<double, 2>, choices> residual{};  // [angles in degrees, a bit each][rates in degrees]
+  double rates = 0, rows = 0;
+  const std::size_t stride = flight.size() / enough_rows + 1;
+  for (std::size_t row = 0; row + 1 < flight.size(); row += stride) {
+    const Sample& a = flight[row];
+    const Sample& b = flight[row + 1];
+    const double dt_s = b.time_s - a.time_s;
+    const Vector3<double> rate = (a.body_rates_rad_s + b.body_rates_rad_s) / 2;
+    const std::array<double, 3> begin = {a.roll_rad, a.pitch_rad, a.yaw_rad},
+                                end = {b.roll_rad, b.pitch_rad, b.yaw_rad};
+    bool usable = dt_s > 0 && dt_s <= longest_step_s && rate.norm() <= largest;
+    for (std::size_t i = 0; i < 3; ++i) usable = usable && std::abs(begin[i]) <= largest && std::abs(end[i]) <= largest;
+    if (!usable) continue;
+    rates += rate.squaredNorm();
+    rows += 1;
+    for (std::size_t choice = 0; choice < choices; ++choice) {
+      std::array<double, 3> from = begin, to = end;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if ((choice >> i & 1u) == 0) continue;
+        from[i] /= detail::degrees_per_radian;
+        to[i] /= detail::degrees_per_radian;
+      }
+      const Vector3<double> turning = detail::turning_rate(from, to, dt_s);
+      residual[choice][0] += (rate - turning).squaredNorm();
+      residual[choice][1] += (rate - turning * detail::degrees_per_radian).squaredNorm();
+    }
+  }
+  DegreesFound found;
+  if (!(rates > smallest_rates * rows) || !(residual[0][0] > unexplained * rates)) return found;
+  std::size_t best = 0, best_rates = 0;
+  for (std::size_t choice = 0; choice < choices; ++choice) {
+    for (std::size_t unit = 0; unit < 2; ++unit) {
+      if (residual[choice][unit] < residual[best][best_rates]) {
+        best = choice;
+        best_rates = unit;
+      }
+    }
+  }
+  if (!(residual[best][best_rates] < explained * rates)) return found;
+  for (std::size_t i = 0; i < 3; ++i) found.angle[i] = (best >> i & 1u) != 0;
+  found.body_rates = best_rates == 1;
+  return found;
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// Can this be a recorded flight? Per column its unit and physical range, a robust search for cells that fit no neighbour, and
+// the mistakes of unit that logs have: commands as pulse widths or percent, angles in degrees. A network trains on nonsense
+// without complaint; what it learned then flies.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/degrees.hpp"
+#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/split.hpp"
+
+namespace pinnquad {
+
+/// What a column of `sample_field_names` may hold. The range is what any multirotor can reach, not what is usual.
+struct ColumnPlausibility {
+  const char* unit;
+  double lowest;
+  double highest;
+  double
+      smallest_scale;  ///< a robust spread below this counts as this much: of a column that hardly varies; 0: not judged
+};
+
+/// Per column, in the order of `sample_field_names`. Angles may be unwrapped. Commands are 0 to 1, with a float's
+/// rounding to spare.
+inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plausibility = {
+    {// clang-format off
+    {"s", -1e12, 1e12, 0},
+    {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1},
+    {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20},
+    {"m/s", -200, 200, 0.1}, {"m/s", -200, 200, 0.1}, {"m/s", -200, 200, 0.1},
+    {"rad/s", -100, 100, 0.2}, {"rad/s", -100, 100, 0.2}, {"rad/s", -100, 100, 0.2},
+    {"rad", -1e4, 1e4, 0.25}, {"rad", -1e4, 1e4, 0.25}, {"rad", -1e4, 1e4, 0.25},
+    {"m", -1000, 20000, 0.1},
+    {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}}};
+// clang-format on
+
+/// A cell further than this many robust spreads from its column's median, both of whose neighbours in time are not half as
+/// far, is no measurement: what moves is there for more than one row. The flights that the paper's pilots fly and those of an
+/// independent simulator stay below 5, real logs below 15. An angle that wraps round stays below too.
+inline constexpr double most_robust_spreads = 30;
+
+/// The first thing that can't be, or what is wrong with a whole column.
+struct Implausible {
+  std::size_t row = 0;    ///< from 0
+  std::size_t field = 0;  ///< index in `sample_field_names`
+  std::string expected;
+  std::string found;
+};
+
+namespace detail {
+
+inline constexpr std::size_t first_command_field = 17;
+inline constexpr std::size_t first_data_line = 2;
+
+inline std::vector<double> column_of(const Flight& flight, std::size_t field) {
+  std::vector<double> column;
+  column.reserve(flight.size());
+  for (const Sample& sample : flight) column.push_back(to_values(sample)[field]);
+  return column;
+}
+
+/// The upper median of a series that is not empty.
+inline double median_of(std::vector<double> series) {
+  const auto middle = series.begin() + static_cast<std::ptrdiff_t>(series.size() / 2);
+  std::nth_element(series.begin(), middle, series.end());
+  return *middle;
+}
+
+/// What commands outside 0..1 most likely are, and how to convert them; empty if nothing known. Judged by nine cells in ten,
+/// so that a single wrong cell does not hide the rest.
+inline std::string command_mistake(const Flight& flight) {
+  std::vector<double> cells;
+  for (const Sample& sample : flight) cells.insert(cells.end(), sample.commands.begin(), sample.commands.end());
+  const std::size_t cut = cells.size() / 20;
+  std::sort(cells.begin(), cells.end());
+  const double low = cells[cut], high = cells[cells.size() - 1 - cut];
+  if (low >= 0 && high <= 1) return "";
+  if (low >= 800 && high <= 2200) return "pulse widths of 1000 to 2000 us? Then write (u - 1000) / 1000";
+  if (low >= -1 && high <= 0) return "negated? Then write -u";
+  if (low >= 0 && high <= 100) return "percent? Then write u / 100";
+  if (low >= 0 && high <= 255) return "counts of 8 bits? Then write u / 255";
+  if (low >= 0 && high <= 65535) return "counts of 16 bits? Then write u / 65535";
+  return "";
+}
+
+inline std::string range_text(const ColumnPlausibility& column) {
+  return number_text(column.lowest) + " to " + number_text(column.highest) + " " + column.unit;
+}
+
+inline std::string column_text(std::size_t field) { return "in column " + std::string(sample_field_names[field]); }
+
+/// The first cell of a command outside 0..1.
+inline std::optional<Implausible> find_implausible_command(const Flight& flight) {
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      const double u = flight[row].commands[rotor];
+      const std::size_t field = first_command_field + rotor;
+      if (u >= column_plausibility[field].lowest && u <= column_plausibility[field].highest) continue;
+      const std::string mistake = command_mistake(flight);
+      return Implausible{row, field, "a command of 0 to 1 " + column_text(field),
+                         number_text(u) + (mistake.empty() ? "" : " (" + mistake + ")")};
+    }
+  }
+  return std::nullopt;
+}
+
+/// The first cell outside its column's physical range; NaN and infinity are outside every range, as is what no float holds.
+inline std::optional<Implausible> find_out_of_range(const Flight& flight) {
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    const SampleValues values = to_values(flight[row]);
+    for (std::size_t field = 0; field < values.size(); ++field) {
+      const ColumnPlausibility& column = column_plausibility[field];
+      if (values[field] >= column.lowest && values[field] <= column.highest) continue;
+      return Implausible{row, field, range_text(column) + " " + column_text(field), number_text(values[field])};
+    }
+  }
+  return std::nullopt;
+}
+
+/// The cell of a column that is furthest from its median and has no neighbour like it.
+inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t field) {
+  const ColumnPlausibility& column = column_plausibility[field];
+  if (!(column.smallest_scale > 0) || flight.empty()) return std::nullopt;
+  constexpr double normal = 1.4826;  // standard deviation of a normal column over its median absolute deviation
+  const std::vector<double> values = column_of(flight, field);
+  const double median = median_of(values);
+  std::vector<double> distance;
+  distance.reserve(values.size());
+  for (const double value : values) distance.push_back(std::abs(value - median));
+  const double scale = std::max(normal * median_of(distance), column.smallest_scale);
+  std::optional<Implausible> worst;
+  double furthest = most_robust_spreads * scale;
+  for (std::size_t row = 0; row < distance.size(); ++row) {
+    if (!(distance[row] > furthest)) continue;
+    const double before = row > 0 ? distance[row - 1] : 0;
+    const double after = row + 1 < distance.size() ? distance[row + 1] : 0;
+    if (std::max(before, after) > distance[row] / 2) continue;
+    furthest = distance[row];
+    worst = Implausible{row, field, "a value like its neighbours " + column_text(field),
+                        number_text(values[row]) + ", " + std::to_string(static_cast<long long>(furthest / scale)) +
+                            " robust spreads from the median " + number_text(median)};
+  }
+  return worst;
+}
+
+/// Angles or rates that fit each other only in degrees.
+inline std::optional<Implausible> find_degrees(const Flight& flight) {
+  constexpr std::array<std::size_t, 3> angle_fields = {13, 14, 15};
+  constexpr std::size_t first_rate_field = 10;
+  const DegreesFound found = find_degrees_by_motion(flight);
+  for (std::size_t angle = 0; angle < angle_fields.size(); ++angle) {
+    if (!found.angle[angle]) continue;
+    return Implausible{0, angle_fields[angle], "radians " + column_text(angle_fields[angle]),
+                       "degrees, by how they change with the body rates w_x, w_y, w_z (multiply by pi / 180)"};
+  }
+  if (found.body_rates) {
+    return Implausible{0, first_rate_field, "radians per second in columns w_x, w_y, w_z",
+                       "degrees per second, by how roll, pitch and yaw change (multiply by pi / 180)"};
+  }
+  return std::nullopt;
+}
+
+/// Columns of the file that a recorded flight was read from, or their order where it can't be read again (a pipe).
+inline std::size_t column_in_file(const std::string& path, std::size_t field) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return field + 1;
+  std::string text = file_text(path);
+  if (text.rfind("\xef\xbb\xbf", 0) == 0) text.erase(0, 3);
+  std::string_view header = std::string_view(text).substr(0, text.find('\n'));
+  if (!header.empty() && header.back() == '\r') header.remove_suffix(1);
+  std::vector<std::string_view> cells;
+  split_fields(header, cells);
+  return locate_columns(path, cells, {std::string(sample_field_names[field])})[0] + 1;
+}
+
+}  // namespace detail
+
+/// The first reason, in this order, why these rows are no flight that a network may learn from: commands outside 0..1, angles
+/// or rates in degrees, a cell outside its column's range, a cell like none of its neighbours. None for a flight.
+inline std::optional<Implausible> find_implausible(const Flight& flight) {
+  if (auto found = detail::find_implausible_command(flight)) return found;
+  if (auto found = detail::find_degrees(flight)) return found;
+  if (auto found = detail::find_out_of_range(flight)) return found;
+  for (std::size_t field = 0; field < sample_value_count; ++field) {
+    if (auto found = detail::find_outlier(flight, field)) return found;
+  }
+  return std::nullopt;
+}
+
+/// Throws InputError where find_implausible() finds something in a flight that was read from `path`:
+///   flight.csv:17:5: expected -1000 to 1000 m/s^2 in column vdot_bx, found 1e+39
+inline void require_plausible(const std::string& path, const Flight& flight) {
+  const std::optional<Implausible> found = find_implausible(flight);
+  if (!found) return;
+  throw InputError(path, found->row + detail::first_data_line, detail::column_in_file(path, found->field),
+                   found->expected, found->found);
+}
+
+/// Throws InputError where a command stands still in a block of a flight that was read from `path`: nothing to learn there,
+/// and nothing to judge by. `block_name` as in "training rows".
+inline void require_varied_commands(const std::string& path, const Flight& flight, const IndexRange& block,
+                                    const std::string& block_name) {
+  constexpr double smallest_range = 1e-6;  // a float's rounding
+  for (std::size_t rotor = 0; rotor < rotor_count && !block.empty(); ++rotor) {
+    double low = flight[block.begin].commands[rotor], high = low;
+    for (std::size_t row = block.begin; row < block.end; ++row) {
+      low = std::min(low, flight[row].commands[rotor]);
+      high = std::max(high, flight[row].commands[rotor]);
+    }
+    if (high - low > smallest_range) continue;
+    const std::size_t field = detail::first_command_field + rotor;
+    throw InputError(path, block.begin + detail::first_data_line, detail::column_in_file(path, field),
+                     "commands that change " + detail::column_text(field),
+                     detail::number_text(low) + " in all " + std::to_string(block.size()) + " " + block_name + " rows");
+  }
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// How small a spread of a quantity still is a movement, by its unit. A feature that varies less than that stands still: it
+// is scaled as a constant and gets an envelope of its own, for a flight with it will move it a little.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace pinnquad {
+
+/// In the unit itself.
+struct Resolution {
+  double smallest_spread;  ///< a standard deviation below this is rounding or noise
+  double still_margin;     ///< how far a quantity that stood still may be from where it stood
+};
+
+/// Of a quantity with this unit (units of a feature set or an output schema) about `mean`:
+///   unit      m/s^2  rad/s^2  m/s   rad/s  rad    1      m     rev/s
+///   spread    0.01   0.01     0.01  0.001  0.001  0.001  0.01  0.01
+///   margin    0.2    0.5      0.1   0.05   0.05   0.05   0.2   0.5
+/// Any other unit: a millionth and a hundredth of |mean|, of 1 for a smaller mean. No spread is below a millionth of |mean|:
+/// a float's rounding.
+inline Resolution resolution_of(std::string_view unit, double mean) {
+  struct Named {
+    std::string_view unit;
+    Resolution resolution;
+  };
+  constexpr std::array<Named, 8> named = {{{"m/s^2", {0.01, 0.2}},
+                                           {"rad/s^2", {0.01, 0.5}},
+                                           {"m/s", {0.01, 0.1}},
+                                           {"rad/s", {0.001, 0.05}},
+                                           {"rad", {0.001, 0.05}},
+                                           {"1", {0.001, 0.05}},
+                                           {"m", {0.01, 0.2}},
+                                           {"rev/s", {0.01, 0.5}}}};
+  constexpr double rounding = 1e-6;
+  const double magnitude = std::abs(mean);
+  for (const Named& known : named) {
+    if (known.unit != unit) continue;
+    Resolution resolution = known.resolution;
+    if (resolution.smallest_spread < rounding * magnitude) resolution.smallest_spread = rounding * magnitude;
+    return resolution;
+  }
+  const double scale = magnitude > 1 ? magnitude : 1.0;
+  return {rounding * scale, 0.01 * scale};
+}
+
+/// Share of a feature's range in the training set by which the envelope is wider on both sides.
+inline constexpr double envelope_margin = 0.1;
+
+/// What a column of training rows does.
+struct ColumnStatistics {
+  double mean = 0;
+  double spread = 0;  ///< standard deviation, divisor n
+  double lowest = 0;
+  double highest = 0;
+  Resolution resolution{0, 0};
+
+  bool still() const noexcept { return !(spread >= resolution.smallest_spread); }
+
+  /// What the column is divided by: 1 if it stands still.
+  double scale() const noexcept { return still() ? 1.0 : spread; }
+
+  /// By how much the envelope is wider than the range, on both sides: envelope_margin of the range, no less than the
+  /// smallest spread, or than the still margin if the column stands still.
+  double margin() const noexcept {
+    const double least = still() ? resolution.still_margin : resolution.smallest_spread;
+    const double share = envelope_margin * (highest - lowest);
+    return share > least ? share : least;
+  }
+};
+
+/// Statistics of column `index` over rows of numbers, by two passes.
+template <class Rows>
+ColumnStatistics column_statistics(const Rows& rows, std::size_t index, std::string_view unit) {
+  ColumnStatistics column;
+  const double count = static_cast<double>(rows.size());
+  double sum = 0;
+  for (const auto& row : rows) sum += row[index];
+  column.mean = sum / count;
+  double squares = 0;
+  bool first = true;
+  for (const auto& row : rows) {
+    const double value = row[index];
+    squares += (value - column.mean) * (value - column.mean);
+    column.lowest = first || value < column.lowest ? value : column.lowest;
+    column.highest = first || value > column.highest ? value : column.highest;
+    first = false;
+  }
+  column.spread = std::sqrt(squares / count);
+  column.resolution = resolution_of(unit, column.mean);
+  return column;
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// No flight is refused; every mistake that a log can hold is named with its line and column.
+#include "pinnquad/data/plausibility.hpp"
+
+#include <doctest/doctest.h>
+
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "data/temporary_folder.hpp"
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/dynamics/airframes/crazyflie.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/noisy_recorder.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+template <class PaperFlight, class Vehicle>
+Flight flown(std::uint64_t seed, std::size_t rows) {
+  FlightPlan plan = PaperFlight::plan();
+  plan.samples = rows;
+  const auto vehicle = flight_vehicle<PaperFlight>(airframe_value<Vehicle, double>());
+  return fly(vehicle, PaperFlight::pilot(vehicle, std::mt19937_64(seed)), plan).flight;
+}
+
+const Flight& some_flight() {
+  static const Flight flight = flown<AgileFlight, PaperQuadrotor>(3, 1500);
+  return flight;
+}
+
+/// A flight with every row changed.
+Flight changed(const std::function<void(Sample&)>& change) {
+  Flight flight = some_flight();
+  for (Sample& sample : flight) change(sample);
+  return flight;
+}
+
+/// A flight with one number changed.
+Flight with_cell(std::size_t row, std::size_t field, double value) {
+  Flight flight = some_flight();
+  SampleValues values = to_values(flight[row]);
+  values[field] = value;
+  flight[row] = to_sample(values);
+  return flight;
+}
+
+/// What require_plausible() says; the file's columns are in the order of the library.
+std::string refusal(const Flight& flight) {
+  try {
+    require_plausible("no/such/flight.csv", flight);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+constexpr double degrees = 57.295779513082320877;
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("the paper's flights pass, whatever flies", Vehicle, PaperQuadrotor, Crazyflie) {
+  for (const std::uint64_t seed : {1u, 2u}) {
+    CHECK(refusal(flown<AgileFlight, Vehicle>(seed, 1500)) == "");
+    CHECK(refusal(flown<NearGroundFlight, Vehicle>(seed, 1500)) == "");
+    CHECK(refusal(flown<WindyFlight, Vehicle>(seed, 1500)) == "");
+  }
+}
+
+TEST_CASE("a flight that hardly moves passes, and one with a column that stands still but for a manoeuvre") {
+  std::mt19937_64 engine(7);
+  CHECK(refusal(changed([&](Sample& s) {
+          const Sample flown = s;
+          s = Sample{};
+          s.time_s = flown.time_s;
+          s.commands = flown.commands;
+          s.body_rates_rad_s = Vector3<double>(1e-3, 1e-3, 1e-3) * standard_normal(engine);
+        })) == "");
+  Flight flight = changed([](Sample& s) { s.velocity_m_s[1] = 0; });
+  for (std::size_t row = 400; row < 404; ++row) flight[row].velocity_m_s[1] = 12;
+  CHECK(refusal(flight) == "");
+}
+
+TEST_CASE("an angle may wrap round or be counted on") {
+  CHECK(refusal(changed([](Sample& s) { s.yaw_rad += 40 * 3.14159265358979; })) == "");
+  CHECK(refusal(changed([](Sample& s) { s.yaw_rad = std::remainder(s.yaw_rad + 2, 2 * 3.14159265358979); })) == "");
+  Flight flight = changed([](Sample& s) { s.yaw_rad = 3.1415; });
+  flight[700].yaw_rad = -3.1415;
+  CHECK(refusal(flight) == "");
+}
+
+TEST_CASE("a number that no flight has is named with line and column") {
+  CHECK(refusal(with_cell(498, 2, 1e39)) ==
+        "no/such/flight.csv:500:3: expected -1000 to 1000 m/s^2 in column vdot_by, found 1e+39");
+  CHECK(refusal(with_cell(0, 4, -1e30)) ==
+        "no/such/flight.csv:2:5: expected -1e+05 to 1e+05 rad/s^2 in column wdot_x, found -1e+30");
+  CHECK(refusal(with_cell(9, 16, 1e5)).find(":11:17: expected -1000 to 20000 m in column altitude") !=
+        std::string::npos);
+  for (std::size_t field = 1; field < sample_value_count; ++field) {
+    CAPTURE(field);
+    const std::string place = ":302:" + std::to_string(field + 1) + ": ";
+    for (const double wrong :
+         {1e30, -1e39, std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+      CHECK(refusal(with_cell(300, field, wrong)).find(place) != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("a cell like none of its neighbours is named, in a column that stands still too") {
+  CHECK(refusal(with_cell(498, 8, 150))
+            .find(":500:9: expected a value like its neighbours in column v_by, found 150, ") != std::string::npos);
+  Flight still = changed([](Sample& s) { s.velocity_m_s[1] = 0; });
+  still[800].velocity_m_s[1] = 30;
+  CHECK(refusal(still) ==
+        "no/such/flight.csv:802:9: expected a value like its neighbours in column v_by, found 30, 300 robust spreads "
+        "from "
+        "the median 0");
+}
+
+TEST_CASE("commands: what they are instead, and how to convert them") {
+  const auto said = [](double factor, double offset) {
+    return refusal(changed([&](Sample& s) {
+      for (double& u : s.commands) u = offset + factor * u;
+    }));
+  };
+  const std::string expected = "no/such/flight.csv:2:18: expected a command of 0 to 1 in column u1, found ";
+  const auto mistake = [&](const std::string& message) {
+    CHECK(message.substr(0, expected.size()) == expected);
+    const std::size_t bracket = message.find('(');
+    return bracket == std::string::npos ? std::string() : message.substr(bracket);
+  };
+  CHECK(said(1, 0) == "");
+  CHECK(mistake(said(1000, 1000)) == "(pulse widths of 1000 to 2000 us? Then write (u - 1000) / 1000)");
+  CHECK(mistake(said(100, 0)) == "(percent? Then write u / 100)");
+  CHECK(mistake(said(-1, 0)) == "(negated? Then write -u)");
+  CHECK(mistake(said(65535, 0)) == "(counts of 16 bits? Then write u / 65535)");
+  CHECK(mistake(said(1e6, 0)) == "");
+  // rounding to float is no mistake, and a single wrong cell is not taken for a unit
+  CHECK(refusal(with_cell(5, 18, 1.0 + 1e-7)) == "");
+  CHECK(refusal(with_cell(5, 18, 1500)) ==
+        "no/such/flight.csv:7:19: expected a command of 0 to 1 in column u2, found 1500");
+}
+
+TEST_CASE("degrees are found by the motion, whichever column has them") {
+  CHECK(refusal(changed([](Sample& s) { s.body_rates_rad_s *= degrees; })).find(":2:11: expected radians per second") !=
+        std::string::npos);
+  const auto in_degrees = [](bool roll, bool pitch, bool yaw, double rates) {
+    return refusal(changed([=](Sample& s) {
+      if (roll) s.roll_rad *= degrees;
+      if (pitch) s.pitch_rad *= degrees;
+      if (yaw) s.yaw_rad *= degrees;
+      s.body_rates_rad_s *= rates;
+    }));
+  };
+  CHECK(in_degrees(true, true, true, 1).find(":2:14: expected radians in column roll, found degrees") !=
+        std::string::npos);
+  CHECK(in_degrees(false, true, false, 1).find(":2:15: expected radians in column pitch") != std::string::npos);
+  CHECK(in_degrees(false, false, true, 1).find(":2:16: expected radians in column yaw") != std::string::npos);
+  CHECK(in_degrees(true, true, true, degrees).find(":2:14: expected radians in column roll") != std::string::npos);
+}
+
+TEST_CASE("angles of less than a degree are found too: the range has no say") {
+  // a slow sway of 0.01 rad, at 20 Hz
+  const auto sway = [](double angle_factor, double rate_factor) {
+    Flight flight = some_flight();
+    for (Sample& s : flight) {
+      const double phase = s.time_s;
+      s.roll_rad = angle_factor * 0.01 * std::sin(phase);
+      s.pitch_rad = s.yaw_rad = 0;
+      s.body_rates_rad_s = Vector3<double>(rate_factor * 0.01 * std::cos(phase), 0, 0);
+    }
+    return refusal(flight);
+  };
+  CHECK(sway(1, 1) == "");
+  CHECK(sway(degrees, 1).find(":2:14: expected radians in column roll, found degrees") != std::string::npos);
+  CHECK(sway(1, degrees).find(":2:11: expected radians per second") != std::string::npos);
+}
+
+TEST_CASE("line and column are those of the file, whatever its columns' order") {
+  const pinnquad_test::TemporaryFolder folder;
+  std::string text = "\xef\xbb\xbfnote,u4,";
+  for (std::size_t i = 0; i + 1 < sample_value_count; ++i) text += std::string(sample_field_names[i]) + ",";
+  text += "more\r\n";
+  for (int row = 0; row < 12; ++row) {
+    text += "a," + std::string(row == 7 ? "1.5" : "0.5") + "," + std::to_string(row);
+    for (int i = 1; i < 17; ++i) text += ",0";
+    text += ",0.5,0.5,0.5,b\r\n";
+  }
+  const std::string path = folder.write("flight.csv", text);
+  CHECK_THROWS_WITH(require_plausible(path, read_flight_csv(path)),
+                    (path + ":9:2: expected a command of 0 to 1 in column u4, found 1.5").c_str());
+}
+
+TEST_CASE("a command that stands still in a block is found before anything is trained") {
+  const auto said = [](const Flight& flight, const IndexRange& block) -> std::string {
+    try {
+      require_varied_commands("no/such/flight.csv", flight, block, "test");
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  Flight flight = some_flight();
+  CHECK(said(flight, {0, 900}) == "");
+  for (std::size_t row = 900; row < flight.size(); ++row) flight[row].commands[1] = 0.5 + 1e-9 * double(row % 2);
+  CHECK(said(flight, {0, 901}) == "");
+  CHECK(said(flight, {900, 1500}) ==
+        "no/such/flight.csv:902:19: expected commands that change in column u2, found 0.5 in all 600 test rows");
+}

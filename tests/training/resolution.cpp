@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/training/resolution.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <vector>
+
+#include "pinnquad/inference/features.hpp"
+#include "pinnquad/inference/output_schema.hpp"
+
+using pinnquad::column_statistics;
+using pinnquad::resolution_of;
+
+namespace {
+
+std::vector<std::array<double, 1>> column(std::initializer_list<double> values) {
+  std::vector<std::array<double, 1>> rows;
+  for (const double value : values) rows.push_back({value});
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("every unit of the feature sets and output schemas has a resolution of its own") {
+  const auto known = [](const char* unit) {
+    const auto unknown = resolution_of("furlong", 0);
+    const auto of_unit = resolution_of(unit, 0);
+    CHECK(of_unit.smallest_spread != unknown.smallest_spread);
+    CHECK(of_unit.smallest_spread > 0);
+    CHECK(of_unit.still_margin > of_unit.smallest_spread);
+  };
+  for (const char* unit : pinnquad::PaperFeaturesWithAltitude::units) known(unit);
+  known(pinnquad::CommandOutputs::unit);
+  known(pinnquad::RotorSpeedOutputs::unit);
+}
+
+TEST_CASE("an unknown unit: relative to the value, and to 1 about 0") {
+  CHECK(resolution_of("V", 0).smallest_spread == 1e-6);
+  CHECK(resolution_of("V", -0.5).still_margin == 0.01);
+  CHECK(resolution_of("Pa", 1e5).smallest_spread == doctest::Approx(0.1));
+  CHECK(resolution_of("Pa", -1e5).still_margin == doctest::Approx(1000));
+}
+
+TEST_CASE("a known unit's spread is never below a float's rounding of the value") {
+  CHECK(resolution_of("m", 100).smallest_spread == 0.01);
+  CHECK(resolution_of("m", 1e6).smallest_spread == doctest::Approx(1));
+}
+
+TEST_CASE("still or not: scale and margin") {
+  const auto moving = column_statistics(column({1, 3}), 0, "m/s");
+  CHECK(moving.mean == 2);
+  CHECK(moving.spread == 1);
+  CHECK_FALSE(moving.still());
+  CHECK(moving.scale() == 1);
+  CHECK(moving.margin() == doctest::Approx(0.2));  // a tenth of the range
+  const auto barely = column_statistics(column({1, 1.04}), 0, "m/s");
+  CHECK_FALSE(barely.still());
+  CHECK(barely.margin() == 0.01);  // the smallest spread
+  const auto still = column_statistics(column({1, 1 + 1e-13}), 0, "m/s");
+  CHECK(still.still());
+  CHECK(still.scale() == 1);
+  CHECK(still.margin() == 0.1);
+  // seldom, but far: still by its spread, with the range's margin
+  auto rare = column({0});
+  rare.resize(100000, {0});
+  rare[500] = {2};
+  CHECK(column_statistics(rare, 0, "m/s").still());
+  CHECK(column_statistics(rare, 0, "m/s").margin() == doctest::Approx(0.2));
+}
