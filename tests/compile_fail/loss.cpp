@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CASE WEIGHTED_NOT_A_LOSS: pinnquad: Weighted's first argument is not a loss
 // CASE WEIGHTED_NOT_A_SCHEDULE: pinnquad: Weighted's second argument is not a schedule
+// CASE SCHEDULE_MAY_THROW: pinnquad: Weighted's second argument is not a schedule. it needs weight.epoch, epochs. const noexcept
 // CASE BASE_NOT_A_LOSS: pinnquad: PhysicsInformed's first argument is not a loss
 // CASE ARGUMENTS_SWAPPED: pinnquad: Weighted's first argument is not a loss
 // CASE TERM_NOT_WEIGHTED: pinnquad: a term of PhysicsInformed is not Weighted
@@ -28,6 +29,10 @@ using pinnquad::Weighted;
 
 struct Nothing {};
 
+struct MayThrow {
+  double weight(int, int) const { return 0.1; }
+};
+
 /// A feature set without angular accelerations.
 struct VelocitiesOnly : PaperFeatures {
   static constexpr int angular_acceleration = -1;
@@ -37,6 +42,8 @@ struct VelocitiesOnly : PaperFeatures {
 using Loss = PhysicsInformed<Mse, Weighted<Nothing, Constant>>;
 #elif defined(WEIGHTED_NOT_A_SCHEDULE)
 using Loss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, Nothing>>;
+#elif defined(SCHEDULE_MAY_THROW)
+using Loss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, MayThrow>>;
 #elif defined(BASE_NOT_A_LOSS)
 using Loss = PhysicsInformed<Nothing, Weighted<LocalMonotonicity<Roll>, Constant>>;
 #elif defined(TERM_NOT_WEIGHTED)
@@ -72,5 +79,5 @@ int main() {
   Batch::Gradient gradient;
   gradient.setZero(4, 2);
   return static_cast<int>(Loss{}.evaluate(Knowledge{}, batch, 1.0, gradient)) +
-         static_cast<int>(sizeof(Nothing) + sizeof(VelocitiesOnly));
+         static_cast<int>(sizeof(Nothing) + sizeof(VelocitiesOnly) + sizeof(MayThrow));
 }

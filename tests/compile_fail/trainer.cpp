@@ -8,6 +8,10 @@
 // CASE NOT_AN_OPTIMIZER: pinnquad: Trainer's third argument is not an optimiser
 // CASE SCHEDULED_NOT_AN_OPTIMIZER: pinnquad: Scheduled's first argument is not an optimiser
 // CASE SCHEDULED_NOT_A_RATE: pinnquad: Scheduled's second argument is not a rate
+// CASE UPDATE_MAY_THROW: pinnquad: Trainer's third argument is not an optimiser. it needs begin.. and update.. const noexcept
+// CASE RATE_MAY_THROW: pinnquad: Scheduled's second argument is not a rate. it needs factor.done. const noexcept
+// CASE SCHEDULED_WITHOUT_RATE: pinnquad: Scheduled's first argument has no member learning_rate
+// CASE NO_BATCH: pinnquad: Trainer's batch size must be 1 or more
 // CASE BATCH_NORM_OF_ONE: pinnquad: batch norm can't be trained in batches of one sample
 // CASE BATCH_NORM_BEHIND_ACTIVATION: pinnquad: a BatchNorm that does not follow a Dense can't be folded
 #include "pinnquad/training/trainer.hpp"
@@ -48,6 +52,20 @@ struct Square {
   };
 };
 
+/// An optimiser without a learning rate, and one that may throw.
+struct Rateless {
+  int begin(long) const { return 0; }
+  template <class Pack, class Scalar>
+  void update(int, Scalar*, const Scalar*, Scalar*, Scalar*, int) const noexcept {}
+};
+struct MayThrow {
+  double learning_rate = 1.0;
+  int begin(long) const { return 0; }
+  template <class Pack, class Scalar>
+  void update(int, Scalar*, const Scalar*, Scalar*, Scalar*, int) const {}
+  double factor(double) const { return 1.0; }
+};
+
 #if defined(INPUTS_DIFFER)
 using Net = Network<float, Inputs<15>, Dense<8>, Relu, Dense<4>>;
 #elif defined(OUTPUTS_DIFFER)
@@ -79,12 +97,20 @@ using Optimizer = Nothing;
 using Optimizer = pinnquad::Scheduled<Nothing, pinnquad::CosineDecay>;
 #elif defined(SCHEDULED_NOT_A_RATE)
 using Optimizer = pinnquad::Scheduled<pinnquad::Adam, pinnquad::Constant>;
+#elif defined(UPDATE_MAY_THROW)
+using Optimizer = MayThrow;
+#elif defined(RATE_MAY_THROW)
+using Optimizer = pinnquad::Scheduled<pinnquad::Adam, MayThrow>;
+#elif defined(SCHEDULED_WITHOUT_RATE)
+using Optimizer = pinnquad::Scheduled<Rateless, pinnquad::CosineDecay>;
 #else
 using Optimizer = pinnquad::Adam;
 #endif
 
 #if defined(BATCH_NORM_OF_ONE)
 constexpr int batch_size = 1;
+#elif defined(NO_BATCH)
+constexpr int batch_size = 0;
 #else
 constexpr int batch_size = 64;
 #endif
@@ -95,6 +121,8 @@ using Trainer = pinnquad::Trainer<Net, Loss, Optimizer, Knowledge, pinnquad::Shu
 
 int main() {
   using Model = decltype(pinnquad::make_trained_model(Net{}, Knowledge{}, {}, {}));
-  return static_cast<int>(sizeof(Trainer) + sizeof(Model) + sizeof(Nothing) + sizeof(Reverse) + sizeof(Square)) > 0 ? 0
-                                                                                                                    : 1;
+  return static_cast<int>(sizeof(Trainer) + sizeof(Model) + sizeof(Nothing) + sizeof(Reverse) + sizeof(Square) +
+                          sizeof(Rateless) + sizeof(MayThrow)) > 0
+             ? 0
+             : 1;
 }

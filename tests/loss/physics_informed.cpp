@@ -56,7 +56,27 @@ struct ReturnsNothing {
   void evaluate(const ContextType&, const Batch&, typename Batch::Scalar, GradientType&) const {}
 };
 
+/// Doubles what is in the gradient and adds its number: the result tells in which order the terms came.
+template <int Number>
+struct Doubling {
+  template <class ContextType, class Batch, class GradientType>
+  typename Batch::Scalar evaluate(const ContextType&, const Batch&, typename Batch::Scalar, GradientType& g) const {
+    g = g * 2.0 + GradientType::Constant(g.rows(), g.cols(), Number);
+    return 0;
+  }
+};
+
 }  // namespace
+
+TEST_CASE("base and terms add to the gradient in the order in which they are named, whatever the compiler") {
+  std::mt19937_64 engine(64);
+  const auto context = flight_context<PaperContext>();
+  const auto batch = random_batch<double>(5, engine);
+  const PhysicsInformed<Doubling<1>, Weighted<Doubling<2>, Constant>, Weighted<Doubling<3>, Constant>,
+                        Weighted<Doubling<4>, Constant>>
+      loss{};
+  CHECK(outcome(loss, context, batch).gradient(0, 0) == ((1 * 2 + 2) * 2 + 3) * 2 + 4);
+}
 
 TEST_CASE("what is a loss") {
   CHECK(is_loss<Mse>);

@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <limits>
+#include <stdexcept>
+#include <string>
 
 using pinnquad::CyclicalAnnealing;
 
@@ -64,6 +67,35 @@ TEST_CASE("as many cycles as epochs, or more: every epoch starts a cycle") {
     const CyclicalAnnealing schedule{0.1, cycles, 0.5};
     for (int k = 0; k < 4; ++k) CHECK(schedule.weight(k, 4) == 0.1);
   }
+}
+
+TEST_CASE("numbers that make no annealing are refused in one line; at compile time, too, they are no constant") {
+  const auto complaint = [](const CyclicalAnnealing& schedule) -> std::string {
+    try {
+      schedule.check();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  constexpr CyclicalAnnealing paper{};
+  static_assert((paper.check(), true), "usable at compile time");
+  CHECK(complaint({0.0, 1, 0.0}) == "accepted");
+  CHECK(complaint({0.1, 5, 1.0}) == "accepted");
+  CHECK(complaint({0.1, 0, 0.5}) == "CyclicalAnnealing::cycles: expected a number from 1, found 0");
+  CHECK(complaint({0.1, -3, 0.5}) == "CyclicalAnnealing::cycles: expected a number from 1, found -3");
+  CHECK(complaint({nan, 5, 0.5}) == "CyclicalAnnealing::maximum: expected a finite number from 0, found nan");
+  CHECK(complaint({infinity, 5, 0.5}) == "CyclicalAnnealing::maximum: expected a finite number from 0, found inf");
+  CHECK(complaint({-0.1, 5, 0.5}) == "CyclicalAnnealing::maximum: expected a finite number from 0, found -0.1");
+  CHECK(complaint({0.1, 5, 1.5}) == "CyclicalAnnealing::hold: expected a share from 0 to 1, found 1.5");
+  CHECK(complaint({0.1, 5, -0.5}) == "CyclicalAnnealing::hold: expected a share from 0 to 1, found -0.5");
+  CHECK(complaint({0.1, 5, nan}) == "CyclicalAnnealing::hold: expected a share from 0 to 1, found nan");
+}
+
+TEST_CASE("fewer than one cycle: NaN, no division by zero; as many as an int can hold: no overflow") {
+  for (const int cycles : {0, -1, -300}) CHECK(std::isnan(CyclicalAnnealing{0.1, cycles, 0.5}.weight(7, 300)));
+  CHECK(CyclicalAnnealing{0.1, std::numeric_limits<int>::max(), 0.5}.weight(7, 300) == 0.1);
 }
 
 TEST_CASE("no epochs at all: lambda_max, no division by zero") { CHECK(CyclicalAnnealing{}.weight(0, 0) == 0.1); }

@@ -14,10 +14,17 @@ using pinnquad::CosineDecay;
 using pinnquad::is_rate;
 using pinnquad::test::rounding;
 
+namespace {
+struct MayThrow {
+  double factor(double) const { return 1.0; }
+};
+}  // namespace
+
 TEST_CASE("what is a rate") {
   CHECK(is_rate<ConstantRate>);
   CHECK(is_rate<CosineDecay>);
   CHECK_FALSE(is_rate<int>);
+  CHECK_FALSE(is_rate<MayThrow>);  // the contract says noexcept
 }
 
 TEST_CASE("the constant rate is 1") {

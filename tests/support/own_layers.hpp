@@ -61,6 +61,55 @@ struct Softmax {
   using Bind = SoftmaxLayer<Scalar, In>;
 };
 
+/// y = x / |x|: has no value, and no slope, where all inputs are 0.
+template <class ScalarType, int Size>
+struct UnitLengthLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = Size;
+  static constexpr int outputs = Size;
+  static constexpr int parameter_count = 0;
+  static void forward(const Scalar*, const Scalar* x, Scalar* y) noexcept {
+    using std::sqrt;
+    Scalar squares(0);
+    for (int i = 0; i < Size; ++i) squares += x[i] * x[i];
+    for (int i = 0; i < Size; ++i) y[i] = x[i] / sqrt(squares);
+  }
+};
+struct UnitLength {
+  template <class Scalar, int In>
+  using Bind = UnitLengthLayer<Scalar, In>;
+};
+
+/// y = 1 / v: a pole at 0.
+template <class ScalarType, int Size>
+struct ReciprocalLayer : ElementwiseLayer<ReciprocalLayer<ScalarType, Size>, ScalarType, Size> {
+  static ScalarType activate(ScalarType v) noexcept { return ScalarType(1) / v; }
+  static ScalarType slope(ScalarType y) noexcept { return -y * y; }
+};
+struct Reciprocal {
+  template <class Scalar, int In>
+  using Bind = ReciprocalLayer<Scalar, In>;
+};
+
+/// The same, a whole pack at a time.
+template <class ScalarType, int Size>
+struct PackReciprocalLayer : ElementwiseLayer<PackReciprocalLayer<ScalarType, Size>, ScalarType, Size> {
+  static ScalarType activate(ScalarType v) noexcept { return ScalarType(1) / v; }
+  static ScalarType slope(ScalarType y) noexcept { return -y * y; }
+  template <class Pack>
+  static auto activate(Pack v) noexcept -> decltype(Pack::broadcast(ScalarType(1)) / v) {
+    return Pack::broadcast(ScalarType(1)) / v;
+  }
+  template <class Pack>
+  static auto scaled(Pack y, Pack dy) noexcept -> decltype(Pack::broadcast(ScalarType(0)) - y * y * dy) {
+    return Pack::broadcast(ScalarType(0)) - y * y * dy;
+  }
+};
+struct PackReciprocal {
+  template <class Scalar, int In>
+  using Bind = PackReciprocalLayer<Scalar, In>;
+};
+
 }  // namespace pinnquad::test
 
 namespace pinnquad {
@@ -73,6 +122,20 @@ struct BackwardRule<test::ChannelScaleLayer<Scalar, Size>> {
       dx[i] = parameters[i] * dy[i];
       parameter_gradient[i] += x[i] * dy[i];
     }
+  }
+};
+
+template <class Scalar, int Size>
+struct BackwardRule<test::UnitLengthLayer<Scalar, Size>> {
+  static void backward(const Scalar*, const Scalar* x, const Scalar* y, const Scalar* dy, Scalar* dx,
+                       Scalar*) noexcept {
+    using std::sqrt;
+    Scalar squares(0), along(0);
+    for (int i = 0; i < Size; ++i) {
+      squares += x[i] * x[i];
+      along += y[i] * dy[i];
+    }
+    for (int i = 0; i < Size; ++i) dx[i] = (dy[i] - along * y[i]) / sqrt(squares);
   }
 };
 

@@ -65,6 +65,21 @@ struct Notes {
   void update(int, Scalar*, const Scalar*, Scalar*, Scalar*, int) const noexcept {}
 };
 
+/// Gradient descent that looks at its rate where it uses it: in update().
+struct Descent {
+  double learning_rate = 0.1;
+  int begin(long) const { return 0; }
+  template <class Pack, class Scalar>
+  void update(int, Scalar* parameters, const Scalar* gradient, Scalar*, Scalar*, int count) const noexcept {
+    for (int i = 0; i < count; ++i) parameters[i] -= Scalar(learning_rate) * gradient[i];
+  }
+};
+
+struct ThrowingUpdate : Descent {
+  template <class Pack, class Scalar>
+  void update(int, Scalar*, const Scalar*, Scalar*, Scalar*, int) const {}
+};
+
 template <class Optimizer>
 Net::Parameters trained(const Optimizer& optimizer, int epochs) {
   const auto data = known_map<double>(100, 181);
@@ -83,7 +98,7 @@ TEST_CASE_TEMPLATE("two hundred steps as published, constant and along a cosine"
   constexpr std::size_t count = 2 * static_cast<std::size_t>(Pack::width);
   constexpr int steps = 200;
   const AdamW settings[] = {{}, {0.1, 0.8, 0.9, 1e-3, 0.0}, {0.01, 0.9, 0.999, 1e-8, 0.3}};
-  const auto run = [&](const AdamW& adam, const auto& begin, const auto& rate) {
+  const auto run = [&](const auto& optimizer, const AdamW& adam, const auto& begin, const auto& rate) {
     std::mt19937_64 engine(183);
     std::array<Scalar, count> p{}, g{}, first{}, second{};
     std::array<PlainAdamW, count> plain{};
@@ -99,7 +114,8 @@ TEST_CASE_TEMPLATE("two hundred steps as published, constant and along a cosine"
       for (std::size_t i = 0; i < count; ++i) {
         expected[i] = plain[i].step(expected[i], static_cast<double>(g[i]), adam.learning_rate * factor, t);
       }
-      adam.update<Pack>(begin(t), p.data(), g.data(), first.data(), second.data(), static_cast<int>(count));
+      optimizer.template update<Pack>(begin(t), p.data(), g.data(), first.data(), second.data(),
+                                      static_cast<int>(count));
       double worst = 0.0;
       for (std::size_t i = 0; i < count; ++i) {
         worst = std::max(worst, std::fabs(static_cast<double>(p[i]) - expected[i]));
@@ -109,10 +125,10 @@ TEST_CASE_TEMPLATE("two hundred steps as published, constant and along a cosine"
   };
   for (const AdamW& adam : settings) {
     run(
-        adam, [&](long t) { return adam.begin(t); }, [](double) { return 1.0; });
+        adam, adam, [&](long t) { return adam.begin(t); }, [](double) { return 1.0; });
     const Scheduled<AdamW, CosineDecay> scheduled{adam, {}};
     run(
-        adam, [&](long t) { return scheduled.begin(t, static_cast<double>(t - 1) / steps); },
+        scheduled, adam, [&](long t) { return scheduled.begin(t, static_cast<double>(t - 1) / steps); },
         [](double done) { return (1 + std::cos(std::acos(-1.0) * done)) / 2; });
   }
 }
@@ -136,6 +152,52 @@ TEST_CASE("what is an optimiser") {
   CHECK((pinnquad::follows_progress<Scheduled<Adam, CosineDecay>>));
   CHECK_FALSE(pinnquad::follows_progress<Adam>);
   CHECK_FALSE(pinnquad::is_optimizer<int>);
+  CHECK(pinnquad::is_optimizer<Descent>);
+  CHECK_FALSE(pinnquad::is_optimizer<ThrowingUpdate>);  // the contract says noexcept
+}
+
+TEST_CASE("a rate reaches an optimiser wherever that reads its learning rate") {
+  using Pack = GenericPack<double, 4>;
+  const Scheduled<Descent, CosineDecay> scheduled{};
+  for (const double done : {0.0, 0.25, 0.5, 0.9}) {
+    std::array<double, 4> p = {1.0, 2.0, -3.0, 0.5}, g = {1.0, -1.0, 0.5, 0.0}, first{}, second{};
+    auto expected = p;
+    for (std::size_t i = 0; i < 4; ++i) expected[i] -= 0.1 * CosineDecay{}.factor(done) * g[i];
+    scheduled.update<Pack>(scheduled.begin(1, done), p.data(), g.data(), first.data(), second.data(), 4);
+    CHECK(p == expected);
+  }
+  CHECK(trained(Scheduled<Descent, CosineDecay>{}, 3) != trained(Descent{}, 3));
+  CHECK(trained(Scheduled<Descent, ConstantRate>{}, 3) == trained(Descent{}, 3));
+}
+
+TEST_CASE("a rate over an optimiser that follows progress itself scales that one's rate") {
+  std::vector<double> done;
+  const Scheduled<Notes, CosineDecay> scheduled{Notes{2.0, &done}, {}};
+  CHECK(scheduled.begin(1, 0.5).now.learning_rate == doctest::Approx(1.0));
+  CHECK(done == std::vector<double>{0.5});
+}
+
+TEST_CASE("an optimiser's numbers are looked at before a training, in one line") {
+  const auto complaint = [](const auto& optimizer) -> std::string {
+    try {
+      trained(optimizer, 0);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(complaint(Adam{}) == "accepted");
+  CHECK(complaint(Adam{0.0, 0.0, 0.0, 0.0, 0.0}) == "accepted");
+  CHECK(complaint(Adam{nan}) == "Adam::learning_rate: expected a finite number from 0, found nan");
+  CHECK(complaint(Adam{-0.5}) == "Adam::learning_rate: expected a finite number from 0, found -0.5");
+  CHECK(complaint(Adam{1e-3, 1.0}) == "Adam::beta_1: expected 0 <= beta_1 < 1, found 1");
+  CHECK(complaint(Adam{1e-3, 0.9, -1.0}) == "Adam::beta_2: expected 0 <= beta_2 < 1, found -1");
+  CHECK(complaint(AdamW{1e-3, 0.9, 0.999, 1e-8, nan}) ==
+        "AdamW::weight_decay: expected a finite number from 0, found nan");
+  CHECK(complaint(AdamW{1e-3, 0.9, 0.999, nan}) == "Adam::epsilon: expected a finite number from 0, found nan");
+  CHECK(complaint(Scheduled<AdamW, CosineDecay>{{std::numeric_limits<double>::infinity()}, {}}) ==
+        "Adam::learning_rate: expected a finite number from 0, found inf");
 }
 
 TEST_CASE("without decay AdamW is Adam, and a constant rate changes no bit") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <stdexcept>
 
 using pinnquad::Checkpoint;
 using pinnquad::EarlyStopping;
@@ -48,6 +49,13 @@ TEST_CASE("NaN is never the best, not even as the first") {
   CHECK(best.offer(1, 3.0, Source{8}));
   CHECK_FALSE(best.offer(2, nan, Source{9}));
   CHECK(best.network() == 8);
+}
+
+TEST_CASE("an empty checkpoint has no network to fly, instead of one of zeros") {
+  Checkpoint<int> best;
+  CHECK_THROWS_WITH_AS(best.network(), "Checkpoint: expected a network with an error, found none", std::logic_error);
+  best.offer(0, std::numeric_limits<double>::quiet_NaN(), Source{7});
+  CHECK_THROWS_AS(best.network(), std::logic_error);
 }
 
 TEST_CASE("early stopping: `patience` epochs without a lower error, then no more; 0 waits for ever") {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Back-propagation through whole networks against central differences, in double.
+#include "pinnquad/training/network_gradient.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
-#include "pinnquad/training/network_gradient.hpp"
 
 #include <doctest/doctest.h>
 
@@ -31,11 +31,17 @@ using pinnquad::test::gradient_error;
 using pinnquad::test::gradient_tolerance;
 using pinnquad::test::kink_margin;
 using pinnquad::test::LeakyRelu;
+using pinnquad::test::PackReciprocal;
+using pinnquad::test::Reciprocal;
 using pinnquad::test::Softmax;
+using pinnquad::test::UnitLength;
 
 namespace {
 
-/// How near this pass comes to a kink: the smallest input of any ReLU. Walks the layers with the network's own types.
+/// No input of 1 / v may be nearer to 0: a step of 1e-5 errs by its share squared there, 1e-8 of the slope.
+constexpr double pole_margin = 0.1;
+
+/// How near this pass comes to a kink or a pole: the smallest input of any ReLU, and of any reciprocal by its own measure. Walks the layers with the network's own types.
 template <class Net, int Index = 0>
 double smallest_kink_input(const double* parameters, const double* x) {
   if constexpr (Index == Net::layer_count) {
@@ -48,6 +54,12 @@ double smallest_kink_input(const double* parameters, const double* x) {
       for (int i = 0; i < Layer::inputs; ++i) {
         // an input that is exactly 0 comes from a ReLU before, and stays 0 within the step
         if (x[i] != 0.0) smallest = std::min(smallest, std::fabs(x[i]));
+      }
+    }
+    if constexpr (std::is_same_v<Layer, Reciprocal::Bind<double, Layer::inputs>> ||
+                  std::is_same_v<Layer, PackReciprocal::Bind<double, Layer::inputs>>) {
+      for (int i = 0; i < Layer::inputs; ++i) {
+        smallest = std::min(smallest, std::fabs(x[i]) / pole_margin * kink_margin);
       }
     }
     double y[Layer::outputs] = {};
@@ -136,6 +148,15 @@ TEST_CASE_TEMPLATE("a layer whose rule needs its output keeps it, whatever follo
                    Network<double, Inputs<5>, Dense<6>, Softmax, Tanh, Dense<3>>,
                    Network<double, Inputs<5>, Tanh, Tanh, Dense<3>>,
                    Network<double, Inputs<5>, Dense<6>, Tanh, Tanh, Tanh>) {
+  check_network<Net, Packs4>();
+}
+
+TEST_CASE_TEMPLATE("a layer without a value at 0 sees no padding row: it would spread NaN to every weight", Net,
+                   Network<double, Inputs<5>, UnitLength, Dense<4>, UnitLength, Dense<2>>,
+                   Network<double, Inputs<3>, Reciprocal, Dense<4>, Dense<2>>,
+                   Network<double, Inputs<3>, Reciprocal, ChannelScale, UnitLength, Dense<2>>,
+                   Network<double, Inputs<3>, PackReciprocal, Dense<4>, Dense<2>>,
+                   Network<double, Inputs<3>, PackReciprocal, UnitLength, DenseWithoutBias<3>, UnitLength, Dense<2>>) {
   check_network<Net, Packs4>();
 }
 

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -305,6 +307,84 @@ TEST_CASE("no data: no step, loss 0") {
   auto trainer = std::make_unique<Type>(initialised<Small<double>>(engine), Mse{}, Adam{}, PaperContext{});
   CHECK(trainer->epoch({}, Progress{0, 1}, engine) == 0.0);
   CHECK(trainer->steps() == 0);
+}
+
+TEST_CASE("a batch that is none is refused, and nothing has changed") {
+  using Type = Trainer<Small<double>, Mse, Adam, PaperContext, ShuffledBatches, 8>;
+  std::mt19937_64 engine(14);
+  const auto net = initialised<Small<double>>(engine);
+  const auto trainer = std::make_unique<Type>(net, Mse{}, Adam{}, PaperContext{});
+  const auto data = known_map<double>(200, 140);
+  std::vector<int> rows(200);
+  std::iota(rows.begin(), rows.end(), 0);
+  CHECK_THROWS_WITH_AS(trainer->batch(data, rows.data(), 9), "Trainer: expected 1 to 8 rows in a batch, found 9",
+                       std::invalid_argument);
+  CHECK_THROWS_AS(trainer->batch(data, rows.data(), 200), std::invalid_argument);
+  CHECK_THROWS_AS(trainer->differentiate(data, rows.data(), 9), std::invalid_argument);
+  CHECK_THROWS_AS(trainer->batch(data, rows.data(), 0), std::invalid_argument);  // the mean over no rows is NaN
+  CHECK_THROWS_AS(trainer->batch(data, rows.data(), -1), std::invalid_argument);
+  rows[3] = 200;
+  CHECK_THROWS_WITH_AS(trainer->batch(data, rows.data(), 8), "Trainer: expected a row from 0 to below 200, found 200",
+                       std::invalid_argument);
+  rows[3] = -1;
+  CHECK_THROWS_AS(trainer->batch(data, rows.data(), 8), std::invalid_argument);
+  auto torn = data;
+  torn.features.pop_back();
+  CHECK_THROWS_WITH_AS(trainer->epoch(torn, {0, 1}, engine),
+                       "Trainer: expected rows of 16 features and 4 outputs, found 3199 and 800 numbers",
+                       std::invalid_argument);
+  CHECK_THROWS_AS(trainer->validate(torn), std::invalid_argument);
+  CHECK(trainer->steps() == 0);
+  CHECK(trainer->network().parameters == net.parameters);
+}
+
+TEST_CASE("an epoch past the last, or before the first, is refused") {
+  using Type = Trainer<Small<double>, Mse, Adam, PaperContext>;
+  std::mt19937_64 engine(15);
+  const auto trainer = std::make_unique<Type>(initialised<Small<double>>(engine), Mse{}, Adam{}, PaperContext{});
+  const auto data = known_map<double>(10, 141);
+  CHECK_THROWS_WITH_AS(trainer->epoch(data, {3, 3}, engine), "Trainer: expected an epoch from 0 to below 3, found 3",
+                       std::invalid_argument);
+  CHECK_THROWS_AS(trainer->epoch(data, {-1, 3}, engine), std::invalid_argument);
+  CHECK_THROWS_AS(trainer->epoch(data, {0, 0}, engine), std::invalid_argument);
+  CHECK(trainer->steps() == 0);
+  CHECK_NOTHROW(trainer->epoch(data, {2, 3}, engine));
+}
+
+namespace {
+/// Loses a row.
+struct ShortOrder {
+  template <class Engine>
+  void arrange(std::vector<int>& order, Engine&) const {
+    order.pop_back();
+  }
+};
+}  // namespace
+
+TEST_CASE("an order policy must keep every row") {
+  using Type = Trainer<Small<double>, Mse, Adam, PaperContext, ShortOrder>;
+  std::mt19937_64 engine(16);
+  const auto trainer = std::make_unique<Type>(initialised<Small<double>>(engine), Mse{}, Adam{}, PaperContext{});
+  CHECK_THROWS_WITH_AS(trainer->epoch(known_map<double>(10, 142), {0, 1}, engine),
+                       "Trainer: expected an order of 10 rows as in the data, found 9", std::invalid_argument);
+}
+
+TEST_CASE("a loss whose numbers make no sense does not begin a training") {
+  using Loss = PaperLoss<CyclicalAnnealing>;
+  using Type = Trainer<Small<double>, Loss, Adam, PaperContext>;
+  std::mt19937_64 engine(17);
+  const auto net = initialised<Small<double>>(engine);
+  Loss loss{};
+  SUBCASE("no cycle") {
+    std::get<1>(loss.terms).schedule.cycles = 0;
+    CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, PaperContext{}),
+                         "CyclicalAnnealing::cycles: expected a number from 1, found 0", std::invalid_argument);
+  }
+  SUBCASE("gain") {
+    std::get<2>(loss.terms).loss.step.gain = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, PaperContext{}),
+                         "TanhStep::gain: expected a finite number from 0, found nan", std::invalid_argument);
+  }
 }
 
 TEST_CASE("an observer sees the trainer after each step, and changes nothing") {

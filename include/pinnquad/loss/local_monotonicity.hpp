@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "pinnquad/loss/signed_command_sum.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 
@@ -25,6 +26,9 @@ struct TanhStep {
     using Scalar = typename Array::Scalar;
     return Scalar(gain) * (Scalar(1) - steps * steps);
   }
+
+  /// Throws std::invalid_argument unless the gain is a finite number from 0.
+  constexpr void check() const { detail::expect_from_zero("TanhStep::gain", gain); }
 };
 
 /// The sign itself, for evaluation: its slope is zero, so it can't train.
@@ -168,6 +172,9 @@ struct LocalMonotonicity {
       "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
       "Standardised has");
   Step step = detail::initial_step<Step, Form>();
+
+  /// Throws std::invalid_argument if a number of the step function makes no sense.
+  constexpr void check() const { check_settings(step); }
 
   template <class Context, class Batch, class Gradient>
   typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,

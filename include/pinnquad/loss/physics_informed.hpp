@@ -8,6 +8,7 @@
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 
@@ -17,7 +18,7 @@ struct Weighted {
   static_assert(is_loss<LossType>,
                 "pinnquad: Weighted's first argument is not a loss; it needs evaluate() (loss/loss.hpp)");
   static_assert(is_schedule<ScheduleType>,
-                "pinnquad: Weighted's second argument is not a schedule; it needs weight(epoch, epochs) "
+                "pinnquad: Weighted's second argument is not a schedule; it needs weight(epoch, epochs) const noexcept "
                 "(schedule/schedule.hpp)");
   LossType loss{};
   ScheduleType schedule{};
@@ -30,7 +31,7 @@ template <class LossType, class ScheduleType>
 struct IsWeighted<Weighted<LossType, ScheduleType>> : std::true_type {};
 }  // namespace detail
 
-/// L = base + sum_i lambda_i(epoch) L_i.
+/// L = base + sum_i lambda_i(epoch) L_i. Values and gradients are added in this order: base, first term, second term, ...
 template <class Base, class... Terms>
 struct PhysicsInformed {
   static_assert(is_loss<Base>,
@@ -48,8 +49,16 @@ struct PhysicsInformed {
       const Scalar lambda = Scalar(term.schedule.weight(context.progress.epoch, context.progress.epochs));
       return lambda * term.loss.evaluate(context, batch, weight * lambda, gradient);
     };
-    const Scalar value = base.evaluate(context, batch, weight, gradient);
-    return std::apply([&](const auto&... term) { return (value + ... + weighted(term)); }, terms);
+    Scalar value = base.evaluate(context, batch, weight, gradient);
+    // a comma has an order of evaluation, a plus has none: the terms add to the gradient as they are evaluated
+    std::apply([&](const auto&... term) { ((value += weighted(term)), ...); }, terms);
+    return value;
+  }
+
+  /// Throws std::invalid_argument if a number of the base, a term or a schedule makes no sense.
+  constexpr void check() const {
+    check_settings(base);
+    std::apply([](const auto&... term) { ((check_settings(term.loss), check_settings(term.schedule)), ...); }, terms);
   }
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 
@@ -10,6 +11,9 @@ struct Constant {
   double value = 0.1;  ///< the paper's lambda_max
 
   constexpr double weight(int /*epoch*/, int /*epochs*/) const noexcept { return value; }
+
+  /// Throws std::invalid_argument unless the weight is a finite number from 0.
+  constexpr void check() const { detail::expect_from_zero("Constant::value", value); }
 };
 
 }  // namespace pinnquad

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pinnquad/nn/kernel/pack.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 
@@ -27,6 +28,15 @@ struct Adam {
   Step begin(long t) const {
     const double n = static_cast<double>(t);
     return {learning_rate / (1.0 - std::pow(beta_1, n)), 1.0 / std::sqrt(1.0 - std::pow(beta_2, n))};
+  }
+
+  /// Throws std::invalid_argument unless rate, epsilon and decay are finite numbers from 0 and both betas in [0, 1).
+  constexpr void check() const {
+    detail::expect_from_zero("Adam::learning_rate", learning_rate);
+    detail::expect_from_zero("Adam::epsilon", epsilon);
+    detail::expect_from_zero("Adam::weight_decay", weight_decay);
+    if (!(beta_1 >= 0.0 && beta_1 < 1.0)) detail::refuse_setting("Adam::beta_1", "0 <= beta_1 < 1", beta_1);
+    if (!(beta_2 >= 0.0 && beta_2 < 1.0)) detail::refuse_setting("Adam::beta_2", "0 <= beta_2 < 1", beta_2);
   }
 
   /// Updates `count` parameters (a multiple of the pack) and both moments in place.

@@ -21,6 +21,12 @@ struct AdamW {
   };
   Step begin(long t) const { return {without_decay().begin(t), 1.0 - learning_rate * weight_decay}; }
 
+  /// Throws std::invalid_argument for numbers that Adam refuses too.
+  constexpr void check() const {
+    without_decay().check();
+    detail::expect_from_zero("AdamW::weight_decay", weight_decay);
+  }
+
   /// Updates `count` parameters (a multiple of the pack) and both moments in place.
   template <class Pack, class Scalar>
   void update(const Step& step, Scalar* parameters, const Scalar* gradient, Scalar* first, Scalar* second,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A layer over a mini-batch: activations are [sample][padded width], parameters stand as the kernels want them.
 // Dense uses register tiles, element-wise layers work in place, any other layer runs its BackwardRule sample by sample.
+// Only a layer with `whole_tiles` is run on padding rows too, and finds zeros there (network_gradient.hpp).
 #pragma once
 
 #include "pinnquad/nn/kernel/tile.hpp"
@@ -18,6 +19,7 @@ struct BatchLayer {
   static constexpr bool in_place = false;
   static constexpr bool needs_output = true;      ///< backward() looks at y, so nobody may overwrite it
   static constexpr bool couples_samples = false;  ///< outputs depend on the other samples of the batch (batch_norm.hpp)
+  static constexpr bool whole_tiles = false;      ///< `samples` has to be a multiple of the pack's tile_rows
   static constexpr int size = padded<Pack>(Layer::parameter_count);
   static constexpr int x_stride = padded<Pack>(Layer::inputs);
   static constexpr int y_stride = padded<Pack>(Layer::outputs);
@@ -58,6 +60,7 @@ struct BatchDense {
   static constexpr bool in_place = false;
   static constexpr bool needs_output = false;
   static constexpr bool couples_samples = false;
+  static constexpr bool whole_tiles = true;
   static constexpr int x_stride = padded<Pack>(In);
   static constexpr int y_stride = padded<Pack>(Out);
   static constexpr int size = (In + (HasBias ? 1 : 0)) * y_stride;
@@ -122,7 +125,8 @@ template <class Scalar, int In, int Out, class Pack, int BatchSize>
 struct BatchLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, BatchSize, void>
     : detail::BatchDense<Scalar, In, Out, false, Pack> {};
 
-/// Element-wise: forward works on its own buffer or on that of the layer before, dx overwrites dy. The padding of y may hold anything finite; that of dy stays zero.
+/// Element-wise: forward works on its own buffer or on that of the layer before, dx overwrites dy. The padding columns of both
+/// may hold anything: no layer reads them into a real column.
 template <class Layer, class Pack, int BatchSize>
 struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>>> {
   static_assert(is_trainable<Layer>,
@@ -131,6 +135,7 @@ struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>
   static constexpr bool in_place = true;  ///< if the layer before does not need its output
   static constexpr bool needs_output = true;
   static constexpr bool couples_samples = false;
+  static constexpr bool whole_tiles = false;
   static constexpr int size = 0;
   static constexpr int stride = padded<Pack>(Layer::outputs);
 

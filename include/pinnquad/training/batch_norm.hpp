@@ -16,13 +16,14 @@ inline constexpr double batch_norm_momentum = 0.1;
 /// Running statistics r <- 0.9 r + 0.1 batch, the variance with divisor N - 1; follow_statistics() moves them.
 /// One sample has no variance: it is normalised by the running statistics, which stay as they are, and the gradient is that of
 /// the affine map which remains. (PyTorch refuses such a batch.)
-/// The optimiser sees gamma and beta only. Rows from `samples` to `rows` are padding: y and dx are 0 there.
+/// The optimiser sees gamma and beta only.
 template <class Scalar, int Size, class Pack, int BatchSize>
 struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
   static_assert(BatchSize > 1, "pinnquad: batch norm can't be trained in batches of one sample; they have no variance");
   static constexpr bool in_place = false;
   static constexpr bool needs_output = false;
   static constexpr bool couples_samples = true;
+  static constexpr bool whole_tiles = false;
   static constexpr int stride = padded<Pack>(Size);
   static constexpr int size = 2 * stride;
 
@@ -61,20 +62,20 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
   }
   void refresh() noexcept {}
 
-  void forward(const Scalar* x, Scalar* y, int rows, int samples) noexcept {
+  void forward(const Scalar* x, Scalar* y, int samples) noexcept {
     batch_samples = samples;
     if (samples > 1) {
       take_statistics(x, samples);
     } else {
       copy_running_statistics();
     }
-    normalise(x, y, rows, samples);
+    normalise(x, y, samples);
   }
   /// By running statistics.
-  void predict(const Scalar* x, Scalar* y, int rows, int samples) noexcept {
+  void predict(const Scalar* x, Scalar* y, int samples) noexcept {
     batch_samples = 1;
     copy_running_statistics();
-    normalise(x, y, rows, samples);
+    normalise(x, y, samples);
   }
 
   void follow_statistics() noexcept {
@@ -90,7 +91,7 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
   }
 
   /// `delta` holds dy; dx goes to `previous` (which may be null for the first layer).
-  void backward(const Scalar* x, const Scalar* delta, Scalar* previous, int rows, int samples) noexcept {
+  void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous, int samples) noexcept {
     unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
       constexpr int offset = decltype(v)::value * Pack::width;
       const Pack center = Pack::load(mean + offset), inverse = Pack::load(inverse_spread + offset);
@@ -118,7 +119,6 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
         const Pack distance = Pack::load(x + i * stride + offset) - center;
         (factor * ((dy - a) - b * distance)).store(previous + i * stride + offset);
       }
-      for (int i = samples; i < rows; ++i) Pack::broadcast(Scalar(0)).store(previous + i * stride + offset);
     });
   }
 
@@ -171,7 +171,7 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
       (one / Pack::square_root(Pack::load(variance + i) + epsilon)).store(inverse_spread + i);
     }
   }
-  void normalise(const Scalar* x, Scalar* y, int rows, int samples) const noexcept {
+  void normalise(const Scalar* x, Scalar* y, int samples) const noexcept {
     unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
       constexpr int offset = decltype(v)::value * Pack::width;
       const Pack center = Pack::load(mean + offset);
@@ -181,7 +181,6 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
         const Pack distance = Pack::load(x + i * stride + offset) - center;
         Pack::multiply_add(distance, factor, shift).store(y + i * stride + offset);
       }
-      for (int i = samples; i < rows; ++i) Pack::broadcast(Scalar(0)).store(y + i * stride + offset);
     });
   }
 };

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <limits>
+#include <stdexcept>
 
 namespace pinnquad {
 
@@ -28,7 +29,11 @@ class Checkpoint {
   bool empty() const noexcept { return epoch_ < 0; }
   int epoch() const noexcept { return epoch_; }     ///< -1 before the first
   double error() const noexcept { return error_; }  ///< infinite before the first
-  const NetworkType& network() const noexcept { return network_; }
+  /// Throws std::logic_error if none was taken: before the first offer, or if every error was NaN.
+  const NetworkType& network() const {
+    if (empty()) throw std::logic_error("Checkpoint: expected a network with an error, found none");
+    return network_;
+  }
 
  private:
   NetworkType network_{};

@@ -29,6 +29,8 @@ struct ActivationBuffer<Scalar, 0> {};
 }  // namespace detail
 
 /// Gradient of a scalar loss by all parameters, for up to BatchSize samples.
+/// Tiles may be wider than the batch. The rows past its samples are zeros in every activation and in every dL/dy, and only
+/// Dense, which makes 0 of them, is run on them: they add nothing to a gradient, whatever a layer gives for an input of zeros.
 /// Use: input() <- standardised samples, forward(n), output_delta() <- dL/dy, backward(n), then each layer's `gradient`.
 template <class NetworkType, int BatchSize, class PackType = NativePack<typename NetworkType::Scalar>>
 class NetworkGradient {
@@ -59,15 +61,17 @@ class NetworkGradient {
   /// dL/dy of one sample; the whole row up to output_stride is the network's, entries past `outputs` stay zero.
   Scalar* output_delta(int sample) noexcept { return delta_[0] + sample * output_stride; }
 
-  /// Outputs of the first `samples` inputs, batch norm by the statistics of these samples.
-  /// Rows past `samples` are cleared first: what a larger batch left there, even NaN, must not reach the gradient.
+  /// Outputs of the first `samples` inputs (at most `capacity`), batch norm by the statistics of these samples.
   void forward(int samples) noexcept {
-    const int rows = clear_inputs_past(samples);
-    forward_from<0, true>(rows, samples);
+    clear_padding(input_, input_stride, samples);
+    forward_from<0, true>(samples);
   }
 
   /// The same with batch norm's running statistics: outputs of the network as it will fly. backward() does not fit this pass.
-  void predict(int samples) noexcept { forward_from<0, false>(clear_inputs_past(samples), samples); }
+  void predict(int samples) noexcept {
+    clear_padding(input_, input_stride, samples);
+    forward_from<0, false>(samples);
+  }
 
   /// Running statistics follow the batch of the last forward().
   void follow_statistics() noexcept {
@@ -76,11 +80,10 @@ class NetworkGradient {
     });
   }
 
-  /// Gradients of all layers. Rows of output_delta() past `samples` are cleared first.
+  /// Gradients of all layers.
   void backward(int samples) noexcept {
-    const int rows = tiled(samples);
-    for (int i = samples * output_stride; i < rows * output_stride; ++i) delta_[0][i] = Scalar(0);
-    backward_from<last>(delta_[0], delta_[1], rows, samples);
+    clear_padding(delta_[0], output_stride, samples);
+    backward_from<last>(delta_[0], delta_[1], samples);
   }
 
   /// function(layer, integral_constant<index>) for every layer.
@@ -122,10 +125,12 @@ class NetworkGradient {
 
   static int tiled(int samples) noexcept { return (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows; }
 
-  int clear_inputs_past(int samples) noexcept {
-    const int rows = tiled(samples);
-    for (int i = samples * input_stride; i < rows * input_stride; ++i) input_[i] = Scalar(0);
-    return rows;
+  static void clear_padding(Scalar* values, int row_stride, int samples) noexcept {
+    for (int i = samples * row_stride; i < tiled(samples) * row_stride; ++i) values[i] = Scalar(0);
+  }
+  template <int Index>
+  static int rows_of(int samples) noexcept {
+    return Layer<Index>::whole_tiles ? tiled(samples) : samples;
   }
 
   /// Where a layer's output stands: its own buffer, or that of the layer it works in.
@@ -141,44 +146,40 @@ class NetworkGradient {
   }
 
   template <int Index, bool Training>
-  void forward_from(int rows, int samples) noexcept {
+  void forward_from(int samples) noexcept {
     if constexpr (Index < layer_count) {
       auto& layer = std::get<Index>(layers_);
+      const int rows = rows_of<Index>(samples);
+      Scalar* values = activations<Index>();
       if constexpr (Layer<Index>::in_place) {
-        Scalar* values = activations<Index>();
         if constexpr (!overwrites<Index>()) {
           const Scalar* before = activations<Index - 1>();
           for (int i = 0; i < rows * stride<Index>; ++i) values[i] = before[i];
         }
         layer.forward(values, rows);
-      } else if constexpr (Layer<Index>::couples_samples) {
-        if constexpr (Training) {
-          layer.forward(activations<Index - 1>(), activations<Index>(), rows, samples);
-        } else {
-          layer.predict(activations<Index - 1>(), activations<Index>(), rows, samples);
-        }
+      } else if constexpr (Layer<Index>::couples_samples && !Training) {
+        layer.predict(activations<Index - 1>(), values, rows);
       } else {
-        layer.forward(activations<Index - 1>(), activations<Index>(), rows);
+        layer.forward(activations<Index - 1>(), values, rows);
       }
-      forward_from<Index + 1, Training>(rows, samples);
+      clear_padding(values, stride<Index>, samples);
+      forward_from<Index + 1, Training>(samples);
     }
   }
 
   template <int Index>
-  void backward_from(Scalar* delta, Scalar* other, int rows, int samples) noexcept {
+  void backward_from(Scalar* delta, Scalar* other, int samples) noexcept {
     if constexpr (Index >= 0) {
       auto& layer = std::get<Index>(layers_);
+      const int rows = rows_of<Index>(samples);
       if constexpr (Layer<Index>::in_place) {
         layer.backward(activations<Index>(), delta, rows);
-        backward_from<Index - 1>(delta, other, rows, samples);
+        backward_from<Index - 1>(delta, other, samples);
       } else {
         Scalar* previous = Index > 0 ? other : nullptr;
-        if constexpr (Layer<Index>::couples_samples) {
-          layer.backward(activations<Index - 1>(), delta, previous, rows, samples);
-        } else {
-          layer.backward(activations<Index - 1>(), activations<Index>(), delta, previous, rows);
-        }
-        backward_from<Index - 1>(other, delta, rows, samples);
+        layer.backward(activations<Index - 1>(), activations<Index>(), delta, previous, rows);
+        if constexpr (Index > 0) clear_padding(previous, stride<Index - 1>, samples);
+        backward_from<Index - 1>(other, delta, samples);
       }
     }
   }

@@ -40,7 +40,10 @@ struct UpdatesParameters<
     T, Step,
     std::void_t<decltype(std::declval<const T&>().template update<GenericPack<double, 4>>(
         std::declval<const Step&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
-        static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))>> : std::true_type {};
+        static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))>>
+    : std::bool_constant<noexcept(std::declval<const T&>().template update<GenericPack<double, 4>>(
+          std::declval<const Step&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
+          static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))> {};
 }  // namespace detail
 
 /// True for an optimiser whose begin() is told how far training is.

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
@@ -45,25 +47,31 @@ class Trainer {
   static_assert(is_loss<LossType>,
                 "pinnquad: Trainer's second argument is not a loss; it needs evaluate() (loss/loss.hpp)");
   static_assert(is_optimizer<OptimizerType>,
-                "pinnquad: Trainer's third argument is not an optimiser; it needs begin() and update() "
+                "pinnquad: Trainer's third argument is not an optimiser; it needs begin() and update() const noexcept "
                 "(training/optimizer.hpp)");
   static_assert(NetworkType::inputs == ContextType::Features::size,
                 "pinnquad: the network's input count differs from the feature set's size");
   static_assert(NetworkType::outputs == rotor_count,
                 "pinnquad: the network's output count differs from the rotor count");
+  static_assert(BatchSize > 0, "pinnquad: Trainer's batch size must be 1 or more");
 
  public:
   using Network = NetworkType;
   using Scalar = typename Network::Scalar;
   using Data = TrainingData<Scalar, Network::inputs, Network::outputs>;
 
+  /// Throws std::invalid_argument if a number of the loss, of its schedules or of the optimiser makes no sense
+  /// (schedule/settings.hpp).
   Trainer(const Network& network, const LossType& loss, const OptimizerType& optimizer, const ContextType& context,
           const Order& order = {})
       : loss_(loss), optimizer_(optimizer), context_(context), order_policy_(order) {
+    check_settings(loss_);
+    check_settings(optimizer_);
     gradient_.load(network.parameters);
   }
 
-  /// One pass over the data; the last batch may be smaller. Returns the mean loss over the samples.
+  /// One pass over the data; the last batch may be smaller. Returns the mean loss over the samples; no data: 0, and no step.
+  /// Throws std::invalid_argument, before any step, unless 0 <= progress.epoch < progress.epochs and the data are whole rows.
   template <class Engine>
   double epoch(const Data& data, const Progress& progress, Engine& engine) {
     return epoch(data, progress, engine, [](const Trainer&) {});
@@ -71,12 +79,21 @@ class Trainer {
   /// The same; `after_batch(*this)` is called after each step.
   template <class Engine, class Observer>
   double epoch(const Data& data, const Progress& progress, Engine& engine, const Observer& after_batch) {
+    if (progress.epoch < 0 || progress.epoch >= progress.epochs) {
+      refuse("expected an epoch from 0 to below " + std::to_string(progress.epochs) + ", found " +
+             std::to_string(progress.epoch));
+    }
+    check_data(data);
     context_.progress = progress;
     if (static_cast<int>(order_.size()) != data.size()) {
       order_.resize(static_cast<std::size_t>(data.size()));
       std::iota(order_.begin(), order_.end(), 0);
     }
     order_policy_.arrange(order_, engine);
+    if (static_cast<int>(order_.size()) != data.size()) {
+      refuse("expected an order of " + std::to_string(data.size()) + " rows as in the data, found " +
+             std::to_string(order_.size()));
+    }
     double sum = 0;
     for (int first = 0; first < data.size(); first += BatchSize) {
       const int size = data.size() - first < BatchSize ? data.size() - first : BatchSize;
@@ -90,7 +107,7 @@ class Trainer {
   }
 
   /// Loss of these rows and one optimiser step down its gradient. Outside epoch(), a rate policy sees the beginning of the
-  /// epoch that was trained last.
+  /// epoch that was trained last. Throws std::invalid_argument as differentiate() does, and then nothing is changed.
   Scalar batch(const Data& data, const int* rows, int size) {
     const FlushDenormals flush;
     const Scalar value = differentiate(data, rows, size);
@@ -108,7 +125,17 @@ class Trainer {
   }
 
   /// Loss of these rows and its gradient by all parameters (see parameter_gradient()); nothing is changed.
+  /// Throws std::invalid_argument unless there are 1 to BatchSize rows, each of them one of the data's.
   Scalar differentiate(const Data& data, const int* rows, int size) {
+    check_data(data);
+    if (size < 1 || size > BatchSize) {
+      refuse("expected 1 to " + std::to_string(BatchSize) + " rows in a batch, found " + std::to_string(size));
+    }
+    for (int i = 0; i < size; ++i) {
+      if (rows[i] < 0 || rows[i] >= data.size()) {
+        refuse("expected a row from 0 to below " + std::to_string(data.size()) + ", found " + std::to_string(rows[i]));
+      }
+    }
     loss_batch_.resize(size);
     for (int i = 0; i < size; ++i) {
       const Scalar* x = data.features_of(rows[i]);
@@ -133,8 +160,10 @@ class Trainer {
     return value;
   }
 
-  /// Errors of the network as trained so far on other rows, standardised by the same context; nothing is changed.
+  /// Errors of the network as trained so far on other rows, standardised by the same context; nothing is changed. No data:
+  /// NaN, which a Checkpoint never takes. Throws std::invalid_argument unless the data are whole rows.
   ValidationErrors validate(const Data& data) {
+    check_data(data);
     const FlushDenormals flush;
     double squared = 0, absolute = 0;
     for (int first = 0; first < data.size(); first += BatchSize) {
@@ -155,7 +184,7 @@ class Trainer {
         }
       }
     }
-    const double count = data.size() > 0 ? static_cast<double>(data.size()) * rotor_count : 1.0;
+    const double count = static_cast<double>(data.size()) * rotor_count;
     return {squared / count, absolute / count};
   }
 
@@ -192,10 +221,22 @@ class Trainer {
     using type = std::tuple<Moments<BatchLayer<Layers, Pack, BatchSize>::size>...>;
   };
 
+  [[noreturn]] static void refuse(const std::string& reason) { throw std::invalid_argument("Trainer: " + reason); }
+
+  static void check_data(const Data& data) {
+    const auto rows = static_cast<std::size_t>(data.size());
+    if (data.features.size() != rows * Network::inputs || data.outputs.size() != rows * Network::outputs) {
+      refuse("expected rows of " + std::to_string(Network::inputs) + " features and " +
+             std::to_string(Network::outputs) + " outputs, found " + std::to_string(data.features.size()) + " and " +
+             std::to_string(data.outputs.size()) + " numbers");
+    }
+  }
+
   auto begin_step() {
     ++steps_;
     if constexpr (follows_progress<OptimizerType>) {
-      const double epochs = context_.progress.epochs > 0 ? context_.progress.epochs : 1;
+      const double epochs =
+          context_.progress.epochs > 0 ? context_.progress.epochs : 1;  // the context's, outside epoch()
       const double within = static_cast<double>(batch_of_epoch_) / batches_per_epoch_;
       return optimizer_.begin(steps_, (context_.progress.epoch + within) / epochs);
     } else {

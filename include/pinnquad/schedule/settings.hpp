@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Numbers of a policy that make no sense. A policy that can hold such numbers has `void check() const`, which throws
+// std::invalid_argument, its text one line; a policy made of others asks them. The Trainer asks before it begins.
+#pragma once
+
+#include <limits>
+#include <locale>
+#include <sstream>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace pinnquad {
+
+namespace detail {
+template <class T, class = void>
+struct ChecksSettings : std::false_type {};
+template <class T>
+struct ChecksSettings<T, std::void_t<decltype(std::declval<const T&>().check())>> : std::true_type {};
+
+template <class Number>
+[[noreturn]] void refuse_setting(const char* setting, const char* expected, Number found) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << setting << ": expected " << expected << ", found " << found;
+  throw std::invalid_argument(text.str());
+}
+
+/// Usable in constant expressions: there a setting that is refused is a compile error.
+constexpr void expect_from_zero(const char* setting, double value) {
+  if (!(value >= 0.0 && value <= std::numeric_limits<double>::max())) {
+    refuse_setting(setting, "a finite number from 0", value);
+  }
+}
+}  // namespace detail
+
+/// Asks a policy for its numbers; one without check() has none that could be wrong.
+template <class Policy>
+constexpr void check_settings(const Policy& policy) {
+  if constexpr (detail::ChecksSettings<Policy>::value) policy.check();
+}
+
+}  // namespace pinnquad
