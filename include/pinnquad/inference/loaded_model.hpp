@@ -27,7 +27,7 @@ class FixedRows {
   }
 
  private:
-  std::array<value_type, Capacity> rows_{};
+  value_type rows_[Capacity]{};
   std::size_t count_ = 1;
 };
 
@@ -55,8 +55,7 @@ class LoadedModel : public ModelScales<ShapeType> {
     static_cast<Scales&>(*this) = view;
     golden_features.copy(view.golden_features);
     golden_commands.copy(view.golden_commands);
-    const Scalar* from = view.parameters();
-    for (Scalar& weight : network_.parameters) weight = *from++;
+    std::memcpy(&network_.parameters, view.parameters(), sizeof network_.parameters);
     if constexpr (has_vector_unit<Scalar>) packed_.assign(view.parameters());
     return Status::ok;
   }
@@ -71,7 +70,7 @@ class LoadedModel : public ModelScales<ShapeType> {
   }
 
   /// The weights as in the block; zeros before load().
-  const Scalar* parameters() const noexcept { return network_.parameters.data(); }
+  const Scalar* parameters() const noexcept { return detail::first_of<Scalar>(network_.parameters); }
 
   /// The weights as the vector unit's kernel reads them; empty without a vector unit.
   const auto& packed() const noexcept { return packed_; }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Where a model's weights, scalers and envelope are: constants of the compiler for an exported header, else read through the
 // instance.
-// Plain pointers: std::array::operator[] is emitted out of line in an unoptimised build, where the linker could pick a copy
-// compiled for another instruction set.
+// Plain pointers (core/first_of.hpp).
 #pragma once
 
 #include <type_traits>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 
 namespace pinnquad::detail {
@@ -43,13 +43,6 @@ struct HasConstantParameters : std::false_type {};
 template <class Model>
 struct HasConstantParameters<Model, std::enable_if_t<std::is_pointer_v<decltype(&Model::parameters)>>>
     : std::bool_constant<!HasParametersInBlock<Model>::value> {};
-
-/// The first of an array's scalars, without a function of the standard library.
-template <class Scalar, class Array>
-PINNQUAD_ALWAYS_INLINE const Scalar* first_of(const Array& array) noexcept {
-  static_assert(std::is_same_v<typename Array::value_type, Scalar> && sizeof(Array) % sizeof(Scalar) == 0);
-  return reinterpret_cast<const Scalar*>(&array);
-}
 
 /// Models that keep neither parameters nor parameters(): with a forward() alone.
 template <class Model, class = void>

@@ -6,6 +6,8 @@
 
 namespace pinnquad {
 
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
 /// Where a self test failed, or how far it was from failing.
 template <class Scalar>
 struct SelfTestReport {
@@ -18,8 +20,36 @@ struct SelfTestReport {
   int weight{-1};  ///< the first weight that is NaN or infinite, as the network lays them out; -1 if none is
 };
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
+
+template <class Scalar, std::size_t Columns, std::size_t Rows>
+PINNQUAD_ALWAYS_INLINE int row_count(const std::array<std::array<Scalar, Columns>, Rows>&) noexcept {
+  return static_cast<int>(Rows);
+}
+template <class AnyRows>
+PINNQUAD_ALWAYS_INLINE int row_count(const AnyRows& rows) noexcept {
+  return static_cast<int>(rows.size());
+}
+
+/// A golden vector, from the rows of a header or of a block.
+template <class Scalar, std::size_t Columns, std::size_t Rows, int Size>
+PINNQUAD_ALWAYS_INLINE void copy_row(const std::array<std::array<Scalar, Columns>, Rows>& rows, std::size_t row,
+                                     Scalar (&to)[Size]) noexcept {
+  static_assert(Columns == static_cast<std::size_t>(Size));
+  if constexpr (Rows > 0) {
+    const Scalar* from = first_of<Scalar>(rows) + row * Columns;
+    for (int i = 0; i < Size; ++i) to[i] = from[i];
+  }
+}
+template <class AnyRows, class Scalar, int Size>
+PINNQUAD_ALWAYS_INLINE void copy_row(const AnyRows& rows, std::size_t row, Scalar (&to)[Size]) noexcept {
+  const auto kept = rows[row];
+  const Scalar* from = first_of<Scalar>(kept);
+  for (int i = 0; i < Size; ++i) to[i] = from[i];
+}
 
 /// The model's first weight that is NaN or infinite, -1 if it has none or shows none.
 template <class Model>
@@ -65,7 +95,7 @@ Status self_test(const InverseDynamics<Model, Guard>& inverse,
   report = {};
   const Model& model = inverse.model();
   const int broken_weight = detail::first_broken_weight(model);
-  const int vectors = static_cast<int>(model.golden_features.size());
+  const int vectors = detail::row_count(model.golden_features);
   if (vectors == 0) {
     report.cause = Status::self_test_failed;
     report.weight = broken_weight;
@@ -73,15 +103,13 @@ Status self_test(const InverseDynamics<Model, Guard>& inverse,
   }
   for (int vector = 0; vector < vectors; ++vector) {
     const auto index = static_cast<std::size_t>(vector);
-    const auto& golden_features = model.golden_features[index];
-    const auto& golden_commands = model.golden_commands[index];
-    Scalar x[Model::Features::size];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(Model::Features::size); ++i) x[i] = golden_features[i];
-    Scalar commands[rotor_count];
+    Scalar x[Model::Features::size], golden[rotor_count], commands[rotor_count];
+    detail::copy_row(model.golden_features, index, x);
+    detail::copy_row(model.golden_commands, index, golden);
     inverse.evaluate(x, commands);
     SelfTestReport<Scalar> found{inverse.inside_envelope(x) ? Status::ok : Status::outside_envelope, vector};
     for (int rotor = 0; rotor < rotor_count; ++rotor) {
-      const Scalar difference = commands[rotor] - golden_commands[static_cast<std::size_t>(rotor)];
+      const Scalar difference = commands[rotor] - golden[rotor];
       const Scalar magnitude = difference < Scalar(0) ? -difference : difference;
       // what is not finite outdoes every number; asked on the bits, for -ffast-math has no NaN
       const bool worse = !is_finite(magnitude) || magnitude > found.largest_difference;
