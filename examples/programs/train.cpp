@@ -349,9 +349,8 @@ int run(int argument_count, char** arguments) {
   CLI::App app{"Trains vanilla and physics-informed networks on a flight, judges them, exports the best as a header.",
                "train"};
   app.footer(
-      "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean; 2 bad input or "
-      "a file that can't be read or written; 130 interrupted, "
-      "what is\nfinished is kept.");
+      "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the commands;\n"
+      "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.");
   add_path(app, "--flight", options.flight, "FILE.csv", "recorded flight, CSV as `fly` writes it")->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
       ->capture_default_str();

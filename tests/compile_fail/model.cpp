@@ -14,6 +14,10 @@
 // CASE ROTORS_SWAPPED: pinnquad: the model was trained with another motor order than its Vehicle now has
 // CASE ROTOR_TURNS_THE_OTHER_WAY: pinnquad: the model was trained with another motor order than its Vehicle now has
 // CASE SPREAD_ZERO: pinnquad: a scaler's spread is not positive
+// CASE WEIGHT_NOT_A_NUMBER: pinnquad: a weight of the model is NaN or infinite
+// CASE WEIGHT_INFINITE: pinnquad: a weight of the model is NaN or infinite
+// CASE SPREAD_INFINITE: pinnquad: a scaler's number is NaN or infinite
+// CASE ENVELOPE_NOT_A_NUMBER: pinnquad: a border of the model's envelope is NaN or infinite
 // CASE GOLDEN_OUTSIDE: pinnquad: a golden vector lies outside the model's envelope
 // CASE TOO_FEW_PARAMETERS: pinnquad: the exported parameters do not have the network's length
 // CASE ENVELOPE_LENGTH: pinnquad: the envelope does not have the length of the feature set
@@ -24,6 +28,7 @@
 // CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
 // CASE SCALAR_DIFFERS: pinnquad: the model's Scalar is not that of its Network
 #include <array>
+#include <limits>
 
 #include "../support/described_model.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
@@ -37,6 +42,14 @@ constexpr Texts with_first(Texts texts, const char* first) {
   texts[0] = first;
   return texts;
 }
+
+template <class Array>
+constexpr Array with_last(Array values, float last) {
+  values[values.size() - 1] = last;
+  return values;
+}
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 constexpr auto with_spread(pinnquad::Scaler<float, 16> scaler, float last) {
   scaler.spread[15] = last;
@@ -87,6 +100,14 @@ struct Changed : DescribedModel {
           1 } }};
 #elif defined(SPREAD_ZERO)
   static constexpr auto input = with_spread(DescribedModel::input, 0.0F);
+#elif defined(WEIGHT_NOT_A_NUMBER)
+  static constexpr auto parameters = with_last(DescribedModel::parameters, not_a_number);
+#elif defined(WEIGHT_INFINITE)
+  static constexpr auto parameters = with_last(DescribedModel::parameters, -infinity);
+#elif defined(SPREAD_INFINITE)
+  static constexpr auto input = with_spread(DescribedModel::input, infinity);
+#elif defined(ENVELOPE_NOT_A_NUMBER)
+  static constexpr auto envelope_lower = with_last(DescribedModel::envelope_lower, not_a_number);
 #elif defined(GOLDEN_OUTSIDE)
   static constexpr std::array<float, 16> envelope_upper{};
 #elif defined(TOO_FEW_PARAMETERS)

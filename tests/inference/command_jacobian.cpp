@@ -5,9 +5,13 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "../examples/models/demo_quadrotor.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
+#include "pinnquad/inference/loaded_model.hpp"
+#include "support/block_bytes.hpp"
 
 using namespace pinnquad;
 
@@ -27,13 +31,13 @@ struct SpeedModel : DemoQuadModel {
 constexpr double tolerance = 0.02;
 
 template <class Model>
-void check_against_differences() {
-  const InverseDynamics<Model> inverse;
+void check_against_differences(const Model& model = {}) {
+  const InverseDynamics<Model> inverse(model);
   for (const auto& golden : DemoQuadModel::golden_features) {
     float commands[4], plain[4], jacobian[4 * size];
     REQUIRE(predict_with_jacobian(inverse, golden.data(), commands, jacobian) == Status::ok);
     REQUIRE(inverse.predict_features(golden.data(), plain) == Status::ok);
-    for (int i = 0; i < 4; ++i) CHECK(commands[i] == plain[i]);
+    for (int i = 0; i < 4; ++i) CHECK(commands[i] == plain[i]);  // the kernel of prediction, to the bit
     double largest = 0;
     for (const float j : jacobian) largest = std::max(largest, std::abs(static_cast<double>(j)));
     REQUIRE(largest > 0);
@@ -57,6 +61,17 @@ void check_against_differences() {
   }
 }
 
+/// The demo's model as a block, as a view of it and loaded from it.
+struct DemoBlock {
+  DemoBlock() {
+    REQUIRE(ModelView<DemoQuadModel>::open(bytes.data(), bytes.size(), view) == Status::ok);
+    REQUIRE(loaded->load(view) == Status::ok);
+  }
+  test::BlockBytes bytes{model_block<DemoQuadModel>()};
+  ModelView<DemoQuadModel> view;
+  std::unique_ptr<LoadedModel<DemoQuadModel>> loaded = std::make_unique<LoadedModel<DemoQuadModel>>();
+};
+
 struct Narrow {
   static constexpr double lower = 0.45, upper = 0.8;
 };
@@ -66,6 +81,9 @@ struct Narrow {
 TEST_CASE("commands as predicted, derivatives as differences give them, in physical units") {
   SUBCASE("commands") { check_against_differences<DemoQuadModel>(); }
   SUBCASE("rotor speeds") { check_against_differences<SpeedModel>(); }
+  const DemoBlock block;
+  SUBCASE("a view of a block") { check_against_differences(block.view); }
+  SUBCASE("a loaded model") { check_against_differences(*block.loaded); }
 }
 
 TEST_CASE("the derivative of what is refused is refused") {
@@ -81,8 +99,11 @@ TEST_CASE("the derivative of what is refused is refused") {
   for (const float v : jacobian) CHECK(v == -7);
 }
 
-TEST_CASE("a batch gives each sample what it gets alone") {
-  const InverseDynamics<DemoQuadModel, Extend<TrainingGuard, ClipCommands<Narrow>>> inverse;
+namespace {
+
+template <class Model>
+void check_batch(const Model& model = {}) {
+  const InverseDynamics<Model, Extend<TrainingGuard, ClipCommands<Narrow>>> inverse(model);
   constexpr int samples = 83;
   std::array<float, size * samples> x{};
   for (int s = 0; s < samples; ++s) {
@@ -115,4 +136,29 @@ TEST_CASE("a batch gives each sample what it gets alone") {
   CHECK(refused > 3);
   CHECK(limited > 0);
   CHECK(statuses[40] == Status::outside_envelope);
+}
+
+}  // namespace
+
+TEST_CASE("a batch gives each sample what it gets alone") {
+  SUBCASE("a header") { check_batch<DemoQuadModel>(); }
+  const DemoBlock block;
+  SUBCASE("a view of a block") { check_batch(block.view); }
+  SUBCASE("a loaded model") { check_batch(*block.loaded); }
+}
+
+TEST_CASE("a view of no block and a model that was not loaded decline: batches and derivatives too") {
+  const auto check = [](const auto& model) {
+    const InverseDynamics<std::decay_t<decltype(model)>> inverse(model);
+    const auto& x = DemoQuadModel::golden_features[0];
+    float commands[4] = {-7, -7, -7, -7}, jacobian[4 * size] = {-7};
+    Status status = Status::ok;
+    predict_batch(inverse, x.data(), commands, &status, 1);
+    CHECK(status == Status::outside_envelope);
+    CHECK(predict_with_jacobian(inverse, x.data(), commands, jacobian) == Status::outside_envelope);
+    for (const float v : commands) CHECK(v == -7);
+    CHECK(jacobian[0] == -7);
+  };
+  check(ModelView<DemoQuadModel>{});
+  check(*std::make_unique<LoadedModel<DemoQuadModel>>());
 }

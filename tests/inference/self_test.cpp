@@ -195,6 +195,23 @@ TEST_CASE("the report: how close a sound model comes, and which vector a broken 
   CHECK(pinnquad::self_test(InverseDynamics<SmallDoubleModel>{}) == Status::ok);
 }
 
+TEST_CASE("the report: a number that no golden vector brings to light is named") {
+  SelfTestReport<float> report;
+  SmallInstance model;
+  REQUIRE(reported(model, report) == Status::ok);
+  CHECK(report.weight == -1);
+  model.envelope_upper[4] = std::numeric_limits<float>::infinity();
+  REQUIRE(reported(model, report) == Status::self_test_failed);
+  CHECK(report.cause == Status::not_finite);
+  CHECK(report.weight == -1);
+
+  model = {};
+  model.parameters[170] = std::numeric_limits<float>::quiet_NaN();
+  REQUIRE(reported(model, report) == Status::self_test_failed);
+  CHECK(report.cause == Status::output_not_finite);
+  CHECK(report.weight == 170);
+}
+
 TEST_CASE("a model without golden vectors fails: nothing was tried") {
   struct Untried : SmallInstance {
     std::array<std::array<float, 16>, 0> golden_features{};

@@ -5,6 +5,7 @@
 #   mixed  one program of baseline, AVX2 and AVX-512 objects, in both link orders, run on a machine without AVX
 #   gate   every weak symbol of an object names its instruction set
 #   leaks  the two above reject leaks.cpp: they can fail
+#   names  two sets of flags that let the compiler emit different instructions have two names
 #   neon   the prediction for aarch64, cross-compiled, under emulation: right numbers, no timing
 # Returns 77 where a tool or a compiler flag is missing.
 set -u
@@ -17,8 +18,11 @@ cd "$work" || exit 1
 skip() { echo "skipped: $*"; exit 77; }
 fail() { echo "failed: $*"; exit 1; }
 declare -A machine=([baseline]=x86-64 [avx2]=x86-64-v3 [avx512]=x86-64-v4)
-# the name of PINNQUAD_INSTRUCTION_SET (core/instruction_set.hpp)
-declare -A space=([baseline]=sse2 [avx2]=avx2 [avx512]=avx512)
+# What code compiled with these flags lives in (core/instruction_set.hpp).
+space_of() {
+  printf '#include "pinnquad/core/instruction_set.hpp"\nNAMESPACE PINNQUAD_INSTRUCTION_SET\n' |
+    "$compiler" "-I$include" "$@" -x c++ -E -P - | sed -n 's/^NAMESPACE //p'
+}
 
 # compile <source> <object> <flags...>
 compile() {
@@ -34,18 +38,18 @@ for_each_set() {
     compile "$source" "${source%.cpp}.$set.o" "-march=${machine[$set]}" "-DPREDICT=predict_$set" "$@"
   done
 }
-# Weak functions and data of an object that do not name the instruction set. The arrays of an exported model are the same
-# numbers in every object. Including Eigen/Core unoptimised brings constructors of its empty placeholders (all, last) along.
+# Weak functions and data of an object that do not name the instruction set. Tables and the arrays of an exported model are the
+# same numbers in every object. Including Eigen/Core unoptimised brings constructors of its empty placeholders (all, last) along.
 foreign_symbols() {
   nm -C --defined-only "$1" | grep -E '^[0-9a-f]+ [WwVvu] ' | grep -v "::$2::" |
-    grep -vE ' [Vu] .*::SmallModel::[a-z_]+$| Eigen::(internal::(all_t|FixedInt<1>)|symbolic::)'
+    grep -vE ' [Vu] .*(::SmallModel::[a-z_]+|::model_block_magic|::crc32_half_bytes|::ones<float, [0-9]+>)$| Eigen::(internal::(all_t|FixedInt<1>)|symbolic::)'
 }
 
 if [ "$what" = neon ]; then
   command -v "$compiler" > /dev/null || skip "no $compiler"
   emulator=$(command -v qemu-aarch64 || command -v qemu-aarch64-static) || skip "no qemu-aarch64"
   compile prediction.cpp neon.o -DPREDICT=predict_baseline "$@"
-  foreign=$(foreign_symbols neon.o neon) && fail "weak symbols without instruction set: $foreign"
+  foreign=$(foreign_symbols neon.o "$(space_of)") && fail "weak symbols without instruction set: $foreign"
   compile main.cpp neon_main.o "$@"
   "$compiler" -static neon.o neon_main.o -o neon || fail link
   "$emulator" ./neon || fail "aarch64"
@@ -58,10 +62,31 @@ done
 emulator=$(command -v qemu-x86_64 || command -v qemu-x86_64-static) || emulator=""
 
 case $what in
+  names)
+    names=""
+    for flags in "" -msse3 -march=x86-64-v2 -mavx -mavx2 "-mavx2 -mfma" -march=x86-64-v3 "-march=x86-64-v3 -ffast-math" \
+      -mavx512f "-mavx512f -mfma" -march=skylake-avx512 -march=cannonlake -march=cascadelake -march=icelake-server -march=sapphirerapids; do
+      # shellcheck disable=SC2086
+      name=$(space_of $flags)
+      [ -n "$name" ] || skip "$compiler without $flags"
+      names="$names$name $flags\n"
+    done
+    same=$(printf '%b' "$names" | cut -d' ' -f1 | sort | uniq -d)
+    [ -z "$same" ] || fail "one name for several: $same of $(printf '\n%b' "$names")"
+    # objects of two kinds of AVX-512 have nothing that the linker could take from the other
+    compile prediction.cpp first.o -DPREDICT=predict_first -mavx512f -mfma "$@"
+    compile prediction.cpp second.o -DPREDICT=predict_second -march=skylake-avx512 "$@"
+    for kind in first second; do
+      nm -C --defined-only $kind.o | grep -E '^[0-9a-f]+ W .*pinnquad::' | cut -d' ' -f3- | sort -u > $kind.weak
+      [ -s $kind.weak ] || fail "no weak function of pinnquad in $kind.o: nothing was compared"
+    done
+    shared=$(comm -12 first.weak second.weak)
+    [ -z "$shared" ] || fail "the same functions of -mavx512f -mfma and skylake-avx512: $shared"
+    ;;
   gate)
     for_each_set prediction.cpp "$@"
     for set in baseline avx2 avx512; do
-      foreign=$(foreign_symbols "prediction.$set.o" "${space[$set]}") && fail "weak symbols of $set: $foreign"
+      foreign=$(foreign_symbols "prediction.$set.o" "$(space_of "-march=${machine[$set]}")") && fail "weak symbols of $set: $foreign"
     done
     ;;
   mixed)
@@ -82,8 +107,9 @@ case $what in
   leaks)
     [ -n "$emulator" ] || skip "no qemu-x86_64"
     for_each_set leaks.cpp "$@"
-    foreign_symbols leaks.avx512.o avx512 | grep -q "std::array<float, 1ul>::operator\[\]" || fail "the gate saw no array"
-    foreign_symbols leaks.avx512.o avx512 | grep -q "std::sqrt(float)" || fail "the gate saw no square root"
+    own=$(space_of "-march=${machine[avx512]}")
+    foreign_symbols leaks.avx512.o "$own" | grep -q "std::array<float, 1ul>::operator\[\]" || fail "the gate saw no array"
+    foreign_symbols leaks.avx512.o "$own" | grep -q "std::sqrt(float)" || fail "the gate saw no square root"
     compile leaks_main.cpp leaks_main.o "$@"
     "$compiler" leaks.baseline.o leaks.avx512.o leaks_main.o -o right_order || fail link
     "$emulator" -cpu Nehalem ./right_order || fail "the baseline's own square root does not run"

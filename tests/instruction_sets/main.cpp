@@ -45,6 +45,45 @@ bool agrees(const std::vector<std::size_t>& sizes, const Parameters& parameters,
   return true;
 }
 
+/// u = (n / n_max)^2 of the golden commands taken for speeds.
+bool golden_speeds(const float* commands) {
+  const double n_max = pinnquad::PaperQuadrotor::value<double>().max_rotor_speed_rev_s;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double n = static_cast<double>(instruction_sets::Model::golden_commands[0][i]);
+    if (!(std::fabs(static_cast<double>(commands[i]) - n * std::fabs(n) / (n_max * n_max)) <= 1e-9)) {
+      std::printf("command %zu of speeds is %.9g\n", i, static_cast<double>(commands[i]));
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Dense, batch norm, ReLU, dense, in double.
+bool agrees_with_norm(const float* x, const float* y) {
+  constexpr std::size_t in = 16, width = 9;
+  const auto p = instruction_sets::some_variances<instruction_sets::NormNet>();
+  const auto at = [&p](std::size_t i) { return static_cast<double>(p[i]); };
+  const std::size_t norm = in * width, last = norm + 4 * width;
+  double hidden[width];
+  for (std::size_t row = 0; row < width; ++row) {
+    double sum = 0;
+    for (std::size_t i = 0; i < in; ++i) sum += at(row * in + i) * static_cast<double>(x[i]);
+    const double mean = at(norm + 2 * width + row), variance = at(norm + 3 * width + row);
+    const double v =
+        at(norm + row) * (sum - mean) / std::sqrt(variance + pinnquad::batch_norm_epsilon) + at(norm + width + row);
+    hidden[row] = v < 0 ? 0 : v;
+  }
+  for (std::size_t row = 0; row < 4; ++row) {
+    double sum = at(last + 4 * width + row);
+    for (std::size_t i = 0; i < width; ++i) sum += at(last + row * width + i) * hidden[i];
+    if (!(std::fabs(sum - static_cast<double>(y[row])) <= 1e-4 * (1.0 + std::fabs(sum)))) {
+      std::printf("output %zu with batch norm is %.9g instead of %.9g\n", row, static_cast<double>(y[row]), sum);
+      return false;
+    }
+  }
+  return true;
+}
+
 bool golden_commands(const float* commands) {
   for (std::size_t i = 0; i < 4; ++i) {
     const float difference = commands[i] - instruction_sets::Model::golden_commands[0][i];
@@ -54,6 +93,52 @@ bool golden_commands(const float* commands) {
     }
   }
   return true;
+}
+
+}  // namespace
+
+namespace instruction_sets {
+alignas(8) unsigned char block[4096];
+std::size_t block_bytes = 0;
+}  // namespace instruction_sets
+
+namespace {
+
+/// What deploy/weight_file.hpp writes, without the rooms that do not fly.
+void write_block() {
+  using namespace pinnquad;
+  using instruction_sets::block;
+  using instruction_sets::Model;
+  using Header = ModelBlockHeader;
+  using Layout = ModelBlockLayout<Model>;
+  constexpr std::size_t golden = Model::golden_features.size();
+  const std::size_t length = static_cast<std::size_t>(Layout::length(golden));
+  const auto number = [](std::size_t at, std::uint64_t value, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i) block[at + i] = static_cast<unsigned char>(value >> (8 * i));
+  };
+  const auto scalars = [](std::size_t at, const auto& values) {
+    std::memcpy(block + Header::size + at * sizeof(float), &values, sizeof values);
+  };
+  std::memcpy(block, &model_block_magic, sizeof model_block_magic);
+  number(Header::version, model_block_version, 4);
+  number(Header::length, length, 4);
+  number(Header::scalar_bytes, sizeof(float), 4);
+  number(Header::inputs, Layout::inputs, 4);
+  number(Header::outputs, Layout::outputs, 4);
+  number(Header::parameters, Layout::parameter_count, 4);
+  number(Header::golden_vectors, golden, 4);
+  number(Header::shape_hash, shape_hash<Model>, 8);
+  scalars(Layout::input_mean, Model::input.mean);
+  scalars(Layout::input_spread, Model::input.spread);
+  scalars(Layout::output_mean, Model::output.mean);
+  scalars(Layout::output_spread, Model::output.spread);
+  scalars(Layout::envelope_lower, Model::envelope_lower);
+  scalars(Layout::envelope_upper, Model::envelope_upper);
+  scalars(Layout::golden_features, Model::golden_features);
+  scalars(Layout::golden_commands(golden), Model::golden_commands);
+  scalars(Layout::parameters(golden), Model::parameters);
+  number(length - Header::checksum_size, crc32(block, length - Header::checksum_size), 4);
+  instruction_sets::block_bytes = length;
 }
 
 }  // namespace
@@ -70,13 +155,16 @@ int main(int argc, char** argv) {
 #endif
   float x[16];
   for (int i = 0; i < 16; ++i) x[i] = 0.125f * static_cast<float>(i) - 1.0f;
+  write_block();
   float y[outputs] = {};
   predict(x, y);
   const auto relu = [](double v) { return v < 0.0 ? 0.0 : v; };
   const auto tanh = [](double v) { return std::tanh(v); };
   const bool ok = agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y, relu) &&
                   agrees({16, 70, 4}, some_parameters<WideNet>(), x, y + 4, tanh) &&
-                  agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y + 8, relu) && golden_commands(y + 12);
+                  agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y + 8, relu) && golden_commands(y + 12) &&
+                  golden_speeds(y + 16) && golden_commands(y + 20) && golden_commands(y + 24) &&
+                  agrees_with_norm(x, y + 28);
   std::puts(ok ? "predicts" : "predicts something else");
   return ok ? 0 : 1;
 }

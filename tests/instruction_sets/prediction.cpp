@@ -9,7 +9,48 @@ constexpr WideNet::Parameters wide_parameters = some_parameters<WideNet>();
 constexpr pinnquad::PackedNetwork<Net> packed{parameters};
 constexpr pinnquad::PackedNetwork<WideNet> packed_wide{wide_parameters};
 constexpr Net portable{parameters};
+constexpr NormNet::Parameters norm_parameters = some_variances<NormNet>();
+constexpr const float* norm_parameters_begin = norm_parameters.data();
 using instruction_sets::Model;
+
+/// Derivatives too, of a network with batch norm, and all that is made of rotor speeds.
+void predict_speeds(const float* golden, float* y) {
+  float jacobian[4 * Model::Features::size];
+  const pinnquad::InverseDynamics<SpeedModel> inverse;
+  pinnquad::Status status = pinnquad::Status::ok;
+  pinnquad::predict_batch(inverse, golden, y, &status, 1);
+  if (status != pinnquad::Status::ok) y[0] = -1.0f;
+  if (pinnquad::predict_with_jacobian(inverse, golden, y, jacobian) != pinnquad::Status::ok) y[0] = -1.0f;
+  if (inverse.predict_features(golden, y) != pinnquad::Status::ok) y[0] = -1.0f;
+  if (pinnquad::self_test(inverse) == pinnquad::Status::ok)
+    y[0] = -1.0f;  // the golden commands are those of another schema
+}
+
+/// A block of the exported model, in place and loaded.
+void predict_from_block(float* y) {
+  static pinnquad::LoadedModel<Model> loaded;
+  pinnquad::ModelView<Model> view;
+  for (int i = 0; i < 8; ++i) y[i] = -1.0f;
+  if (pinnquad::ModelView<Model>::open(block, block_bytes, view) != pinnquad::Status::ok) return;
+  if (loaded.load(view) != pinnquad::Status::ok) return;
+  constexpr const float* golden = Model::golden_features[0].data();
+  const pinnquad::InverseDynamics<pinnquad::ModelView<Model>> viewed(view);
+  const pinnquad::InverseDynamics<pinnquad::LoadedModel<Model>> from_memory(loaded);
+  float jacobian[4 * Model::Features::size];
+  pinnquad::Status status = pinnquad::Status::ok;
+  pinnquad::predict_batch(viewed, golden, y, &status, 1);
+  if (pinnquad::predict_with_jacobian(viewed, golden, y, jacobian) != pinnquad::Status::ok) return;
+  if (pinnquad::predict_with_jacobian(from_memory, golden, y, jacobian) != pinnquad::Status::ok) return;
+  if (pinnquad::self_test(viewed) != pinnquad::Status::ok || pinnquad::self_test(from_memory) != pinnquad::Status::ok)
+    return;
+  if (viewed.predict_features(golden, y) != pinnquad::Status::ok) return;
+  if (from_memory.predict_features(golden, y + 4) != pinnquad::Status::ok) y[4] = -1.0f;
+}
+
+void differentiate(const float* x, float* y) {
+  float jacobian[4 * 16];
+  pinnquad::JacobianPass<NormNet>::run(norm_parameters_begin, x, y, jacobian);
+}
 }  // namespace
 
 extern "C" void PREDICT(const float* x, float* y) {
@@ -19,4 +60,7 @@ extern "C" void PREDICT(const float* x, float* y) {
   constexpr const float* golden = Model::golden_features[0].data();
   const pinnquad::InverseDynamics<Model> inverse;
   if (inverse.predict_features(golden, y + 12) != pinnquad::Status::ok) y[12] = -1.0f;
+  predict_speeds(golden, y + 16);
+  predict_from_block(y + 20);
+  differentiate(x, y + 28);
 }

@@ -3,7 +3,11 @@
 #pragma once
 
 #include "../support/small_model.hpp"
-#include "pinnquad/inference/inverse_dynamics.hpp"
+#include "pinnquad/inference/batched_inverse.hpp"
+#include "pinnquad/inference/command_jacobian.hpp"
+#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/inference/self_test.hpp"
+#include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
@@ -26,10 +30,32 @@ constexpr typename Network::Parameters some_parameters() noexcept {
   return parameters;
 }
 
+/// With batch norm: the Jacobian takes its roots.
+using NormNet =
+    pinnquad::BatchNormMlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<1, 9>, pinnquad::Outputs<4>, pinnquad::Relu>;
+
+/// The same numbers, positive as a variance is.
+template <class Network>
+constexpr typename Network::Parameters some_variances() noexcept {
+  auto parameters = some_parameters<Network>();
+  for (auto& p : parameters) p = p < 0 ? -p : p;
+  return parameters;
+}
+
 /// An exported model: its first golden vector's commands come from a program that does not know this library.
 using Model = pinnquad::test::SmallModel;
 
-/// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel, y[12, 16) of the exported model.
-inline constexpr int outputs = 16;
+/// Its outputs taken for rotor speeds, rev/s.
+struct SpeedModel : Model {
+  using Outputs = pinnquad::RotorSpeedOutputs;
+};
+
+/// A block of it, which main.cpp writes before any call.
+extern unsigned char block[];
+extern std::size_t block_bytes;
+
+/// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel, y[12, 16) of the exported model,
+/// y[16, 20) of its outputs as speeds, y[20, 28) from its block: in place, loaded; y[28, 32) with batch norm.
+inline constexpr int outputs = 32;
 
 }  // namespace instruction_sets

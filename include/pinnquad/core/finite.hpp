@@ -1,27 +1,50 @@
 // SPDX-License-Identifier: MIT
 // NaN and Inf test on the bits: `x == x` and std::isfinite are deleted by -ffast-math, this is not.
-// Works for float and double; constant time.
+// Works for float and double; constant time. A value is taken by reference: as an argument, a compiler could take it for finite.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/instruction_set.hpp"
 
 namespace pinnquad {
 
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+/// True where the compiler was told that there is no NaN (-ffast-math): it may then lose one in `v < 0 ? 0 : v`.
+inline constexpr bool finite_math_only = __FINITE_MATH_ONLY__ != 0;
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
 /// True unless the value is NaN or +-Inf (exponent bits all set).
-PINNQUAD_ALWAYS_INLINE bool is_finite(float value) noexcept {
+PINNQUAD_ALWAYS_INLINE bool is_finite(const float& value) noexcept {
   std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   return (bits & 0x7f800000u) != 0x7f800000u;
 }
 
-PINNQUAD_ALWAYS_INLINE bool is_finite(double value) noexcept {
+PINNQUAD_ALWAYS_INLINE bool is_finite(const double& value) noexcept {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   return (bits & 0x7ff0000000000000u) != 0x7ff0000000000000u;
+}
+
+/// The same at compile time: on the bits where the compiler lets a constant be read so, else by comparison, which
+/// -ffast-math may spoil.
+template <class Scalar>
+constexpr bool is_finite_constant(Scalar value) noexcept {
+  using Limits = std::numeric_limits<Scalar>;
+#if defined(__clang__) || __GNUC__ >= 11
+  using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
+  constexpr Bits magnitude = static_cast<Bits>(~Bits(0)) >> 1;
+  return (__builtin_bit_cast(Bits, value) & magnitude) <= __builtin_bit_cast(Bits, Limits::max());
+#else
+  return value >= Limits::lowest() && value <= Limits::max();
+#endif
 }
 
 /// True if `count` values from `first` are all finite. No early return: the time does not depend on the data.

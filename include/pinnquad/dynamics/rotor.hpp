@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/dynamics/state.hpp"
@@ -125,7 +126,8 @@ constexpr Status invert_allocation(AllocationMatrix<Scalar> matrix, AllocationMa
 
 /// Command of a rotor speed, u = (n / n_max)^2 (NOTES #6).
 template <class Scalar>
-constexpr Scalar command_from_speed(const Airframe<Scalar>& airframe, Scalar speed_rev_s) noexcept {
+PINNQUAD_ALWAYS_INLINE constexpr Scalar command_from_speed(const Airframe<Scalar>& airframe,
+                                                           Scalar speed_rev_s) noexcept {
   const Scalar ratio = speed_rev_s / airframe.max_rotor_speed_rev_s;
   return ratio * ratio;
 }

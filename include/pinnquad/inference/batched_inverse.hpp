@@ -10,7 +10,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// For each sample s what InverseDynamics::predict_features() gives, to rounding: x[k * samples + s] is its feature k in
 /// physical units, commands[i * samples + s] its command i, statuses[s] its Status. Commands of a sample are written only if
-/// has_output(statuses[s]). Of the guard, all but its fallback applies. No heap; stack for 2 packs of samples.
+/// has_output(statuses[s]). Of the guard, all but its fallback applies. Any model that shows its weights: a header's, a
+/// ModelView, a LoadedModel. No heap; stack for 2 packs of samples.
 template <class Model, class GuardType>
 void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
@@ -21,7 +22,7 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   using Numbers = detail::ModelNumbers<Model>;
   constexpr int size = Model::Features::size;
   constexpr int lanes = Batched::lanes;
-  constexpr const Scalar* weights = Model::parameters.data();
+  const Scalar* weights = detail::row_major_weights(inverse.model());
   constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();
   const Scalar* input_mean = Numbers::input_mean(inverse.model());
   const Scalar* input_spread = Numbers::input_spread(inverse.model());
@@ -30,6 +31,10 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   const Scalar* lower = Numbers::lower(inverse.model());
   const Scalar* upper = Numbers::upper(inverse.model());
 
+  if (weights == nullptr) {  // a view of no block: its envelope is empty
+    for (int s = 0; s < samples; ++s) statuses[s] = Status::outside_envelope;
+    return;
+  }
   for (int first = 0; first < samples; first += lanes) {
     const int count = samples - first < lanes ? samples - first : lanes;
     alignas(64) Scalar standardised[size * lanes] = {};

@@ -3,7 +3,6 @@
 // No protection against forgery.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -13,16 +12,19 @@ namespace pinnquad {
 
 namespace detail {
 /// Remainders of the sixteen half bytes: 64 bytes of flash; a table by bytes would be a kilobyte and twice as fast.
-constexpr std::array<std::uint32_t, 16> crc32_table() noexcept {
-  std::array<std::uint32_t, 16> table{};
+struct Crc32HalfBytes {
+  std::uint32_t remainder[16];
+};
+constexpr Crc32HalfBytes crc32_table() noexcept {
+  Crc32HalfBytes table{};
   for (std::uint32_t value = 0; value < 16; ++value) {
     std::uint32_t remainder = value;
     for (int bit = 0; bit < 4; ++bit) remainder = (remainder >> 1) ^ ((remainder & 1u) != 0 ? 0xedb88320u : 0u);
-    table[value] = remainder;
+    table.remainder[value] = remainder;
   }
   return table;
 }
-inline constexpr std::array<std::uint32_t, 16> crc32_half_bytes = crc32_table();
+inline constexpr Crc32HalfBytes crc32_half_bytes = crc32_table();
 }  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
@@ -33,8 +35,8 @@ constexpr std::uint32_t crc32(const unsigned char* bytes, std::size_t length, st
   std::uint32_t remainder = ~before;
   for (std::size_t i = 0; i < length; ++i) {
     remainder ^= bytes[i];
-    remainder = (remainder >> 4) ^ detail::crc32_half_bytes[remainder & 15u];
-    remainder = (remainder >> 4) ^ detail::crc32_half_bytes[remainder & 15u];
+    remainder = (remainder >> 4) ^ detail::crc32_half_bytes.remainder[remainder & 15u];
+    remainder = (remainder >> 4) ^ detail::crc32_half_bytes.remainder[remainder & 15u];
   }
   return ~remainder;
 }

@@ -8,21 +8,13 @@
 
 namespace pinnquad {
 
-namespace detail {
-template <class Model, class = void>
-struct HasParametersInBlock : std::false_type {};
-template <class Model>
-struct HasParametersInBlock<Model, std::void_t<decltype(std::declval<const Model&>().parameters())>> : std::true_type {
-};
-}  // namespace detail
-
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// commands = u(x) and jacobian[i * Features::size + k] = du_i / dx_k, 4 x Features::size, row-major, in physical units
 /// (for the angular accelerations: per rad/s^2). Exact derivatives of the network.
 /// Of the guard, the envelope and the checks of the commands apply; a fallback has no derivatives here and is not asked. Where
-/// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. A model with weights in a block must be a
-/// ModelView. Both outputs are untouched unless has_output(status).
+/// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a
+/// header's, a ModelView, a LoadedModel. Both outputs are untouched unless has_output(status).
 template <class Model, class GuardType>
 Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                              typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
@@ -43,15 +35,11 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
   for (int i = 0; i < size; ++i) standardised[i] = (x[i] - input_mean[i]) / input_spread[i];
   Scalar outputs[rotor_count] = {};
   Scalar slopes[rotor_count * size];
-  if constexpr (detail::HasParametersInBlock<Model>::value) {
-    Pass::run(inverse.model().parameters(), standardised, outputs, slopes);
+  const Scalar* weights = detail::row_major_weights(inverse.model());
+  if constexpr (detail::is_packed<Model>) {
+    Pass::run(detail::packed_weights(inverse.model()), weights, standardised, outputs, slopes);
   } else {
-    constexpr const Scalar* weights = Model::parameters.data();
-    if constexpr (has_vector_unit<Scalar>) {
-      Pass::run(detail::packed_model<Model>, weights, standardised, outputs, slopes);
-    } else {
-      Pass::run(weights, standardised, outputs, slopes);
-    }
+    Pass::run(weights, standardised, outputs, slopes);
   }
 
   constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();

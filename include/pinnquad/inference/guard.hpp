@@ -60,6 +60,8 @@ struct PlaceAndTime {
   Real time_s{0};
 };
 
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
 /// Why a prediction came out as it did.
 template <class Scalar, int Size>
 struct GuardReport {
@@ -73,6 +75,8 @@ struct GuardReport {
   std::array<Scalar, static_cast<std::size_t>(Size)> excess{};
   int worst_feature{-1};  ///< the one furthest outside, -1 if none is
 };
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 
 namespace detail {
 

@@ -18,6 +18,25 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Model>
 inline constexpr PackedNetwork<typename Model::Network> packed_model{Model::parameters};
 
+template <class Model, class = void>
+struct HasOwnPacking : std::false_type {};
+template <class Model>
+struct HasOwnPacking<Model, std::void_t<decltype(std::declval<const Model&>().packed())>> : std::true_type {};
+
+/// True where the vector unit's kernel predicts, from packed_weights(): the model's own, or the compiler's.
+template <class Model>
+inline constexpr bool is_packed = has_vector_unit<typename Model::Scalar> &&
+                                  (HasOwnPacking<Model>::value ||
+                                   (HasConstantParameters<Model>::value && !HasOwnForward<Model>::value));
+template <class Model>
+PINNQUAD_ALWAYS_INLINE const PackedNetwork<typename Model::Network>& packed_weights(const Model& model) noexcept {
+  if constexpr (HasOwnPacking<Model>::value) {
+    return model.packed();
+  } else {
+    return packed_model<Model>;
+  }
+}
+
 /// What is written to where nobody asked why.
 struct NoReport {};
 

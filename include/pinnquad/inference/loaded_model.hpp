@@ -27,16 +27,16 @@ class FixedRows {
   }
 
  private:
-  std::array<value_type, Capacity> rows_{};
+  value_type rows_[Capacity]{};
   std::size_t count_ = 1;
 };
 
 /// Golden vectors that a LoadedModel keeps; `train` writes as many.
 inline constexpr std::size_t loaded_golden_vectors = 8;
 
-/// A model as `InverseDynamics` reads it, with weights of its own: packed where there is a vector unit, else as in the
-/// block. About as large as its weights, so not a thing for a small stack. As made, it declines: its envelope is empty
-/// and its self test fails.
+/// A model as `InverseDynamics` reads it, with weights of its own: as in the block, for batches and derivatives, and packed
+/// for prediction where there is a vector unit. About as large as its weights, twice with a vector unit, so not a thing for a
+/// small stack. As made, it declines: its envelope is empty and its self test fails.
 template <class ShapeType>
 class LoadedModel : public ModelScales<ShapeType> {
  public:
@@ -55,24 +55,31 @@ class LoadedModel : public ModelScales<ShapeType> {
     static_cast<Scales&>(*this) = view;
     golden_features.copy(view.golden_features);
     golden_commands.copy(view.golden_commands);
-    weights_.assign(view.parameters());
+    std::memcpy(&network_.parameters, view.parameters(), sizeof network_.parameters);
+    if constexpr (has_vector_unit<Scalar>) packed_.assign(view.parameters());
     return Status::ok;
   }
 
   /// The bare network, standardised in and out: the vector unit's kernel where there is one, else the portable one.
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
-    weights_.forward(standardised, outputs);
+    if constexpr (has_vector_unit<Scalar>) {
+      packed_.forward(standardised, outputs);
+    } else {
+      network_.forward(standardised, outputs);
+    }
   }
 
- private:
-  /// Weights as in the block, for machines without a vector unit.
-  struct Unpacked : Network {
-    void assign(const Scalar* from) noexcept {
-      for (Scalar& weight : this->parameters) weight = *from++;
-    }
-  };
+  /// The weights as in the block; zeros before load().
+  const Scalar* parameters() const noexcept { return detail::first_of<Scalar>(network_.parameters); }
 
-  std::conditional_t<has_vector_unit<Scalar>, PackedNetwork<Network>, Unpacked> weights_{};
+  /// The weights as the vector unit's kernel reads them; empty without a vector unit.
+  const auto& packed() const noexcept { return packed_; }
+
+ private:
+  struct NotPacked {};
+
+  Network network_{};
+  std::conditional_t<has_vector_unit<Scalar>, PackedNetwork<Network>, NotPacked> packed_{};
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

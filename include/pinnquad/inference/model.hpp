@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/network.hpp"
@@ -107,6 +108,14 @@ constexpr bool between(const Array& lower, const Array& x, const Array& upper) n
   return true;
 }
 
+template <class Array>
+constexpr bool all_finite_constants(const Array& values) noexcept {
+  for (const auto& value : values) {
+    if (!is_finite_constant(value)) return false;
+  }
+  return true;
+}
+
 template <class M>
 constexpr bool golden_inside_envelope() noexcept {
   for (const auto& x : M::golden_features) {
@@ -148,6 +157,12 @@ constexpr void require_description() noexcept {
         same_signs(M::motor_torque_signs, motor_torque_signs<typename M::Vehicle>()),
         "pinnquad: the model was trained with another motor order than its Vehicle now has: a rotor sits or turns "
         "elsewhere (motor_torque_signs)");
+    static_assert(all_finite_constants(M::parameters), "pinnquad: a weight of the model is NaN or infinite");
+    static_assert(all_finite_constants(M::input.mean) && all_finite_constants(M::input.spread) &&
+                      all_finite_constants(M::output.mean) && all_finite_constants(M::output.spread),
+                  "pinnquad: a scaler's number is NaN or infinite");
+    static_assert(all_finite_constants(M::envelope_lower) && all_finite_constants(M::envelope_upper),
+                  "pinnquad: a border of the model's envelope is NaN or infinite");
     static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
                   "pinnquad: a scaler's spread is not positive");
     static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");

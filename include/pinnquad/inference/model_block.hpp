@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/core/type_text.hpp"
 #include "pinnquad/inference/checksum.hpp"
@@ -55,14 +56,14 @@ struct ModelBlockLayout {
   static constexpr std::size_t envelope_lower = output_spread + outputs;
   static constexpr std::size_t envelope_upper = envelope_lower + inputs;
   static constexpr std::size_t golden_features = envelope_upper + inputs;
-  static constexpr std::size_t golden_commands(std::size_t golden) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr std::size_t golden_commands(std::size_t golden) noexcept {
     return golden_features + golden * inputs;
   }
-  static constexpr std::size_t parameters(std::size_t golden) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr std::size_t parameters(std::size_t golden) noexcept {
     return golden_commands(golden) + golden * outputs;
   }
   /// Bytes of the whole block. In 64 bits: a golden count from a broken header must not wrap around.
-  static constexpr std::uint64_t length(std::uint64_t golden) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t length(std::uint64_t golden) noexcept {
     const std::uint64_t scalars = golden_features + golden * (inputs + outputs) + parameter_count;
     return ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) + ModelBlockHeader::checksum_size;
   }
@@ -94,11 +95,11 @@ inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
 
 namespace detail {
 
-constexpr std::uint32_t read_u32(const unsigned char* from) noexcept {
+PINNQUAD_ALWAYS_INLINE constexpr std::uint32_t read_u32(const unsigned char* from) noexcept {
   return std::uint32_t{from[0]} | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 |
          std::uint32_t{from[3]} << 24;
 }
-constexpr std::uint64_t read_u64(const unsigned char* from) noexcept {
+PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t read_u64(const unsigned char* from) noexcept {
   return std::uint64_t{read_u32(from)} | std::uint64_t{read_u32(from + 4)} << 32;
 }
 
@@ -122,8 +123,9 @@ inline Status check_block(const unsigned char* block, std::size_t available,
     return Status::block_truncated;
   }
   if (available < Header::size + Header::checksum_size) return Status::block_truncated;
-  for (std::size_t i = 0; i < model_block_magic.size(); ++i) {
-    if (block[i] != model_block_magic[i]) return Status::block_incompatible;
+  const unsigned char* magic = detail::first_of<unsigned char>(model_block_magic);
+  for (std::size_t i = 0; i < sizeof model_block_magic; ++i) {
+    if (block[i] != magic[i]) return Status::block_incompatible;
   }
   if (read_u32(block + Header::version) != model_block_version) return Status::block_incompatible;
   const std::size_t length = read_u32(block + Header::length);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Where a model's scalers and envelope are: constants of the compiler for an exported header, else read through the instance.
-// Plain pointers: std::array::operator[] is emitted out of line in an unoptimised build, where the linker could pick a copy
-// compiled for another instruction set.
+// Where a model's weights, scalers and envelope are: constants of the compiler for an exported header, else read through the
+// instance.
+// Plain pointers (core/first_of.hpp).
 #pragma once
 
 #include <type_traits>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 
 namespace pinnquad::detail {
@@ -30,16 +31,63 @@ struct HasOwnForward<
                static_cast<const typename Model::Scalar*>(nullptr), static_cast<typename Model::Scalar*>(nullptr)))>>
     : std::true_type {};
 
+template <class Model, class = void>
+struct HasParametersInBlock : std::false_type {};
+template <class Model>
+struct HasParametersInBlock<Model,
+                            std::enable_if_t<std::is_pointer_v<decltype(std::declval<const Model&>().parameters())>>>
+    : std::true_type {};
+
+template <class Model, class = void>
+struct HasConstantParameters : std::false_type {};
+template <class Model>
+struct HasConstantParameters<Model, std::enable_if_t<std::is_pointer_v<decltype(&Model::parameters)>>>
+    : std::bool_constant<!HasParametersInBlock<Model>::value> {};
+
+/// Models that keep neither parameters nor parameters(): with a forward() alone.
+template <class Model, class = void>
+struct ShowsWeights : HasParametersInBlock<Model> {};
+template <class Model>
+struct ShowsWeights<Model, std::enable_if_t<std::is_object_v<decltype(Model::parameters)>>> : std::true_type {};
+
+/// The weights as the network lays them out: in flash, in a block or in the instance. Null for a view of no block.
+template <class Model>
+PINNQUAD_ALWAYS_INLINE const typename Model::Scalar* row_major_weights(const Model& model) noexcept {
+  static_assert(ShowsWeights<Model>::value,
+                "pinnquad: this model shows no weights; it needs an array `parameters` or a function `parameters()`");
+  if constexpr (HasParametersInBlock<Model>::value) {
+    return model.parameters();
+  } else if constexpr (HasConstantParameters<Model>::value) {
+    constexpr const typename Model::Scalar* first = Model::parameters.data();
+    return first;
+  } else {
+    return first_of<typename Model::Scalar>(model.parameters);
+  }
+}
+
 /// Read through the instance.
 template <class Model, bool Constant = HasConstantArrays<Model>::value>
 struct ModelNumbers {
-  using Pointer = const typename Model::Scalar*;
-  static PINNQUAD_ALWAYS_INLINE Pointer lower(const Model& model) noexcept { return &model.envelope_lower[0]; }
-  static PINNQUAD_ALWAYS_INLINE Pointer upper(const Model& model) noexcept { return &model.envelope_upper[0]; }
-  static PINNQUAD_ALWAYS_INLINE Pointer input_mean(const Model& model) noexcept { return &model.input.mean[0]; }
-  static PINNQUAD_ALWAYS_INLINE Pointer input_spread(const Model& model) noexcept { return &model.input.spread[0]; }
-  static PINNQUAD_ALWAYS_INLINE Pointer output_mean(const Model& model) noexcept { return &model.output.mean[0]; }
-  static PINNQUAD_ALWAYS_INLINE Pointer output_spread(const Model& model) noexcept { return &model.output.spread[0]; }
+  using Scalar = typename Model::Scalar;
+  using Pointer = const Scalar*;
+  static PINNQUAD_ALWAYS_INLINE Pointer lower(const Model& model) noexcept {
+    return first_of<Scalar>(model.envelope_lower);
+  }
+  static PINNQUAD_ALWAYS_INLINE Pointer upper(const Model& model) noexcept {
+    return first_of<Scalar>(model.envelope_upper);
+  }
+  static PINNQUAD_ALWAYS_INLINE Pointer input_mean(const Model& model) noexcept {
+    return first_of<Scalar>(model.input.mean);
+  }
+  static PINNQUAD_ALWAYS_INLINE Pointer input_spread(const Model& model) noexcept {
+    return first_of<Scalar>(model.input.spread);
+  }
+  static PINNQUAD_ALWAYS_INLINE Pointer output_mean(const Model& model) noexcept {
+    return first_of<Scalar>(model.output.mean);
+  }
+  static PINNQUAD_ALWAYS_INLINE Pointer output_spread(const Model& model) noexcept {
+    return first_of<Scalar>(model.output.spread);
+  }
 };
 
 /// Constants: a local constexpr pointer is worked out by the compiler, at -O0 too.

@@ -36,7 +36,7 @@ struct ModelScales {
 
   Scaler<Scalar, Features::size> input{};
   Scaler<Scalar, rotor_count> output{};
-  FeatureVector envelope_lower = Scaler<Scalar, Features::size>::ones();
+  FeatureVector envelope_lower = detail::ones<Scalar, Features::size>;
   FeatureVector envelope_upper{};
   std::uint64_t training_data_hash = 0;
   std::uint32_t training_rows = 0;
@@ -55,7 +55,7 @@ class BlockRows {
   /// A copy of a row.
   value_type operator[](std::size_t row) const noexcept {
     value_type result{};
-    if (first_ != nullptr) std::memcpy(result.data(), first_ + row * result.size(), sizeof result);
+    if (first_ != nullptr) std::memcpy(&result, first_ + row * std::size_t(Columns), sizeof result);
     return result;
   }
 
@@ -118,7 +118,8 @@ class ModelView : public ModelScales<ShapeType> {
   /// The bare network, standardised in and out, straight from the block: the portable kernel.
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
     if (parameters_ == nullptr) {
-      for (int i = 0; i < rotor_count; ++i) outputs[i] = std::numeric_limits<Scalar>::quiet_NaN();
+      constexpr Scalar nothing = std::numeric_limits<Scalar>::quiet_NaN();
+      for (int i = 0; i < rotor_count; ++i) outputs[i] = nothing;
       return;
     }
     Network::forward(parameters_, standardised, outputs);
@@ -130,7 +131,7 @@ class ModelView : public ModelScales<ShapeType> {
  private:
   template <class Array>
   static void copy(const Scalar* from, Array& to) noexcept {
-    std::memcpy(to.data(), from, sizeof to);
+    std::memcpy(&to, from, sizeof to);
   }
 
   static bool sound(const Scalar* scalars, std::size_t golden) noexcept {

@@ -25,7 +25,7 @@ struct CommandOutputs {
     return output;
   }
   template <class Scalar>
-  static constexpr Scalar command_slope(Scalar, const Airframe<Scalar>&) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command_slope(Scalar, const Airframe<Scalar>&) noexcept {
     return Scalar(1);
   }
 };
@@ -47,7 +47,8 @@ struct RotorSpeedOutputs {
     return output < Scalar(0) ? -u : u;
   }
   template <class Scalar>
-  static constexpr Scalar command_slope(Scalar output, const Airframe<Scalar>& airframe) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command_slope(Scalar output,
+                                                               const Airframe<Scalar>& airframe) noexcept {
     const Scalar n_max = airframe.max_rotor_speed_rev_s;
     const Scalar magnitude = output < Scalar(0) ? -output : output;
     return Scalar(2) * magnitude / (n_max * n_max);

@@ -147,7 +147,8 @@ struct BatchedNetwork {
     constexpr int next = Index + (fused<Index>() ? 2 : 1);
     Scalar* into = next == layer_count ? y : target;
     const int stride = next == layer_count ? y_stride : lanes;
-    const Scalar* own = parameters + NetworkType::Sizes::offset(Index);
+    constexpr int offset = NetworkType::Sizes::offset(Index);
+    const Scalar* own = parameters + offset;
     if constexpr (fused<Index>()) {
       detail::batched_layer<Layer<Index>, Layer<Index + 1>, Pack, lanes>(own, x, x_stride, into, stride);
     } else {

@@ -3,8 +3,6 @@
 // gave, then back from the outputs, all rows of the Jacobian at once. Weights are read where they are, row-major.
 #pragma once
 
-#include <cmath>
-
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
 #include "pinnquad/nn/packed_network.hpp"
@@ -87,10 +85,9 @@ struct PullBack<BatchNormLayer<Scalar, Size>> {
   template <class Pack, int Rows, int Stride, class Finish>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
                                          Scalar* by_input, const Finish& finish) noexcept {
-    using std::sqrt;
     using Lane = GenericPack<Scalar, 1>;
     for (int i = 0; i < Size; ++i) {
-      const Scalar factor = parameters[i] / sqrt(parameters[3 * Size + i] + Scalar(batch_norm_epsilon));
+      const Scalar factor = parameters[i] / detail::square_root(parameters[3 * Size + i] + Scalar(batch_norm_epsilon));
       for (int row = 0; row < Rows; ++row) {
         finish(i, Lane{{factor * by_output[row * Stride + i]}}).store(by_input + row * Stride + i);
       }
@@ -149,7 +146,7 @@ class JacobianPass {
   static void run(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* jacobian) noexcept {
     Scalar values[static_cast<std::size_t>(all_values)];
     forward<0>(parameters, x, values);
-    for (int i = 0; i < rows; ++i) y[i] = values[offset(layer_count - 1) + i];
+    for (int i = 0; i < rows; ++i) y[i] = values[offset<layer_count - 1> + i];
     back(parameters, values, jacobian);
   }
 
@@ -179,12 +176,16 @@ class JacobianPass {
   static constexpr int all_values = all_outputs + Pack::width;  ///< a whole pack may be read at the last value
   template <int Index>
   using Layer = typename NetworkType::template Layer<Index>;
-  static constexpr int offset(int layer) noexcept { return NetworkType::Sizes::outputs_before(layer); }
+  /// Of a layer's outputs among the values, and of its parameters.
+  template <int Index>
+  static constexpr int offset = NetworkType::Sizes::outputs_before(Index);
+  template <int Index>
+  static constexpr int parameters_offset = NetworkType::Sizes::offset(Index);
 
   template <int Index>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* values) noexcept {
-    Scalar* y = values + offset(Index);
-    detail::keep_layer<Layer<Index>>(parameters + NetworkType::Sizes::offset(Index), x, y);
+    Scalar* y = values + offset<Index>;
+    detail::keep_layer<Layer<Index>>(parameters + parameters_offset<Index>, x, y);
     if constexpr (Index + 1 < layer_count) forward<Index + 1>(parameters, y, values);
   }
 
@@ -199,15 +200,15 @@ class JacobianPass {
                     "pinnquad: this layer has no Jacobian; an element-wise layer needs slope(y) (nn/layer.hpp)");
       for (int row = 0; row < rows; ++row) {
         for (int i = 0; i < Layer<Index>::outputs; ++i) {
-          from[row * stride + i] *= Layer<Index>::slope(values[offset(Index) + i]);
+          from[row * stride + i] *= Layer<Index>::slope(values[offset<Index> + i]);
         }
       }
       return back<Index - 1>(parameters, values, from, to);
     } else {
-      const Scalar* own = parameters + NetworkType::Sizes::offset(Index);
-      const Scalar* y = values + offset(Index);
+      const Scalar* own = parameters + parameters_offset<Index>;
+      const Scalar* y = values + offset<Index>;
       if constexpr (fuses<Index>()) {
-        detail::pull_back<Layer<Index>, Layer<Index - 1>, Pack, rows, stride>(own, y, values + offset(Index - 1), from,
+        detail::pull_back<Layer<Index>, Layer<Index - 1>, Pack, rows, stride>(own, y, values + offset<Index - 1>, from,
                                                                               to);
         return back<Index - 2>(parameters, values, to, from);
       } else {

@@ -6,6 +6,7 @@
 #include <array>
 #include <tuple>
 
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "pinnquad/nn/layer.hpp"
@@ -178,8 +179,7 @@ class Network {
 
   /// y = network(x) with these parameters, by the portable kernel. x has `inputs`, y `outputs` entries.
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
-    // parameters.data() would be a function of the standard library in an unoptimised build
-    forward(reinterpret_cast<const Scalar*>(&parameters), x, y);
+    forward(detail::first_of<Scalar>(parameters), x, y);
   }
 
   /// The same for parameters that live elsewhere (flash).

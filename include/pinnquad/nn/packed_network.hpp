@@ -3,6 +3,7 @@
 // Packing is done once: at compile time for an exported model, at construction otherwise.
 #pragma once
 
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/nn/kernel/column_broadcast.hpp"
 #include "pinnquad/nn/kernel/register_layer.hpp"
 #include "pinnquad/nn/network.hpp"
@@ -279,6 +280,9 @@ class PackedNetwork {
   PINNQUAD_ALWAYS_INLINE void forward_keeping(const Scalar* x, Scalar* y, Scalar* kept) const noexcept {
     Run::forward(packed_, x, y, detail::KeepOutputs<Scalar>{kept});
   }
+
+  /// True if no weight is NaN or infinite, on the bits.
+  PINNQUAD_ALWAYS_INLINE bool finite() const noexcept { return all_finite(packed_, Run::size()); }
 
  private:
   using Run = typename detail::ChooseRun<NetworkType, Pack>::type;

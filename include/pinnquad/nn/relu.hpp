@@ -2,15 +2,14 @@
 // Rectified linear unit: y = v < 0 ? 0 : v. NaN goes through (fmax would swallow it).
 #pragma once
 
+#include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {
 
 template <class ScalarType, int Size>
 struct ReluLayer : ElementwiseLayer<ReluLayer<ScalarType, Size>, ScalarType, Size> {
-  static PINNQUAD_ALWAYS_INLINE ScalarType activate(ScalarType v) noexcept {
-    return v < ScalarType(0) ? ScalarType(0) : v;
-  }
+  static PINNQUAD_ALWAYS_INLINE ScalarType activate(ScalarType v) noexcept { return detail::positive_part(v); }
   template <class Pack>
   static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
     return Pack::positive_part(v);

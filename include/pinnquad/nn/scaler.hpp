@@ -8,12 +8,24 @@
 
 namespace pinnquad {
 
+namespace detail {
+template <class Scalar, int Size>
+constexpr std::array<Scalar, Size> all_ones() noexcept {
+  std::array<Scalar, Size> result{};
+  for (Scalar& v : result) v = Scalar(1);
+  return result;
+}
+/// Worked out by the compiler: copied, not filled, in an unoptimised build too.
+template <class Scalar, int Size>
+inline constexpr std::array<Scalar, Size> ones = all_ones<Scalar, Size>();
+}  // namespace detail
+
 /// Mean and spread (standard deviation) per entry. A spread is never zero.
 template <class Scalar, int Size>
 struct Scaler {
   static constexpr int size = Size;
   std::array<Scalar, Size> mean{};
-  std::array<Scalar, Size> spread = ones();
+  std::array<Scalar, Size> spread = detail::ones<Scalar, Size>;
 
   PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* values, Scalar* standardised) const noexcept {
     for (int i = 0; i < Size; ++i) {
@@ -26,11 +38,7 @@ struct Scaler {
     }
   }
 
-  static constexpr std::array<Scalar, Size> ones() noexcept {
-    std::array<Scalar, Size> result{};
-    for (Scalar& v : result) v = Scalar(1);
-    return result;
-  }
+  static constexpr std::array<Scalar, Size> ones() noexcept { return detail::ones<Scalar, Size>; }
 };
 
 }  // namespace pinnquad

@@ -44,7 +44,13 @@ struct PackAvx2 {
   static PINNQUAD_ALWAYS_INLINE PackAvx2 square_root(PackAvx2 a) noexcept { return {_mm256_sqrt_ps(a.value)}; }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackAvx2 positive_part(PackAvx2 a) noexcept {
-    return {_mm256_max_ps(_mm256_setzero_ps(), a.value)};
+    if constexpr (detail::finite_math_only) {  // the operands of max may be swapped, the bits not
+      const __m256i bits = _mm256_castps_si256(a.value);
+      const __m256i below = _mm256_cmpgt_epi32(_mm256_set1_epi32(detail::above_negatives), bits);
+      return {_mm256_castsi256_ps(_mm256_andnot_si256(below, bits))};
+    } else {
+      return {_mm256_max_ps(_mm256_setzero_ps(), a.value)};
+    }
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx2 where_positive(PackAvx2 gate, PackAvx2 a) noexcept {
     const __m256 positive = _mm256_cmp_ps(gate.value, _mm256_setzero_ps(), _CMP_GT_OQ);

@@ -48,7 +48,13 @@ struct PackAvx512 {
   }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackAvx512 positive_part(PackAvx512 a) noexcept {
-    return {_mm512_maskz_max_ps(all, _mm512_setzero_ps(), a.value)};
+    if constexpr (detail::finite_math_only) {  // the operands of max may be swapped, the bits not
+      const __m512i bits = _mm512_castps_si512(a.value);
+      const __mmask16 kept = _mm512_cmp_epi32_mask(bits, _mm512_set1_epi32(detail::above_negatives), _MM_CMPINT_NLT);
+      return {_mm512_castsi512_ps(_mm512_maskz_mov_epi32(kept, bits))};
+    } else {
+      return {_mm512_maskz_max_ps(all, _mm512_setzero_ps(), a.value)};
+    }
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx512 where_positive(PackAvx512 gate, PackAvx512 a) noexcept {
     const __mmask16 positive = _mm512_cmp_ps_mask(gate.value, _mm512_setzero_ps(), _CMP_GT_OQ);

@@ -66,7 +66,7 @@ struct GenericPack {
   PINNQUAD_ALWAYS_INLINE void settle() noexcept {}
   /// v < 0 ? 0 : v. NaN goes through.
   static PINNQUAD_ALWAYS_INLINE GenericPack positive_part(GenericPack a) noexcept {
-    for (int i = 0; i < Width; ++i) a.lane[i] = a.lane[i] < Scalar(0) ? Scalar(0) : a.lane[i];
+    for (int i = 0; i < Width; ++i) a.lane[i] = detail::positive_part(a.lane[i]);
     return a;
   }
   /// gate > 0 ? a : 0.

@@ -43,7 +43,7 @@ struct PackNeon {
     return {vdivq_f32(a.value, b.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackNeon square_root(PackNeon a) noexcept { return {vsqrtq_f32(a.value)}; }
-  /// v < 0 ? 0 : v. FMAX returns NaN when either is.
+  /// v < 0 ? 0 : v. FMAX returns NaN when either is, whichever comes first.
   static PINNQUAD_ALWAYS_INLINE PackNeon positive_part(PackNeon a) noexcept {
     return {vmaxq_f32(a.value, vdupq_n_f32(0.0f))};
   }

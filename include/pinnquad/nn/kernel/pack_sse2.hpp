@@ -43,7 +43,12 @@ struct PackSse2 {
   static PINNQUAD_ALWAYS_INLINE PackSse2 square_root(PackSse2 a) noexcept { return {_mm_sqrt_ps(a.value)}; }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackSse2 positive_part(PackSse2 a) noexcept {
-    return {_mm_max_ps(_mm_setzero_ps(), a.value)};
+    if constexpr (detail::finite_math_only) {  // the operands of max may be swapped, the bits not
+      const __m128i bits = _mm_castps_si128(a.value);
+      return {_mm_castsi128_ps(_mm_andnot_si128(_mm_cmplt_epi32(bits, _mm_set1_epi32(detail::above_negatives)), bits))};
+    } else {
+      return {_mm_max_ps(_mm_setzero_ps(), a.value)};
+    }
   }
   static PINNQUAD_ALWAYS_INLINE PackSse2 where_positive(PackSse2 gate, PackSse2 a) noexcept {
     return {_mm_and_ps(_mm_cmpgt_ps(gate.value, _mm_setzero_ps()), a.value)};

@@ -69,19 +69,17 @@ PINNQUAD_ALWAYS_INLINE void in_even_tiles(const Body& body) noexcept {
   constexpr int taller = Rows % tiles;  // the first `taller` tiles have one row more
   unroll<tiles>([&](auto i) PINNQUAD_INLINE_LAMBDA {
     constexpr int index = decltype(i)::value;
-    body(std::integral_constant<int, index * height + (index < taller ? index : taller)>{},
-         std::integral_constant<int, height + (index < taller ? 1 : 0)>{});
+    body(Index<index * height + (index < taller ? index : taller)>{}, Index<height + (index < taller ? 1 : 0)>{});
   });
 }
 
 /// The same into tiles of `Height`, and one of what is left.
 template <int Rows, int Height, class Body>
 PINNQUAD_ALWAYS_INLINE void in_full_tiles(const Body& body) noexcept {
-  unroll<Rows / Height>([&](auto i) PINNQUAD_INLINE_LAMBDA {
-    body(std::integral_constant<int, decltype(i)::value * Height>{}, std::integral_constant<int, Height>{});
-  });
+  unroll<Rows / Height>([&](auto i)
+                            PINNQUAD_INLINE_LAMBDA { body(Index<decltype(i)::value * Height>{}, Index<Height>{}); });
   if constexpr (Rows % Height > 0) {
-    body(std::integral_constant<int, Rows - Rows % Height>{}, std::integral_constant<int, Rows % Height>{});
+    body(Index<Rows - Rows % Height>{}, Index<Rows % Height>{});
   }
 }
 
@@ -104,10 +102,9 @@ PINNQUAD_ALWAYS_INLINE void multiply_rows(const typename Pack::Scalar* a, const 
         a, b + offset, Stride, depth, [&](auto, auto v) PINNQUAD_INLINE_LAMBDA { return first[v]; },
         [](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum; }, c + offset, Stride);
   };
-  unroll<blocks>([&](auto i) PINNQUAD_INLINE_LAMBDA {
-    tile(std::integral_constant<int, block>{}, decltype(i)::value * block * Pack::width);
-  });
-  if constexpr (rest > 0) tile(std::integral_constant<int, rest>{}, blocks * block * Pack::width);
+  unroll<blocks>([&](auto i)
+                     PINNQUAD_INLINE_LAMBDA { tile(Index<block>{}, decltype(i)::value * block * Pack::width); });
+  if constexpr (rest > 0) tile(Index<rest>{}, blocks * block * Pack::width);
 }
 
 }  // namespace detail
