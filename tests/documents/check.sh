@@ -121,11 +121,13 @@ block() {
   awk -v "document=$document" -v first=$(($1 + 1)) "${given[@]}" -f "$here/program.awk" "$parts/$1.code"
 }
 
-# compile <line>: alone, so that it needs no more than the includes that it shows, or that are given; and run.
+# compile <line> [<folder of declarations>]: alone, so that it needs no more than the includes that it shows, or that are
+# given; and run, unless against mere declarations.
 compile() {
   local program=$work/program_$1 what=(-o "$work/program_$1")
   block "$1" >"$program.cpp"
   grep -q '^int main(' "$program.cpp" || what=(-fsyntax-only)
+  [ $# -eq 1 ] || what=(-fsyntax-only -I"$root/$2")
   if ! "$cxx" -std=c++17 -O0 -Wall -Wextra -Werror -I"$root/include" -I"$root/examples" -I"$root/examples/models" \
     -isystem "$eigen" "$program.cpp" "${what[@]}"; then
     fault "$1" "does not compile"
@@ -161,6 +163,8 @@ while IFS=$'\t' read -r line language action argument; do
       fault "$line" "differs from $argument:"
       cat "$work/difference"
     fi
+  elif [ "$action" = against ]; then
+    compile "$line" "$argument"
   elif [ "$action" = output ]; then
     if ! (cd "$tree" && bash -euo pipefail -c "$argument") >"$work/output" 2>"$work/$line.log" </dev/null; then
       fault "$line" "the command fails: $argument"
