@@ -33,9 +33,12 @@ awk -v out="$parts" -v name="$document" -f "$here/extract.awk" "$path" || faults
 # (demo_out, study) is not linked: a block would write into it.
 tree=$work/tree
 mkdir -p "$tree/build"
-for entry in bench cmake docs examples include scripts tests CMakeLists.txt CMakePresets.json; do
+for entry in bench cmake docs examples include scripts tests CMakeLists.txt CMakePresets.json CHANGELOG.md LICENSE README.md; do
   ln -s "$root/$entry" "$tree/"
 done
+printf '#include "pinnquad/flight.hpp"\nint main() {}\n' >"$tree/main.cpp" # the reader's own program
+mkdir "$work/home"
+export HOME=$work/home # what is installed there is the block's
 for preset in dev native demo release; do ln -s "$build" "$tree/build/$preset"; done
 export PATH="$build/examples:$PATH"
 
@@ -141,7 +144,7 @@ configure() { # <line>
   local folder=$work/cmake_$1
   mkdir -p "$folder"
   ln -s "$root" "$folder/pinnquad"
-  printf '#include "pinnquad/flight.hpp"\nint main() {}\n' >"$folder/main.cpp"
+  cp "$tree/main.cpp" "$folder/main.cpp"
   {
     if ! grep -qh "^project(" "$parts/$1".*; then
       printf 'cmake_minimum_required(VERSION 3.22)\nproject(snippet CXX)\n'
