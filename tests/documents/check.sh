@@ -29,12 +29,16 @@ fault() { # <line> <message>
 
 awk -v out="$parts" -v name="$document" -f "$here/extract.awk" "$path" || faults=1
 
-# A folder that looks like the source tree to its reader, and can be written to.
+# A folder that looks like the source tree to its reader, and can be written to. What a reader may have made in the tree
+# (demo_out, study) is not linked: a block would write into it.
 tree=$work/tree
 mkdir -p "$tree/build"
-for entry in "$root"/*; do
-  case ${entry##*/} in build) ;; *) ln -s "$entry" "$tree/" ;; esac
+for entry in bench cmake docs examples include scripts tests CMakeLists.txt CMakePresets.json CHANGELOG.md LICENSE README.md; do
+  ln -s "$root/$entry" "$tree/"
 done
+printf '#include "pinnquad/flight.hpp"\nint main() {}\n' >"$tree/main.cpp" # the reader's own program
+mkdir "$work/home"
+export HOME=$work/home # what is installed there is the block's
 for preset in dev native demo release; do ln -s "$build" "$tree/build/$preset"; done
 export PATH="$build/examples:$PATH"
 
@@ -113,19 +117,39 @@ run_shell() { # <line>
   fi
 }
 
+# block <line>: the block with what is given around it.
+block() {
+  local given=()
+  [ ! -f "$parts/$1.given" ] || given=(-v "given=$parts/$1.given" -v "given_first=$(<"$parts/$1.given_line")")
+  awk -v "document=$document" -v first=$(($1 + 1)) "${given[@]}" -f "$here/program.awk" "$parts/$1.code"
+}
+
+# compile <line> [<folder of declarations>]: alone, so that it needs no more than the includes that it shows, or that are
+# given; and run, unless against mere declarations.
+compile() {
+  local program=$work/program_$1 what=(-o "$work/program_$1")
+  block "$1" >"$program.cpp"
+  grep -q '^int main(' "$program.cpp" || what=(-fsyntax-only)
+  [ $# -eq 1 ] || what=(-fsyntax-only -I"$root/$2")
+  if ! "$cxx" -std=c++17 -O0 -Wall -Wextra -Werror -I"$root/include" -I"$root/examples" -I"$root/examples/models" \
+    -isystem "$eigen" "$program.cpp" "${what[@]}"; then
+    fault "$1" "does not compile"
+  elif [ -x "$program" ] && ! (cd "$work" && timeout 300 "$program") >"$program.log" 2>&1 </dev/null; then
+    fault "$1" "the program fails:"
+    tail -n 20 "$program.log"
+  fi
+}
+
 configure() { # <line>
   local folder=$work/cmake_$1
   mkdir -p "$folder"
   ln -s "$root" "$folder/pinnquad"
-  printf '#include "pinnquad/flight.hpp"\nint main() {}\n' >"$folder/main.cpp"
+  cp "$tree/main.cpp" "$folder/main.cpp"
   {
     if ! grep -qh "^project(" "$parts/$1".*; then
       printf 'cmake_minimum_required(VERSION 3.22)\nproject(snippet CXX)\n'
     fi
-    awk -v code="$parts/$1.code" '
-      function put(  text) { while ((getline text < code) > 0) print text; done = 1 }
-      /^[ \t]*\.\.\.[ \t]*$/ { put(); next } { print } END { if (!done) put() }' "$parts/$1.given" 2>/dev/null ||
-      cat "$parts/$1.code"
+    block "$1" | grep -v '^#line'
   } >"$folder/CMakeLists.txt"
   if ! cmake -S "$folder" -B "$folder/build" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" \
     -DFETCHCONTENT_SOURCE_DIR_PINNQUAD="$root" >"$work/$1.log" 2>&1; then
@@ -134,7 +158,6 @@ configure() { # <line>
   fi
 }
 
-: >"$work/programs"
 while IFS=$'\t' read -r line language action argument; do
   if [ "$action" = from ]; then
     if [ ! -f "$root/$argument" ]; then
@@ -143,6 +166,8 @@ while IFS=$'\t' read -r line language action argument; do
       fault "$line" "differs from $argument:"
       cat "$work/difference"
     fi
+  elif [ "$action" = against ]; then
+    compile "$line" "$argument"
   elif [ "$action" = output ]; then
     if ! (cd "$tree" && bash -euo pipefail -c "$argument") >"$work/output" 2>"$work/$line.log" </dev/null; then
       fault "$line" "the command fails: $argument"
@@ -156,26 +181,13 @@ while IFS=$'\t' read -r line language action argument; do
     check_commands "$line"
   elif [ "$action" = run ]; then
     case $language in
-      cpp) echo "$line" >>"$work/programs" ;;
+      cpp) compile "$line" ;;
       sh) run_shell "$line" ;;
       cmake) configure "$line" ;;
       python) fault "$line" "Python is run by stages of its own: name it, <!-- not run: ... -->" ;;
     esac
   fi
 done <"$parts/blocks"
-
-if [ -s "$work/programs" ]; then
-  awk -v parts="$parts" -v document="$document" -f "$here/program.awk" "$work/programs" >"$work/program.cpp" ||
-    { cat "$work/program.cpp"; exit 1; }
-  mkdir "$work/run"
-  if ! "$cxx" -std=c++17 -O0 -Wall -Wextra -Werror -I"$root/include" -I"$root/examples" -I"$root/examples/models" \
-    -isystem "$eigen" "$work/program.cpp" -o "$work/program"; then
-    fault "$(head -n 1 "$work/programs")" "the C++ of this document does not compile"
-  elif ! (cd "$work/run" && timeout 300 "$work/program") >"$work/program.log" </dev/null; then
-    cat "$work/program.log"
-    faults=$((faults + 1))
-  fi
-fi
 
 while IFS=$'\t' read -r line span; do
   check_command "$line" "$span"
