@@ -35,3 +35,6 @@ function(pinnquad_state_build_flags target)
   string(REGEX REPLACE " +" " " build_flags "${build_flags}")
   target_compile_definitions(${target} PRIVATE "PINNQUAD_BUILD_FLAGS=\"${build_flags}\"")
 endfunction()
+
+set(PINNQUAD_UNOPTIMISED "" CACHE STRING
+  "Rooms whose tests, and programs, that are compiled with -O0: what takes longer to optimise than to run as it is")

@@ -2,7 +2,7 @@
 #
 # Compiles SOURCE with -D<DEFINE> (nothing when empty) and compares with EXPECT: success, or failure with an error
 # message that matches the regular expression MATCH. Only error lines count: notes and source excerpts could quote the
-# text of a rule that was not broken.
+# text of a rule that was not broken. PRECOMPILED (precompile.cmake) is included first.
 cmake_minimum_required(VERSION 3.22)
 
 # in two messages: CMake breaks the lines of an error, which is hard to match and to read
@@ -11,8 +11,8 @@ macro(verdict text)
   message(FATAL_ERROR "compile test failed")
 endmacro()
 
-set(command "${COMPILER}" -std=c++17 -fsyntax-only -fmessage-length=0 -fno-diagnostics-color
-  "-I${INCLUDE_DIR}" -isystem "${EIGEN_INCLUDE_DIR}")
+include("${CMAKE_CURRENT_LIST_DIR}/command.cmake")
+list(APPEND command -fsyntax-only -include "${PRECOMPILED}" -Winvalid-pch)
 if(NOT DEFINE STREQUAL "")
   list(APPEND command "-D${DEFINE}")
 endif()

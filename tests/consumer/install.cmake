@@ -1,14 +1,39 @@
 # SPDX-License-Identifier: MIT
 #
-# Installs BUILD_DIR into an emptied PREFIX, and finds headers and package files there and nothing else. The consumers'
+# Installs SOURCE_DIR into an emptied PREFIX, configured with Eigen alone and without a build, and finds headers and
+# package files there and nothing else; the build tree BUILD_DIR, where all is built, installs the same. The consumers'
 # build trees go too: a cache would keep the defaults of options from the last run.
 cmake_minimum_required(VERSION 3.22)
 
 file(REMOVE_RECURSE "${PREFIX}" "${TREES}")
-execute_process(COMMAND "${CMAKE_COMMAND}" --install "${BUILD_DIR}" --prefix "${PREFIX}"
-  RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
-if(NOT code EQUAL 0)
-  message(FATAL_ERROR "the installation failed:\n${output}")
+set(hidden "")
+foreach(package IN ITEMS doctest CLI11 nlohmann_json benchmark Threads Torch Python pybind11)
+  list(APPEND hidden "-DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON")
+endforeach()
+
+# run(<what> <command>...): its output in said
+macro(run what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE said ERROR_VARIABLE said)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${what} failed:\n${said}")
+  endif()
+endmacro()
+
+run("configuring with Eigen alone" "${CMAKE_COMMAND}" -S "${SOURCE_DIR}" -B "${TREES}/eigen_alone" -G "${GENERATOR}"
+  "-DCMAKE_CXX_COMPILER=${COMPILER}" ${hidden})
+if(NOT said MATCHES "\n-- pinnquad: not built: the tests \\(no doctest\\), the examples and programs \\(no CLI11, nlohmann_json\\), the benchmarks \\(no benchmark\\);[^\n]*\n")
+  message(FATAL_ERROR "configured without doctest, CLI11, nlohmann_json and benchmark, and no line says what is off:\n${said}")
+endif()
+run("the installation" "${CMAKE_COMMAND}" --install "${TREES}/eigen_alone" --prefix "${PREFIX}")
+run("the installation of the tree with tests" "${CMAKE_COMMAND}" --install "${BUILD_DIR}" --prefix "${TREES}/prefix")
+
+# what is asked for and can't be had is an error that names the package
+execute_process(COMMAND "${CMAKE_COMMAND}" -S "${SOURCE_DIR}" -B "${TREES}/asked" -G "${GENERATOR}"
+    "-DCMAKE_CXX_COMPILER=${COMPILER}" ${hidden} -DPINNQUAD_BUILD_BENCH=ON
+  RESULT_VARIABLE code OUTPUT_QUIET ERROR_VARIABLE said)
+string(REGEX REPLACE "[ \n]+" " " said "${said}")
+if(code EQUAL 0 OR NOT said MATCHES "need\\(s\\) benchmark , which was not found.* as root: apt-get install libbenchmark-dev")
+  message(FATAL_ERROR "PINNQUAD_BUILD_BENCH=ON without the package benchmark said:\n${said}")
 endif()
 
 file(GLOB_RECURSE installed RELATIVE "${PREFIX}" "${PREFIX}/*")
@@ -18,6 +43,10 @@ foreach(file IN LISTS installed)
     message(FATAL_ERROR "installed, but neither a header nor a package file: ${file}")
   endif()
 endforeach()
+file(GLOB_RECURSE installed_with_tests RELATIVE "${TREES}/prefix" "${TREES}/prefix/*")
+if(NOT installed_with_tests STREQUAL installed)
+  message(FATAL_ERROR "with Eigen alone other files are installed:\n${installed}\nthan with the tests:\n${installed_with_tests}")
+endif()
 foreach(file IN ITEMS include/pinnquad/version.hpp share/cmake/pinnquad/pinnquadConfig.cmake)
   if(NOT file IN_LIST installed)
     message(FATAL_ERROR "not installed: ${file}")
@@ -28,8 +57,10 @@ endforeach()
 file(GLOB package_files "${PREFIX}/share/cmake/pinnquad/*.cmake")
 foreach(file IN LISTS package_files)
   file(READ "${file}" text)
-  string(FIND "${text}" "${BUILD_DIR}" at)
-  if(at GREATER -1)
-    message(FATAL_ERROR "${file} names the build tree")
-  endif()
+  foreach(tree IN ITEMS "${BUILD_DIR}" "${TREES}")
+    string(FIND "${text}" "${tree}" at)
+    if(at GREATER -1)
+      message(FATAL_ERROR "${file} names the build tree")
+    endif()
+  endforeach()
 endforeach()

@@ -1,27 +1,16 @@
 # SPDX-License-Identifier: MIT
 #
-# Compiles SOURCE with FLAGS as firmware would and lists the stack of each function; rejects a function whose stack the
-# compiler cannot tell (alloca, arrays of run-time size) and one above LIMIT bytes.
+# Lists the stack of each function from STACK_USAGE, which g++ -fstack-usage has written beside an object; rejects a
+# function whose stack the compiler cannot tell (alloca, arrays of run-time size) and one above LIMIT bytes.
 cmake_minimum_required(VERSION 3.22)
 
-separate_arguments(flags NATIVE_COMMAND "${FLAGS}")
-get_filename_component(folder "${OBJECT}" DIRECTORY)
-get_filename_component(name "${OBJECT}" NAME_WLE)
-execute_process(
-  COMMAND "${COMPILER}" -std=c++17 ${flags} -DNDEBUG -fno-exceptions -fno-rtti -fstack-usage
-    "-I${INCLUDE_DIR}" -isystem "${EIGEN_INCLUDE_DIR}" -c "${SOURCE}" -o "${OBJECT}"
-  RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
-if(NOT code EQUAL 0)
-  message(FATAL_ERROR "${SOURCE} does not compile as flight code (${FLAGS})\n${output}")
-endif()
-
 # <file>:<line>:<column>:<function> TAB <bytes> TAB <static | dynamic | dynamic,bounded>
-file(STRINGS "${folder}/${name}.su" lines)
+file(STRINGS "${STACK_USAGE}" lines)
 set(rejected 0)
 set(entries 0)
 foreach(line IN LISTS lines)
   if(NOT line MATCHES "^[^\t]*:([^\t]*)\t([0-9]+)\t([a-z,]+)$")
-    message(FATAL_ERROR "${name}.su: not a line of -fstack-usage: ${line}")
+    message(FATAL_ERROR "${STACK_USAGE}: not a line of -fstack-usage: ${line}")
   endif()
   set(function "${CMAKE_MATCH_1}")
   set(bytes "${CMAKE_MATCH_2}")
@@ -40,8 +29,8 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 if(entries EQUAL 0)
-  message(FATAL_ERROR "${SOURCE} defines no function pinnquad_flight_...: nothing would be looked at")
+  message(FATAL_ERROR "${STACK_USAGE} has no function pinnquad_flight_...: nothing would be looked at")
 endif()
 if(rejected GREATER 0)
-  message(FATAL_ERROR "${SOURCE} (${FLAGS}) has functions whose stack is not bounded as it should be")
+  message(FATAL_ERROR "${STACK_USAGE} has functions whose stack is not bounded as it should be")
 endif()

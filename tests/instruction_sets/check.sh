@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 #
 # check.sh <what> <compiler> <include folder> <Eigen's include folder> <work folder> <flags...>
-#   mixed  one program of baseline, AVX2 and AVX-512 objects, in both link orders, run on a machine without AVX
 #   gate   every weak symbol of an object names its instruction set
+#   mixed  one program of the gate's baseline, AVX2 and AVX-512 objects, in both link orders, run on a machine without
+#          AVX; the gate goes before it in the same work folder
 #   leaks  the two above reject leaks.cpp: they can fail
 #   names  two sets of flags that let the compiler emit different instructions have two names
 #   neon   the prediction for aarch64, cross-compiled, under emulation: right numbers, no timing
@@ -84,6 +85,7 @@ case $what in
     [ -z "$shared" ] || fail "the same functions of -mavx512f -mfma and skylake-avx512: $shared"
     ;;
   gate)
+    rm -f prediction.*.o
     for_each_set prediction.cpp "$@"
     for set in baseline avx2 avx512; do
       foreign=$(foreign_symbols "prediction.$set.o" "$(space_of "-march=${machine[$set]}")") && fail "weak symbols of $set: $foreign"
@@ -91,7 +93,6 @@ case $what in
     ;;
   mixed)
     [ -n "$emulator" ] || skip "no qemu-x86_64"
-    for_each_set prediction.cpp "$@"
     compile main.cpp main.o -DWITH_OTHERS "-march=${machine[baseline]}" "$@"
     for order in "baseline avx2 avx512" "avx512 avx2 baseline"; do
       objects=""
