@@ -84,6 +84,7 @@ into() { "${@:2}" >"$1"; }
 full_disk() { (trap '' XFSZ; ulimit -f "$blocks"; "$@"); }
 full_disk_signal() { (ulimit -f "$blocks"; "$@"); }
 no_threads() { (ulimit -s 4000000 && ulimit -v 3500000; "$@"); }
+one_thread() { (ulimit -s 1500000 && ulimit -v 2800000; "$@"); }
 few_files() { (ulimit -n 4; "$@"); }
 in_surroundings() { # <NAME=value>... -- <command>
   settings=()
@@ -98,7 +99,6 @@ blocks=1
 
 whole_numbers=('' ' ' -1 +1 1.5 0x10 010 1e3 nan 99999999999999999999999 many '1 2' ٣ $'\xff' $'1\n' '1;2' "$(printf '9%.0s' {1..3000})")
 numbers=('' ' ' nan -nan inf -inf 1e999 0x10 1,5 much '0 1' ٣ $'\xff' $'0\n' -1e-9 +0.5 1e-9999x)
-# each value <function> <values>... -- <arguments before> OPTION: `OPTION value` is refused
 each_value() { # <name of the array> <command>...
   local -n values=$1
   local value
@@ -185,7 +185,7 @@ hostile_fly() {
   fresh
 
   for surroundings in closed_stdin "in_surroundings LC_ALL=garbage --" "in_surroundings LC_ALL=tr_TR.UTF-8 LANG=xx --" "in_surroundings TERM=x COLUMNS=0 --" \
-    "in_surroundings TMPDIR=/nonexistent HOME=/nonexistent --" "in_surroundings HOME= PATH=$PATH --" no_threads; do
+    "in_surroundings TMPDIR=/nonexistent HOME=/nonexistent --" "in_surroundings HOME= PATH=$PATH --" no_threads one_thread; do
     # shellcheck disable=SC2086
     accepted $surroundings "${few[@]}" --out run/f.csv
     # shellcheck disable=SC2086
@@ -261,7 +261,7 @@ hostile_train() {
     cp in/flight.csv "run/$name"
     accepted train --flight "run/$name" "${short[@]}" --out "run/out of $name"
   done
-  for surroundings in closed_stdin "in_surroundings LC_ALL=garbage --" "in_surroundings HOME=/nonexistent TMPDIR=/nonexistent --" no_threads; do
+  for surroundings in closed_stdin "in_surroundings LC_ALL=garbage --" "in_surroundings HOME=/nonexistent TMPDIR=/nonexistent --" no_threads one_thread; do
     # shellcheck disable=SC2086
     accepted $surroundings "${one[@]}" --out run/o
   done
