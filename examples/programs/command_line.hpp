@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
@@ -13,7 +12,6 @@
 #include <type_traits>
 
 #include "console.hpp"
-#include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/version.hpp"
 
 namespace programs {
@@ -43,8 +41,8 @@ template <class Value, class Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, Value& value, Number least, Number most,
                         const std::string& description) {
   const auto text_of = [](Number number) {
-    if constexpr (std::is_integral_v<Number>) return std::to_string(number);
-    if constexpr (!std::is_integral_v<Number>) return pinnquad::detail::number_text(number);
+    char text[32];
+    return std::string(text, std::to_chars(text, text + sizeof text, number).ptr);
   };
   const std::string kind = std::is_integral_v<Number> ? "a whole number" : "a number";
   const std::string expected = "expected " + kind + " from " + text_of(least) + " to " + text_of(most);

@@ -8,6 +8,9 @@
 #include <system_error>
 #include <vector>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 namespace programs {
 
 /// Collects the files of a command before one of them is opened. Two paths are the same file if they lead to the same
@@ -26,6 +29,9 @@ class FileRoles {
 
   void add(const Role& role) {
     if (role.path.empty()) return;
+    if (role.written && is_standard_output(role.path)) {
+      throw std::invalid_argument(role.option + " " + role.path + " is where standard output goes");
+    }
     for (const Role& other : roles_) {
       if (!role.written && !other.written) continue;
       const Role &output = role.written ? role : other, &input = role.written ? other : role;
@@ -54,6 +60,14 @@ class FileRoles {
   static bool is_partial_of(const std::string& input, const std::string& output) {
     const std::string partial = place(output).string() + ".partial-";
     return place(input).string().compare(0, partial.size(), partial) == 0;
+  }
+
+  /// A file that the caller's shell has opened for what is printed (a terminal or a device is no file).
+  static bool is_standard_output(const std::string& path) {
+    struct stat file {};
+    struct stat stream {};
+    return ::stat(path.c_str(), &file) == 0 && ::fstat(STDOUT_FILENO, &stream) == 0 && S_ISREG(stream.st_mode) &&
+           file.st_dev == stream.st_dev && file.st_ino == stream.st_ino;
   }
 
   std::vector<Role> roles_;

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Flies an exported model with nothing of the trainer: this file includes the flight headers and the exported one.
+// Flies an exported model with nothing of the trainer: the flight headers, the exported one, and a program's edge.
 //   1. self test   2. replay of the test flight against what the trainer predicted   3. closed loop in the simulator
-#include <CLI/CLI.hpp>
-
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
+#include "console.hpp"
 #include "model.hpp"
+#include "pinnquad/data/regular_file.hpp"
 #include "pinnquad/flight.hpp"
 
 namespace {
@@ -22,8 +24,6 @@ using namespace pinnquad;
 using Model = TrainedQuadModel;
 using Scalar = Model::Scalar;
 
-constexpr int exit_failed = 1;
-constexpr int exit_bad_input = 2;
 constexpr double agreement_tolerance = 1e-6;  // float rounding of another order of summation, commands in 0..1
 constexpr double fallback_limit = 0.05;       // more, and it is not the network that flies
 
@@ -39,24 +39,24 @@ struct ReplayRow {
   std::array<double, rotor_count> flown{};
 };
 
-/// Reads the replay file. An empty result comes with one line on stderr.
+/// Reads the replay file. Throws InputError, one line.
 std::vector<ReplayRow> read_replay(const std::string& path) {
+  detail::require_regular_file(path);
   std::ifstream file(path);
+  if (!file) throw InputError(path, 0, 0, "a readable file", "none");
   std::string magic;
   int version = 0, columns = 0;
   std::size_t rows = 0;
   file >> magic >> version >> rows >> columns;
   if (!file || magic != "pinnquad-replay" || version != 1 || columns != 24 || rows == 0) {
-    std::fprintf(stderr, "fly_export: %s:1: expected 'pinnquad-replay 1 <rows> 24'\n", path.c_str());
-    return {};
+    throw InputError(path, 1, 0, "'pinnquad-replay 1 <rows> 24'", "something else");
   }
   std::vector<ReplayRow> result;
   for (std::size_t row = 0; row < rows; ++row) {
     std::array<double, 24> v{};
     for (std::size_t i = 0; i < v.size(); ++i) {
       if (!(file >> v[i])) {
-        std::fprintf(stderr, "fly_export: %s:%zu:%zu: expected a number\n", path.c_str(), row + 2, i + 1);
-        return {};
+        throw InputError(path, row + 2, i + 1, "a number", file.eof() ? "the end of the file" : "something else");
       }
     }
     ReplayRow r;
@@ -190,52 +190,49 @@ int fly_model(const Flown& model, const std::vector<ReplayRow>& rows) {
   const InverseDynamics<Flown> inverse(model);
   const Status tested = self_test(inverse);
   std::printf("  self test    %zu golden vectors: %s\n", model.golden_features.size(), to_string(tested));
-  if (tested != Status::ok) return exit_failed;
+  if (tested != Status::ok) return programs::exit_failed;
   const bool agrees = replay(inverse, rows);
   std::printf("  speed        %.0f ns per predict(), checks and features included\n",
               nanoseconds_per_prediction(inverse, rows));
   const bool flew = closed_loop(model);
-  if (!agrees || !flew) std::fprintf(stderr, "fly_export: the export does not fly as it should\n");
-  return agrees && flew ? 0 : exit_failed;
+  if (!agrees || !flew) programs::complain("fly_export", "the export does not fly as it should");
+  return agrees && flew ? 0 : programs::exit_failed;
 }
 
 /// The same for the weights of a block that a later training has written for this header.
 int fly_block(const std::string& path, const std::vector<ReplayRow>& rows) {
+  detail::require_regular_file(path);
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> block{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   ModelView<Model> view;
   const Status opened = ModelView<Model>::open(block.data(), block.size(), view);
   if (!file || opened != Status::ok) {
-    std::fprintf(stderr, "fly_export: %s: %s\n", path.c_str(), file ? to_string(opened) : "no such readable file");
-    return exit_bad_input;
+    programs::complain("fly_export", path + ": " + (file ? to_string(opened) : "no such readable file"));
+    return programs::exit_bad_input;
   }
   std::printf("  block        %s, %zu bytes, trained on %u rows\n", path.c_str(), block.size(), view.training_rows);
   static LoadedModel<Model> loaded;
-  if (loaded.load(view) != Status::ok) return exit_failed;
+  if (loaded.load(view) != Status::ok) return programs::exit_failed;
   return fly_model(loaded, rows);
+}
+
+int run(int argument_count, char** arguments) {
+  std::string path, block;
+  CLI::App app{"Flies an exported model: self test, replay of its test flight, closed loop.", "fly_export"};
+  app.footer("Exit codes: 0; 1 the export does not fly as it should; 2 bad input or a file that can't be read.");
+  programs::add_path(app, "--replay", path, "FILE", "the test flight and the trainer's predictions, written by train")
+      ->required();
+  programs::add_path(app, "--block", block, "FILE",
+                     "fly the weights of this model block, written by train, instead of the header's");
+  if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
+  const std::vector<ReplayRow> rows = read_replay(path);
+  std::printf("  model        %s, %d parameters in %zu bytes, trained on %s (%d rows)\n", Model::name,
+              Model::Network::parameter_count, sizeof Model::parameters, Model::training_data, Model::training_rows);
+  return block.empty() ? fly_model(Model{}, rows) : fly_block(block, rows);
 }
 
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  std::string path, block;
-  CLI::App app{"Flies an exported model: self test, replay of its test flight, closed loop.", "fly_export"};
-  app.add_option("--replay", path, "the test flight and the trainer's predictions, written by train")
-      ->type_name("FILE")
-      ->required();
-  app.add_option("--block", block, "fly the weights of this model block, written by train, instead of the header's")
-      ->type_name("FILE");
-  try {
-    app.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    std::fprintf(stderr, "fly_export: %s\n", error.what());
-    return exit_bad_input;
-  }
-  const std::vector<ReplayRow> rows = read_replay(path);
-  if (rows.empty()) return exit_bad_input;
-
-  std::printf("  model        %s, %d parameters in %zu bytes, trained on %s (%d rows)\n", Model::name,
-              Model::Network::parameter_count, sizeof Model::parameters, Model::training_data, Model::training_rows);
-  return block.empty() ? fly_model(Model{}, rows) : fly_block(block, rows);
+  return programs::run_program("fly_export", [&] { return run(argument_count, arguments); });
 }

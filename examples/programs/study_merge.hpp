@@ -45,20 +45,19 @@ struct Part {
   std::string path;
   nlohmann::json configuration;
   StoredRows stored;
+  std::map<RowId, int> own;  ///< the trainings of its study and their epochs
 };
 
 inline Part read_part(const std::string& path) {
   Part part;
   part.path = path;
   part.configuration = read_configuration(path + "/study.json");
-  std::map<RowId, int> own;
   try {
-    for (const auto& [id, epochs] : expected_rows(part.configuration)) own[id] = epochs;
+    for (const auto& [id, epochs] : expected_rows(part.configuration)) part.own[id] = epochs;
   } catch (const nlohmann::json::exception&) {
     throw pinnquad::InputError(path + "/study.json", 0, 0, "the settings of a study", "something else");
   }
   part.stored = read_rows(path + "/rows.csv");
-  require_own_rows(path + "/rows.csv", part.stored, own, part.configuration.value("weights", "") == weights_name(true));
   if (part.stored.broken > 0) {
     programs::complain("paper_study",
                        path + "/rows.csv: " + std::to_string(part.stored.broken) + " not whole; left out");
@@ -111,6 +110,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
     if (!differs.empty()) {
       throw std::invalid_argument("merge: " + path + " is of another study than " + paths.front() + ": " + differs);
     }
+    const detail::Part& part = parts.back();
+    require_own_rows(path + "/rows.csv", part.stored, part.own, part.configuration.value("weights", "") == "best");
   }
   std::map<RowId, std::string> rows;
   for (const detail::Part& part : parts) {

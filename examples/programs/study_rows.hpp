@@ -157,8 +157,7 @@ inline void require_own_rows(const std::string& path, const StoredRows& stored, 
     } else {
       continue;
     }
-    throw std::invalid_argument(path + ": a row of another study: " + to_string(id) + ": " + differs +
-                                "; give another --out");
+    throw std::invalid_argument(path + ": a row of another study: " + to_string(id) + ": " + differs);
   }
 }
 

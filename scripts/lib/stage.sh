@@ -3,11 +3,12 @@
 #
 # How a script speaks: errors in one line, stages with their time. Sourced, never run.
 
-# die <exit code> <message>: one line on stderr, then the end.
+# die <exit code> <message>: one line on stderr, whatever a user's text in it holds, then the end.
 die() {
-  local code=$1
+  local code=$1 message
   shift
-  echo "${0##*/}: $*" >&2
+  message=$*
+  echo "${0##*/}: ${message//[[:cntrl:]]/?}" >&2
   exit "$code"
 }
 

@@ -31,7 +31,7 @@ cat flown.txt
 grep -q "self test .*: ok" flown.txt || fail "the self test of the export failed"
 grep -q ": agrees" flown.txt || fail "the export does not agree with the trainer"
 grep -q "weights zeroed" flown.txt || fail "no closed loop was flown"
-expect_line 2 "flight.csv:1: expected" fly_export/fly_export --replay flight.csv
+expect_line 2 "flight.csv:1: expected 'pinnquad-replay 1 <rows> 24'" fly_export/fly_export --replay flight.csv
 head -c 5000 a/replay.txt >truncated.txt
 expect_line 2 "truncated.txt:[0-9]+:[0-9]+: expected a number" fly_export/fly_export --replay truncated.txt
 
@@ -49,3 +49,7 @@ refused() { expect_line 2 "$2: $1" fly_export/fly_export --replay c/replay.txt -
 refused "model block truncated or misaligned" cut.block
 refused "model block of another format or shape" flight.csv
 refused "no such readable file" none.block
+
+# hostile invocations of that program
+bash "$(dirname "$0")/hostile.sh" "$fly" "$train" "$source_dir" "$work/hostile" "$compiler" "$compiler_flags" "$study" \
+  "$work/fly_export/fly_export" "$work/c/replay.txt" "$work/c/model.block"

@@ -87,6 +87,12 @@ same whole merged
 "$study" "${options[@]}" --out merged >resumed.txt # a merged folder is a study like any other
 grep -q ", $trainings of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
 
+mkdir -p linked/series
+ln -s ../part1/rows.csv linked/rows.csv
+cp part1/rows.csv before.csv
+expect_line 2 'part1/rows.csv and --out linked/rows.csv are the same file' "$study" merge part1 part2 part3 --out linked
+cmp before.csv part1/rows.csv || fail "a merge lost the rows of a part"
+
 # rows that are not whole: that training is run again
 broken() { # <awk or head command>...: makes rows.csv of the copy
   rm -rf broken

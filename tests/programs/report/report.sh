@@ -129,4 +129,22 @@ mkdir plain/claims.csv # the last of the four can't be written: none is
 expect_line 2 'cannot write plain/claims\.csv: it is a folder' "$driver" report plain
 [ ! -e plain/report.html ] || fail "some of the files were written, others not"
 [ -z "$(find plain -name '*.partial*')" ] || fail "a half-written file was left behind"
+# a disk that is full for one of the four
+one_full() { # in a name space of its own: small/ is a disk of two pages
+  mount -t tmpfs -o size=8k tmpfs small && head -c 4096 /dev/zero >small/filled && : >small/claims.csv
+  head -c 4096 /dev/zero >small/filled_too 2>/dev/null
+  exec "$driver" report plain
+}
+export -f one_full
+export driver
+rm -rf plain/claims.csv
+mkdir small
+ln -s ../small/claims.csv plain/claims.csv
+if unshare -rm mount -t tmpfs tmpfs small 2>/dev/null; then
+  expect_line 2 'cannot write plain/claims\.csv: No space left on device' unshare -rm bash -c one_full
+  [ ! -e plain/report.html ] || fail "some of the files were written, others not"
+  [ -z "$(find plain -name '*.partial*')" ] || fail "a half-written file was left behind"
+else
+  echo "SKIPPED: a full disk: no name space to mount one in"
+fi
 echo "report: all checks passed"
