@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -127,6 +128,16 @@ inline std::vector<double> over_seeds(const std::vector<Result>& results, const 
     if (result.model == model) values.push_back(figure.of(result.test, figure.index));
   }
   return values;
+}
+
+/// The best result of a model by its validation error, the test block has no say; none if no error is finite.
+inline std::optional<std::size_t> best_of(const std::vector<Result>& results, const std::string& model) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results[i].model != model || !std::isfinite(results[i].validation_error)) continue;
+    if (!best || results[i].validation_error < results[*best].validation_error) best = i;
+  }
+  return best;
 }
 
 /// "12.34 +- 0.56", or without deviation for a single value.

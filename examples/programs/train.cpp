@@ -96,16 +96,6 @@ void warn_of_still_features(const Flight& flight, const IndexRange& training) {
                names.c_str());
 }
 
-/// The best of a kind by its validation error, the test block has no say; none if no error is finite.
-std::optional<std::size_t> best_of(const std::vector<programs::Result>& results, const std::string& kind) {
-  std::optional<std::size_t> best;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (results[i].model != kind || !std::isfinite(results[i].validation_error)) continue;
-    if (!best || results[i].validation_error < results[*best].validation_error) best = i;
-  }
-  return best;
-}
-
 /// The linearized model and every network on the test rows; predictions in the order of the results.
 template <class Context, class Model>
 std::vector<programs::Result> judge_all(const Flight& flight, const DatasetSplit& split,
@@ -237,7 +227,8 @@ int train_judge_export(const Options& options, const Flight& flight) {
 
   const std::string vanilla = programs::kind_name(programs::Kind::vanilla);
   const std::string informed = programs::kind_name(programs::Kind::physics_informed);
-  const std::optional<std::size_t> best_vanilla = best_of(results, vanilla), best = best_of(results, informed);
+  const std::optional<std::size_t> best_vanilla = programs::best_of(results, vanilla),
+                                   best = programs::best_of(results, informed);
   Verdict verdict;
   nlohmann::json verdict_row;
   if (best) {

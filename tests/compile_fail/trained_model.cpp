@@ -16,5 +16,5 @@ using Net = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<4>>;
 
 int main() {
   const pinnquad::TrainedModel<Net, pinnquad::Context<pinnquad::PaperFeatures, pinnquad::PaperQuadrotor>> model;
-  return model.predict({})[0] > 1.0F ? 1 : 0;
+  return model.predict(pinnquad::Sample{})[0] > 1.0F ? 1 : 0;
 }

@@ -270,7 +270,7 @@ TEST_CASE("names from outside stay inside their quotes, whatever they hold") {
     from.training_data = name;
     from.loss = name;
     const std::string header = written(some_model(1), {Model::FeatureVector{}}, from);
-    CAPTURE(name);
+    CAPTURE(from.training_data);
     CHECK(header.find(" training_data = \"" + literal + "\";\n") != std::string::npos);
     CHECK(header.find(" loss = \"" + literal + "\";\n") != std::string::npos);
     CHECK(header.find("??") == std::string::npos);  // no trigraph

@@ -39,29 +39,41 @@ inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const st
 }  // namespace detail
 
 /// Tries every choice of angles in degrees with rates in rad/s and in deg/s: the share of the rates' squares that the turning
-/// of the attitude leaves unexplained. Degrees are found only where radians explain nothing (above 0.8) and degrees nearly
-/// all (below 0.25): a flight that hardly turns, noise and steps above half a second decide nothing.
+/// of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to row. Degrees are
+/// found only where radians explain next to nothing (0.8 is left or more) and degrees more than half: a flight that hardly
+/// turns, noise and gaps in time decide nothing.
 inline DegreesFound find_degrees_by_motion(const Flight& flight) {
-  constexpr double longest_step_s = 0.5, largest = 1e4;  // beyond is no angle and no rate, in whatever unit
-  constexpr double unexplained = 0.8, explained = 0.25;
-  constexpr std::size_t enough_rows = 20000;
-  constexpr double smallest_rates = 1e-6;  // sum of squares per row
+  constexpr double step_s = 0.2, longest_step_s = 0.5,
+                   largest = 1e4;  // beyond is no angle and no rate, whatever the unit
+  constexpr double unexplained = 0.8, explained = 0.5;
+  constexpr double smallest_rates = 1e-6;  // mean square
   constexpr std::size_t choices = 8;
   std::array<std::array<double, 2>, choices> residual{};  // [angles in degrees, a bit each][rates in degrees]
-  double rates = 0, rows = 0;
-  const std::size_t stride = flight.size() / enough_rows + 1;
-  for (std::size_t row = 0; row + 1 < flight.size(); row += stride) {
-    const Sample& a = flight[row];
-    const Sample& b = flight[row + 1];
-    const double dt_s = b.time_s - a.time_s;
-    const Vector3<double> rate = (a.body_rates_rad_s + b.body_rates_rad_s) / 2;
+  double rates = 0, steps = 0;
+  for (std::size_t first = 0, last = 0; first < flight.size(); first = last) {
+    // rates by the trapezium rule from row to row, the attitude by its ends
+    Vector3<double> turned = Vector3<double>::Zero();
+    bool usable = true;
+    const double begin_s = flight[first].time_s;
+    for (last = first; usable && last + 1 < flight.size() && flight[last].time_s - begin_s < step_s; ++last) {
+      const Sample& a = flight[last];
+      const Sample& b = flight[last + 1];
+      const double dt_s = b.time_s - a.time_s;
+      turned += (a.body_rates_rad_s + b.body_rates_rad_s) * (dt_s / 2);
+      usable = dt_s > 0 && b.time_s - begin_s <= longest_step_s;
+    }
+    if (last == first) break;
+    const double dt_s = flight[last].time_s - begin_s;
+    const Vector3<double> rate = turned / dt_s;
+    const Sample& a = flight[first];
+    const Sample& b = flight[last];
     const std::array<double, 3> begin = {a.roll_rad, a.pitch_rad, a.yaw_rad},
                                 end = {b.roll_rad, b.pitch_rad, b.yaw_rad};
-    bool usable = dt_s > 0 && dt_s <= longest_step_s && rate.norm() <= largest;
+    usable = usable && rate.norm() <= largest;
     for (std::size_t i = 0; i < 3; ++i) usable = usable && std::abs(begin[i]) <= largest && std::abs(end[i]) <= largest;
     if (!usable) continue;
     rates += rate.squaredNorm();
-    rows += 1;
+    steps += 1;
     for (std::size_t choice = 0; choice < choices; ++choice) {
       std::array<double, 3> from = begin, to = end;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -75,7 +87,7 @@ inline DegreesFound find_degrees_by_motion(const Flight& flight) {
     }
   }
   DegreesFound found;
-  if (!(rates > smallest_rates * rows) || !(residual[0][0] > unexplained * rates)) return found;
+  if (!(rates > smallest_rates * steps) || !(residual[0][0] > unexplained * rates)) return found;
   std::size_t best = 0, best_rates = 0;
   for (std::size_t choice = 0; choice < choices; ++choice) {
     for (std::size_t unit = 0; unit < 2; ++unit) {

@@ -28,14 +28,14 @@ struct ColumnPlausibility {
   const char* unit;
   double lowest;
   double highest;
-  double
-      smallest_scale;  ///< a robust spread below this counts as this much: of a column that hardly varies; 0: not judged
+  /// A robust spread below this counts as this much, for a column that hardly varies. 0: no outliers are sought.
+  double smallest_scale;
 };
 
 /// Per column, in the order of `sample_field_names`. Angles may be unwrapped. Commands are 0 to 1, with a float's
 /// rounding to spare.
-inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plausibility = {
-    {// clang-format off
+// clang-format off
+inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plausibility = {{
     {"s", -1e12, 1e12, 0},
     {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1},
     {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20},
@@ -47,8 +47,8 @@ inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plaus
 // clang-format on
 
 /// A cell further than this many robust spreads from its column's median, both of whose neighbours in time are not half as
-/// far, is no measurement: what moves is there for more than one row. The flights that the paper's pilots fly and those of an
-/// independent simulator stay below 5, real logs below 15. An angle that wraps round stays below too.
+/// far, is no measurement: what moves is there for more than one row. The flights of the paper's pilots, those of an
+/// independent simulator and real logs stay below 8, an angle that wraps round below 26.
 inline constexpr double most_robust_spreads = 30;
 
 /// The first thing that can't be, or what is wrong with a whole column.

@@ -55,8 +55,7 @@ struct TrainedModel {
 inline constexpr double negligible_weight = 1e-20;
 
 /// Joins a network with the scalers of its context and the envelope of its training rows: their range, wider by
-/// ColumnStatistics::margin(). Batch norm is folded away: what is
-/// judged and exported is the network that flies.
+/// ColumnStatistics::margin(). Batch norm is folded away: what is judged and exported is the network that flies.
 template <class NetworkType, class ContextType>
 TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
                                                                   const ContextType& context, const Flight& flight,
