@@ -39,6 +39,18 @@ struct Gap {
   }
 };
 
+/// Its third row is no number.
+struct Blind {
+  int rows = 0;
+  void hold(const Commands<double>&, double) {}
+  template <class... Effects>
+  Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&, const Commands<double>&) {
+    Sample sample;
+    if (++rows == 3) sample.angular_acceleration_rad_s2[1] = std::numeric_limits<double>::quiet_NaN();
+    return sample;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a flight in portions is the flight in one") {
@@ -174,16 +186,6 @@ TEST_CASE("what ends a flight ends it for good, with time and state") {
 }
 
 TEST_CASE("a row that is no number ends the flight and is not kept") {
-  struct Blind {
-    int rows = 0;
-    void hold(const Commands<double>&, double) {}
-    template <class... Effects>
-    Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&, const Commands<double>&) {
-      Sample sample;
-      if (++rows == 3) sample.angular_acceleration_rad_s2[1] = std::numeric_limits<double>::quiet_NaN();
-      return sample;
-    }
-  };
   Simulator<Vehicle, SteadyPilot, Blind> simulator(vehicle(), SteadyPilot{});
   CHECK_FALSE(simulator.advance(1));
   CHECK(simulator.status() == Status::output_not_finite);

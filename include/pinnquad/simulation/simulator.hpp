@@ -210,12 +210,12 @@ class Simulator {
       end_ = FlightEnd::ground;
       return;
     }
-    const Sample row = recorder_(quadrotor, vehicle_, commands_);
-    if (!all_finite(to_values(row))) {
+    const Sample sample = recorder_(quadrotor, vehicle_, commands_);
+    if (!all_finite(to_values(sample))) {
       decline(Status::output_not_finite);
       return;
     }
-    recording_.push_back(row);
+    recording_.push_back(sample);
   }
 
   template <class Actual>
