@@ -12,6 +12,8 @@
 // CASE SURROUNDINGS_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
 // CASE WRENCH_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
 // CASE BOUND_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
+// CASE WRENCH_IS_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.. or wrench_on.. can.t be called as the contract says
+// CASE SURROUNDINGS_ARE_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.. or wrench_on.. can.t be called
 // CASE GROUND_EFFECT_WITH_A_POLE: pinnquad: an effect does not hold for this airframe
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
@@ -34,7 +36,11 @@ struct ForceOnly {
 /// Drag as the rotors turn, and a wind; each case leaves something out.
 struct Whole {
   template <class Scalar>
+#if defined(SURROUNDINGS_ARE_PASSED_OVER)
+  void surroundings(pinnquad::Surroundings<Scalar>&, Scalar) const
+#else
   void surroundings(pinnquad::Surroundings<Scalar>&) const
+#endif
 #if !defined(SURROUNDINGS_MAY_THROW)
       noexcept
 #endif
@@ -49,7 +55,11 @@ struct Whole {
   using Condition = pinnquad::RotorCondition<Scalar>;
 #endif
   template <class Scalar>
+#if defined(WRENCH_IS_PASSED_OVER)
+  pinnquad::Wrench<Scalar> wrench(const Condition<Scalar>& condition) const
+#else
   pinnquad::Wrench<Scalar> wrench(const Condition<Scalar>& condition, const pinnquad::Airframe<Scalar>&) const
+#endif
 #if !defined(WRENCH_MAY_THROW)
       noexcept
 #endif

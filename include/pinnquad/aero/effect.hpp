@@ -134,6 +134,32 @@ template <class Effect, class Scalar>
 struct HasStatus<Effect, Scalar,
                  std::void_t<decltype(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()))>>
     : std::is_same<Status, decltype(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()))> {};
+/// Whether a class has a member of this name, whatever it is: two of one name can't be told apart.
+struct SurroundingsName {
+  void surroundings();
+};
+struct WrenchName {
+  void wrench();
+};
+struct WrenchOnName {
+  void wrench_on();
+};
+template <class Effect, class Name>
+struct Joined : Effect, Name {};
+template <class Effect, class = void>
+struct NamesSurroundings : std::true_type {};
+template <class Effect>
+struct NamesSurroundings<Effect, std::void_t<decltype(&Joined<Effect, SurroundingsName>::surroundings)>>
+    : std::false_type {};
+template <class Effect, class = void>
+struct NamesWrench : std::true_type {};
+template <class Effect>
+struct NamesWrench<Effect, std::void_t<decltype(&Joined<Effect, WrenchName>::wrench)>> : std::false_type {};
+template <class Effect, class = void>
+struct NamesWrenchOn : std::true_type {};
+template <class Effect>
+struct NamesWrenchOn<Effect, std::void_t<decltype(&Joined<Effect, WrenchOnName>::wrench_on)>> : std::false_type {};
+
 template <class Effect, class = void>
 struct Variation : std::integral_constant<VariesWith, VariesWith::place_and_time> {};
 template <class Effect>
@@ -160,6 +186,26 @@ inline constexpr bool makes_wrench = detail::HasWrench<Effect, RotorCondition<do
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
 inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<Effect>;
+
+/// An effect that is affine on each of two branches only also has
+///   template <class Scalar>
+///   Wrench<Scalar> wrench_on(ThrustBranch, const RotorCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
+/// its wrench as if the condition lay on that branch.
+template <class Effect>
+inline constexpr bool has_thrust_branches = detail::HasBranches<Effect>::value;
+
+/// False where the effect has a function of the contract's name that can't be called as the contract says, or returns
+/// something else: it would be passed over in silence.
+template <class Effect>
+constexpr bool is_whole_effect() noexcept {
+  if constexpr (std::is_class_v<Effect> && !std::is_final_v<Effect>) {
+    return changes_surroundings<Effect> == detail::NamesSurroundings<Effect>::value &&
+           makes_wrench<Effect> == detail::NamesWrench<Effect>::value &&
+           has_thrust_branches<Effect> == detail::NamesWrenchOn<Effect>::value;
+  } else {
+    return true;
+  }
+}
 
 /// True if each of the effect's functions is noexcept: it runs in flight.
 template <class Effect>
@@ -198,13 +244,6 @@ constexpr Status effect_status(const Effect& effect, const Airframe<Scalar>& air
 template <class Effect>
 inline constexpr bool uses_rotor_wrench =
     makes_wrench<Effect> && !detail::HasWrench<Effect, AeroCondition<double>>::value;
-
-/// An effect that is affine on each of two branches only also has
-///   template <class Scalar>
-///   Wrench<Scalar> wrench_on(ThrustBranch, const RotorCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
-/// its wrench as if the condition lay on that branch.
-template <class Effect>
-inline constexpr bool has_thrust_branches = detail::HasBranches<Effect>::value;
 
 /// `static constexpr VariesWith varies_with = VariesWith::motion;` lets an inverse go without place and time. An effect that
 /// says nothing is taken to depend on both.

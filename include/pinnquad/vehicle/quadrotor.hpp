@@ -49,6 +49,10 @@ class Quadrotor {
   static_assert(
       (is_effect<Effects> && ...),
       "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
+  static_assert(
+      (is_whole_effect<Effects>() && ...),
+      "pinnquad: an effect's surroundings(), wrench() or wrench_on() can't be called as the contract says, or "
+      "returns something else: it would be passed over (aero/effect.hpp)");
   static_assert((is_noexcept_effect<Effects> && ...),
                 "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on() and bound() must be noexcept "
                 "(aero/effect.hpp)");
