@@ -61,8 +61,8 @@ struct D3 {
   using Features = pinnquad::PaperFeatures;
   static constexpr pinnquad::SplitShares shares{};
 };
-/// NOTES #16, Fig. 7: the first 20 % of D1 train, the last 40 % test; what lies between is judged as validation, and
-/// chooses nothing.
+/// docs/paper.md, deviation 16, Fig. 7: the first 20 % of D1 train, the last 40 % test; what lies between is judged as
+/// validation, and chooses nothing.
 struct D1Test40 : D1 {
   static constexpr const char* name = "D1, 20 % / 40 %";
   static constexpr bool chooses_weights = false;

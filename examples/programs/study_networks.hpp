@@ -25,7 +25,7 @@ struct NetworkOf<Features, With> {
 };
 }  // namespace detail
 
-/// Ten hidden layers of 25 ReLU. Batch norm stands between Dense and ReLU (NOTES #15).
+/// Ten hidden layers of 25 ReLU. Batch norm stands between Dense and ReLU (docs/paper.md, deviation 15).
 template <class Features, class BatchNormChoice>
 using PaperNetwork = typename detail::NetworkOf<Features, BatchNormChoice>::type;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The claims of the paper's Discussions 1-5 as data: what is claimed, by which rule it is judged, on which comparisons.
-// A verdict is computed from the rows; the two suspect entries of Table 3 (NOTES #19) have no part in it.
+// A verdict is computed from the rows; the two suspect entries of Table 3 (docs/paper.md, deviation 19) have no part in it.
 #pragma once
 
 #include <array>

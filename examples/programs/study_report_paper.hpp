@@ -26,7 +26,7 @@ inline constexpr std::array<Measure, 4> table3_measures = {{{"mae", "mean absolu
 
 enum class PhysicsTerm { none, constant, annealed };
 
-/// A line of Table 2. NOTES #16: models 7-10 are printed alike; the caption of Fig. 7 tells them apart.
+/// A line of Table 2. docs/paper.md, deviation 16: models 7-10 are printed alike; the caption of Fig. 7 tells them apart.
 struct PaperModel {
   int id;
   const char* network;
@@ -93,8 +93,8 @@ inline const PaperEntry& paper_entry(int model, std::size_t measure) {
   return table3[static_cast<std::size_t>(model - 1)][measure];
 }
 
-/// NOTES #19: a leading digit may be lost in two angles in pitch, 1.706 of model 3 and 1.171 of model 10. They are
-/// marked, and no claim is judged by them.
+/// docs/paper.md, deviation 19: a leading digit may be lost in two angles in pitch, 1.706 of model 3 and 1.171 of model
+/// 10. They are marked, and no claim is judged by them.
 constexpr bool suspect_entry(int model, std::size_t measure) { return measure == 2 && (model == 3 || model == 10); }
 
 /// Which model is compared with which: candidate against baseline, on the same seeds.

@@ -142,7 +142,8 @@ struct Study {
 
   bool has(int model) const { return first.count(model) > 0; }
 
-  /// Final weights for the reduced sets (NOTES #16: two of them leave no validation data), the study's choice elsewhere.
+  /// Final weights for the reduced sets (docs/paper.md, deviation 16: two of them leave no validation data), the
+  /// study's choice elsewhere.
   std::string weights_of(int model, const StudyFlight& flight, const std::string& choice) const {
     const std::string wanted = model >= 7 && model <= 10 ? "final" : choice;
     const std::string other = wanted == "final" ? "best" : "final";

@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
+#include "pinnquad/core/finite.hpp"
 #include "support/plain_dynamics.hpp"
 #include "support/tolerances.hpp"
 
@@ -65,6 +68,36 @@ TEST_CASE_TEMPLATE("the effect sets the density of its altitude and nothing else
   CHECK(air.altitude_m == Scalar(1000));
   static_assert(pinnquad::changes_surroundings<pinnquad::StandardAtmosphere>);
   static_assert(!pinnquad::makes_wrench<pinnquad::StandardAtmosphere>);
+}
+
+TEST_CASE_TEMPLATE("outside the standard's troposphere: out_of_range, and a density that stays that of the nearer end",
+                   Scalar, float, double) {
+  const Scalar infinity = std::numeric_limits<Scalar>::infinity();
+  const Scalar top = standard_atmosphere_density_kg_m3(Scalar(11000)),
+               bottom = standard_atmosphere_density_kg_m3(Scalar(-5000));
+  CHECK(static_cast<double>(top) == doctest::Approx(0.36480).epsilon(1e-4));    // Table I
+  CHECK(static_cast<double>(bottom) == doctest::Approx(1.9311).epsilon(1e-4));  // Table I
+  for (const Scalar altitude_m : {Scalar(11001), Scalar(44000), Scalar(45000), Scalar(1e6), Scalar(1e30), infinity}) {
+    pinnquad::Surroundings<Scalar> air;
+    air.altitude_m = altitude_m;
+    pinnquad::StandardAtmosphere{}.surroundings(air);
+    CHECK(air.status == pinnquad::Status::out_of_range);
+    CHECK(air.air_density_kg_m3 == top);
+    air.altitude_m = -altitude_m;
+    pinnquad::StandardAtmosphere{}.surroundings(air);
+    CHECK(air.air_density_kg_m3 == bottom);
+  }
+  pinnquad::Surroundings<Scalar> air;
+  air.altitude_m = std::numeric_limits<Scalar>::quiet_NaN();
+  pinnquad::StandardAtmosphere{}.surroundings(air);
+  CHECK(air.status == pinnquad::Status::out_of_range);
+  CHECK(!pinnquad::is_finite(air.air_density_kg_m3));
+  for (const int altitude : {-5000, 0, 11000}) {
+    pinnquad::Surroundings<Scalar> fair;
+    fair.altitude_m = Scalar(altitude);
+    pinnquad::StandardAtmosphere{}.surroundings(fair);
+    CHECK(fair.status == pinnquad::Status::ok);
+  }
 }
 
 TEST_CASE_TEMPLATE("without the effect the density is that of sea level", Scalar, float, double) {

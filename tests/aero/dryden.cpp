@@ -4,7 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -102,4 +104,30 @@ TEST_CASE("gusts add to the wind, along and across its direction; the same engin
   CHECK(air.wind_m_s[1] == 2.0 + a.gust(0, 7.0));
   CHECK(air.wind_m_s[2] == 3.0 + a.gust(2, 7.0));
   static_assert(pinnquad::changes_surroundings<DrydenTurbulence<>> && !pinnquad::makes_wrench<DrydenTurbulence<>>);
+}
+
+TEST_CASE("parameters that are no field of gusts make a vehicle's status") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto status = [](const DrydenParameters& parameters, double mean_m_s, std::array<double, 2> direction) {
+    std::mt19937_64 engine(1);
+    return DrydenTurbulence<4>(engine, parameters, mean_m_s, direction).status(pinnquad::Airframe<double>{});
+  };
+  CHECK(status(unit, 5.0, {1.0, 0.0}) == pinnquad::Status::ok);
+  DrydenParameters parameters = unit;
+  parameters.intensity_m_s[1] = 0.0;  // calm across
+  CHECK(status(parameters, 0.0, {0.6, -0.8}) == pinnquad::Status::ok);
+  for (const double bad : {-1.0, nan}) {
+    parameters = unit;
+    parameters.intensity_m_s[2] = bad;
+    CHECK(status(parameters, 5.0, {1.0, 0.0}) == pinnquad::Status::out_of_range);
+    parameters = unit;
+    parameters.length_m[0] = bad;
+    CHECK(status(parameters, 5.0, {1.0, 0.0}) == pinnquad::Status::out_of_range);
+  }
+  parameters.length_m[0] = 0.0;
+  CHECK(status(parameters, 5.0, {1.0, 0.0}) == pinnquad::Status::out_of_range);
+  CHECK(status(unit, nan, {1.0, 0.0}) == pinnquad::Status::out_of_range);
+  CHECK(status(unit, 5.0, {0.0, 0.0}) == pinnquad::Status::out_of_range);
+  CHECK(status(DrydenParameters::low_altitude(-15.0, 30.0), 5.0, {1.0, 0.0}) == pinnquad::Status::out_of_range);
+  CHECK(status(DrydenParameters::low_altitude(15.0, nan), 5.0, {1.0, 0.0}) == pinnquad::Status::out_of_range);
 }

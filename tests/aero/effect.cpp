@@ -25,7 +25,6 @@ struct NotConst {
 };
 
 struct Both {
-  static constexpr bool uses_rotor_wrench = false;
   template <class Scalar>
   void surroundings(pinnquad::Surroundings<Scalar>&) const noexcept {}
   template <class Scalar>

@@ -3,17 +3,22 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "pinnquad/aero/rotor_ground_effect.hpp"
+#include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "support/plain_dynamics.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::AeroCondition;
 using pinnquad::CheesemanBennett;
 using pinnquad::Conyers;
+using pinnquad::RotorCondition;
 using pinnquad::Vector3;
 using pinnquad::Wrench;
 
@@ -54,6 +59,22 @@ TEST_CASE_TEMPLATE("Cheeseman-Bennett: closed form, limits, and 1 where it does 
   CHECK(ratio(0.1) == 1.0);
   CHECK(ratio(-1.0) == 1.0);
   CHECK(ratio(0.2501) > 100.0);  // next to the pole
+}
+
+TEST_CASE_TEMPLATE("Cheeseman-Bennett: the pole is cut at a stated ratio, from the next number above 0.25 on", Scalar,
+                   float, double) {
+  const auto ratio = [](Scalar x) { return CheesemanBennett{}.thrust_ratio(x, airframe_690<Scalar>()); };
+  const Scalar most(CheesemanBennett::most_ratio);
+  Scalar x = Scalar(0.25);
+  for (int i = 0; i < 100; ++i) {
+    x = std::nextafter(x, Scalar(1));
+    CHECK(ratio(x) == most);
+  }
+  for (const double beyond : {0.250001, 0.2501, 0.25012}) CHECK(ratio(Scalar(beyond)) == most);
+  CHECK(ratio(Scalar(0.25013)) < most);
+  CHECK(ratio(Scalar(0.2512)) > Scalar(100));  // as the reference simulator has it
+  CHECK(ratio(-std::numeric_limits<Scalar>::infinity()) == Scalar(1));
+  CHECK(ratio(std::numeric_limits<Scalar>::infinity()) == Scalar(1));
 }
 
 TEST_CASE_TEMPLATE("Conyers: published values at L = 690 mm, R = 114.3 mm", Scalar, float, double) {
@@ -97,6 +118,93 @@ TEST_CASE_TEMPLATE("Conyers holds from 0.25 to 10, ends included, and is 1 elsew
   CHECK(conyers<Scalar>(-0.5) == Scalar(1));
 }
 
+namespace {
+/// An X frame with a diagonal and a propeller radius in mm.
+template <class Scalar>
+pinnquad::Airframe<Scalar> x_frame(double diagonal_mm, double radius_mm) {
+  pinnquad::Airframe<Scalar> airframe = airframe_690<Scalar>();
+  for (auto& rotor : airframe.rotors) {
+    rotor.x_m *= Scalar(diagonal_mm / 690.0);
+    rotor.y_m *= Scalar(diagonal_mm / 690.0);
+  }
+  airframe.propeller_diameter_m = Scalar(radius_mm * 0.002);
+  return airframe;
+}
+}  // namespace
+
+TEST_CASE_TEMPLATE("Conyers: L is the diagonal, in whatever order and place the motors are", Scalar, float, double) {
+  using std::sqrt;
+  const auto root = [](Scalar square) { return sqrt(square); };
+  std::array<std::size_t, 4> order{0, 1, 2, 3};
+  pinnquad::Airframe<Scalar> wide = airframe_690<Scalar>();  // front pair wider apart than the diagonals are long
+  wide.rotors[0].x_m = wide.rotors[2].x_m = Scalar(0.05);
+  wide.rotors[1].x_m = wide.rotors[3].x_m = Scalar(-0.1);
+  wide.rotors[0].y_m = Scalar(0.2), wide.rotors[2].y_m = Scalar(-0.2);
+  wide.rotors[3].y_m = Scalar(0.08), wide.rotors[1].y_m = Scalar(-0.08);
+  do {
+    pinnquad::Airframe<Scalar> square = airframe_690<Scalar>(), other = wide;
+    for (std::size_t i = 0; i < 4; ++i) {
+      square.rotors[i] = airframe_690<Scalar>().rotors[order[i]];
+      other.rotors[i] = wide.rotors[order[i]];
+    }
+    CHECK(static_cast<double>(pinnquad::detail::motor_diagonal_m(square, root)) ==
+          doctest::Approx(0.69).epsilon(pinnquad::test::rounding<Scalar>(8)));
+    CHECK(static_cast<double>(pinnquad::detail::motor_diagonal_m(other, root)) ==
+          doctest::Approx(sqrt(0.15 * 0.15 + 0.28 * 0.28)).epsilon(pinnquad::test::rounding<Scalar>(8)));
+    CHECK(Conyers{}.thrust_ratio(Scalar(0.5), square) == conyers<Scalar>(0.5));
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST_CASE("the root while compiling is the root") {
+  for (const double value : {1e-12, 0.0025, 0.25, 0.4761, 1.0, 2.0, 1e6, 1e300}) {
+    CHECK(pinnquad::detail::compiled_root(value) == doctest::Approx(std::sqrt(value)).epsilon(1e-15));
+  }
+  static_assert(pinnquad::detail::compiled_root(0.0) == 0.0);
+}
+
+TEST_CASE_TEMPLATE("Conyers: who is refused has a pole or an implausible ratio, who is taken has none", Scalar, float,
+                   double) {
+  // every frame of a grid, by the second formula at 1,000 heights
+  int taken = 0, refused = 0;
+  for (double diagonal = 100.0; diagonal <= 1000.0; diagonal += 30.0) {
+    for (double radius = 30.0; radius <= 160.0; radius += 5.0) {
+      CAPTURE(diagonal);
+      CAPTURE(radius);
+      double least = 1.0, most = 1.0;
+      for (int i = 0; i <= 1000; ++i) {
+        const double ratio = plain::conyers(0.25 + 9.75 * i / 1000.0, diagonal, radius);
+        least = ratio < least ? ratio : least;
+        most = ratio > most ? ratio : most;
+      }
+      const auto airframe = x_frame<Scalar>(diagonal, radius);
+      const bool ok = Conyers{}.status(airframe) == pinnquad::Status::ok;
+      CHECK((ok || Conyers{}.status(airframe) == pinnquad::Status::out_of_range));
+      const double margin = 0.01;  // float's coefficients and the grids
+      if (ok) CHECK((least >= Conyers::least_ratio - margin && most <= Conyers::most_ratio + margin));
+      if (!ok) CHECK((least < Conyers::least_ratio + margin || most > Conyers::most_ratio - margin));
+      ++(ok ? taken : refused);
+    }
+  }
+  CHECK(taken > 100);
+  CHECK(refused > 100);
+}
+
+TEST_CASE_TEMPLATE("Conyers: ordinary frames, taken and refused", Scalar, float, double) {
+  const auto status = [](double diagonal, double radius) {
+    return pinnquad::ConyersRotorGroundEffect{}.status(x_frame<Scalar>(diagonal, radius));
+  };
+  CHECK(status(690.0, 114.3) == pinnquad::Status::ok);
+  CHECK(status(250.0, 63.5) == pinnquad::Status::ok);
+  CHECK(status(92.0, 23.1) == pinnquad::Status::ok);
+  CHECK(status(450.0, 127.0) == pinnquad::Status::out_of_range);
+  CHECK(status(450.0, 114.3) == pinnquad::Status::out_of_range);
+  CHECK(status(std::numeric_limits<double>::quiet_NaN(), 114.3) == pinnquad::Status::out_of_range);
+  static_assert(pinnquad::ConyersGroundEffect{}.status(pinnquad::PaperQuadrotor::value<Scalar>()) ==
+                pinnquad::Status::ok);
+  static_assert(pinnquad::ConyersGroundEffect{}.status(pinnquad::Racer5Inch::value<Scalar>()) == pinnquad::Status::ok);
+  static_assert(pinnquad::ConyersGroundEffect{}.status(pinnquad::Crazyflie::value<Scalar>()) == pinnquad::Status::ok);
+}
+
 TEST_CASE_TEMPLATE("a height that is NaN is not turned into a ratio", Scalar, float, double) {
   const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
   CHECK(std::isnan(CheesemanBennett{}.thrust_ratio(nan, airframe_690<Scalar>())));
@@ -108,7 +216,7 @@ TEST_CASE_TEMPLATE("the force: (r - 1) of the vertical part of rotors and drag, 
   const pinnquad::Airframe<Scalar> airframe = airframe_690<Scalar>();
   pinnquad::test::RandomStates random(80);
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
-    AeroCondition<Scalar> condition;
+    RotorCondition<Scalar> condition;
     condition.attitude = random.attitude<Scalar>();
     condition.height_above_ground_m = random.scalar<Scalar>(0.05, 1.0);
     condition.rotors.force_N = {Scalar(0), Scalar(0), random.scalar<Scalar>(-20.0, 0.0)};
@@ -130,7 +238,7 @@ TEST_CASE_TEMPLATE("the force: (r - 1) of the vertical part of rotors and drag, 
 
 TEST_CASE_TEMPLATE("upside down the force still acts along body -z: the absolute value of the authors", Scalar, float,
                    double) {
-  AeroCondition<Scalar> condition;
+  RotorCondition<Scalar> condition;
   condition.attitude = {Scalar(0), Scalar(1), Scalar(0), Scalar(0)};
   condition.height_above_ground_m = Scalar(0.5 * 0.1143);
   condition.rotors.force_N = {Scalar(0), Scalar(0), Scalar(-15)};
@@ -143,7 +251,7 @@ TEST_CASE_TEMPLATE("bound to an airframe the effect gives the same force, bit by
   const auto bound = pinnquad::bound_effect(pinnquad::ConyersGroundEffect{}, airframe);
   pinnquad::test::RandomStates random(81);
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
-    AeroCondition<Scalar> condition;
+    RotorCondition<Scalar> condition;
     condition.attitude = random.attitude<Scalar>();
     condition.height_above_ground_m = random.scalar<Scalar>(-0.1, 1.3);
     condition.rotors.force_N = random.vector<Scalar>(20.0);

@@ -9,15 +9,15 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::AeroCondition;
+using pinnquad::RotorCondition;
 using pinnquad::RotorDrag;
 using pinnquad::test::RandomStates;
 using pinnquad::test::rounding;
 
 namespace {
 template <class Scalar>
-AeroCondition<Scalar> condition(RandomStates& random) {
-  AeroCondition<Scalar> c;
+RotorCondition<Scalar> condition(RandomStates& random) {
+  RotorCondition<Scalar> c;
   c.air_relative_velocity_m_s = random.vector<Scalar>(8.0);
   c.body_rates_rad_s = random.vector<Scalar>(6.0);
   for (Scalar& thrust : c.rotor_thrust_N) thrust = random.scalar<Scalar>(0.0, 8.0);
@@ -29,7 +29,7 @@ TEST_CASE_TEMPLATE("each hub's force, summed about the centre of gravity in thre
   const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
   RandomStates random(120);
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
-    const AeroCondition<Scalar> c = condition<Scalar>(random);
+    const RotorCondition<Scalar> c = condition<Scalar>(random);
     const RotorDrag drag{0.031};
     double force[3] = {}, torque[3] = {};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -59,7 +59,7 @@ TEST_CASE_TEMPLATE("rotor drag takes energy, whatever the motion", Scalar, float
   const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
   RandomStates random(121);
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
-    const AeroCondition<Scalar> c = condition<Scalar>(random);
+    const RotorCondition<Scalar> c = condition<Scalar>(random);
     const auto w = RotorDrag{}.wrench(c, airframe);
     const Scalar power_W = w.force_N.dot(c.air_relative_velocity_m_s) + w.torque_N_m.dot(c.body_rates_rad_s);
     CHECK(power_W < Scalar(0));
@@ -68,7 +68,7 @@ TEST_CASE_TEMPLATE("rotor drag takes energy, whatever the motion", Scalar, float
 
 TEST_CASE("rotors that do not turn feel no rotor drag") {
   RandomStates random(122);
-  AeroCondition<double> c = condition<double>(random);
+  RotorCondition<double> c = condition<double>(random);
   c.rotor_thrust_N = {};
   const auto w = RotorDrag{}.wrench(c, pinnquad::PaperQuadrotor::value<double>());
   CHECK(w.force_N == pinnquad::Vector3<double>(0, 0, 0));

@@ -10,17 +10,17 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::AeroCondition;
 using pinnquad::CheesemanBennettRotorGroundEffect;
 using pinnquad::ConyersRotorGroundEffect;
+using pinnquad::RotorCondition;
 using pinnquad::Vector3;
 using pinnquad::test::RandomStates;
 using pinnquad::test::rounding;
 
 namespace {
 template <class Scalar>
-AeroCondition<Scalar> hovering(Scalar height_m, Scalar thrust_N) {
-  AeroCondition<Scalar> c;
+RotorCondition<Scalar> hovering(Scalar height_m, Scalar thrust_N) {
+  RotorCondition<Scalar> c;
   c.height_above_ground_m = height_m;
   c.rotor_thrust_N = {thrust_N, thrust_N, thrust_N, thrust_N};
   c.rotors.force_N[2] = Scalar(-4) * thrust_N;
@@ -89,4 +89,26 @@ TEST_CASE("bound to an airframe it gives the same wrench, bit by bit, and tells 
   static_assert(pinnquad::uses_rotor_wrench<std::decay_t<decltype(bound)>>);
   static_assert(!pinnquad::has_thrust_branches<ConyersRotorGroundEffect>);
   static_assert(pinnquad::has_thrust_branches<pinnquad::ConyersGroundEffect>);
+}
+
+TEST_CASE_TEMPLATE("tilted on the ground: hubs at, next to and under it make a finite lift, and none below Z/R 0.25",
+                   Scalar, float, double) {
+  const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  const double radius_m = static_cast<double>(airframe.propeller_diameter_m) / 2;
+  const double most_N = 4 * pinnquad::CheesemanBennett::most_ratio * 3.7;
+  for (int tilt = 0; tilt <= 90; ++tilt) {
+    for (int i = -200; i <= 400; ++i) {
+      auto c = hovering<Scalar>(Scalar(i * 1e-3 + 0.25 * radius_m), Scalar(3.7));
+      c.attitude = pinnquad::from_euler<Scalar>({Scalar(tilt * 0.0174533), Scalar(0), Scalar(0)});
+      const auto lift = CheesemanBennettRotorGroundEffect{}.wrench(c, airframe);
+      const bool finite = pinnquad::all_finite(lift.force_N) && pinnquad::all_finite(lift.torque_N_m);
+      const double force_N = static_cast<double>(-lift.force_N[2]);
+      if (!finite || force_N < 0 || force_N > most_N) FAIL_CHECK("tilt " << tilt << " height " << i << " mm");
+    }
+  }
+  auto under = hovering<Scalar>(Scalar(0.24 * radius_m), Scalar(3.7));
+  CHECK(CheesemanBennettRotorGroundEffect{}.wrench(under, airframe).force_N[2] == Scalar(0));
+  // one number above the pole at all four hubs
+  under.height_above_ground_m = std::nextafter(Scalar(0.25 * radius_m), Scalar(1));
+  CHECK(static_cast<double>(-CheesemanBennettRotorGroundEffect{}.wrench(under, airframe).force_N[2]) <= most_N);
 }

@@ -7,7 +7,16 @@
 // CASE IMPOSSIBLE_INERTIA: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
 // CASE ROTORS_IN_A_LINE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
 // CASE ALL_SPIN_ALIKE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
+// CASE READS_THE_ROTORS_WRENCH: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
+// CASE READS_THE_ROTORS_THRUSTS: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
+// CASE SURROUNDINGS_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
+// CASE WRENCH_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
+// CASE BOUND_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
+// CASE WRENCH_IS_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.. or wrench_on.. can.t be called as the contract says
+// CASE SURROUNDINGS_ARE_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.. or wrench_on.. can.t be called
+// CASE GROUND_EFFECT_WITH_A_POLE: pinnquad: an effect does not hold for this airframe
 #include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
@@ -21,6 +30,57 @@ struct ForceOnly {
   pinnquad::Vector3<Scalar> wrench(const pinnquad::AeroCondition<Scalar>&,
                                    const pinnquad::Airframe<Scalar>&) const noexcept {
     return pinnquad::Vector3<Scalar>::Zero();
+  }
+};
+
+/// Drag as the rotors turn, and a wind; each case leaves something out.
+struct Whole {
+  template <class Scalar>
+#if defined(SURROUNDINGS_ARE_PASSED_OVER)
+  void surroundings(pinnquad::Surroundings<Scalar>&, Scalar) const
+#else
+  void surroundings(pinnquad::Surroundings<Scalar>&) const
+#endif
+#if !defined(SURROUNDINGS_MAY_THROW)
+      noexcept
+#endif
+  {
+  }
+
+#if defined(READS_THE_ROTORS_WRENCH) || defined(READS_THE_ROTORS_THRUSTS)
+  template <class Scalar>
+  using Condition = pinnquad::AeroCondition<Scalar>;
+#else
+  template <class Scalar>
+  using Condition = pinnquad::RotorCondition<Scalar>;
+#endif
+  template <class Scalar>
+#if defined(WRENCH_IS_PASSED_OVER)
+  pinnquad::Wrench<Scalar> wrench(const Condition<Scalar>& condition) const
+#else
+  pinnquad::Wrench<Scalar> wrench(const Condition<Scalar>& condition, const pinnquad::Airframe<Scalar>&) const
+#endif
+#if !defined(WRENCH_MAY_THROW)
+      noexcept
+#endif
+  {
+    pinnquad::Wrench<Scalar> result;
+#if !defined(READS_THE_ROTORS_THRUSTS)
+    result.force_N = Scalar(-0.01) * condition.rotors.force_N;
+#endif
+#if !defined(READS_THE_ROTORS_WRENCH)
+    result.torque_N_m[2] = Scalar(0.01) * condition.rotor_thrust_N[0];
+#endif
+    return result;
+  }
+
+  template <class Scalar>
+  Whole bound(const pinnquad::Airframe<Scalar>&) const
+#if !defined(BOUND_MAY_THROW)
+      noexcept
+#endif
+  {
+    return *this;
   }
 };
 
@@ -40,6 +100,12 @@ struct Changed {
     for (auto& rotor : airframe.rotors) rotor.y_m = Scalar(0);
 #elif defined(ALL_SPIN_ALIKE)
     for (auto& rotor : airframe.rotors) rotor.spin = pinnquad::Spin::clockwise;
+#elif defined(GROUND_EFFECT_WITH_A_POLE)
+    for (auto& rotor : airframe.rotors) {  // a 450 mm frame on 10 inch propellers
+      rotor.x_m *= Scalar(450.0 / 690.0);
+      rotor.y_m *= Scalar(450.0 / 690.0);
+    }
+    airframe.propeller_diameter_m = Scalar(0.254);
 #else
     airframe.mass_kg = Scalar(2);
 #endif
@@ -65,6 +131,12 @@ using Vehicle = Changed;
 
 int main() {
   const pinnquad::Quadrotor<double, Effect> quadrotor(pinnquad::airframe_value<Vehicle, double>());
-  return static_cast<int>(quadrotor.status()) +
+  pinnquad::VehicleState<double> state;
+  pinnquad::Status status = pinnquad::Quadrotor<double, Whole>(quadrotor.airframe()).step(state, {}, 0.001);
+#if !defined(NOT_AN_AIRFRAME)
+  using NearGround = pinnquad::Quadrotor<double, pinnquad::ConyersGroundEffect>;
+  if (status == pinnquad::Status::ok) status = NearGround::of<Vehicle>().step(state, {}, 0.001);
+#endif
+  return static_cast<int>(quadrotor.status()) + static_cast<int>(status) +
          static_cast<int>(sizeof(Nothing) + sizeof(ForceOnly) + sizeof(Changed)) - 3;
 }

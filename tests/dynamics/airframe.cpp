@@ -123,7 +123,7 @@ TEST_CASE("Table 1 and the simulator: coefficients, limits, thrust-to-weight") {
   const double printed_digits = 1e-6;
   CHECK(reference.max_rotor_thrust_N() == doctest::Approx(4.179446).epsilon(printed_digits));
   CHECK(reference.max_rotor_torque_N_m() == doctest::Approx(0.0555622).epsilon(printed_digits));
-  CHECK(reference.thrust_to_weight() == doctest::Approx(1.1365).epsilon(1e-4));  // NOTES #7: 1.137
+  CHECK(reference.thrust_to_weight() == doctest::Approx(1.1365).epsilon(1e-4));  // docs/paper.md, deviation 7: 1.137
   CHECK(pinnquad::ReferenceQuadrotor10::value<double>().mass_kg == 1.0);
 
   const Airframe<double> paper = pinnquad::PaperQuadrotor::value<double>();

@@ -47,7 +47,7 @@ struct FeaturesWithTooFewNames : PaperFeatures {
 
 }  // namespace
 
-TEST_CASE("sixteen entries in the paper's order (NOTES #1)") {
+TEST_CASE("sixteen entries in the paper's order (docs/paper.md, deviation 1)") {
   MotionInputs<double> inputs;
   inputs.linear_acceleration_m_s2 = {1, 2, 3};
   inputs.angular_acceleration_rad_s2 = {4, 5, 6};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Algorithm 1, with the readings of NOTES #8 and #9.
+// Algorithm 1, with the readings of docs/paper.md, deviations 8 and 9.
 #include "pinnquad/loss/local_monotonicity.hpp"
 
 #include <doctest/doctest.h>
@@ -38,7 +38,7 @@ namespace {
 using Array = Eigen::ArrayXd;
 using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
 
-/// The paper and NOTES give four digits after the point.
+/// The paper and docs/paper.md give four digits after the point.
 constexpr double printed_digits = 5e-5;
 
 template <class Step>
@@ -99,11 +99,11 @@ TEST_CASE("footnote 2 of the paper") {
     CHECK(value(SignStep{}, y1, x) == 1.0);
     CHECK(value(SignStep{}, y2, x) == 0.5);
   }
-  SUBCASE("Algorithm 1's tanh, mean over N - 1 pairs (NOTES #8)") {
+  SUBCASE("Algorithm 1's tanh, mean over N - 1 pairs (docs/paper.md, deviation 8)") {
     CHECK(std::fabs(value(TanhStep{1.0}, y1, x) - 0.9991) <= printed_digits);
     CHECK(std::fabs(value(TanhStep{1.0}, y2, x) - 0.7632) <= printed_digits);
   }
-  SUBCASE("divided by N_b as printed, tanh gives neither (NOTES #8)") {
+  SUBCASE("divided by N_b as printed, tanh gives neither (docs/paper.md, deviation 8)") {
     CHECK(std::fabs(value(TanhStep{1.0}, y1, x) * 4.0 / 5.0 - 0.7992) <= printed_digits);
     CHECK(std::fabs(value(TanhStep{1.0}, y2, x) * 4.0 / 5.0 - 0.6106) <= printed_digits);
   }
@@ -175,7 +175,7 @@ TEST_CASE("the sign has no slope: it can't train") {
   CHECK(gradient.abs().maxCoeff() == 0.0);
 }
 
-TEST_CASE("the order of a batch matters: not a sum over samples (NOTES #9)") {
+TEST_CASE("the order of a batch matters: not a sum over samples (docs/paper.md, deviation 9)") {
   std::mt19937_64 engine(53);
   const auto batch = random_batch<double>(12, engine);
   auto rotated = batch;
@@ -193,7 +193,8 @@ TEST_CASE("the order of a batch matters: not a sum over samples (NOTES #9)") {
   CHECK(value(loss, context, reversed) == doctest::Approx(value(loss, context, batch)).epsilon(1e-12));
 }
 
-TEST_CASE("pairs of NOTES #9: p_dot with -u1+u2+u3-u4, q_dot with u1-u2+u3-u4, r_dot with u1+u2-u3-u4") {
+TEST_CASE(
+    "pairs of docs/paper.md, deviation 9: p_dot with -u1+u2+u3-u4, q_dot with u1-u2+u3-u4, r_dot with u1+u2-u3-u4") {
   std::mt19937_64 engine(54);
   const std::array<double, 4> roll = {-1, 1, 1, -1}, pitch = {1, -1, 1, -1}, yaw = {1, 1, -1, -1};
   for (const int size : {1, 2, 3, 17, 64}) {
@@ -208,7 +209,7 @@ TEST_CASE("pairs of NOTES #9: p_dot with -u1+u2+u3-u4, q_dot with u1-u2+u3-u4, r
       CHECK(std::fabs(value(LocalMonotonicity<Pitch>{}, context, batch) - plain(pitch, 1)) <= tolerance);
       CHECK(std::fabs(value(LocalMonotonicity<Yaw>{}, context, batch) - plain(yaw, 2)) <= tolerance);
     }
-    SUBCASE("rotor speeds count as the commands they stand for (NOTES #20)") {
+    SUBCASE("rotor speeds count as the commands they stand for (docs/paper.md, deviation 20)") {
       const auto context = flight_context<Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>>();
       const auto plain = [&](const std::array<double, 4>& signs, int axis) {
         return plain_monotonicity(signs, axis, 3.0, context, batch, [](double speed_rev_s) {

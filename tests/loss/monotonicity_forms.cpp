@@ -69,11 +69,11 @@ Series physical_series(const std::array<double, 4>& signs, int axis, const Paper
   return series;
 }
 
-constexpr double printed_digits = 5e-5;  // NOTES give four digits after the point
+constexpr double printed_digits = 5e-5;  // docs/paper.md, deviation 8, gives four digits after the point
 
 }  // namespace
 
-TEST_CASE("footnote 2: Algorithm 1 as printed gives 0.7992 and 0.6106 (NOTES #8)") {
+TEST_CASE("footnote 2: Algorithm 1 as printed gives 0.7992 and 0.6106 (docs/paper.md, deviation 8)") {
   const Array x = array({1, 2, 3, 4, 5});
   const Array y1 = array({1, -2, -3, 4, 5}), y2 = array({1, 2, 3, 1.9455, 2.5});
   const TanhStep step = LocalMonotonicity<Roll, TanhStep, Literal>{}.step;

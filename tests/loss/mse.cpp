@@ -29,7 +29,7 @@ Scalar value(const PaperBatch<Scalar>& batch) {
 
 }  // namespace
 
-TEST_CASE("mean over batch and outputs (NOTES #10)") {
+TEST_CASE("mean over batch and outputs (docs/paper.md, deviation 10)") {
   PaperBatch<double> batch;
   batch.resize(2);
   batch.features.setZero();

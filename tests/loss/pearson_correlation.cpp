@@ -41,7 +41,7 @@ double value(const Array& m, const Array& n) {
 
 }  // namespace
 
-TEST_CASE("footnote 2 of the paper: two different patterns, one correlation (NOTES #8)") {
+TEST_CASE("footnote 2 of the paper: two different patterns, one correlation (docs/paper.md, deviation 8)") {
   const Array x = array({1, 2, 3, 4, 5});
   CHECK(std::fabs(1.0 - value(array({1, -2, -3, 4, 5}), x) - 0.626099) <= 5e-7);
   CHECK(std::fabs(1.0 - value(array({1, 2, 3, 1.9455, 2.5}), x) - 0.626096) <= 5e-7);

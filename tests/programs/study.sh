@@ -35,7 +35,7 @@ for model in 1 7 9 13; do
   head -n 1 "whole/series/model$model.csv" | grep -q '^time_s,wdot_x,wdot_y,wdot_z,u1,u2,u3,u4,p1,p2,p3,p4$' ||
     fail "series of model $model"
 done
-# NOTES #16: 40 % and 80 % of 15,000 rows, 20 % of 5,000
+# docs/paper.md, deviation 16: 40 % and 80 % of 15,000 rows, 20 % of 5,000
 for block in 7:6000 9:12000 13:1000; do
   [ "$(wc -l <"whole/series/model${block%:*}.csv")" -eq $((${block#*:} + 1)) ] || fail "test rows of model $block"
 done

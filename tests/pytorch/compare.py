@@ -5,8 +5,8 @@ weight after every step.
     compare.py FOLDER mse|paper plain|batch_norm adam|adam_w_cosine
 
 The network is torch.nn's, the optimisers and the cosine are torch.optim's, the gradient is autograd's; the loss is written
-here from the paper (Algorithm 1, Eqs. (2), (5), (6), the readings of shared/paper/NOTES.md #8, #9 and #11). Exit code 1 if a
-tensor differs by more than 1e-9 of its largest entry at any step.
+here from the paper (Algorithm 1, Eqs. (2), (5), (6), with docs/paper.md, deviations 8, 9 and 11). Exit code 1 if a tensor
+differs by more than 1e-9 of its largest entry at any step.
 """
 import math
 import pathlib

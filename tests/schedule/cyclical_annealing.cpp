@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Eq. (6), with the reading of NOTES #11.
+// Eq. (6), with the reading of docs/paper.md, deviation 11.
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 
 #include <doctest/doctest.h>

@@ -148,3 +148,25 @@ TEST_CASE("the near-ground pilot: the same engine state, the same set points") {
   }
   CHECK(differs);
 }
+
+TEST_CASE("styles at their ends: no lag, stays of no time, no legs; what is asked for stays a number") {
+  NearGroundStyle style;
+  style.velocity_lag_s = style.yaw_rate_lag_s = 0;
+  style.min_hold_s = style.max_hold_s = 0;
+  for (const int legs : {0, -3, 1}) {
+    CAPTURE(legs);
+    style.max_legs = legs;
+    Pilot pilot(std::mt19937_64(8), style, ground_z_m);
+    IdealVehicle vehicle;
+    std::array<int, 5> ticks{};
+    bool finite = true;
+    for (int i = 0; i < 20000; ++i) {
+      const SetPoint<double> asked = pilot(vehicle.state, i * tick_s);
+      finite = finite && all_finite(asked.velocity_m_s) && is_finite(asked.yaw_rate_rad_s);
+      vehicle.fly(asked);
+      ++ticks[static_cast<std::size_t>(pilot.phase())];
+    }
+    CHECK(finite);
+    CHECK(ticks[static_cast<std::size_t>(NearGroundPhase::landing)] > 0);
+  }
+}

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -251,4 +252,30 @@ TEST_CASE("Fig. 2: exact rows correlate above 0.95, the two stated errors bring 
     MESSAGE("roll correlation: exact ", correlation[0], ", noisy gyro ", correlation[1], ", late commands ",
             correlation[2]);
   }
+}
+
+TEST_CASE("errors that are none refuse the flight before it begins") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto status = [](const RecorderErrors& errors) {
+    Simulator<Vehicle, SteadyPilot, Recorder> simulator(vehicle(), SteadyPilot{}, {}, Recorder(Engine(1), errors));
+    const bool flies = simulator.advance(0.1);
+    CHECK(flies == (simulator.status() == Status::ok));
+    CHECK(simulator.recording().size() == (flies ? 2 : 0));
+    return simulator.status();
+  };
+  CHECK(status({}) == Status::ok);
+  CHECK(status(noisy_gyro_errors()) == Status::ok);
+  for (const double bad : {-0.01, nan, std::numeric_limits<double>::infinity()}) {
+    CAPTURE(bad);
+    for (double RecorderErrors::*error : {&RecorderErrors::gyro_noise_rad_s, &RecorderErrors::derivative_interval_s,
+                                          &RecorderErrors::command_latency_s, &RecorderErrors::command_jitter_s,
+                                          &RecorderErrors::velocity_noise_m_s, &RecorderErrors::attitude_noise_rad}) {
+      RecorderErrors errors;
+      errors.*error = bad;
+      CHECK(status(errors) == Status::out_of_range);
+    }
+  }
+  RecorderErrors no_time_apart;
+  no_time_apart.derivative_interval_s = 0;
+  CHECK(status(no_time_apart) == Status::out_of_range);
 }

@@ -39,6 +39,18 @@ struct Gap {
   }
 };
 
+/// Its third row is no number.
+struct Blind {
+  int rows = 0;
+  void hold(const Commands<double>&, double) {}
+  template <class... Effects>
+  Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&, const Commands<double>&) {
+    Sample sample;
+    if (++rows == 3) sample.angular_acceleration_rad_s2[1] = std::numeric_limits<double>::quiet_NaN();
+    return sample;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a flight in portions is the flight in one") {
@@ -163,12 +175,81 @@ TEST_CASE("what ends a flight ends it for good, with time and state") {
     backwards.physics_step_s = -0.001;
     no_steps.steps_per_control = 0;
     no_ticks.controls_per_sample = 0;
-    for (const SimulationSettings& settings : {no_time, backwards, no_steps, no_ticks}) {
+    SimulationSettings no_number;
+    no_number.physics_step_s = std::numeric_limits<double>::quiet_NaN();
+    for (const SimulationSettings& settings : {no_time, backwards, no_steps, no_ticks, no_number}) {
       Simulator<Vehicle, SteadyPilot> simulator(vehicle(), SteadyPilot{}, settings);
       CHECK(simulator.status() == Status::out_of_range);
       CHECK_FALSE(simulator.advance(1));
     }
   }
+}
+
+TEST_CASE("a row that is no number ends the flight and is not kept") {
+  Simulator<Vehicle, SteadyPilot, Blind> simulator(vehicle(), SteadyPilot{});
+  CHECK_FALSE(simulator.advance(1));
+  CHECK(simulator.status() == Status::output_not_finite);
+  CHECK(simulator.recording().size() == 2);
+  CHECK(simulator.time_s() == doctest::Approx(0.15));
+}
+
+TEST_CASE("places that are none: refused before the flight") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto status = [](double north_m, double down_m) {
+    SimulationSettings settings;
+    settings.start_m = Vector3<double>(north_m, 0, down_m);
+    Simulator<Vehicle, SteadyPilot> simulator(vehicle(), SteadyPilot{}, settings);
+    CHECK_FALSE(simulator.tick());
+    return simulator.status();
+  };
+  CHECK(status(nan, -35) == Status::not_finite);
+  CHECK(status(0, nan) == Status::not_finite);
+  CHECK(status(0, -50e3) == Status::out_of_range);  // no air there that the standard knows
+  CHECK(status(0, 1e9) == Status::out_of_range);
+}
+
+TEST_CASE("a flight of no rows") {
+  FlightPlan plan;
+  plan.samples = 0;
+  const RecordedFlight none = fly(vehicle(), pilot(1), plan);
+  CHECK(none.report.end == FlightEnd::completed);
+  CHECK(none.flight.empty());
+  CHECK(none.report.rows == 0);
+  CHECK(none.report.saturated_share == 0);
+}
+
+TEST_CASE("a pilot without lags asks for his targets at once; one whose limits are no numbers ends the flight") {
+  PilotStyle prompt;
+  prompt.velocity_lag_s = prompt.yaw_rate_lag_s = 0;
+  Pilot at_once(std::mt19937_64(4), prompt, 0.877);
+  const SetPoint<double> asked = at_once({}, 0.0);
+  CHECK(all_finite(asked.velocity_m_s));
+  CHECK(asked.velocity_m_s.norm() > 0);
+  CHECK(is_finite(asked.yaw_rate_rad_s));
+  Simulator<Vehicle, Pilot> simulator(vehicle(), Pilot(std::mt19937_64(4), prompt, 0.877));
+  CHECK(simulator.advance(5));
+
+  for (int which = 0; which < 3; ++which) {
+    PilotStyle style;
+    (which == 0   ? style.max_speed_m_s
+     : which == 1 ? style.velocity_lag_s
+                  : style.thumbs.roll_pitch_spread_rad_s) = std::numeric_limits<double>::quiet_NaN();
+    Simulator<Vehicle, Pilot> blind(vehicle(), Pilot(std::mt19937_64(4), style, 0.877));
+    CHECK_FALSE(blind.advance(5));
+    CHECK(blind.status() == Status::not_finite);
+    CHECK(all_finite(blind.vehicle().body));
+  }
+}
+
+TEST_CASE("a vehicle upside down has a tilt of half a turn, whatever its quaternion's last bits") {
+  int beyond = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double turn = 1e-3 * i;
+    const Quaternion<double> down{0.0, std::cos(turn), std::sin(turn), 0.0};
+    beyond += body_down_axis(down)[2] < -1 ? 1 : 0;
+    CHECK(std::fabs(tilt_rad(down) - 3.14159265358979) < 1e-7);
+  }
+  CHECK(beyond > 0);
 }
 
 TEST_CASE("a recorder is told the commands of each tick, and asked for a row after the last of them") {

@@ -308,9 +308,8 @@ TEST_CASE("beyond the gain of 1 there is a least force: less has no solution, an
 namespace {
 /// Lift that grows with the square of thrust: no affine effect, but a mild one.
 struct Quadratic {
-  static constexpr bool uses_rotor_wrench = true;
   template <class Scalar>
-  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::RotorCondition<Scalar>& condition,
                                   const pinnquad::Airframe<Scalar>&) const noexcept {
     pinnquad::Wrench<Scalar> result;
     result.force_N[2] = Scalar(-0.005) * condition.rotors.force_N[2] * condition.rotors.force_N[2];

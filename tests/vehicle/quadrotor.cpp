@@ -5,11 +5,13 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/rotor_drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
@@ -205,23 +207,21 @@ struct DoublesWrenchSoFar {
   }
 };
 struct ShowsCondition {
-  static constexpr bool uses_rotor_wrench = true;
-  pinnquad::AeroCondition<double>* seen;
+  pinnquad::RotorCondition<double>* seen;
   template <class Scalar>
-  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::RotorCondition<Scalar>& condition,
                                   const Airframe<Scalar>&) const noexcept {
     *seen = condition;
     return {};
   }
 };
 
-/// The same without saying that it uses the rotors' wrench.
-struct ShowsWithoutRotors {
-  pinnquad::AeroCondition<double>* seen;
-  template <class Scalar>
-  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
-                                  const Airframe<Scalar>&) const noexcept {
-    *seen = condition;
+/// Takes either condition and so is given the one without rotors.
+struct ShowsSize {
+  std::size_t* seen;
+  template <class Condition, class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const Condition& condition, const Airframe<Scalar>&) const noexcept {
+    *seen = sizeof condition;
     return {};
   }
 };
@@ -246,7 +246,7 @@ TEST_CASE("surroundings run before every wrench, whatever the order of the list"
 }
 
 TEST_CASE("what an effect is given") {
-  pinnquad::AeroCondition<double> seen;
+  pinnquad::RotorCondition<double> seen;
   const Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
   const Quadrotor<double, pinnquad::ConstantWind, pinnquad::StandardAtmosphere, ShowsCondition> vehicle(
       airframe, pinnquad::paper_site<double>(), pinnquad::ConstantWind{{1.0, 2.0, 3.0}}, pinnquad::StandardAtmosphere{},
@@ -265,13 +265,11 @@ TEST_CASE("what an effect is given") {
   CHECK(seen.rotors.force_N == result.rotors.force_N);
   CHECK(seen.rotors.torque_N_m == result.rotors.torque_N_m);
 
-  pinnquad::AeroCondition<double> undeclared;
-  const Quadrotor<double, ShowsWithoutRotors> other(airframe, pinnquad::paper_site<double>(),
-                                                    ShowsWithoutRotors{&undeclared});
+  std::size_t undeclared = 0;
+  const Quadrotor<double, ShowsSize> other(airframe, pinnquad::paper_site<double>(), ShowsSize{&undeclared});
   static_cast<void>(other.evaluate(state, {0.4, 0.5, 0.6, 0.7}, 12.5));
-  CHECK(undeclared.height_above_ground_m == seen.height_above_ground_m);
-  CHECK(undeclared.rotors.force_N.isZero(0.0));  // it does not say that it uses them
-  CHECK(undeclared.rotors.torque_N_m.isZero(0.0));
+  CHECK(undeclared == sizeof(pinnquad::AeroCondition<double>));
+  static_assert(!pinnquad::uses_rotor_wrench<ShowsSize> && pinnquad::uses_rotor_wrench<ShowsCondition>);
 }
 
 TEST_CASE_TEMPLATE("thrust and torque scale with the density over that of sea level", Scalar, float, double) {
@@ -535,6 +533,171 @@ TEST_CASE_TEMPLATE("step refuses a time that is no number, a step backwards and 
   state = {};
   state.body.attitude.w = Scalar(2);
   CHECK(vehicle.step(state, {}, Scalar(0.001)) == Status::not_unit_quaternion);
+}
+
+namespace {
+/// Steps a copy of `start`; true if that is refused with `expected` and every byte of it stays.
+template <class Vehicle, class Scalar>
+bool refuses(const Vehicle& vehicle, const VehicleState<Scalar>& start, Scalar step_s, Status expected) {
+  VehicleState<Scalar> state;
+  std::memcpy(static_cast<void*>(&state), &start, sizeof state);
+  const Status status = vehicle.step(state, {Scalar(0.5), Scalar(0.5), Scalar(0.5), Scalar(0.5)}, step_s);
+  CAPTURE(pinnquad::to_string(status));
+  CHECK(status == expected);
+  return status == expected && std::memcmp(&state, &start, sizeof state) == 0;
+}
+}  // namespace
+
+TEST_CASE_TEMPLATE("body rates that no step can follow are refused: the attitude stays a rotation", Scalar, float,
+                   double) {
+  const Bare<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  for (const double rate : {1e20, 1e10, -1e6, 3200.0}) {
+    CAPTURE(rate);
+    for (int axis = 0; axis < 3; ++axis) {
+      VehicleState<Scalar> state;
+      state.body.body_rates_rad_s[axis] = Scalar(rate);
+      CHECK(refuses(vehicle, state, Scalar(0.001), Status::out_of_range));
+    }
+  }
+  VehicleState<Scalar> fast;  // just under half a turn: flown, and still a rotation
+  fast.body.body_rates_rad_s[2] = Scalar(3100);
+  REQUIRE(vehicle.step(fast, {}, Scalar(0.001)) == Status::ok);
+  CHECK(pinnquad::is_unit(fast.body.attitude));
+}
+
+namespace {
+/// Torque without measure.
+struct Spinner {
+  double torque_N_m;
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept {
+    pinnquad::Wrench<Scalar> result;
+    result.torque_N_m[2] = Scalar(torque_N_m);
+    return result;
+  }
+};
+}  // namespace
+
+TEST_CASE_TEMPLATE("a step that ends faster than it can follow, or as no rotation, is refused", Scalar, float, double) {
+  const Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  using Vehicle = Quadrotor<Scalar, Spinner>;
+  CHECK(refuses(Vehicle(airframe, {}, Spinner{1e6}), VehicleState<Scalar>{}, Scalar(0.001), Status::out_of_range));
+  // the quaternion is finite but its square is not: normalised to zero
+  const double beyond = sizeof(Scalar) == 4 ? 1e15 : 1e80;
+  CHECK(refuses(Vehicle(airframe, {}, Spinner{beyond}), VehicleState<Scalar>{}, Scalar(0.001),
+                Status::output_not_finite));
+}
+
+TEST_CASE_TEMPLATE("an airframe or a site that is none is refused, with its status", Scalar, float, double) {
+  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN(), inf = std::numeric_limits<Scalar>::infinity();
+  const auto refused = [](const Airframe<Scalar>& airframe, const Site<Scalar>& site, Status expected) {
+    const Bare<Scalar> vehicle(airframe, site);
+    CHECK(vehicle.status() == expected);
+    return refuses(vehicle, VehicleState<Scalar>{}, Scalar(0.001), expected);
+  };
+  const Airframe<Scalar> good = pinnquad::PaperQuadrotor::value<Scalar>();
+  for (const Scalar bad : {Scalar(0), Scalar(-1), nan, inf}) {
+    CAPTURE(bad);
+    Airframe<Scalar> airframe = good;
+    airframe.mass_kg = bad;
+    CHECK(refused(airframe, {}, Status::invalid_airframe));
+    for (std::size_t i = 0; i < 3; ++i) {
+      airframe = good;
+      airframe.inertia_kg_m2[i] = bad;
+      CHECK(refused(airframe, {}, Status::invalid_airframe));
+    }
+    airframe = good;
+    airframe.propeller_diameter_m = bad;
+    CHECK(refused(airframe, {}, Status::invalid_airframe));
+  }
+  for (const Scalar bad : {nan, inf}) {
+    Airframe<Scalar> airframe = good;
+    airframe.rotors[2].x_m = bad;
+    CHECK(refused(airframe, {}, Status::invalid_airframe));
+    for (int which = 0; which < 3; ++which) {
+      Site<Scalar> site;
+      (which == 0 ? site.elevation_m : which == 1 ? site.ground_z_m : site.gravity_m_s2) = bad;
+      CHECK(refused(good, site, Status::out_of_range));
+    }
+  }
+  Airframe<Scalar> in_line = good;
+  for (auto& rotor : in_line.rotors) rotor.y_m = Scalar(0);
+  CHECK(refused(in_line, {}, Status::no_solution));
+}
+
+TEST_CASE_TEMPLATE("where the air has no answer the step is refused, at its start and on its way", Scalar, float,
+                   double) {
+  const Quadrotor<Scalar, pinnquad::StandardAtmosphere> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  for (const double altitude_m : {12e3, 45e3, 1e9, -6e3, -1e9}) {
+    CAPTURE(altitude_m);
+    VehicleState<Scalar> state;
+    state.body.position_m[2] = Scalar(-altitude_m);
+    CHECK(refuses(vehicle, state, Scalar(0.001), Status::out_of_range));
+  }
+  VehicleState<Scalar> climbing;  // leaves the troposphere within the step and would be back at its end
+  climbing.body.position_m[2] = Scalar(-10900);
+  climbing.body.velocity_m_s[2] = Scalar(-60);
+  CHECK(refuses(vehicle, climbing, Scalar(12), Status::out_of_range));
+  climbing.body.position_m[2] = Scalar(-10000);
+  CHECK(vehicle.step(climbing, {}, Scalar(0.001)) == Status::ok);
+}
+
+TEST_CASE_TEMPLATE("a clock that a step does not move, or that no float can tell, is refused", Scalar, float, double) {
+  const Bare<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
+  for (const double time_s : {1e300, -1e300, 1e15, 2e12}) {
+    CAPTURE(time_s);
+    VehicleState<Scalar> state;
+    state.time_s = time_s;
+    CHECK(refuses(vehicle, state, Scalar(0.001), Status::out_of_range));
+    CHECK(refuses(vehicle, state, Scalar(0), Status::out_of_range));
+  }
+  VehicleState<Scalar> late;
+  late.time_s = 9e11;
+  CHECK(refuses(vehicle, late, Scalar(1e-6), Status::out_of_range));  // below the clock's resolution
+  late.time_s = 1.8e9;                                                // today, in seconds since 1970
+  CHECK(vehicle.step(late, {}, Scalar(0.001)) == Status::ok);
+}
+
+TEST_CASE_TEMPLATE("a rotor without lag gives its thrust from the first instant of a step", Scalar, float, double) {
+  Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  airframe.rotor_time_constant_s = Scalar(0);
+  const Bare<Scalar> vehicle(airframe);
+  VehicleState<Scalar> state;  // rotors at rest
+  const Commands<Scalar> hover = hover_commands(airframe, Scalar(1));
+  REQUIRE(vehicle.step(state, hover, Scalar(0.01)) == Status::ok);
+  // the first of four stages at rest would be a sixth of g over the step
+  CHECK(std::fabs(static_cast<double>(state.body.velocity_m_s[2])) <= pinnquad::test::rounding<Scalar>(40));
+  CHECK(state.rotors == hover);
+}
+
+TEST_CASE_TEMPLATE("an effect whose values or model do not hold makes the vehicle's status, step and all", Scalar,
+                   float, double) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  const auto refused = [&airframe](const auto& effect) {
+    using Effect = std::decay_t<decltype(effect)>;
+    const Quadrotor<Scalar, Effect> vehicle(airframe, {}, effect);
+    CHECK(vehicle.status() == Status::out_of_range);
+    return refuses(vehicle, VehicleState<Scalar>{}, Scalar(0.001), Status::out_of_range);
+  };
+  CHECK(refused(pinnquad::ConstantWind{{nan, 0.0, 0.0}}));
+  CHECK(refused(pinnquad::PeriodicWind{{1.0, 0.0, 0.0}, 2.5, 2.5, 0.0}));
+  CHECK(refused(pinnquad::PeriodicWind{{1.0, 0.0, 0.0}, 2.5, nan, 10.0}));
+  CHECK(refused(pinnquad::PeriodicWind{{1.0, 1.0, 0.0}, 2.5, 2.5, 10.0}));
+  CHECK(refused(pinnquad::RotorDrag{-0.02}));
+  CHECK(refused(pinnquad::RotorDrag{nan}));
+
+  Airframe<Scalar> f450 = airframe;  // L 450 mm, R 127 mm: Conyers' fit has a pole at 24 cm
+  for (auto& rotor : f450.rotors) {
+    rotor.x_m *= Scalar(450.0 / 690.0);
+    rotor.y_m *= Scalar(450.0 / 690.0);
+  }
+  f450.propeller_diameter_m = Scalar(0.254);
+  using Near = Quadrotor<Scalar, pinnquad::ConyersGroundEffect>;
+  CHECK(Near(f450).status() == Status::out_of_range);
+  CHECK(refuses(Near(f450), VehicleState<Scalar>{}, Scalar(0.001), Status::out_of_range));
+  CHECK(Near(airframe).status() == Status::ok);
+  CHECK(Near::template of<pinnquad::PaperQuadrotor>().status() == Status::ok);
 }
 
 TEST_CASE_TEMPLATE("status: valid, bad values, singular allocation", Scalar, float, double) {

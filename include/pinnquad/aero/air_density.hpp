@@ -30,33 +30,55 @@ constexpr std::array<double, 16> standard_atmosphere_series() noexcept {
 /// Neighbours first, then pairs, then fours (Estrin): a simulator waits for this sum four times a step, and a plain chain
 /// of fifteen multiply-adds takes as long as pow.
 template <class Scalar>
-Scalar polynomial(const std::array<double, 16>& c, Scalar x) noexcept {
+constexpr Scalar polynomial(const std::array<double, 16>& c, Scalar x) noexcept {
   const Scalar x2 = x * x, x4 = x2 * x2;
   const auto four = [&](std::size_t k) noexcept {
     return (Scalar(c[k]) + Scalar(c[k + 1]) * x) + (Scalar(c[k + 2]) + Scalar(c[k + 3]) * x) * x2;
   };
   return (four(0) + four(4) * x4) + (four(8) + four(12) * x4) * (x4 * x4);
 }
+
+/// The formula of standard_atmosphere_density_kg_m3() where it holds.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE constexpr Scalar troposphere_density_kg_m3(Scalar altitude_m) noexcept {
+  constexpr std::array<double, 16> series = standard_atmosphere_series();
+  return standard_air_density_kg_m3<Scalar> * polynomial(series, altitude_m * Scalar(1.0 / troposphere_m));
+}
 }  // namespace detail
 
-/// Density at an altitude above sea level, kg/m^3, up to 11 km.
+/// Where the formula below holds, m above sea level: from where the standard's tables begin to the tropopause.
+inline constexpr double lowest_standard_altitude_m = -5000.0;
+inline constexpr double highest_standard_altitude_m = detail::troposphere_m;
+
+/// False for NaN.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE constexpr bool in_standard_troposphere(Scalar altitude_m) noexcept {
+  return altitude_m >= Scalar(lowest_standard_altitude_m) && altitude_m <= Scalar(highest_standard_altitude_m);
+}
+
+/// Density at an altitude above sea level, kg/m^3, from -5 to 11 km; beyond, that of the nearer end; NaN for NaN.
 /// H = 6378.137 h / (6378.137 + h) km geopotential, T = 288.15 - 6.5 H, P = 101325 (288.15 / T)^-5.255877 Pa,
 /// rho = P / (287.053 T), by its power series in h. Source: US Standard Atmosphere 1976 as the paper's simulator evaluates
 /// it.
 template <class Scalar>
 Scalar standard_atmosphere_density_kg_m3(Scalar altitude_m) noexcept {
-  constexpr std::array<double, 16> series = detail::standard_atmosphere_series();
-  const Scalar x = altitude_m * Scalar(1.0 / detail::troposphere_m);
-  return standard_air_density_kg_m3<Scalar> * detail::polynomial(series, x);
+  constexpr Scalar lowest(lowest_standard_altitude_m), highest(highest_standard_altitude_m);
+  constexpr Scalar most = detail::troposphere_density_kg_m3(lowest), least = detail::troposphere_density_kg_m3(highest);
+  const Scalar density = detail::troposphere_density_kg_m3(altitude_m);
+  return altitude_m < lowest ? most : (altitude_m > highest ? least : density);
 }
 
-/// Sets the density of the surroundings from their altitude.
+/// Sets the density of the surroundings from their altitude; `out_of_range` outside the standard's troposphere.
 struct StandardAtmosphere {
   static constexpr VariesWith varies_with = VariesWith::height;
 
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
-    air.air_density_kg_m3 = standard_atmosphere_density_kg_m3(air.altitude_m);
+    air.air_density_kg_m3 = detail::troposphere_density_kg_m3(air.altitude_m);
+    if (!in_standard_troposphere(air.altitude_m)) {  // a branch, which no one waits for
+      air.air_density_kg_m3 = standard_atmosphere_density_kg_m3(air.altitude_m);
+      air.status = Status::out_of_range;
+    }
   }
 };
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "pinnquad/aero/effect.hpp"
+#include "pinnquad/aero/wind.hpp"
 #include "pinnquad/core/random.hpp"
 
 namespace pinnquad {
@@ -43,9 +43,13 @@ class DrydenTurbulence {
   template <class Engine>
   DrydenTurbulence(Engine& engine, const DrydenParameters& parameters, double mean_wind_m_s,
                    std::array<double, 2> direction = {1.0, 0.0})
-      : direction_(direction), mean_wind_m_s_(mean_wind_m_s) {
+      : direction_(direction),
+        mean_wind_m_s_(mean_wind_m_s),
+        holds_(detail::is_direction(direction) && detail::bounded(mean_wind_m_s)) {
     constexpr double two_pi = 6.283185307179586;
     for (std::size_t axis = 0; axis < 3; ++axis) {
+      holds_ = holds_ && detail::plausible(parameters.length_m[axis]) &&
+               detail::plausible_or_zero(parameters.intensity_m_s[axis]);
       for (std::size_t i = 0; i < waves; ++i) {
         const double energy_below = (static_cast<double>(i) + uniform_01(engine)) / static_cast<double>(waves);
         const double scaled = axis == 0 ? along_wave_number(energy_below) : across_wave_number(energy_below);
@@ -64,6 +68,12 @@ class DrydenTurbulence {
     air.wind_m_s[0] += Scalar(direction_[0] * u - direction_[1] * v);
     air.wind_m_s[1] += Scalar(direction_[1] * u + direction_[0] * v);
     air.wind_m_s[2] += Scalar(w);
+  }
+
+  /// `out_of_range` for parameters that are negative or no numbers, lengths of 0, or a direction that isn't a unit vector.
+  template <class Scalar>
+  Status status(const Airframe<Scalar>&) const noexcept {
+    return holds_ ? Status::ok : Status::out_of_range;
   }
 
   /// One component at a distance along the field, m/s: 0 along the wind, 1 across (to its right), 2 down.
@@ -95,6 +105,7 @@ class DrydenTurbulence {
 
   std::array<double, 2> direction_;
   double mean_wind_m_s_;
+  bool holds_;
   std::array<std::array<double, waves>, 3> wave_number_rad_m_{};
   std::array<std::array<double, waves>, 3> phase_rad_{};
   std::array<double, 3> amplitude_m_s_{};

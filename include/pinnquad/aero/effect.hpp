@@ -3,10 +3,12 @@
 //   template <class Scalar> void surroundings(Surroundings<Scalar>&) const noexcept;      wind, density: what the air is
 //   template <class Scalar> Wrench<Scalar> wrench(const AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
 // All `surroundings` run first, then the rotors, then each `wrench` in the order of the vehicle's effects.
+// An effect whose wrench depends on the rotors takes a RotorCondition instead, see also `has_thrust_branches`; one that is
+// the same at every place and time may say so, see `varies_with`.
 // Optional: `template <class Scalar> auto bound(const Airframe<Scalar>&) const noexcept;` returns the effect that a vehicle
-// keeps in its place, with what follows from the airframe worked out once.
-// An effect whose wrench depends on the rotors says so, see `uses_rotor_wrench` and `has_thrust_branches`; one that is the same
-// at every place and time may say so, see `varies_with`.
+// keeps in its place, with what follows from the airframe worked out once; and
+// `template <class Scalar> constexpr Status status(const Airframe<Scalar>&) const noexcept;` says whether the effect's
+// values make sense and its model holds for the airframe: a vehicle whose effect isn't ok neither steps nor inverts.
 #pragma once
 
 #include <array>
@@ -14,6 +16,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/status.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/dynamics/site.hpp"
 #include "pinnquad/dynamics/state.hpp"
@@ -25,7 +28,8 @@ namespace pinnquad {
 template <class Scalar>
 inline constexpr Scalar standard_air_density_kg_m3 = Scalar(101325.0 / (287.053 * 288.15));
 
-/// The air around the vehicle. The first three are given; effects set the rest.
+/// The air around the vehicle. The first three are given; effects set the rest. An effect that has no answer for a place or
+/// time sets `status`, and what was to come of this air (a step, an inverse) is refused with it.
 template <class Scalar>
 struct Surroundings {
   Scalar time_s{0};
@@ -33,7 +37,19 @@ struct Surroundings {
   Scalar altitude_m{0};                                  ///< above sea level
   Vector3<Scalar> wind_m_s = Vector3<Scalar>::Zero();    ///< NED, the air's velocity over ground
   Scalar air_density_kg_m3{standard_air_density_kg_m3<Scalar>};
+  Status status{Status::ok};
 };
+
+namespace detail {
+/// Complete only for a reader of what an AeroCondition doesn't have.
+template <class Scalar>
+struct RotorsNotDeclared {
+  static_assert(
+      sizeof(Scalar) == 0,
+      "pinnquad: this effect reads the rotors' wrench or thrusts without declaring it: let its wrench() take a "
+      "RotorCondition<Scalar> instead of an AeroCondition<Scalar> (aero/effect.hpp)");
+};
+}  // namespace detail
 
 /// What a force effect is given.
 template <class Scalar>
@@ -44,10 +60,17 @@ struct AeroCondition {
   Scalar height_above_ground_m{0};
   Scalar air_density_kg_m3{0};
   Scalar time_s{0};
-  /// Of the rotors, without effects. These two are zero unless the effect `uses_rotor_wrench`.
+  Wrench<Scalar> aerodynamic;  ///< sum of the effects before this one, body frame
+
+  static const detail::RotorsNotDeclared<Scalar>& rotors;  ///< never defined: a compile error for who reads them
+  static const detail::RotorsNotDeclared<Scalar>& rotor_thrust_N;
+};
+
+/// What a force effect is given whose `wrench` takes it: the rotors too, without effects.
+template <class Scalar>
+struct RotorCondition : AeroCondition<Scalar> {
   Wrench<Scalar> rotors;                             ///< body wrench of all four
   std::array<Scalar, rotor_count> rotor_thrust_N{};  ///< of each, along body -z
-  Wrench<Scalar> aerodynamic;                        ///< sum of the effects before this one, body frame
 };
 
 /// Where an effect takes the absolute value of a force that the thrust can turn round, its wrench has two branches.
@@ -65,54 +88,130 @@ enum class VariesWith : std::uint8_t {
 
 namespace detail {
 struct EffectProbe {
-  static Surroundings<double>& surroundings();
-  static const AeroCondition<double>& condition();
-  static const Airframe<double>& airframe();
+  static Surroundings<double>& surroundings() noexcept;
+  static const AeroCondition<double>& condition() noexcept;
+  static const RotorCondition<double>& rotor_condition() noexcept;
+  static const Airframe<double>& airframe() noexcept;
 };
 template <class Effect, class = void>
-struct HasSurroundings : std::false_type {};
+struct HasSurroundings : std::false_type {
+  static constexpr bool is_noexcept = true;
+};
 template <class Effect>
 struct HasSurroundings<Effect,
                        std::void_t<decltype(std::declval<const Effect&>().surroundings(EffectProbe::surroundings()))>>
-    : std::true_type {};
-template <class Effect, class = void>
-struct HasWrench : std::false_type {};
-template <class Effect>
-struct HasWrench<Effect, std::void_t<decltype(std::declval<const Effect&>().wrench(EffectProbe::condition(),
-                                                                                   EffectProbe::airframe()))>>
-    : std::is_same<decltype(std::declval<const Effect&>().wrench(EffectProbe::condition(), EffectProbe::airframe())),
-                   Wrench<double>> {};
+    : std::true_type {
+  static constexpr bool is_noexcept = noexcept(std::declval<const Effect&>().surroundings(EffectProbe::surroundings()));
+};
+template <class Effect, class Condition, class = void>
+struct HasWrench : std::false_type {
+  static constexpr bool is_noexcept = true;
+};
+template <class Effect, class Condition>
+struct HasWrench<Effect, Condition,
+                 std::void_t<decltype(std::declval<const Effect&>().wrench(std::declval<const Condition&>(),
+                                                                           EffectProbe::airframe()))>>
+    : std::is_same<decltype(std::declval<const Effect&>().wrench(std::declval<const Condition&>(),
+                                                                 EffectProbe::airframe())),
+                   Wrench<double>> {
+  static constexpr bool is_noexcept =
+      noexcept(std::declval<const Effect&>().wrench(std::declval<const Condition&>(), EffectProbe::airframe()));
+};
 template <class Effect, class Scalar, class = void>
-struct IsBindable : std::false_type {};
+struct IsBindable : std::false_type {
+  static constexpr bool is_noexcept = true;
+};
 template <class Effect, class Scalar>
 struct IsBindable<Effect, Scalar,
                   std::void_t<decltype(std::declval<const Effect&>().bound(std::declval<const Airframe<Scalar>&>()))>>
-    : std::true_type {};
+    : std::true_type {
+  static constexpr bool is_noexcept =
+      noexcept(std::declval<const Effect&>().bound(std::declval<const Airframe<Scalar>&>()));
+};
+template <class Effect, class Scalar, class = void>
+struct HasStatus : std::false_type {};
+template <class Effect, class Scalar>
+struct HasStatus<Effect, Scalar,
+                 std::void_t<decltype(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()))>>
+    : std::is_same<Status, decltype(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()))> {};
+/// Whether a class has a member of this name, whatever it is: two of one name can't be told apart.
+struct SurroundingsName {
+  void surroundings();
+};
+struct WrenchName {
+  void wrench();
+};
+struct WrenchOnName {
+  void wrench_on();
+};
+template <class Effect, class Name>
+struct Joined : Effect, Name {};
 template <class Effect, class = void>
-struct UsesRotors : std::false_type {};
+struct NamesSurroundings : std::true_type {};
 template <class Effect>
-struct UsesRotors<Effect, std::enable_if_t<Effect::uses_rotor_wrench>> : std::true_type {};
+struct NamesSurroundings<Effect, std::void_t<decltype(&Joined<Effect, SurroundingsName>::surroundings)>>
+    : std::false_type {};
+template <class Effect, class = void>
+struct NamesWrench : std::true_type {};
+template <class Effect>
+struct NamesWrench<Effect, std::void_t<decltype(&Joined<Effect, WrenchName>::wrench)>> : std::false_type {};
+template <class Effect, class = void>
+struct NamesWrenchOn : std::true_type {};
+template <class Effect>
+struct NamesWrenchOn<Effect, std::void_t<decltype(&Joined<Effect, WrenchOnName>::wrench_on)>> : std::false_type {};
+
 template <class Effect, class = void>
 struct Variation : std::integral_constant<VariesWith, VariesWith::place_and_time> {};
 template <class Effect>
 struct Variation<Effect, std::void_t<decltype(Effect::varies_with)>>
     : std::integral_constant<VariesWith, Effect::varies_with> {};
 template <class Effect, class = void>
-struct HasBranches : std::false_type {};
+struct HasBranches : std::false_type {
+  static constexpr bool is_noexcept = true;
+};
 template <class Effect>
 struct HasBranches<Effect, std::void_t<decltype(std::declval<const Effect&>().wrench_on(
-                               ThrustBranch::upper, EffectProbe::condition(), EffectProbe::airframe()))>>
-    : std::true_type {};
+                               ThrustBranch::upper, EffectProbe::rotor_condition(), EffectProbe::airframe()))>>
+    : std::true_type {
+  static constexpr bool is_noexcept = noexcept(std::declval<const Effect&>().wrench_on(
+      ThrustBranch::upper, EffectProbe::rotor_condition(), EffectProbe::airframe()));
+};
 }  // namespace detail
 
 template <class Effect>
 inline constexpr bool changes_surroundings = detail::HasSurroundings<Effect>::value;
 template <class Effect>
-inline constexpr bool makes_wrench = detail::HasWrench<Effect>::value;
+inline constexpr bool makes_wrench = detail::HasWrench<Effect, RotorCondition<double>>::value;
 
-/// True for a type that fulfils the contract at the head of this file.
+/// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
 inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<Effect>;
+
+/// An effect that is affine on each of two branches only also has
+///   template <class Scalar>
+///   Wrench<Scalar> wrench_on(ThrustBranch, const RotorCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
+/// its wrench as if the condition lay on that branch.
+template <class Effect>
+inline constexpr bool has_thrust_branches = detail::HasBranches<Effect>::value;
+
+/// False where the effect has a function of the contract's name that can't be called as the contract says, or returns
+/// something else: it would be passed over in silence.
+template <class Effect>
+constexpr bool is_whole_effect() noexcept {
+  if constexpr (std::is_class_v<Effect> && !std::is_final_v<Effect>) {
+    return changes_surroundings<Effect> == detail::NamesSurroundings<Effect>::value &&
+           makes_wrench<Effect> == detail::NamesWrench<Effect>::value &&
+           has_thrust_branches<Effect> == detail::NamesWrenchOn<Effect>::value;
+  } else {
+    return true;
+  }
+}
+
+/// True if each of the effect's functions is noexcept: it runs in flight.
+template <class Effect>
+inline constexpr bool is_noexcept_effect =
+    detail::HasSurroundings<Effect>::is_noexcept&& detail::HasWrench<Effect, RotorCondition<double>>::is_noexcept&&
+        detail::HasBranches<Effect>::is_noexcept&& detail::IsBindable<Effect, double>::is_noexcept;
 
 /// True for what has `bound(airframe)`, see the head of this file.
 template <class Effect, class Scalar>
@@ -128,17 +227,23 @@ auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexce
   }
 }
 
-/// An effect whose wrench depends on the rotors' says `static constexpr bool uses_rotor_wrench = true;`. Its wrench should
-/// be affine in the rotors' thrusts, as most are: then the inverse (vehicle/rotor_equation.hpp) is exact in one round.
-template <class Effect>
-inline constexpr bool uses_rotor_wrench = detail::UsesRotors<Effect>::value;
+/// Status of an effect for an airframe; ok for an effect that has no `status`.
+template <class Effect, class Scalar>
+constexpr Status effect_status(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
+  if constexpr (detail::HasStatus<Effect, Scalar>::value) {
+    return effect.status(airframe);
+  } else {
+    static_cast<void>(effect);
+    static_cast<void>(airframe);
+    return Status::ok;
+  }
+}
 
-/// An effect that is affine on each of two branches only also has
-///   template <class Scalar>
-///   Wrench<Scalar> wrench_on(ThrustBranch, const AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
-/// its wrench as if the condition lay on that branch.
+/// True for an effect whose `wrench` takes a RotorCondition: it depends on the rotors. It should be affine in the rotors'
+/// thrusts, as most are: then the inverse (vehicle/rotor_equation.hpp) is exact in one round.
 template <class Effect>
-inline constexpr bool has_thrust_branches = detail::HasBranches<Effect>::value;
+inline constexpr bool uses_rotor_wrench =
+    makes_wrench<Effect> && !detail::HasWrench<Effect, AeroCondition<double>>::value;
 
 /// `static constexpr VariesWith varies_with = VariesWith::motion;` lets an inverse go without place and time. An effect that
 /// says nothing is taken to depend on both.

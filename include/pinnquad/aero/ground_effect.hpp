@@ -10,19 +10,57 @@
 
 namespace pinnquad {
 
-/// Cheeseman and Bennett (1955): r = 1 / (1 - (R / 4Z)^2) for Z/R > 0.25, else 1. Pole at Z/R = 0.25.
+/// Cheeseman and Bennett (1955): r = 1 / (1 - (R / 4Z)^2) for Z/R > 0.25, else 1: also below the ground, where the low side
+/// of a tilted vehicle may reach. The pole at Z/R = 0.25 is cut at `most_ratio`, which the formula passes at Z/R =
+/// 0.250125; NaN stays NaN.
 struct CheesemanBennett {
+  static constexpr double most_ratio = 1000;
+
   template <class Scalar>
   Scalar thrust_ratio(Scalar height_over_radius, const Airframe<Scalar>&) const noexcept {
     if (height_over_radius <= Scalar(0.25)) return Scalar(1);
     const Scalar q = Scalar(0.25) / height_over_radius;
-    return Scalar(1) / (Scalar(1) - q * q);
+    const Scalar ratio = Scalar(1) / (Scalar(1) - q * q);
+    return ratio > Scalar(most_ratio) ? Scalar(most_ratio) : ratio;
   }
 };
 
-/// Conyers (2019): a ratio of polynomials in Z/R whose coefficients are quadratic in the motor spacing L and the
+namespace detail {
+/// The root while compiling, where std::sqrt can't be called; from above, by Newton.
+constexpr double compiled_root(double value) noexcept {
+  if (!(value > 0)) return value;
+  double root = value > 1 ? value : 1;
+  for (double next = (root + value / root) / 2; next < root; next = (root + value / root) / 2) root = next;
+  return root;
+}
+
+/// Length of the diagonals between motors, the mean of both, in whatever order the rotors come: of the three ways to pair
+/// four corners the diagonals are the one with the greatest sum. `root` is the square root.
+template <class Scalar, class Root>
+constexpr Scalar motor_diagonal_m(const Airframe<Scalar>& airframe, const Root& root) noexcept {
+  const auto distance = [&airframe, &root](std::size_t i, std::size_t j) {
+    const Scalar dx = airframe.rotors[i].x_m - airframe.rotors[j].x_m;
+    const Scalar dy = airframe.rotors[i].y_m - airframe.rotors[j].y_m;
+    return root(dx * dx + dy * dy);
+  };
+  Scalar both(0);
+  for (std::size_t partner = 1; partner < rotor_count; ++partner) {
+    const std::size_t third = partner == 1 ? 2 : 1;
+    const Scalar sum = distance(0, partner) + distance(third, 6 - partner - third);
+    if (sum > both) both = sum;
+  }
+  return both / Scalar(2);
+}
+}  // namespace detail
+
+/// Conyers (2019): a ratio of polynomials in Z/R whose coefficients are quadratic in the motor spacing L (diagonal) and the
 /// propeller radius R, both in mm; 1 outside 0.25 <= Z/R <= 10.
+/// A fit to vehicles near L = 690, R = 114.3: for others, ordinary ones among them (L = 450, R = 127), it has a pole in
+/// that range. `status` is `out_of_range` for an airframe whose ratio leaves `least_ratio`..`most_ratio` there.
 struct Conyers {
+  static constexpr double least_ratio = 0.9;  ///< what the fit gives where it holds lies between 0.97 and 1.37
+  static constexpr double most_ratio = 1.5;
+
   /// The ratio for one airframe, its coefficients worked out.
   template <class Scalar>
   struct Curve {
@@ -31,21 +69,62 @@ struct Conyers {
 
     Scalar thrust_ratio(Scalar x, const Airframe<Scalar>&) const noexcept {
       if (x < Scalar(0.25) || x > Scalar(10)) return Scalar(1);
+      return above(x) / below(x);
+    }
+
+    /// No pole in the range and no ratio out of its bounds. The polynomials bend slowly: between two points looked at, a
+    /// denominator that touches zero is so small at both that the ratio there is out of bounds.
+    constexpr bool plausible() const noexcept {
+      constexpr int intervals = 195;
+      for (int i = 0; i <= intervals; ++i) {
+        const Scalar x = Scalar(0.25) + Scalar(9.75) * Scalar(i) / Scalar(intervals);
+        const Scalar divisor = below(x);
+        if (!(divisor > Scalar(0) && above(x) >= Scalar(least_ratio) * divisor &&
+              above(x) <= Scalar(most_ratio) * divisor)) {
+          return false;
+        }
+      }
+      return true;
+    }
+
+   private:
+    // two short chains instead of one long one
+    constexpr Scalar above(Scalar x) const noexcept {
       const auto& [p1, p2, p3, p4, p5] = numerator;
+      const Scalar x2 = x * x;
+      return (p1 * x2 + (p2 * x + p3)) * x2 + (p4 * x + p5);
+    }
+    constexpr Scalar below(Scalar x) const noexcept {
       const auto& [q1, q2, q3] = denominator;
-      const Scalar x2 = x * x;  // two short chains instead of one long one
-      return ((p1 * x2 + (p2 * x + p3)) * x2 + (p4 * x + p5)) / ((x + q1) * x2 + (q2 * x + q3));
+      const Scalar x2 = x * x;
+      return (x + q1) * x2 + (q2 * x + q3);
     }
   };
 
   template <class Scalar>
   Curve<Scalar> bound(const Airframe<Scalar>& airframe) const noexcept {
-    const Scalar dx = airframe.rotors[0].x_m - airframe.rotors[1].x_m;
-    const Scalar dy = airframe.rotors[0].y_m - airframe.rotors[1].y_m;
     using std::sqrt;
-    const Scalar l = Scalar(1000) * sqrt(dx * dx + dy * dy);  // rotors 1 and 2 are diagonal: L = 690 mm in Table 1
+    return curve(airframe, [](Scalar square) noexcept { return sqrt(square); });
+  }
+
+  /// A literal airframe's can be asked for when compiled.
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>& airframe) const noexcept {
+    const auto root = [](Scalar square) { return Scalar(detail::compiled_root(double(square))); };
+    return curve(airframe, root).plausible() ? Status::ok : Status::out_of_range;
+  }
+
+  template <class Scalar>
+  Scalar thrust_ratio(Scalar height_over_radius, const Airframe<Scalar>& airframe) const noexcept {
+    return bound(airframe).thrust_ratio(height_over_radius, airframe);
+  }
+
+ private:
+  template <class Scalar, class Root>
+  static constexpr Curve<Scalar> curve(const Airframe<Scalar>& airframe, const Root& root) noexcept {
+    const Scalar l = Scalar(1000) * detail::motor_diagonal_m(airframe, root);  // 690 mm in Table 1
     const Scalar r = Scalar(500) * airframe.propeller_diameter_m;
-    const auto quadratic = [l, r](double l2, double l1, double r2, double r1, double one) noexcept {
+    const auto quadratic = [l, r](double l2, double l1, double r2, double r1, double one) {
       return Scalar(l2) * l * l + Scalar(l1) * l + Scalar(r2) * r * r + Scalar(r1) * r + Scalar(one);
     };
     return {{quadratic(-2.794e-7, 3.761e-4, 3.197e-5, -7.5479e-3, 0.3357119),
@@ -57,25 +136,19 @@ struct Conyers {
              quadratic(-4.4379e-5, 7.80762e-2, -2.4483e-3, 0.6141837, -71.9829075),
              quadratic(-1.3482e-4, 0.1883013, 3.59764e-2, -8.9660684, 500.2544495)}};
   }
-
-  template <class Scalar>
-  Scalar thrust_ratio(Scalar height_over_radius, const Airframe<Scalar>& airframe) const noexcept {
-    return bound(airframe).thrust_ratio(height_over_radius, airframe);
-  }
 };
 
 /// dT = (r - 1) |F_z|, F_z the world-vertical part of rotor and previous aerodynamic force, along body -z; no torque.
 /// As the paper's authors apply it: one ratio for the vehicle, from the height of its centre.
 /// `ThrustRatio`: `thrust_ratio(Z / R, airframe)`; where its coefficients follow from the airframe, `bound(airframe)` gives
-/// a ratio that has them worked out.
+/// a ratio that has them worked out, and `status(airframe)` says whether it holds for the airframe.
 template <class ThrustRatio>
 struct GroundEffect {
-  static constexpr bool uses_rotor_wrench = true;
   static constexpr VariesWith varies_with = VariesWith::height;
   ThrustRatio ratio{};
 
   template <class Scalar>
-  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition,
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
     const Scalar vertical = vertical_force(condition);
     return lift(condition, airframe, vertical < Scalar(0) ? -vertical : vertical);
@@ -83,7 +156,7 @@ struct GroundEffect {
 
   /// F_z has the sign of -R_zz where thrust outweighs drag: there, on the upper branch, |F_z| grows with thrust.
   template <class Scalar>
-  Wrench<Scalar> wrench_on(ThrustBranch branch, const AeroCondition<Scalar>& condition,
+  Wrench<Scalar> wrench_on(ThrustBranch branch, const RotorCondition<Scalar>& condition,
                            const Airframe<Scalar>& airframe) const noexcept {
     const bool upright = world_down_axis(condition.attitude)[2] >= Scalar(0);
     const Scalar vertical = vertical_force(condition);
@@ -99,10 +172,15 @@ struct GroundEffect {
     }
   }
 
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>& airframe) const noexcept {
+    return effect_status(ratio, airframe);
+  }
+
  private:
   /// World-vertical part of rotor and previous aerodynamic force, N, down: third row of R times the body force.
   template <class Scalar>
-  PINNQUAD_ALWAYS_INLINE static Scalar vertical_force(const AeroCondition<Scalar>& condition) noexcept {
+  PINNQUAD_ALWAYS_INLINE static Scalar vertical_force(const RotorCondition<Scalar>& condition) noexcept {
     const auto force = [&](int axis) noexcept {
       return condition.rotors.force_N[axis] + condition.aerodynamic.force_N[axis];
     };
@@ -111,7 +189,7 @@ struct GroundEffect {
   }
 
   template <class Scalar>
-  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> lift(const AeroCondition<Scalar>& condition, const Airframe<Scalar>& airframe,
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> lift(const RotorCondition<Scalar>& condition, const Airframe<Scalar>& airframe,
                                              Scalar magnitude) const noexcept {
     const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
     const Scalar r = ratio.thrust_ratio(condition.height_above_ground_m * per_radius_1_m, airframe);

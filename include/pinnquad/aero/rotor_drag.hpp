@@ -11,12 +11,11 @@ namespace pinnquad {
 /// k [s/m] is the H-force coefficient over thrust, about 0.01 to 0.05 for small propellers. Proportional to thrust, as in
 /// Martin and Salaun, The true role of accelerometer feedback in quadrotor control (2010), near hover.
 struct RotorDrag {
-  static constexpr bool uses_rotor_wrench = true;
   static constexpr VariesWith varies_with = VariesWith::motion;
   double coefficient_s_m{0.02};
 
   template <class Scalar>
-  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition,
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
     const Vector3<Scalar>& v = condition.air_relative_velocity_m_s;
     const Scalar yaw_rate = condition.body_rates_rad_s[2];
@@ -32,6 +31,12 @@ struct RotorDrag {
       result.torque_N_m[2] += hub.x_m * force_y - hub.y_m * force_x;
     }
     return result;
+  }
+
+  /// `out_of_range` for a coefficient that is negative or no number.
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>&) const noexcept {
+    return detail::plausible_or_zero(coefficient_s_m) ? Status::ok : Status::out_of_range;
   }
 };
 

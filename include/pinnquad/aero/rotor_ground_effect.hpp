@@ -8,15 +8,15 @@ namespace pinnquad {
 
 /// dT_i = (r(Z_i / R) - 1) |R_zz| T_i along body -z at rotor i, with Z_i the height of its hub above ground and |R_zz| the
 /// vertical share of its thrust: an alternative to GroundEffect, which applies one ratio at the vehicle's centre and makes
-/// no torque. Level and without drag both give the same force. `ThrustRatio` as in GroundEffect.
+/// no torque. Level and without drag both give the same force. `ThrustRatio` as in GroundEffect: a hub below its range, as
+/// one that a tilt brings under the ground, has ratio 1, and next to a pole the ratio is finite.
 template <class ThrustRatio>
 struct RotorGroundEffect {
-  static constexpr bool uses_rotor_wrench = true;
   static constexpr VariesWith varies_with = VariesWith::height;
   ThrustRatio ratio{};
 
   template <class Scalar>
-  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const AeroCondition<Scalar>& condition,
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
     const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
     const Vector3<Scalar> down = world_down_axis(condition.attitude);
@@ -41,6 +41,11 @@ struct RotorGroundEffect {
     } else {
       return *this;
     }
+  }
+
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>& airframe) const noexcept {
+    return effect_status(ratio, airframe);
   }
 };
 

@@ -9,6 +9,16 @@
 
 namespace pinnquad {
 
+namespace detail {
+/// Unit length, within what three printed digits leave; false for NaN.
+template <std::size_t Size>
+constexpr bool is_direction(const std::array<double, Size>& direction) noexcept {
+  double square = 0;
+  for (const double component : direction) square += component * component;
+  return square >= 1 - 1e-2 && square <= 1 + 1e-2;
+}
+}  // namespace detail
+
 /// The same wind everywhere and always; adds to the wind set so far.
 struct ConstantWind {
   static constexpr VariesWith varies_with = VariesWith::motion;
@@ -17,6 +27,12 @@ struct ConstantWind {
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
     for (int i = 0; i < 3; ++i) air.wind_m_s[i] += Scalar(velocity_m_s[static_cast<std::size_t>(i)]);
+  }
+
+  /// `out_of_range` for a velocity that is no number.
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>&) const noexcept {
+    return detail::all_bounded(velocity_m_s) ? Status::ok : Status::out_of_range;
   }
 };
 
@@ -33,6 +49,14 @@ struct PeriodicWind {
     const Scalar turns = air.time_s * Scalar(1 / period_s);
     const Scalar speed = Scalar(amplitude_m_s) * sine_of_turns(turns) + Scalar(mean_m_s);
     for (int i = 0; i < 3; ++i) air.wind_m_s[i] += speed * Scalar(direction[static_cast<std::size_t>(i)]);
+  }
+
+  /// `out_of_range` for a period that isn't positive, a direction that isn't a unit vector, or speeds that are no numbers.
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>&) const noexcept {
+    const bool holds = detail::is_direction(direction) && detail::plausible(period_s) &&
+                       detail::all_bounded(std::array<double, 2>{mean_m_s, amplitude_m_s});
+    return holds ? Status::ok : Status::out_of_range;
   }
 };
 

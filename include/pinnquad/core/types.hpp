@@ -24,7 +24,8 @@ using Vector = Matrix<Scalar, Size, 1>;
 template <class Scalar>
 using Vector3 = Vector<Scalar, 3>;
 
-/// Motor commands u_1..u_4, dimensionless, 0..1; thrust is proportional to u (NOTES: u = (n / n_max)^2).
+/// Motor commands u_1..u_4, dimensionless, 0..1; thrust is proportional to u (docs/paper.md, deviation 6: u = (n /
+/// n_max)^2).
 template <class Scalar>
 using Commands = std::array<Scalar, rotor_count>;
 

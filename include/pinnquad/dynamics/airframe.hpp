@@ -51,7 +51,7 @@ struct Airframe {
     const Scalar d = propeller_diameter_m;
     return thrust_coefficient * rated_air_density_kg_m3<Scalar> * d * d * d * d;
   }
-  /// c_Q of Eq. (2) at the rated density: torque = c_Q n^2, N m s^2 (C_Q = C_P / 2 pi, NOTES #5).
+  /// c_Q of Eq. (2) at the rated density: torque = c_Q n^2, N m s^2 (C_Q = C_P / 2 pi, docs/paper.md, deviation 5).
   constexpr Scalar dimensional_torque_coefficient() const noexcept {
     constexpr Scalar two_pi = Scalar(6.283185307179586);
     const Scalar d = propeller_diameter_m;
@@ -81,12 +81,25 @@ template <class Scalar>
 constexpr bool plausible_or_zero(Scalar value) noexcept {
   return value >= Scalar(0) && value <= Scalar(1e9);
 }
+/// Of either sign.
+template <class Scalar>
+constexpr bool bounded(Scalar value) noexcept {
+  return plausible_or_zero(value < Scalar(0) ? -value : value);
+}
+template <class Scalar, std::size_t Size>
+constexpr bool all_bounded(const std::array<Scalar, Size>& values) noexcept {
+  for (const Scalar value : values) {
+    if (!bounded(value)) return false;
+  }
+  return true;
+}
 }  // namespace detail
 
 /// Ok if such a body can exist and hover: positive mass, inertia that meets the triangle inequality, positive rotor
-/// values, thrust-to-weight above 1. The allocation is checked where it is built (rotor.hpp).
+/// values, rotors at a place, thrust-to-weight above 1. The allocation is checked where it is built (rotor.hpp).
 template <class Scalar>
 constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
+  using detail::bounded;
   using detail::plausible;
   using detail::plausible_or_zero;
   const Scalar jx = a.inertia_kg_m2[0], jy = a.inertia_kg_m2[1], jz = a.inertia_kg_m2[2];
@@ -97,7 +110,12 @@ constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
                       plausible_or_zero(a.rotor_time_constant_s);
   const bool drag = plausible_or_zero(a.drag_area_m2[0]) && plausible_or_zero(a.drag_area_m2[1]) &&
                     plausible_or_zero(a.drag_area_m2[2]) && plausible_or_zero(a.drag_deadband_m_s);
-  if (!(body && rotors && drag)) return Status::invalid_airframe;
+  bool mounts = true;
+  for (const RotorMount<Scalar>& rotor : a.rotors) {
+    mounts = mounts && bounded(rotor.x_m) && bounded(rotor.y_m) &&
+             (rotor.spin == Spin::clockwise || rotor.spin == Spin::counter_clockwise);
+  }
+  if (!(body && rotors && mounts && drag)) return Status::invalid_airframe;
   return a.thrust_to_weight() > Scalar(1) ? Status::ok : Status::invalid_airframe;
 }
 

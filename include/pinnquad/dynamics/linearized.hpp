@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Eq. (3): the dynamics linearised about hover, both ways. Inverted it is "Model 1" of Table 2.
-// NOTES #17: v_dot_z gives T, omega_dot gives tau, Eq. (2) inverted gives the commands, which are not clipped.
+// docs/paper.md, deviation 17: v_dot_z gives T, omega_dot gives tau, Eq. (2) inverted gives the commands, which are not
+// clipped.
 #pragma once
 
 #include "pinnquad/dynamics/rotor.hpp"

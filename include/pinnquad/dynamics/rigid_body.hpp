@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Eq. (1): wrench <-> accelerations, both ways, for a diagonal inertia.
-// Signs corrected as in NOTES #2: gravity is (R_B^I)^T m g, thrust acts along -z.
+// Signs corrected as in docs/paper.md, deviation 2: gravity is (R_B^I)^T m g, thrust acts along -z.
 #pragma once
 
 #include "pinnquad/dynamics/airframe.hpp"

@@ -124,7 +124,7 @@ constexpr Status invert_allocation(AllocationMatrix<Scalar> matrix, AllocationMa
   return Status::ok;
 }
 
-/// Command of a rotor speed, u = (n / n_max)^2 (NOTES #6).
+/// Command of a rotor speed, u = (n / n_max)^2 (docs/paper.md, deviation 6).
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar command_from_speed(const Airframe<Scalar>& airframe,
                                                            Scalar speed_rev_s) noexcept {
@@ -161,7 +161,7 @@ class Rotors {
 
   constexpr Status status() const noexcept { return status_; }
 
-  /// Body wrench of commands (not clipped) at a density ratio rho / rho_0: force (0, 0, -T) (NOTES #2).
+  /// Body wrench of commands (not clipped) at a density ratio rho / rho_0: force (0, 0, -T) (docs/paper.md, deviation 2).
   Wrench<Scalar> wrench(const Commands<Scalar>& u, Scalar density_ratio) const noexcept {
     const std::array<Scalar, 4> w = product(allocation_, u);
     Wrench<Scalar> result;

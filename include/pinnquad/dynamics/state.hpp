@@ -22,7 +22,7 @@ struct State {
 template <class Scalar>
 struct Accelerations {
   /// d/dt of the body-frame velocity: R^T a_world - omega x v_B. Not what an accelerometer or a world derivative shows
-  /// (NOTES #3).
+  /// (docs/paper.md, deviation 3).
   Vector3<Scalar> linear_m_s2 = Vector3<Scalar>::Zero();
   Vector3<Scalar> angular_rad_s2 = Vector3<Scalar>::Zero();  ///< (p, q, r) derivatives
 };

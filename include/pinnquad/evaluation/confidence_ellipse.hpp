@@ -71,7 +71,7 @@ inline AxisSpread axis_spread(const std::vector<double>& x, const std::vector<do
 /// The ellipse of the points (x[i] / spread.x, y[i] / spread.y), no unit. With its own spread a cloud lies at +-45
 /// degrees whatever its correlation; a prediction's angle, in the target's spread, says how far its slope or sign is
 /// off. Deviation: the paper does not say how its axes are scaled; in raw units roll and pitch stay below 1 degree,
-/// where its differences are 20 to 30 (NOTES #12).
+/// where its differences are 20 to 30 (docs/paper.md, deviation 12).
 /// NaN ellipse if a spread is 0 or NaN. Throws std::invalid_argument for series of different length.
 inline ConfidenceEllipse standardized_confidence_ellipse(const std::vector<double>& x, const std::vector<double>& y,
                                                          const AxisSpread& spread, double sigmas = 3) {

@@ -43,7 +43,7 @@ MotionInputs<Scalar> motion_inputs(const State<Scalar>& state, const Acceleratio
   return {motion.linear_m_s2, motion.angular_rad_s2, body_velocity(state), state.body_rates_rad_s, state.attitude};
 }
 
-/// X of Sec. 4.1: (v_dot_B, omega_dot, v_B, omega, phi, theta, sin psi, cos psi), 16 entries (NOTES #1).
+/// X of Sec. 4.1: (v_dot_B, omega_dot, v_B, omega, phi, theta, sin psi, cos psi), 16 entries (docs/paper.md, deviation 1).
 struct PaperFeatures {
   template <class Scalar>
   using Inputs = MotionInputs<Scalar>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a network's four outputs mean, as a type (NOTES #20): motor commands, or rotor speeds.
+// What a network's four outputs mean, as a type (docs/paper.md, deviation 20): motor commands, or rotor speeds.
 // Contract: `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)` and its derivative `command_slope`.
 #pragma once
 

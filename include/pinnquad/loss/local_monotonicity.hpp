@@ -72,7 +72,8 @@ struct StepPairs {
 
 /// mean over the N - 1 consecutive pairs of 1 - step(m_{i+1} - m_i) step(n_{i+1} - n_i); N = 1 gives 0.
 /// 0: the series rise and fall together; 1: unrelated; 2: always opposed. Adds weight * d/dm to `gradient`.
-/// Algorithm 1 prints 1 / N_b over N_b - 1 terms; the mean over the pairs gives footnote 2's values (NOTES #8).
+/// Algorithm 1 prints 1 / N_b over N_b - 1 terms; the mean over the pairs gives footnote 2's values (docs/paper.md,
+/// deviation 8).
 template <class Step, class Array>
 typename Array::Scalar local_monotonicity(const Step& step, const Array& m, const Array& n,
                                           typename Array::Scalar weight, Array& gradient) {
@@ -97,7 +98,8 @@ typename Array::Scalar monotonicity_match(const Step& step, const Array& m, cons
   return (steps.m - steps.n).square().sum() / pairs;
 }
 
-/// Form of the loss, default: both series divided by their spread in the training set, mean over the pairs (NOTES #8, #9).
+/// Form of the loss, default: both series divided by their spread in the training set, mean over the pairs
+/// (docs/paper.md, deviations 8 and 9).
 struct Standardised {
   static constexpr double gain = 3.0;  ///< of a TanhStep that is not set otherwise
   static constexpr bool physical_units = false;

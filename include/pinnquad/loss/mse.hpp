@@ -7,7 +7,7 @@
 namespace pinnquad {
 
 /// L = mean over samples and outputs of (prediction - target)^2, standardised units (PyTorch's meaning).
-/// Algorithm 1 divides by N_b only: a lambda of the paper weighs four times as much here (NOTES #10).
+/// Algorithm 1 divides by N_b only: a lambda of the paper weighs four times as much here (docs/paper.md, deviation 10).
 struct Mse {
   template <class Context, class Batch, class Gradient>
   typename Batch::Scalar evaluate(const Context&, const Batch& batch, typename Batch::Scalar weight,

@@ -11,7 +11,8 @@ namespace pinnquad {
 
 /// beta = mod(k, P) / P with P = ceil(T / M): lambda_max while beta <= R, then (1 - beta) / (1 - R) lambda_max.
 /// k is the epoch from 0, T the epochs. It never reaches 0: a cycle's last epoch has lambda_max / (P (1 - R)). R = 1 means
-/// constant; the last cycle may be cut short (NOTES #11). Fewer than one cycle have no weight: NaN, see check().
+/// constant; the last cycle may be cut short (docs/paper.md, deviation 11). Fewer than one cycle have no weight: NaN, see
+/// check().
 struct CyclicalAnnealing {
   double maximum = 0.1;  ///< lambda_max
   int cycles = 5;        ///< M

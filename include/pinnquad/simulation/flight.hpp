@@ -83,6 +83,12 @@ struct FlightRow {
   const Sample& sample;
 };
 
+/// Angle between the body's down axis and the world's, 0..pi.
+inline double tilt_rad(const Quaternion<double>& attitude) noexcept {
+  const double upright = body_down_axis(attitude)[2];
+  return std::acos(upright < -1 ? -1 : upright);  // upside down, rounding goes beyond
+}
+
 /// Flies and records. `observer(const FlightRow&)` is called after each row. A Status that isn't ok, or the ground,
 /// ends the flight (simulation/simulator.hpp); the rows up to there are kept and the report says where.
 template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder>
@@ -96,10 +102,10 @@ RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPla
   while (report.rows < plan.samples && simulator.next_row()) {
     const State<double>& body = simulator.vehicle().body;
     const double speed_m_s = body.velocity_m_s.norm();
-    const double tilt_rad = std::acos(body_down_axis(body.attitude)[2]);
+    const double tilt = tilt_rad(body.attitude);
     const double altitude_m = simulator.altitude_m();
     if (speed_m_s > report.max_speed_m_s) report.max_speed_m_s = speed_m_s;
-    if (tilt_rad > report.max_tilt_rad) report.max_tilt_rad = tilt_rad;
+    if (tilt > report.max_tilt_rad) report.max_tilt_rad = tilt;
     if (report.rows == 0 || altitude_m < report.min_altitude_m) report.min_altitude_m = altitude_m;
     if (report.rows == 0 || altitude_m > report.max_altitude_m) report.max_altitude_m = altitude_m;
     if (saturated(simulator.commands())) ++saturated_rows;

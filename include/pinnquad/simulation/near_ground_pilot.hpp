@@ -26,7 +26,7 @@ struct NearGroundStyle {
   double max_vertical_acceleration_m_s2{3};  ///< of the height profile
   double min_hold_s{1.2};                    ///< a hover, a traverse, a stay on the ground takes between these two
   double max_hold_s{3.4};
-  int max_legs{5};              ///< hovers and traverses between a take-off and its landing, at least one
+  int max_legs{5};              ///< hovers and traverses between a take-off and its landing; below one it is one
   double velocity_lag_s{0.5};   ///< the velocity asked for follows its target with this lag
   double height_gain_1_s{1.5};  ///< climb asked for per height error
   double lead_s{0.33};          ///< climb asked for ahead of the profile: what the vehicle needs to follow
@@ -58,8 +58,8 @@ class NearGroundPilot {
     if (!started_) begin(height_m);
     if (time_s >= phase_end_s_) choose_next(state);
 
-    const double velocity_share = elapsed_s / (style_.velocity_lag_s + elapsed_s);
-    const double yaw_share = elapsed_s / (style_.yaw_rate_lag_s + elapsed_s);
+    const double velocity_share = lag_share(elapsed_s, style_.velocity_lag_s);
+    const double yaw_share = lag_share(elapsed_s, style_.yaw_rate_lag_s);
     for (int i = 0; i < 2; ++i) {
       wanted_.velocity_m_s[i] += (target_velocity_m_s_[i] - wanted_.velocity_m_s[i]) * velocity_share;
     }
@@ -91,7 +91,10 @@ class NearGroundPilot {
   void choose_next(const State<double>& state) {
     switch (phase_) {
       case NearGroundPhase::stay:
-        legs_left_ = 1 + static_cast<int>(uniform_index(engine_, static_cast<std::uint64_t>(style_.max_legs)));
+        legs_left_ = 1;
+        if (style_.max_legs > 1) {
+          legs_left_ += static_cast<int>(uniform_index(engine_, static_cast<std::uint64_t>(style_.max_legs)));
+        }
         change_height(NearGroundPhase::take_off, flight_height_m(), style_.max_climb_m_s);
         drift(style_.hover_speed_m_s);
         return;
@@ -173,6 +176,7 @@ class NearGroundPilot {
   /// Climb asked for at a height, m/s up.
   double climb(double height_m) const {
     const double duration_s = phase_end_s_ - phase_start_s_;
+    if (duration_s == 0) return style_.height_gain_1_s * (to_m_ - height_m);  // a stay of no time
     const double x = (time_s_ - phase_start_s_) / duration_s;
     const double rise_m = to_m_ - from_m_;
     const double profile_m = from_m_ + rise_m * x * x * x * (10 + x * (-15 + 6 * x));

@@ -57,6 +57,16 @@ class NoisyRecorder {
 
   const RecorderErrors& errors() const noexcept { return errors_; }
 
+  /// `out_of_range` for an error that is negative or no number, or gyro samples no time apart.
+  Status status() const noexcept {
+    using detail::plausible_or_zero;
+    const RecorderErrors& e = errors_;
+    const bool holds = detail::plausible(e.derivative_interval_s) && plausible_or_zero(e.gyro_noise_rad_s) &&
+                       plausible_or_zero(e.command_latency_s) && plausible_or_zero(e.command_jitter_s) &&
+                       plausible_or_zero(e.velocity_noise_m_s) && plausible_or_zero(e.attitude_noise_rad);
+    return holds ? Status::ok : Status::out_of_range;
+  }
+
   void hold(const Commands<double>& commands, double time_s) {
     held_.push_back({time_s, commands});
     const double oldest_s = time_s - errors_.command_latency_s - errors_.command_jitter_s;

@@ -47,8 +47,8 @@ class RandomPilot {
       next_target_s_ = time_s + uniform(engine_, style_.min_hold_s, style_.max_hold_s);
       choose_target(state);
     }
-    const double velocity_share = elapsed_s / (style_.velocity_lag_s + elapsed_s);
-    const double yaw_share = elapsed_s / (style_.yaw_rate_lag_s + elapsed_s);
+    const double velocity_share = lag_share(elapsed_s, style_.velocity_lag_s);
+    const double yaw_share = lag_share(elapsed_s, style_.yaw_rate_lag_s);
     wanted_.velocity_m_s += (target_velocity_m_s_ - wanted_.velocity_m_s) * velocity_share;
     wanted_.yaw_rate_rad_s += (target_yaw_rate_rad_s_ - wanted_.yaw_rate_rad_s) * yaw_share;
     thumbs_.move(engine_, time_s, wanted_.stick_rad_s);

@@ -6,6 +6,7 @@
 //   template <class... Effects> Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&,
 //                                                 const Commands<double>& commands);
 //     the row of the present instant; `commands` are those held up to it.
+// Optional: `Status status() const noexcept`, asked before the flight: whether its settings make sense.
 #pragma once
 
 #include <type_traits>
@@ -32,18 +33,27 @@ struct MakesRows<Recorder, std::void_t<decltype(std::declval<Recorder&>()(std::d
     : std::is_same<Sample, decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
                                                               std::declval<const VehicleState<double>&>(),
                                                               std::declval<const Commands<double>&>()))> {};
+/// A recorder whose settings can be wrong has `Status status() const noexcept`; ok for one that has none.
+template <class Recorder, class = void>
+struct RecorderStatus {
+  static Status of(const Recorder&) noexcept { return Status::ok; }
+};
+template <class Recorder>
+struct RecorderStatus<Recorder, std::void_t<decltype(std::declval<const Recorder&>().status())>> {
+  static Status of(const Recorder& recorder) noexcept { return recorder.status(); }
+};
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class Recorder>
 inline constexpr bool is_recorder = detail::Holds<Recorder>::value&& detail::MakesRows<Recorder>::value;
 
-/// The vehicle's row at its present time, without error. Accelerations come from the dynamics (NOTES #14) with the
-/// rotors as they turn now, behind their lag, not from differences. Commands are what was held up to this instant,
-/// clipped as the rotors clip it: the command, not the lag-filtered thrust, because that is what a flight log has and
-/// what the paper's network is to give. Behind a 5 ms lag the rotors differ from it by about 5 ms times its rate of
-/// change, some 1e-2 in agile flight: motion and command determine each other that well and no better. Altitude is
-/// above ground.
+/// The vehicle's row at its present time, without error. Accelerations come from the dynamics (docs/paper.md, deviation
+/// 14) with the rotors as they turn now, behind their lag, not from differences. Commands are what was held up to this
+/// instant, clipped as the rotors clip it: the command, not the lag-filtered thrust, because that is what a flight log
+/// has and what the paper's network is to give. Behind a 5 ms lag the rotors differ from it by about 5 ms times its
+/// rate of change, some 1e-2 in agile flight: motion and command determine each other that well and no better. Altitude
+/// is above ground.
 struct ExactRecorder {
   void hold(const Commands<double>& /*commands*/, double /*time_s*/) const noexcept {}
 

@@ -57,9 +57,9 @@ struct HasGroundEffectSwitch<Vehicle, Model,
 /// A tick: the pilot's set point, the controller's demand, the inverse's commands, torque before thrust, and physics
 /// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
 /// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
-/// start; `out_of_range` for clocks that do not run; not_finite, output_not_finite and no_solution on the
-/// way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that moment, and what was
-/// recorded stays.
+/// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row, and
+/// no_solution on the way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that
+/// moment, and what was recorded stays.
 template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
 class Simulator {
   static_assert(is_pilot<Pilot>, "pinnquad: this type is no pilot (simulation/pilot.hpp)");
@@ -74,9 +74,9 @@ class Simulator {
     vehicle_.body.position_m = settings.start_m;
     const bool clocks_run =
         settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
-    const Status status = clocks_run
-                              ? with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); })
-                              : Status::out_of_range;
+    Status status = Status::out_of_range;
+    if (clocks_run) status = with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); });
+    if (status == Status::ok) status = detail::RecorderStatus<Recorder>::of(recorder_);
     if (status != Status::ok) decline(status);
   }
 
@@ -101,7 +101,8 @@ class Simulator {
     return goes_on;
   }
 
-  /// Flies on for a duration, rounded to control ticks; none for a negative one or NaN. True while the vehicle flies.
+  /// Flies on for a duration, rounded to control ticks; none for a negative one or NaN, until the flight ends for
+  /// infinity. True while the vehicle flies.
   bool advance(double duration_s) {
     const double ticks = std::floor(duration_s / settings_.control_period_s() + 0.5);
     for (double done = 0; done < ticks && flying(); ++done) tick();
@@ -209,7 +210,12 @@ class Simulator {
       end_ = FlightEnd::ground;
       return;
     }
-    recording_.push_back(recorder_(quadrotor, vehicle_, commands_));
+    const Sample sample = recorder_(quadrotor, vehicle_, commands_);
+    if (!all_finite(to_values(sample))) {
+      decline(Status::output_not_finite);
+      return;
+    }
+    recording_.push_back(sample);
   }
 
   template <class Actual>

@@ -17,6 +17,9 @@ struct ThumbStyle {
   double yaw_spread_rad_s{0.062};
 };
 
+/// The share of its way to a target that a first-order lag goes in a time; all of it without lag.
+inline double lag_share(double elapsed_s, double lag_s) { return lag_s == 0 ? 1 : elapsed_s / (lag_s + elapsed_s); }
+
 /// Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between frames.
 /// Three draws per frame: roll, pitch, yaw.
 class Thumbs {

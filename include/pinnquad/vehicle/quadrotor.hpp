@@ -8,6 +8,7 @@
 
 #include "pinnquad/aero/effect.hpp"
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
@@ -31,14 +32,47 @@ struct Evaluation {
   Accelerations<Scalar> motion;
 };
 
+namespace detail {
+/// What an effect as it is by default says, while compiling, of an airframe known then; ok for one that can't be asked
+/// before it flies.
+template <class Effect, class Vehicle, class = void>
+struct DefaultStatus : std::integral_constant<Status, Status::ok> {};
+template <class Effect, class Vehicle>
+struct DefaultStatus<Effect, Vehicle,
+                     std::void_t<std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())>>>
+    : std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())> {};
+}  // namespace detail
+
 /// Eqs. (1) and (2) with effects. An effect that is not named costs nothing.
 template <class Scalar, class... Effects>
 class Quadrotor {
   static_assert(
       (is_effect<Effects> && ...),
       "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
+  static_assert(
+      (is_whole_effect<Effects>() && ...),
+      "pinnquad: an effect's surroundings(), wrench() or wrench_on() can't be called as the contract says, or "
+      "returns something else: it would be passed over (aero/effect.hpp)");
+  static_assert((is_noexcept_effect<Effects> && ...),
+                "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on() and bound() must be noexcept "
+                "(aero/effect.hpp)");
 
  public:
+  /// The vehicle of an airframe known when compiled, `Quadrotor<double, QuadraticDrag>::of<Crazyflie>(site)`: what
+  /// airframe_value() refuses, and a model of an effect that doesn't hold for the airframe, is a compile error.
+  template <class Vehicle>
+  static Quadrotor of(const Site<Scalar>& site, const Effects&... effects) noexcept {
+    static_assert(((detail::DefaultStatus<Effects, Vehicle>::value == Status::ok) && ...),
+                  "pinnquad: an effect does not hold for this airframe: a ground effect's fit has a pole or an "
+                  "implausible ratio at its motor spacing and propeller radius (aero/ground_effect.hpp)");
+    return Quadrotor(airframe_value<Vehicle, Scalar>(), site, effects...);
+  }
+  /// The same with effects as they are by default.
+  template <class Vehicle, std::size_t Count = sizeof...(Effects), std::enable_if_t<(Count > 0), int> = 0>
+  static Quadrotor of(const Site<Scalar>& site = {}) noexcept {
+    return of<Vehicle>(site, Effects{}...);
+  }
+
   /// Effects as they are by default.
   template <std::size_t Count = sizeof...(Effects), std::enable_if_t<(Count > 0), int> = 0>
   explicit Quadrotor(const Airframe<Scalar>& airframe, const Site<Scalar>& site = {}) noexcept
@@ -50,19 +84,18 @@ class Quadrotor {
         inverse_mass_(Scalar(1) / airframe.mass_kg),
         site_(site),
         effects_(bound_effect(effects, airframe)...),
-        rotors_(airframe) {}
+        rotors_(airframe),
+        status_(first_fault(effects...)) {}
 
   const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
   const Site<Scalar>& site() const noexcept { return site_; }
   const Rotors<Scalar>& rotors() const noexcept { return rotors_; }
 
-  /// Invalid values or an allocation that can't be inverted.
-  Status status() const noexcept {
-    const Status airframe = check_airframe(airframe_);
-    return airframe == Status::ok ? rotors_.status() : airframe;
-  }
+  /// Not ok, and neither step() nor the inverse has an answer: `invalid_airframe`, `no_solution` for an allocation that
+  /// can't be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
+  Status status() const noexcept { return status_; }
 
-  /// The air at a place and time: density and wind as the effects set them.
+  /// The air at a place and time: density and wind as the effects set them, and whether they have an answer there.
   PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
     Surroundings<Scalar> air;
     air.time_s = time_s;
@@ -95,7 +128,8 @@ class Quadrotor {
                           });
   }
 
-  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag.
+  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Checks nothing: they mean
+  /// something where status() and the surroundings' status are ok.
   Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                               Scalar time_s) const noexcept {
     Evaluation<Scalar> result = loads(state, rotor_commands, time_s);
@@ -104,8 +138,9 @@ class Quadrotor {
   }
 
   /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly.
-  /// `not_finite` for a bad input, `out_of_range` for a step backwards, `not_unit_quaternion`, `output_not_finite` for a
-  /// diverged result; the state is untouched then.
+  /// What status() says; `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of
+  /// the body in one step, a clock so late that the step doesn't move it, or air that has no answer (Surroundings);
+  /// `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the Status is ok.
   PINNQUAD_FLATTEN Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
                                Scalar step_s) const noexcept {
     const Status input = check_input(state, commands, step_s);
@@ -113,12 +148,16 @@ class Quadrotor {
     const Scalar half_factor = lag_factor(airframe_.rotor_time_constant_s, step_s / Scalar(2));
     const Commands<Scalar> middle = lagged(state.rotors, commands, half_factor);
     const Commands<Scalar> end = lagged(middle, commands, half_factor);
+    const Commands<Scalar>& start = airframe_.rotor_time_constant_s > Scalar(0) ? state.rotors : end;
+    Status air = Status::ok;
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
-      const Commands<Scalar>& rotors = offset_s == Scalar(0) ? state.rotors : (offset_s < step_s ? middle : end);
-      return rate_of_change(body, rotors, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)));
+      const Commands<Scalar>& rotors = offset_s == Scalar(0) ? start : (offset_s < step_s ? middle : end);
+      return rate_of_change(body, rotors, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
     };
     const State<Scalar> next = rk4_step(state.body, step_s, rate);
-    if (!all_finite(next)) return Status::output_not_finite;
+    if (air != Status::ok) return air;
+    if (!(all_finite(next) && is_unit(next.attitude))) return Status::output_not_finite;
+    if (!can_follow(next, step_s)) return Status::out_of_range;
     state.body = next;
     state.rotors = end;
     state.time_s += static_cast<double>(step_s);
@@ -132,14 +171,37 @@ class Quadrotor {
   }
 
  private:
+  Status first_fault(const Effects&... effects) const noexcept {
+    Status fault = check_airframe(airframe_);
+    if (fault == Status::ok) fault = rotors_.status();
+    const bool place =
+        detail::bounded(site_.elevation_m) && detail::bounded(site_.ground_z_m) && detail::bounded(site_.gravity_m_s2);
+    if (fault == Status::ok && !place) fault = Status::out_of_range;
+    ((fault = fault == Status::ok ? effect_status(effects, airframe_) : fault), ...);
+    return fault;
+  }
+
+  /// Beyond half a turn in one step an attitude is no longer followed but guessed.
+  static PINNQUAD_ALWAYS_INLINE bool can_follow(const State<Scalar>& body, Scalar step_s) noexcept {
+    constexpr Scalar half_turn_rad = Scalar(3.141592653589793);
+    const Scalar x = body.body_rates_rad_s[0] * step_s, y = body.body_rates_rad_s[1] * step_s,
+                 z = body.body_rates_rad_s[2] * step_s;
+    return x * x + y * y + z * z <= half_turn_rad * half_turn_rad;
+  }
+
   /// Out of line: the integers of its bit tests would cost the step a tenth of its time.
-  PINNQUAD_NOINLINE static Status check_input(const VehicleState<Scalar>& state, const Commands<Scalar>& commands,
-                                              Scalar step_s) noexcept {
+  PINNQUAD_NOINLINE Status check_input(const VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                                       Scalar step_s) const noexcept {
+    if (status_ != Status::ok) return status_;
     if (!(all_finite(state.body) && all_finite(state.rotors) && is_finite(state.time_s) && all_finite(commands) &&
           is_finite(step_s))) {
       return Status::not_finite;
     }
-    if (step_s < Scalar(0)) return Status::out_of_range;
+    constexpr double latest_s = 1e12;  // beyond, no clock in seconds tells milliseconds apart
+    const double start_s = state.time_s, end_s = start_s + static_cast<double>(step_s);
+    const bool clock_moves = end_s > start_s || step_s == Scalar(0);
+    if (!(clock_moves && start_s >= -latest_s && end_s <= latest_s)) return Status::out_of_range;
+    if (!can_follow(state.body, step_s)) return Status::out_of_range;
     return is_unit(state.body.attitude) ? Status::ok : Status::not_unit_quaternion;
   }
 
@@ -169,7 +231,7 @@ class Quadrotor {
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                        const Commands<Scalar>& rotor_commands,
                                                        const WrenchOf& wrench_of) const noexcept {
-    AeroCondition<Scalar> condition;
+    RotorCondition<Scalar> condition;
     condition.air_relative_velocity_m_s =
         Axes(state.attitude)
             .to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
@@ -181,12 +243,13 @@ class Quadrotor {
     condition.time_s = air.time_s;
     each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       using Effect = std::decay_t<decltype(effect)>;
-      if constexpr (makes_wrench<Effect>) {
-        condition.rotors =
-            uses_rotor_wrench<Effect> ? rotors_.wrench(rotor_commands, density_ratio(air)) : Wrench<Scalar>{};
-        condition.rotor_thrust_N = uses_rotor_wrench<Effect> ? rotors_.thrusts(rotor_commands, density_ratio(air))
-                                                             : std::array<Scalar, rotor_count>{};
+      if constexpr (uses_rotor_wrench<Effect>) {
+        condition.rotors = rotors_.wrench(rotor_commands, density_ratio(air));
+        condition.rotor_thrust_N = rotors_.thrusts(rotor_commands, density_ratio(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
+      } else if constexpr (makes_wrench<Effect>) {
+        const AeroCondition<Scalar>& without_rotors = condition;
+        condition.aerodynamic = condition.aerodynamic + wrench_of(effect, without_rotors);
       }
     });
     return condition.aerodynamic;
@@ -215,9 +278,10 @@ class Quadrotor {
   /// The same motion as evaluate()'s, in world axes as the integrator wants it. v_dot = R f / m + g directly: Eq. (1)'s
   /// omega x v_B would be subtracted only to be added again.
   PINNQUAD_ALWAYS_INLINE StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
-                                                                const Commands<Scalar>& rotor_commands,
-                                                                Scalar time_s) const noexcept {
+                                                                const Commands<Scalar>& rotor_commands, Scalar time_s,
+                                                                Status& air) const noexcept {
     const Evaluation<Scalar> e = loads(state, rotor_commands, time_s);
+    if (e.surroundings.status != Status::ok) air = e.surroundings.status;
     const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
@@ -244,6 +308,7 @@ class Quadrotor {
   Site<Scalar> site_;
   std::tuple<decltype(bound_effect(std::declval<Effects>(), std::declval<Airframe<Scalar>>()))...> effects_;
   Rotors<Scalar> rotors_;
+  Status status_;
 };
 
 }  // namespace pinnquad

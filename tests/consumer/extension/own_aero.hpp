@@ -9,11 +9,10 @@ namespace own {
 
 /// Rotor drag, linear in the air-relative velocity and in thrust: F = -k T (v_x, v_y, 0).
 struct RotorDrag {
-  static constexpr bool uses_rotor_wrench = true;
   double coefficient_s_m = 0.02;
 
   template <class Scalar>
-  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::RotorCondition<Scalar>& condition,
                                   const pinnquad::Airframe<Scalar>&) const noexcept {
     const Scalar thrust_N = -condition.rotors.force_N[2];
     pinnquad::Wrench<Scalar> result;
