@@ -328,6 +328,11 @@ TEST_CASE("a batch that is none is refused, and nothing has changed") {
                        std::invalid_argument);
   rows[3] = -1;
   CHECK_THROWS_AS(trainer->batch(data, rows.data(), 8), std::invalid_argument);
+  rows[3] = 3;
+  auto broken = data;
+  broken.outputs[4 * 3 + 1] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH_AS(trainer->batch(broken, rows.data(), 8),
+                       "Trainer: expected finite numbers, found others in row 3", std::invalid_argument);
   auto torn = data;
   torn.features.pop_back();
   CHECK_THROWS_WITH_AS(trainer->epoch(torn, {0, 1}, engine),
@@ -379,6 +384,18 @@ TEST_CASE("a loss whose numbers make no sense does not begin a training") {
     std::get<1>(loss.terms).schedule.cycles = 0;
     CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, PaperContext{}),
                          "CyclicalAnnealing::cycles: expected a number from 1, found 0", std::invalid_argument);
+  }
+  SUBCASE("a context of rows with a NaN") {
+    PaperContext context;
+    context.input.mean[5] = context.input.spread[5] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, context),
+                         "Context::input: expected a finite number, found nan", std::invalid_argument);
+  }
+  SUBCASE("a spread of 0") {
+    PaperContext context;
+    context.signed_sum_spread[2] = 0.0;
+    CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, context),
+                         "Context::signed_sum_spread: expected a spread above 0, found 0", std::invalid_argument);
   }
   SUBCASE("gain") {
     std::get<2>(loss.terms).loss.step.gain = std::numeric_limits<double>::quiet_NaN();

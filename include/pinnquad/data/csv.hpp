@@ -37,6 +37,8 @@ inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows 
                            "a time above " + detail::number_text(flight.back().time_s) + " in column t",
                            detail::number_text(values[0]));
         }
+        // room for all rows at once: growing would hold the flight twice
+        if (flight.empty()) flight.reserve(detail::most_records(path, fields.size()));
         SampleValues row;
         std::copy(values.begin(), values.end(), row.begin());
         flight.push_back(to_sample(row));
@@ -48,8 +50,7 @@ inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows 
 /// Throws OutputError if the file cannot be written, or if the flight could not be read back: a value that is not
 /// finite, time that does not increase.
 inline void write_flight_csv(const std::string& path, const Flight& flight) {
-  std::vector<std::vector<double>> rows;
-  rows.reserve(flight.size());
+  CsvWriter writer(path, detail::flight_columns());
   for (std::size_t i = 0; i < flight.size(); ++i) {
     const SampleValues values = to_values(flight[i]);
     for (std::size_t field = 0; field < values.size(); ++field) {
@@ -61,9 +62,9 @@ inline void write_flight_csv(const std::string& path, const Flight& flight) {
     if (i > 0 && !(flight[i].time_s > flight[i - 1].time_s)) {
       throw OutputError(path, "time does not increase at sample " + std::to_string(i));
     }
-    rows.emplace_back(values.begin(), values.end());
+    writer.row(values.data(), values.size());
   }
-  write_csv(path, detail::flight_columns(), rows);
+  writer.commit();
 }
 
 }  // namespace pinnquad

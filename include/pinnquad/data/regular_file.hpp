@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What may be read as a whole: a regular file of a size that a program can hold.
+// What may be read: a regular file of a size that a program can take in.
 // A pipe or a device may never end, so that reading one would be waiting for ever.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace pinnquad::detail {
 
-/// Most bytes of a file that is read as a whole: the longest flight that `fly` records has 4e9.
+/// Most bytes of a file that is read: the longest flight that `fly` records has 4e9.
 inline constexpr std::uintmax_t most_input_bytes = std::uintmax_t{1} << 33;
 
 [[noreturn]] inline void refuse_size(const std::string& path) {

@@ -27,6 +27,10 @@ template <class Number>
 }
 
 /// Usable in constant expressions: there a setting that is refused is a compile error.
+constexpr void expect_finite(const char* setting, double value) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  if (!(value >= -largest && value <= largest)) refuse_setting(setting, "a finite number", value);
+}
 constexpr void expect_from_zero(const char* setting, double value) {
   if (!(value >= 0.0 && value <= std::numeric_limits<double>::max())) {
     refuse_setting(setting, "a finite number from 0", value);

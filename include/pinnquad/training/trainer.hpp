@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/training/adam.hpp"
@@ -60,13 +61,14 @@ class Trainer {
   using Scalar = typename Network::Scalar;
   using Data = TrainingData<Scalar, Network::inputs, Network::outputs>;
 
-  /// Throws std::invalid_argument if a number of the loss, of its schedules or of the optimiser makes no sense
+  /// Throws std::invalid_argument if a number of the loss, of its schedules, of the optimiser or of the context makes no sense
   /// (schedule/settings.hpp).
   Trainer(const Network& network, const LossType& loss, const OptimizerType& optimizer, const ContextType& context,
           const Order& order = {})
       : loss_(loss), optimizer_(optimizer), context_(context), order_policy_(order) {
     check_settings(loss_);
     check_settings(optimizer_);
+    check_settings(context_);
     gradient_.load(network.parameters);
   }
 
@@ -125,7 +127,7 @@ class Trainer {
   }
 
   /// Loss of these rows and its gradient by all parameters (see parameter_gradient()); nothing is changed.
-  /// Throws std::invalid_argument unless there are 1 to BatchSize rows, each of them one of the data's.
+  /// Throws std::invalid_argument unless there are 1 to BatchSize rows, each of them one of the data's and finite.
   Scalar differentiate(const Data& data, const int* rows, int size) {
     check_data(data);
     if (size < 1 || size > BatchSize) {
@@ -140,6 +142,9 @@ class Trainer {
     for (int i = 0; i < size; ++i) {
       const Scalar* x = data.features_of(rows[i]);
       const Scalar* y = data.outputs_of(rows[i]);
+      if (!all_finite(x, Network::inputs) || !all_finite(y, Network::outputs)) {
+        refuse("expected finite numbers, found others in row " + std::to_string(rows[i]));
+      }
       Scalar* input = gradient_.input(i);
       for (int k = 0; k < Network::inputs; ++k) input[k] = loss_batch_.features(k, i) = x[k];
       for (int k = 0; k < Network::outputs; ++k) loss_batch_.target(k, i) = y[k];

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// Numbers as decimal text: the fewest digits that read back to the same bits. No locale plays a part.
+// By <charconv>; where the standard library has it for integers only, by the C library in the "C" locale.
+#pragma once
+
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "pinnquad/core/finite.hpp"
+
+// PINNQUAD_NUMBERS_BY_LOCALE, defined for a whole program, takes the second way where both are: for tests.
+#if !defined(__cpp_lib_to_chars) && !defined(PINNQUAD_NUMBERS_BY_LOCALE)
+#define PINNQUAD_NUMBERS_BY_LOCALE
+#endif
+
+#if defined(PINNQUAD_NUMBERS_BY_LOCALE)
+#include <locale.h>
+#if defined(__APPLE__) || defined(__FreeBSD__)
+#include <xlocale.h>
+#endif
+#endif
+
+namespace pinnquad {
+namespace detail {
+
+/// Longest text of a double that number_text() gives, with room to spare.
+inline constexpr std::size_t longest_number = 40;
+
+#if defined(PINNQUAD_NUMBERS_BY_LOCALE)
+
+/// The "C" locale for what this thread does while this lives; a decimal comma elsewhere does not matter.
+class PlainLocale {
+ public:
+  PlainLocale() noexcept : before_(uselocale(plain())) {}
+  ~PlainLocale() { uselocale(before_); }
+  PlainLocale(const PlainLocale&) = delete;
+  PlainLocale& operator=(const PlainLocale&) = delete;
+
+ private:
+  static locale_t plain() noexcept {
+    static const locale_t locale = newlocale(LC_ALL_MASK, "C", locale_t{});
+    return locale;
+  }
+  locale_t before_;
+};
+
+/// The digits of [first, last) as from_chars takes them: sign, digits with a point, exponent. strtod would also take blanks,
+/// a plus sign and hexadecimal.
+inline bool is_decimal(const char* first, const char* last, bool& is_zero) noexcept {
+  const auto digits = [&](bool& zero) {
+    const char* begin = first;
+    for (; first != last && *first >= '0' && *first <= '9'; ++first) zero = zero && *first == '0';
+    return first - begin;
+  };
+  is_zero = true;
+  bool ignored = true;
+  if (first != last && *first == '-') ++first;
+  auto count = digits(is_zero);
+  if (first != last && *first == '.') {
+    ++first;
+    count += digits(is_zero);
+  }
+  if (count == 0) return false;
+  if (first != last && (*first == 'e' || *first == 'E')) {
+    ++first;
+    if (first != last && (*first == '+' || *first == '-')) ++first;
+    if (digits(ignored) == 0) return false;
+  }
+  return first == last;
+}
+
+/// The whole of [first, last) as a number; false for text, and for what only 0 or infinity is nearest to.
+inline bool read_number(const char* first, const char* last, double& value) {
+  bool is_zero = false;
+  if (!is_decimal(first, last, is_zero)) return false;
+  const std::string text(first, last);  // ends with the zero that strtod wants
+  const PlainLocale plain;
+  value = std::strtod(text.c_str(), nullptr);
+  return is_finite(value) && (value != 0.0 || is_zero);
+}
+
+/// Writes the number and returns its end; the buffer holds `longest_number`.
+inline char* print_number(char* buffer, double value) {
+  const PlainLocale plain;
+  if (!is_finite(value)) return buffer + std::snprintf(buffer, longest_number, "%g", value);  // inf, nan
+  int digits = 1;
+  int length = 0;
+  do {
+    length = std::snprintf(buffer, longest_number, "%.*e", digits - 1, value);
+  } while (std::strtod(buffer, nullptr) != value && ++digits <= 17);
+  // without an exponent if that is not longer, as to_chars has it
+  const int exponent = std::atoi(std::string_view(buffer, static_cast<std::size_t>(length)).rfind('e') + 1 + buffer);
+  char fixed[400];
+  const int decimals = digits - 1 > exponent ? digits - 1 - exponent : 0;
+  const int fixed_length = std::snprintf(fixed, sizeof fixed, "%.*f", decimals, value);
+  if (fixed_length > length) return buffer + length;
+  for (int i = 0; i < fixed_length; ++i) buffer[i] = fixed[i];
+  return buffer + fixed_length;
+}
+
+#else
+
+/// The whole of [first, last) as a number; false for text, and for what only 0 or infinity is nearest to.
+inline bool read_number(const char* first, const char* last, double& value) {
+  const std::from_chars_result result = std::from_chars(first, last, value);
+  return result.ec == std::errc() && result.ptr == last && is_finite(value);
+}
+
+/// Writes the number and returns its end; the buffer holds `longest_number`.
+inline char* print_number(char* buffer, double value) {
+  return std::to_chars(buffer, buffer + longest_number, value).ptr;
+}
+
+#endif
+
+/// Shortest text that reads back to the same bits.
+inline std::string number_text(double value) {
+  char buffer[longest_number];
+  return std::string(buffer, print_number(buffer, value));
+}
+
+/// The whole cell as a finite number; a leading plus sign is accepted.
+inline bool parse_number(std::string_view cell, double& value) {
+  const char* first = cell.data();
+  const char* const last = first + cell.size();
+  if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') ++first;
+  return read_number(first, last, value);
+}
+
+}  // namespace detail
+}  // namespace pinnquad
