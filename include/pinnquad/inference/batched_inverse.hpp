@@ -17,6 +17,8 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
   static_assert(GuardType::refuses_outside_envelope,
                 "pinnquad: a batch refuses what is outside the envelope; take a guard with TrainingEnvelope");
+  static_assert(!GuardType::compares,
+                "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Batched = BatchedNetwork<typename Model::Network>;
   using Numbers = detail::ModelNumbers<Model>;
