@@ -313,7 +313,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     for (int i = 0; i < Features::size; ++i) {
       const Scalar beyond = x[i] < lower[i] ? lower[i] - x[i] : x[i] - upper[i];  // NaN stays NaN
       Scalar excess = beyond / ((upper[i] - lower[i]) / Scalar(2));
-      if (x[i] >= lower[i] && x[i] <= upper[i]) excess = Scalar(0);
+      if (is_finite(x[i]) && x[i] >= lower[i] && x[i] <= upper[i]) excess = Scalar(0);
       report.excess[static_cast<std::size_t>(i)] = excess;
       // what is not finite outdoes every number, the first of them all
       if (is_finite(worst) && (!is_finite(excess) || excess > worst)) {
