@@ -8,16 +8,31 @@
 // CASE TWO_LIMITS: pinnquad: a policy of a Guard is named twice
 // CASE NOT_A_POLICY: pinnquad: this type is not a policy of a Guard
 // CASE LIMITS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
+// CASE CLIPS_TO_INFINITY: pinnquad: a Guard's command limits must be numbers
+// CASE CLIPS_TO_NAN: pinnquad: a Guard's command limits must be numbers
+// CASE REFUSES_INFINITY: pinnquad: a Guard's command limits must be numbers
+// CASE CLIPS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
+// CASE CLIPS_BEYOND_FLOAT: pinnquad: a Guard's command limits must be numbers of the model's Scalar
+// CASE AGREES_WITH_NOTHING: pinnquad: Agreement needs an inverse to agree with
+// CASE REFERENCE_ALONE: pinnquad: Reference is what Agreement compares with in a Guard without Fallback
+// CASE REFERENCE_AND_FALLBACK: pinnquad: Reference is what Agreement compares with in a Guard without Fallback
+// CASE AGREES_TO_INFINITY: pinnquad: the largest difference of an Agreement must be a positive number
+// CASE AGREES_TO_NOTHING: pinnquad: the largest difference of an Agreement must be a positive number
+// CASE FEATURES_ALONE: pinnquad: Agreement compares with an inverse that needs the inputs
+// CASE BATCH_ALONE: pinnquad: Agreement compares with an inverse that needs the inputs
+// CASE FALLBACK_MAY_THROW: pinnquad: a fallback's or reference's call must be noexcept
 // CASE NOT_A_GUARD: pinnquad: the second argument of InverseDynamics is a Guard
 // CASE FALLBACK_OF_OTHER_INPUTS: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
 // CASE FALLBACK_NEEDS_TIME: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
 // CASE GROUND_WITHOUT_HEIGHT: pinnquad: an effect of this vehicle depends on height, place or time, which these inputs don't say
 // CASE GUST_WITHOUT_TIME: pinnquad: an effect of this vehicle depends on place or time, which these inputs don't say
+#include <limits>
+
 #include "../support/small_model.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
-#include "pinnquad/inference/inverse_dynamics.hpp"
+#include "pinnquad/inference/batched_inverse.hpp"
 
 namespace {
 
@@ -26,6 +41,21 @@ using namespace pinnquad;
 struct Reversed {
   static constexpr double lower = 1.0;
   static constexpr double upper = 0.0;
+};
+
+template <int Lower, int Upper>
+struct Limits {
+  static constexpr double value(int of) {
+    return of == 2   ? std::numeric_limits<double>::infinity()
+           : of == 3 ? std::numeric_limits<double>::quiet_NaN()
+           : of == 4 ? 1e300
+                     : double(of);
+  }
+  static constexpr double lower = value(Lower), upper = value(Upper), largest_difference = upper;
+};
+
+struct MayThrow {
+  Status operator()(const MotionInputs<float>&, Commands<float>&) const { return Status::no_solution; }
 };
 
 struct OtherInputs {
@@ -59,6 +89,31 @@ using Policies = Extend<TrainingGuard, ClipCommands<>, ClipCommands<Reversed>>;
 using Policies = Extend<TrainingGuard, int>;
 #elif defined(LIMITS_REVERSED)
 using Policies = Extend<TrainingGuard, RefuseCommands<Reversed>>;
+#elif defined(CLIPS_TO_INFINITY)
+using Policies = Extend<TrainingGuard, ClipCommands<Limits<0, 2>>>;
+#elif defined(CLIPS_TO_NAN)
+using Policies = Extend<TrainingGuard, ClipCommands<Limits<3, 1>>>;
+#elif defined(REFUSES_INFINITY)
+using Policies = Extend<TrainingGuard, RefuseCommands<Limits<0, 2>>>;
+#elif defined(CLIPS_REVERSED)
+using Policies = Extend<TrainingGuard, ClipCommands<Reversed>>;
+#elif defined(CLIPS_BEYOND_FLOAT)
+using Policies = Extend<TrainingGuard, ClipCommands<Limits<0, 4>>>;
+#elif defined(AGREES_WITH_NOTHING)
+using Policies = Extend<TrainingGuard, Agreement<>>;
+#elif defined(REFERENCE_ALONE)
+using Policies = Extend<TrainingGuard, Reference<AnalyticInverse<Quadrotor<float>>>>;
+#elif defined(REFERENCE_AND_FALLBACK)
+using Policies = Extend<TrainingGuard, Agreement<>, Reference<AnalyticInverse<Quadrotor<float>>>,
+                        Fallback<AnalyticInverse<Quadrotor<float>>>>;
+#elif defined(AGREES_TO_INFINITY)
+using Policies = Extend<TrainingGuard, Agreement<Limits<0, 2>>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
+#elif defined(AGREES_TO_NOTHING)
+using Policies = Extend<TrainingGuard, Agreement<Limits<0, 0>>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
+#elif defined(FEATURES_ALONE) || defined(BATCH_ALONE)
+using Policies = Extend<TrainingGuard, Agreement<>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
+#elif defined(FALLBACK_MAY_THROW)
+using Policies = Extend<TrainingGuard, Fallback<MayThrow>>;
 #elif defined(NOT_A_GUARD)
 using Policies = FiniteOutputs;
 #elif defined(FALLBACK_OF_OTHER_INPUTS)
@@ -83,7 +138,10 @@ int main() {
   const Policies guard(by_formula<NearGround>());
 #elif defined(FALLBACK_OF_OTHER_INPUTS) || defined(FALLBACK_NEEDS_TIME) || defined(NO_OUTPUT_CHECK) ||                 \
     defined(NO_GUARD_AT_ALL) || defined(NO_INPUT_CHECK) || defined(CLAMPS_UNCHECKED) || defined(REFUSES_AND_CLAMPS) || \
-    defined(TWICE) || defined(TWO_LIMITS) || defined(NOT_A_POLICY) || defined(LIMITS_REVERSED) || defined(NOT_A_GUARD)
+    defined(TWICE) || defined(TWO_LIMITS) || defined(NOT_A_POLICY) || defined(LIMITS_REVERSED) ||                      \
+    defined(NOT_A_GUARD) || defined(CLIPS_TO_INFINITY) || defined(CLIPS_TO_NAN) || defined(REFUSES_INFINITY) ||        \
+    defined(CLIPS_REVERSED) || defined(CLIPS_BEYOND_FLOAT) || defined(AGREES_WITH_NOTHING) ||                          \
+    defined(FALLBACK_MAY_THROW)
   const Policies guard{};
 #else
   const Policies guard(by_formula<Quadrotor<float>>());
@@ -91,6 +149,11 @@ int main() {
   const InverseDynamics<test::SmallModel, Policies> inverse(guard);
   Commands<float> commands{};
   Status status = inverse.predict({}, commands);
+#if defined(FEATURES_ALONE)
+  status = inverse.predict_features(test::SmallModel::golden_features[0].data(), commands);
+#elif defined(BATCH_ALONE)
+  predict_batch(inverse, test::SmallModel::golden_features[0].data(), commands.data(), &status, 1);
+#endif
 #if defined(GUST_WITHOUT_TIME)
   status = by_formula<InGusts>()(MotionInputsWithAltitude<float>{}, commands);
 #else

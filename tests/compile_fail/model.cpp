@@ -26,6 +26,8 @@
 // CASE GOLDEN_LENGTH: pinnquad: a golden vector does not have the length
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
 // CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
+// CASE FEATURES_MAY_THROW: pinnquad: a feature set's check.. and extract.. must be noexcept
+// CASE OUTPUTS_MAY_THROW: pinnquad: an output schema's functions must be noexcept
 // CASE SCALAR_DIFFERS: pinnquad: the model's Scalar is not that of its Network
 #include <array>
 #include <limits>
@@ -61,6 +63,19 @@ struct RenamedQuadrotor : pinnquad::PaperQuadrotor {
   static constexpr const char* name = "my_quadrotor";
 };
 #endif
+
+struct ThrowingFeatures : pinnquad::PaperFeatures {
+  template <class Scalar>
+  static pinnquad::Status check(const Inputs<Scalar>& in) {
+    return pinnquad::PaperFeatures::check<Scalar>(in);
+  }
+};
+struct ThrowingOutputs : pinnquad::CommandOutputs {
+  template <class Scalar>
+  static constexpr Scalar command(Scalar output, const pinnquad::Airframe<Scalar>&) {
+    return output;
+  }
+};
 
 /// The small model with one member changed by the case.
 struct Changed : DescribedModel {
@@ -125,6 +140,10 @@ struct Changed : DescribedModel {
   using Network = pinnquad::Network<float, pinnquad::Inputs<15>, pinnquad::Dense<4>>;
 #elif defined(OUTPUTS_DIFFER)
   using Network = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>>;
+#elif defined(FEATURES_MAY_THROW)
+  using Features = ThrowingFeatures;
+#elif defined(OUTPUTS_MAY_THROW)
+  using Outputs = ThrowingOutputs;
 #elif defined(SCALAR_DIFFERS)
   using Scalar = double;
 #endif

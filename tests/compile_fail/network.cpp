@@ -3,6 +3,9 @@
 // CASE LAYER_WITHOUT_FORWARD: pinnquad: this type is not a layer
 // CASE LAYER_WITHOUT_SCALAR: pinnquad: this type is not a layer
 // CASE LAYER_OF_OTHER_WIDTH: pinnquad: a layer does not take the outputs of the layer before it
+// CASE FORWARD_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+// CASE ACTIVATION_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+// CASE SLOPE_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
 // CASE NO_LAYERS: pinnquad: a network needs at least one layer
 #include "pinnquad/nn/network.hpp"
 
@@ -41,6 +44,24 @@ struct NoScalar {
   };
 };
 
+struct ForwardMayThrow {
+  template <class ScalarType, int In>
+  struct Bind {
+    using Scalar = ScalarType;
+    static constexpr int inputs = In, outputs = In, parameter_count = 0;
+    static void forward(const Scalar*, const Scalar*, Scalar*) {}
+  };
+};
+
+template <bool ActivateIsNoexcept, bool SlopeIsNoexcept>
+struct Square {
+  template <class Scalar, int In>
+  struct Bind : pinnquad::ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
+    static Scalar activate(Scalar v) noexcept(ActivateIsNoexcept) { return v * v; }
+    static Scalar slope(Scalar y) noexcept(SlopeIsNoexcept) { return y; }
+  };
+};
+
 #if defined(NOT_A_LAYER)
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, Nothing>;
 #elif defined(LAYER_WITHOUT_FORWARD)
@@ -49,10 +70,17 @@ using Net = pinnquad::Network<float, pinnquad::Inputs<4>, NoForward>;
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>, NoScalar>;
 #elif defined(LAYER_OF_OTHER_WIDTH)
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<5>, FourWide>;
+#elif defined(FORWARD_MAY_THROW)
+using Net = pinnquad::Network<float, pinnquad::Inputs<4>, ForwardMayThrow>;
+#elif defined(ACTIVATION_MAY_THROW)
+using Net = pinnquad::Network<float, pinnquad::Inputs<4>, Square<false, true>>;
+#elif defined(SLOPE_MAY_THROW)
+using Net = pinnquad::Network<float, pinnquad::Inputs<4>, Square<true, false>>;
 #elif defined(NO_LAYERS)
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>>;
 #else
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, pinnquad::Relu, FourWide>;
+using Net =
+    pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, pinnquad::Relu, Square<true, true>, FourWide>;
 #endif
 
 }  // namespace

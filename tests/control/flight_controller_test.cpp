@@ -172,3 +172,17 @@ TEST_CASE("bad input: a Status, and the demand is left alone") {
   CHECK(controller(state, wanted, demand) == Status::not_finite);
   CHECK(demand.linear_m_s2[0] == 42);
 }
+
+TEST_CASE("numbers so large that a sum overflows: a Status, and the demand is left alone") {
+  const FlightController<float> controller;
+  State<float> state;
+  state.body_rates_rad_s[0] = 1e38F;
+  Accelerations<float> demand;
+  demand.linear_m_s2[0] = 42;
+  CHECK(controller(state, SetPoint<float>{}, demand) == Status::output_not_finite);
+  CHECK(demand.linear_m_s2[0] == 42);
+  TrackingDemand<float> tracking;
+  tracking.feedback_acceleration_m_s2[0] = 42;
+  CHECK(controller(state, TrajectoryPoint<float>{}, tracking) == Status::output_not_finite);
+  CHECK(tracking.feedback_acceleration_m_s2[0] == 42);
+}

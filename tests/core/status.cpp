@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -13,7 +14,7 @@ TEST_CASE("ok is zero, so that a Status can be tested like a return code") {
   CHECK(std::string(pinnquad::to_string(Status::ok)) == "ok");
 }
 
-TEST_CASE("every Status has its own words and no other value has any") {
+TEST_CASE("every Status has its own word and no other value has any") {
   std::set<std::string> words;
   const std::string unknown = "unknown status";
   int count = 0;
@@ -26,14 +27,32 @@ TEST_CASE("every Status has its own words and no other value has any") {
   CHECK(pinnquad::to_string(static_cast<Status>(255)) == unknown);
 }
 
-TEST_CASE("words for logs say what is meant") {
-  CHECK(std::string(pinnquad::to_string(Status::not_finite)) == "input not finite");
-  CHECK(std::string(pinnquad::to_string(Status::not_unit_quaternion)) == "attitude is not a unit quaternion");
-  CHECK(std::string(pinnquad::to_string(Status::outside_envelope)) == "outside the training envelope");
-  CHECK(std::string(pinnquad::to_string(Status::output_not_finite)) == "output not finite");
-  CHECK(std::string(pinnquad::to_string(Status::no_solution)) == "no solution");
-  CHECK(std::string(pinnquad::to_string(Status::invalid_airframe)) == "invalid airframe");
-  CHECK(std::string(pinnquad::to_string(Status::self_test_failed)) == "self test failed");
+#define PINNQUAD_NAMED(status) \
+  Named { Status::status, #status }
+
+TEST_CASE("a Status prints as the word that documents and code use: its enumerator") {
+  struct Named {
+    Status status;
+    const char* name;
+  };
+  const Named all[] = {PINNQUAD_NAMED(ok),
+                       PINNQUAD_NAMED(not_finite),
+                       PINNQUAD_NAMED(out_of_range),
+                       PINNQUAD_NAMED(not_unit_quaternion),
+                       PINNQUAD_NAMED(outside_envelope),
+                       PINNQUAD_NAMED(output_not_finite),
+                       PINNQUAD_NAMED(no_solution),
+                       PINNQUAD_NAMED(invalid_airframe),
+                       PINNQUAD_NAMED(self_test_failed),
+                       PINNQUAD_NAMED(outside_limits),
+                       PINNQUAD_NAMED(limited),
+                       PINNQUAD_NAMED(fell_back),
+                       PINNQUAD_NAMED(block_truncated),
+                       PINNQUAD_NAMED(block_incompatible),
+                       PINNQUAD_NAMED(block_corrupt),
+                       PINNQUAD_NAMED(disagreement)};
+  CHECK(std::size(all) == static_cast<std::size_t>(pinnquad::status_count));
+  for (const Named& each : all) CHECK(std::string(pinnquad::to_string(each.status)) == each.name);
 }
 
 TEST_CASE("outputs are written under three Statuses and under no other") {

@@ -101,3 +101,32 @@ TEST_CASE("NaN in one sample stays in that sample, and reaches its outputs") {
   BatchedNetwork<Net>::forward(net.parameters.data(), x.data(), y.data(), static_cast<int>(samples));
   for (std::size_t i = 0; i < y.size(); ++i) CHECK(std::isnan(y[i]) == (i % samples == broken));
 }
+
+namespace {
+
+/// x / |x|, which has no value at 0; counts how often it was asked for that.
+int asked_at_zero = 0;
+template <class ScalarType, int Size>
+struct DirectionLayer {
+  using Scalar = ScalarType;
+  static constexpr int inputs = Size, outputs = Size, parameter_count = 0;
+  static void forward(const Scalar*, const Scalar* x, Scalar* y) noexcept {
+    Scalar square(0);
+    for (int i = 0; i < Size; ++i) square += x[i] * x[i];
+    if (!(square > Scalar(0))) ++asked_at_zero;
+    for (int i = 0; i < Size; ++i) y[i] = x[i] / std::sqrt(square);
+  }
+};
+struct Direction {
+  template <class Scalar, int In>
+  using Bind = DirectionLayer<Scalar, In>;
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("a layer of a user's own meets no input that nobody gave: padding repeats a sample", Scalar, float,
+                   double) {
+  using Net = Network<Scalar, Inputs<6>, Direction, Dense<5>, Relu, Dense<3>>;
+  check_all_sizes<Net, NativePack<Scalar>>();
+  CHECK(asked_at_zero == 0);
+}

@@ -46,8 +46,8 @@ fly_export/fly_export --replay c/replay.txt >other.txt 2>/dev/null || true
 grep -q ": DISAGREES" other.txt || fail "the header's weights agree with another training's"
 head -c 20000 c/model.block >cut.block
 refused() { expect_line 2 "$2: $1" fly_export/fly_export --replay c/replay.txt --block "$2"; } # <why> <file>
-refused "model block truncated or misaligned" cut.block
-refused "model block of another format or shape" flight.csv
+refused block_truncated cut.block
+refused block_incompatible flight.csv
 refused "no such readable file" none.block
 
 # hostile invocations of that program

@@ -92,7 +92,8 @@ class FlightController {
   constexpr const FlightLimits<Scalar>& limits() const noexcept { return limits_; }
 
   /// Pilot's loop: the accelerations that bring the vehicle to the velocity and yaw rate wanted; yaw itself is free.
-  /// `not_finite` for a bad input; `demand` is untouched unless the Status is ok.
+  /// `not_finite` for a bad input, `output_not_finite` for one so large that a sum overflows; `demand` is untouched unless
+  /// the Status is ok.
   Status operator()(const State<Scalar>& state, const SetPoint<Scalar>& wanted,
                     Accelerations<Scalar>& demand) const noexcept {
     if (!(all_finite(state) && all_finite(wanted.velocity_m_s) && is_finite(wanted.yaw_rate_rad_s) &&
@@ -105,14 +106,16 @@ class FlightController {
     if (status != Status::ok) return status;
     const Vector3<Scalar> turn =
         world_to_body<Scalar>(state.attitude, Vector3<Scalar>(Scalar(0), Scalar(0), wanted.yaw_rate_rad_s));
-    demand.linear_m_s2 = body_derivative(state, acceleration);
-    demand.angular_rad_s2 = angular_feedback(state, error, turn + wanted.stick_rad_s);
+    const Accelerations<Scalar> asked{body_derivative(state, acceleration),
+                                      angular_feedback(state, error, turn + wanted.stick_rad_s)};
+    if (!(all_finite(asked.linear_m_s2) && all_finite(asked.angular_rad_s2))) return Status::output_not_finite;
+    demand = asked;
     return Status::ok;
   }
 
   /// Trajectory loop. Reference: the point's world acceleration in the current attitude, angular accelerations from
   /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory.
-  /// `not_finite`, `no_solution` (flatness.hpp); `demand` is untouched unless the Status is ok.
+  /// `not_finite`, `no_solution` (flatness.hpp), `output_not_finite`; `demand` is untouched unless the Status is ok.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point,
                     TrackingDemand<Scalar>& demand) const noexcept {
     using std::cos;
@@ -130,11 +133,17 @@ class FlightController {
     status = attitude_error(state, acceleration, Heading<Scalar>{sin(point.yaw_rad), cos(point.yaw_rad)}, error);
     if (status != Status::ok) return status;
     // `error` also turns vectors from the axes of the attitude wanted into those of the body
-    demand.reference.linear_m_s2 = body_derivative(state, point.acceleration_m_s2);
-    demand.reference.angular_rad_s2 = body_to_world(error, flat.angular_acceleration_rad_s2);
-    demand.feedback_acceleration_m_s2 = world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2);
-    demand.feedback_angular_acceleration_rad_s2 =
+    TrackingDemand<Scalar> asked;
+    asked.reference.linear_m_s2 = body_derivative(state, point.acceleration_m_s2);
+    asked.reference.angular_rad_s2 = body_to_world(error, flat.angular_acceleration_rad_s2);
+    asked.feedback_acceleration_m_s2 = world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2);
+    asked.feedback_angular_acceleration_rad_s2 =
         angular_feedback(state, error, body_to_world(error, flat.body_rates_rad_s));
+    if (!(all_finite(asked.reference.linear_m_s2) && all_finite(asked.reference.angular_rad_s2) &&
+          all_finite(asked.feedback_acceleration_m_s2) && all_finite(asked.feedback_angular_acceleration_rad_s2))) {
+      return Status::output_not_finite;
+    }
+    demand = asked;
     return Status::ok;
   }
 

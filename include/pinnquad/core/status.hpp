@@ -25,34 +25,36 @@ enum class [[nodiscard]] Status : std::uint8_t{
     block_truncated,      ///< a model block is shorter than it says, or not aligned
     block_incompatible,   ///< a block of another format, network or feature set
     block_corrupt,        ///< a block whose checksum or contents are wrong
+    disagreement,         ///< the network's commands are further from another inverse's than the guard allows
 };
 
 /// Number of Status values, for counters by Status.
-inline constexpr int status_count = static_cast<int>(Status::block_corrupt) + 1;
+inline constexpr int status_count = static_cast<int>(Status::disagreement) + 1;
 
 /// True where the output was written: `ok`, `limited`, `fell_back`.
 PINNQUAD_ALWAYS_INLINE constexpr bool has_output(Status status) noexcept {
   return status == Status::ok || status == Status::limited || status == Status::fell_back;
 }
 
-/// Plain words for logs.
+/// The enumerator's own name: what documents and logs say is one word, found by one search.
 constexpr const char* to_string(Status status) noexcept {
   switch (status) {
     case Status::ok: return "ok";
-    case Status::not_finite: return "input not finite";
-    case Status::out_of_range: return "argument out of range";
-    case Status::not_unit_quaternion: return "attitude is not a unit quaternion";
-    case Status::outside_envelope: return "outside the training envelope";
-    case Status::output_not_finite: return "output not finite";
-    case Status::no_solution: return "no solution";
-    case Status::invalid_airframe: return "invalid airframe";
-    case Status::self_test_failed: return "self test failed";
-    case Status::outside_limits: return "command outside the output limits";
-    case Status::limited: return "commands limited";
-    case Status::fell_back: return "fallback used";
-    case Status::block_truncated: return "model block truncated or misaligned";
-    case Status::block_incompatible: return "model block of another format or shape";
-    case Status::block_corrupt: return "model block corrupt";
+    case Status::not_finite: return "not_finite";
+    case Status::out_of_range: return "out_of_range";
+    case Status::not_unit_quaternion: return "not_unit_quaternion";
+    case Status::outside_envelope: return "outside_envelope";
+    case Status::output_not_finite: return "output_not_finite";
+    case Status::no_solution: return "no_solution";
+    case Status::invalid_airframe: return "invalid_airframe";
+    case Status::self_test_failed: return "self_test_failed";
+    case Status::outside_limits: return "outside_limits";
+    case Status::limited: return "limited";
+    case Status::fell_back: return "fell_back";
+    case Status::block_truncated: return "block_truncated";
+    case Status::block_incompatible: return "block_incompatible";
+    case Status::block_corrupt: return "block_corrupt";
+    case Status::disagreement: return "disagreement";
   }
   return "unknown status";
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Matrix and vector aliases: the vocabulary of every interface.
-// The only file that includes Eigen. Nothing is over-aligned, so values may be copied into any buffer.
+// The only file that includes Eigen. Its vectors and matrices are not over-aligned, and what is made of them may be copied into
+// any buffer; the weights for a vector unit are (PackedNetwork, LoadedModel: 64 bytes).
 #pragma once
 
 #include <Eigen/Core>

@@ -17,6 +17,8 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
   static_assert(GuardType::refuses_outside_envelope,
                 "pinnquad: a batch refuses what is outside the envelope; take a guard with TrainingEnvelope");
+  static_assert(!GuardType::compares,
+                "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Batched = BatchedNetwork<typename Model::Network>;
   using Numbers = detail::ModelNumbers<Model>;
@@ -37,7 +39,7 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   }
   for (int first = 0; first < samples; first += lanes) {
     const int count = samples - first < lanes ? samples - first : lanes;
-    alignas(64) Scalar standardised[size * lanes] = {};
+    alignas(64) Scalar standardised[size * lanes];
     alignas(64) Scalar outputs[rotor_count * lanes];
     int outside[lanes] = {};
     for (int k = 0; k < size; ++k) {
@@ -47,6 +49,8 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
         const bool inside = is_finite(feature[s]) & (feature[s] >= lower[k]) & (feature[s] <= upper[k]);
         outside[s] |= inside ? 0 : 1;
       }
+      // padding repeats the last sample, as in BatchedNetwork
+      for (int s = count; s < lanes; ++s) standardised[k * lanes + s] = standardised[k * lanes + count - 1];
     }
     Batched::forward(weights, standardised, outputs, lanes);
     for (int s = 0; s < count; ++s) {

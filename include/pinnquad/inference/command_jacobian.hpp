@@ -20,6 +20,8 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
                              typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
   static_assert(GuardType::refuses_outside_envelope,
                 "pinnquad: derivatives outside the envelope mean nothing; take a guard with TrainingEnvelope");
+  static_assert(!GuardType::compares,
+                "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Network = typename Model::Network;
   using Pass = JacobianPass<Network>;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What stands between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>, a list of
 // policies that the compiler checks for sense. The order in the list has no meaning: inputs are checked first, then the
-// envelope, then the outputs' numbers and limits; where all that declines, the fallback is asked.
+// envelope, then the outputs' numbers and limits; what passes may have to
+// agree with another inverse; where all that declines, the fallback is asked.
 #pragma once
 
 #include <array>
@@ -21,6 +22,10 @@ namespace pinnquad {
 struct FiniteInputs {};
 
 /// Every feature lies in what the model was trained on, margin included: else `outside_envelope`.
+/// A box, feature by feature: it does not know which features came together. A motion whose features are each within it can lie
+/// far from every motion of the training data: in level hover a pure roll demand of 30 to 60 rad/s^2 passes the envelope of
+/// examples/models/demo_quadrotor.hpp, and the commands make 5 to 36 % too little torque. Agreement
+/// finds the worst of such motions.
 struct TrainingEnvelope {};
 
 /// Features outside the envelope are moved to its border: `limited`. The network is asked for another motion then, which a
@@ -53,6 +58,23 @@ struct ClipCommands {};
 template <class Inverse>
 struct Fallback {};
 
+/// Largest difference of a command that Agreement lets pass by default. On ordinary flights of the demo model's vehicle 3 to 4 %
+/// of the motions differ by more (by 0.05: 8 %), and so do roll demands from 50 rad/s^2 in hover (0.05: from 40 rad/s^2).
+struct AgreedCommands {
+  static constexpr double largest_difference = 0.07;
+};
+
+/// Each of the network's commands, clipped if the guard clips, differs from another inverse's by at most
+/// `Limit::largest_difference`: else `disagreement`. The other inverse is the Fallback, whose commands are then written
+/// (`fell_back`), or the Reference. Where it declines there is nothing to agree with: `disagreement` too. It is asked each time,
+/// which costs its time. It needs the inputs: predict(), not features alone.
+template <class Limit = AgreedCommands>
+struct Agreement {};
+
+/// The inverse that Agreement compares with in a guard without Fallback: never flown. Contract: as a Fallback's.
+template <class Inverse>
+struct Reference {};
+
 /// Where and when a motion is wanted, for a fallback that needs to know (ground effect, density, wind).
 template <class Real>
 struct PlaceAndTime {
@@ -66,10 +88,11 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Scalar, int Size>
 struct GuardReport {
   Status cause{Status::ok};     ///< what the network alone came to: `ok`, `limited`, or why it declined
-  Status fallback{Status::ok};  ///< what the fallback came to, if it was asked
+  Status fallback{Status::ok};  ///< what the fallback or reference came to, if it was asked
   bool fallback_asked{false};
   bool features_clamped{false};
   bool commands_clipped{false};  ///< the network's or the fallback's
+  Scalar disagreement{0};  ///< largest |network's - other's command| that Agreement found; 0 if nothing was compared
   /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that isn't.
   /// All zero if the inputs were refused before there were features.
   std::array<Scalar, static_cast<std::size_t>(Size)> excess{};
@@ -115,6 +138,20 @@ template <class I>
 struct PolicyTraits<Fallback<I>> {
   static constexpr bool known = true;
 };
+template <class L>
+struct PolicyTraits<Agreement<L>> {
+  static constexpr bool known = true;
+};
+template <class I>
+struct PolicyTraits<Reference<I>> {
+  static constexpr bool known = true;
+};
+
+/// Numbers, and the lower not above the upper; what is compared with NaN or infinity is neither clipped nor refused.
+template <class Limits>
+constexpr bool finite_limits() noexcept {
+  return is_finite_constant(double(Limits::lower)) && is_finite_constant(double(Limits::upper));
+}
 
 /// The argument of the one `Template<...>` among the policies, else `Default`; and how many there are.
 template <template <class> class Template, class Default, class... Policies>
@@ -132,19 +169,32 @@ struct ArgumentOf<Template, Default, Template<Argument>, Rest...> {
 
 }  // namespace detail
 
+namespace detail {
+/// What a guard holds besides its rules: the fallback, else the reference.
+template <class... Policies>
+struct OtherInverse {
+  using Fallen = ArgumentOf<Fallback, NoFallback, Policies...>;
+  using type =
+      typename std::conditional_t<(Fallen::count > 0), Fallen, ArgumentOf<Reference, NoFallback, Policies...>>::type;
+};
+}  // namespace detail
+
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// See the head of this file. A value: it holds the fallback, and is empty without one.
 template <class... Policies>
-class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>::type> {
+class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::type> {
   template <class Policy>
   static constexpr int count = (int(std::is_same_v<Policy, Policies>) + ... + 0);
   using Refused = detail::ArgumentOf<RefuseCommands, UnitCommands, Policies...>;
   using Clipped = detail::ArgumentOf<ClipCommands, UnitCommands, Policies...>;
   using FallenBack = detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>;
+  using Referred = detail::ArgumentOf<Reference, detail::NoFallback, Policies...>;
+  using Agreed = detail::ArgumentOf<Agreement, AgreedCommands, Policies...>;
 
  public:
-  using FallbackInverse = typename FallenBack::type;
+  /// The fallback's type, or the reference's.
+  using FallbackInverse = typename detail::OtherInverse<Policies...>::type;
 
   static constexpr bool checks_inputs = count<FiniteInputs> > 0;
   static constexpr bool refuses_outside_envelope = count<TrainingEnvelope> > 0;
@@ -152,6 +202,7 @@ class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail:
   static constexpr bool refuses_commands = Refused::count > 0;
   static constexpr bool clips_commands = Clipped::count > 0;
   static constexpr bool falls_back = FallenBack::count > 0;
+  static constexpr bool compares = Agreed::count > 0;
 
   static_assert((detail::PolicyTraits<Policies>::known && ...),
                 "pinnquad: this type is not a policy of a Guard (inference/guard.hpp)");
@@ -165,10 +216,20 @@ class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail:
                 "pinnquad: ClampToEnvelope needs FiniteInputs: it would turn infinity into a number");
   static_assert(!(refuses_outside_envelope && clamps_to_envelope),
                 "pinnquad: a Guard either refuses what is outside the envelope or clamps it, not both");
-  static_assert(((count<Policies> == 1) && ...) && Refused::count <= 1 && Clipped::count <= 1 && FallenBack::count <= 1,
+  static_assert(((count<Policies> == 1) && ...) && Refused::count <= 1 && Clipped::count <= 1 &&
+                    FallenBack::count <= 1 && Referred::count <= 1 && Agreed::count <= 1,
                 "pinnquad: a policy of a Guard is named twice");
+  static_assert(detail::finite_limits<typename Refused::type>() && detail::finite_limits<typename Clipped::type>(),
+                "pinnquad: a Guard's command limits must be numbers: NaN or infinity would let every command pass");
   static_assert(Refused::type::lower <= Refused::type::upper && Clipped::type::lower <= Clipped::type::upper,
                 "pinnquad: a Guard's lower command limit lies above the upper one");
+
+  static_assert(!compares || falls_back || Referred::count > 0,
+                "pinnquad: Agreement needs an inverse to agree with: Fallback<Inverse>, or Reference<Inverse>");
+  static_assert(Referred::count == 0 || (compares && !falls_back),
+                "pinnquad: Reference is what Agreement compares with in a Guard without Fallback");
+  static_assert(is_finite_constant(double(Agreed::type::largest_difference)) && Agreed::type::largest_difference > 0,
+                "pinnquad: the largest difference of an Agreement must be a positive number");
 
   Guard() = default;
   /// A fallback that has values of its own must be given.
@@ -176,18 +237,35 @@ class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail:
 
   const FallbackInverse& fallback() const noexcept { return detail::Held<FallbackInverse>::held(); }
 
+  /// True if no command differs from the other inverse's by more than the Agreement's limit; leaves the largest difference.
+  template <class Scalar>
+  static bool agree(const Scalar* commands, const Scalar* others, Scalar& largest) noexcept {
+    largest = Scalar(0);
+    for (int i = 0; i < rotor_count; ++i) {
+      const Scalar difference = commands[i] < others[i] ? others[i] - commands[i] : commands[i] - others[i];
+      if (difference > largest) largest = difference;
+    }
+    return is_finite(largest) && largest <= Scalar(Agreed::type::largest_difference);
+  }
+
   /// Checks of the commands, the network's as the fallback's: `ok`, `limited` (and the commands are clipped) or a refusal.
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE Status check_commands(Scalar* commands) noexcept {
     if (!all_finite(commands, rotor_count)) return Status::output_not_finite;
     if constexpr (refuses_commands) {
       constexpr Scalar lower = Scalar(Refused::type::lower), upper = Scalar(Refused::type::upper);
+      static_assert(
+          is_finite_constant(lower) && is_finite_constant(upper),
+          "pinnquad: a Guard's command limits must be numbers of the model's Scalar, to which these overflow");
       bool inside = true;
       for (int i = 0; i < rotor_count; ++i) inside &= commands[i] >= lower && commands[i] <= upper;
       if (!inside) return Status::outside_limits;
     }
     if constexpr (clips_commands) {
       constexpr Scalar lower = Scalar(Clipped::type::lower), upper = Scalar(Clipped::type::upper);
+      static_assert(
+          is_finite_constant(lower) && is_finite_constant(upper),
+          "pinnquad: a Guard's command limits must be numbers of the model's Scalar, to which these overflow");
       bool inside = true;
       for (int i = 0; i < rotor_count; ++i) {
         const Scalar v = commands[i];

@@ -85,7 +85,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// Commands that make the motion asked for; not clipped to 0..1 unless the guard does (the rotor clips).
   /// `ok`, `limited`: the network's. `fell_back`: the fallback's. `not_finite`, `not_unit_quaternion`: a bad input.
   /// `outside_envelope`: a feature beyond the training data. `outside_limits`: the guard refuses the commands.
-  /// `output_not_finite`: the network's weights are broken.
+  /// `output_not_finite`: the network's weights are broken. `disagreement`: too far from another inverse's (Agreement).
   Status predict(const Inputs& inputs, Commands<Scalar>& commands) const noexcept {
     detail::NoReport none;
     return guarded(inputs, commands, none);
@@ -115,6 +115,8 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   }
   /// The same into four numbers.
   Status predict_features(const Scalar* x, Scalar* commands) const noexcept {
+    static_assert(!Guard::compares,
+                  "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
     detail::NoReport none;
     Scalar outputs[rotor_count] = {};
     const Status status = ask_network(x, outputs, none);
@@ -172,15 +174,19 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
                                         const Place&... place) const noexcept {
     Scalar outputs[rotor_count] = {};
     const Status status = ask_network(inputs, outputs, report);
-    if constexpr (reports<ReportType>) report.cause = status;
-    if (has_output(status)) {
-      for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
-      return status;
-    }
-    if constexpr (Guard::falls_back) {
-      return fall_back(inputs, commands, report, place...) ? Status::fell_back : status;
+    if constexpr (Guard::compares) {
+      return compare(inputs, outputs, status, commands, report, place...);
     } else {
-      return status;
+      if constexpr (reports<ReportType>) report.cause = status;
+      if (has_output(status)) {
+        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
+        return status;
+      }
+      if constexpr (Guard::falls_back) {
+        return fall_back(inputs, commands, report, place...) ? Status::fell_back : status;
+      } else {
+        return status;
+      }
     }
   }
 
@@ -231,25 +237,66 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   PINNQUAD_NOINLINE bool fall_back(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
                                    const Place&... place) const noexcept {
     Commands<Scalar> replaced{};
-    Status status = ask_fallback(inputs, replaced, place...);
+    const Status status = ask_and_check(inputs, replaced, report, place...);
+    if constexpr (reports<ReportType>) report.commands_clipped = status == Status::limited;
+    if (!has_output(status)) return false;
+    commands = replaced;
+    return true;
+  }
+
+  /// The network's commands where the other inverse agrees, else the fallback's or none. Asked whatever the network came to.
+  template <class ReportType, class... Place>
+  PINNQUAD_NOINLINE Status compare(const Inputs& inputs, const Scalar* outputs, Status status,
+                                   Commands<Scalar>& commands, ReportType& report,
+                                   const Place&... place) const noexcept {
+    Commands<Scalar> others{};
+    const Status answered = ask_and_check(inputs, others, report, place...);
     if (has_output(status)) {
-      status = Guard::check_commands(replaced.data());
-      if constexpr (reports<ReportType>) report.commands_clipped = status == Status::limited;
+      Scalar largest(0);
+      const bool agreed = has_output(answered) && Guard::agree(outputs, others.data(), largest);
+      if constexpr (reports<ReportType>) report.disagreement = largest;
+      if (agreed) {
+        if constexpr (reports<ReportType>) report.cause = status;
+        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
+        return status;
+      }
+      status = Status::disagreement;
     }
+    const bool replaces = Guard::falls_back && has_output(answered);
+    if constexpr (reports<ReportType>) {
+      report.cause = status;
+      report.commands_clipped = replaces && answered == Status::limited;
+    }
+    if (!replaces) return status;
+    commands = others;
+    return Status::fell_back;
+  }
+
+  /// What the other inverse comes to under the guard's checks of commands.
+  template <class ReportType, class... Place>
+  Status ask_and_check(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
+                       const Place&... place) const noexcept {
+    Status status = ask_fallback(inputs, commands, place...);
+    if (has_output(status)) status = Guard::check_commands(commands.data());
     if constexpr (reports<ReportType>) {
       report.fallback_asked = true;
       report.fallback = status;
     }
-    if (!has_output(status)) return false;
-    commands = replaced;
-    return true;
+    return status;
   }
 
   /// With place and time if they are known and it takes them.
   template <class... Place>
   Status ask_fallback(const Inputs& inputs, Commands<Scalar>& commands, const Place&... place) const noexcept {
     using Inverse = typename Guard::FallbackInverse;
-    if constexpr (std::is_invocable_r_v<Status, const Inverse&, const Inputs&, const Place&..., Commands<Scalar>&>) {
+    constexpr bool with_place =
+        std::is_invocable_r_v<Status, const Inverse&, const Inputs&, const Place&..., Commands<Scalar>&>;
+    static_assert(with_place
+                      ? std::is_nothrow_invocable_v<const Inverse&, const Inputs&, const Place&..., Commands<Scalar>&>
+                      : std::is_nothrow_invocable_v<const Inverse&, const Inputs&, Commands<Scalar>&> ||
+                            !std::is_invocable_v<const Inverse&, const Inputs&, Commands<Scalar>&>,
+                  "pinnquad: a fallback's or reference's call must be noexcept (Fallback in inference/guard.hpp)");
+    if constexpr (with_place) {
       return guard().fallback()(inputs, place..., commands);
     } else {
       static_assert(std::is_invocable_r_v<Status, const Inverse&, const Inputs&, Commands<Scalar>&>,
@@ -266,7 +313,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     for (int i = 0; i < Features::size; ++i) {
       const Scalar beyond = x[i] < lower[i] ? lower[i] - x[i] : x[i] - upper[i];  // NaN stays NaN
       Scalar excess = beyond / ((upper[i] - lower[i]) / Scalar(2));
-      if (x[i] >= lower[i] && x[i] <= upper[i]) excess = Scalar(0);
+      if (is_finite(x[i]) && x[i] >= lower[i] && x[i] <= upper[i]) excess = Scalar(0);
       report.excess[static_cast<std::size_t>(i)] = excess;
       // what is not finite outdoes every number, the first of them all
       if (is_finite(worst) && (!is_finite(excess) || excess > worst)) {

@@ -183,6 +183,15 @@ constexpr bool require_shape() noexcept {
     static_assert(is_network<typename S::Network>, "pinnquad: the model's Network is not a pinnquad::Network");
     static_assert(is_feature_set<typename S::Features>, "pinnquad: the model's Features are not a feature set");
     static_assert(is_output_schema<typename S::Outputs>, "pinnquad: the model's Outputs are not an output schema");
+    if constexpr (is_feature_set<typename S::Features>) {
+      static_assert(
+          detail::is_noexcept_feature_set<typename S::Features>,
+          "pinnquad: a feature set's check() and extract() must be noexcept: they fly (inference/features.hpp)");
+    }
+    if constexpr (is_output_schema<typename S::Outputs>) {
+      static_assert(detail::is_noexcept_output_schema<typename S::Outputs>,
+                    "pinnquad: an output schema's functions must be noexcept: they fly (inference/output_schema.hpp)");
+    }
     static_assert(is_airframe<typename S::Vehicle>, "pinnquad: the model's Vehicle is not an airframe");
     static_assert(std::is_same_v<typename S::Scalar, typename S::Network::Scalar>,
                   "pinnquad: the model's Scalar is not that of its Network");

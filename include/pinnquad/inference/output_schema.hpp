@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a network's four outputs mean, as a type (docs/paper.md, deviation 20): motor commands, or rotor speeds.
-// Contract: `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)` and its derivative `command_slope`.
+// Contract: `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)` and its derivative `command_slope`,
+// all noexcept.
 #pragma once
 
 #include <array>
@@ -64,6 +65,15 @@ struct IsOutputSchema<T, std::void_t<decltype(T::names), decltype(T::unit),
                                      decltype(T::command(0.0, std::declval<const Airframe<double>&>())),
                                      decltype(T::command_slope(0.0, std::declval<const Airframe<double>&>()))>>
     : std::true_type {};
+}  // namespace detail
+
+namespace detail {
+template <class T>
+inline constexpr bool is_noexcept_output_schema =
+    noexcept(T::command(0.0, std::declval<const Airframe<double>&>())) && noexcept(T::command_slope(
+        0.0,
+        std::declval<const Airframe<double>&>())) && noexcept(T::from_command(0.0,
+                                                                              std::declval<const Airframe<double>&>()));
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.

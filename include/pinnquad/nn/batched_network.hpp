@@ -109,10 +109,11 @@ struct BatchedNetwork {
       // the rest with some of the block before once more: it gives the same again
       if (first < samples) block(parameters, x + (samples - lanes), samples, y + (samples - lanes), samples);
     } else if (samples > 0) {
-      Scalar in[static_cast<std::size_t>(NetworkType::inputs * lanes)] = {};
+      // padding repeats the last sample: a layer of a user's own meets no input that nobody gave
+      Scalar in[static_cast<std::size_t>(NetworkType::inputs * lanes)];
       Scalar out[static_cast<std::size_t>(NetworkType::outputs * lanes)];
       for (int i = 0; i < NetworkType::inputs; ++i) {
-        for (int s = 0; s < samples; ++s) in[i * lanes + s] = x[i * samples + s];
+        for (int s = 0; s < lanes; ++s) in[i * lanes + s] = x[i * samples + (s < samples ? s : samples - 1)];
       }
       block(parameters, in, lanes, out, lanes);
       for (int i = 0; i < NetworkType::outputs; ++i) {

@@ -3,6 +3,8 @@
 //   using Scalar;  static constexpr int inputs, outputs, parameter_count;  static void forward(const Scalar* parameters, const Scalar* x,
 //   Scalar* y) noexcept;
 // Layers are types without data: a network owns all parameters in one flat array, as the exported header does.
+// forward(), activate() and slope() are noexcept. They are asked about samples alone: where a batch is padded to whole packs, the
+// padding repeats a sample or is left out (training), and what a pack gives in lanes past the last neuron, NaN too, is not read.
 #pragma once
 
 #include <type_traits>
@@ -43,6 +45,29 @@ struct IsLayer : std::false_type {};
 template <class Spec, class Scalar, int In>
 struct IsLayer<Spec, Scalar, In, std::void_t<typename Spec::template Bind<Scalar, In>>>
     : IsBoundLayer<typename Spec::template Bind<Scalar, In>, Scalar> {};
+/// True for what a bound layer has of forward(), activate() and slope().
+template <class Layer, class = void>
+struct ForwardIsNoexcept : std::false_type {};
+template <class Layer>
+struct ForwardIsNoexcept<Layer,
+                         std::enable_if_t<noexcept(Layer::forward(static_cast<const typename Layer::Scalar*>(nullptr),
+                                                                  static_cast<const typename Layer::Scalar*>(nullptr),
+                                                                  static_cast<typename Layer::Scalar*>(nullptr)))>>
+    : std::true_type {};
+template <class Layer, class = void>
+struct ActivateMayThrow : std::false_type {};
+template <class Layer>
+struct ActivateMayThrow<Layer, std::void_t<decltype(Layer::activate(std::declval<typename Layer::Scalar>()))>>
+    : std::bool_constant<!noexcept(Layer::activate(std::declval<typename Layer::Scalar>()))> {};
+template <class Layer, class = void>
+struct SlopeMayThrow : std::false_type {};
+template <class Layer>
+struct SlopeMayThrow<Layer, std::void_t<decltype(Layer::slope(std::declval<typename Layer::Scalar>()))>>
+    : std::bool_constant<!noexcept(Layer::slope(std::declval<typename Layer::Scalar>()))> {};
+template <class Layer>
+inline constexpr bool is_noexcept_layer =
+    ForwardIsNoexcept<Layer>::value && !ActivateMayThrow<Layer>::value && !SlopeMayThrow<Layer>::value;
+
 template <class Layer, class Pack, class = void>
 struct ActivatesPack : std::false_type {};
 template <class Layer, class Pack>

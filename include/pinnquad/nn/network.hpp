@@ -25,6 +25,8 @@ struct Chain<Scalar, In, First, Rest...> {
       is_layer<First, Scalar, In>,
       "pinnquad: this type is not a layer; it needs Bind<Scalar, In> with sizes and forward() (nn/layer.hpp)");
   using Layer = typename First::template Bind<Scalar, In>;
+  static_assert(detail::is_noexcept_layer<Layer>,
+                "pinnquad: a layer's forward(), activate() and slope() must be noexcept: they fly (nn/layer.hpp)");
   static_assert(Layer::inputs == In, "pinnquad: a layer does not take the outputs of the layer before it");
   using Layers = decltype(std::tuple_cat(std::declval<std::tuple<Layer>>(),
                                          std::declval<typename Chain<Scalar, Layer::outputs, Rest...>::Layers>()));

@@ -253,6 +253,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// A forward pass for batch 1 at the speed of the vector unit. Results agree with Network::forward to rounding: the sums are
 /// taken in several chains. NaN in an input reaches every output that depends on it.
+/// Aligned to 64 bytes, and so is what holds one: statics, the stack and C++17's operator new see to it; memory of malloc or an
+/// RTOS must be aligned by whoever places one there.
 template <class NetworkType, class PackType = NativePack<typename NetworkType::Scalar>>
 class PackedNetwork {
   static_assert(is_network<NetworkType>, "pinnquad: PackedNetwork<N> needs a Network (nn/network.hpp)");
