@@ -119,9 +119,9 @@ void for_each_csv_row(const std::string& path, const std::vector<std::string>& c
 }  // namespace detail
 
 /// Reads the named columns of a table, in the order asked for. In the file they may stand in any order; other columns
-/// are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end,
-/// quotation marks as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled column, a row of other length, a
-/// cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than `minimum_rows` rows.
+/// are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation marks
+/// as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled column, a row of other
+/// length, a cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than `minimum_rows` rows.
 inline CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
                          std::size_t minimum_rows = 1) {
   CsvTable table;

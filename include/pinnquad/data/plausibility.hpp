@@ -8,11 +8,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "pinnquad/data/csv_table.hpp"
@@ -62,8 +59,6 @@ struct Implausible {
 namespace detail {
 
 inline constexpr std::size_t first_command_field = 17;
-inline constexpr std::size_t first_data_line = 2;
-
 inline std::vector<double> column_of(const Flight& flight, std::size_t field) {
   std::vector<double> column;
   column.reserve(flight.size());
@@ -172,17 +167,16 @@ inline std::optional<Implausible> find_degrees(const Flight& flight) {
   return std::nullopt;
 }
 
-/// Columns of the file that a recorded flight was read from, or their order where it can't be read again (a pipe).
-inline std::size_t column_in_file(const std::string& path, std::size_t field) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return field + 1;
-  std::string text = file_text(path);
-  if (text.rfind("\xef\xbb\xbf", 0) == 0) text.erase(0, 3);
-  std::string_view header = std::string_view(text).substr(0, text.find('\n'));
-  if (!header.empty() && header.back() == '\r') header.remove_suffix(1);
-  std::vector<std::string_view> cells;
-  split_fields(header, cells);
-  return locate_columns(path, cells, {std::string(sample_field_names[field])})[0] + 1;
+/// InputError at the value of a flight that was read from `path`.
+inline InputError implausible_in_file(const std::string& path, const Implausible& found) {
+  std::size_t rows = 0, in_line = 0, in_column = 0;
+  for_each_csv_row(path, {std::string(sample_field_names[found.field])}, 1,
+                   [&](const std::vector<double>&, std::size_t line, const std::vector<std::size_t>& fields) {
+                     if (rows++ != found.row) return;
+                     in_line = line;
+                     in_column = fields[0] + 1;
+                   });
+  return InputError(path, in_line, in_column, found.expected, found.found);
 }
 
 }  // namespace detail
@@ -202,10 +196,7 @@ inline std::optional<Implausible> find_implausible(const Flight& flight) {
 /// Throws InputError where find_implausible() finds something in a flight that was read from `path`:
 ///   flight.csv:17:5: expected -1000 to 1000 m/s^2 in column vdot_bx, found 1e+39
 inline void require_plausible(const std::string& path, const Flight& flight) {
-  const std::optional<Implausible> found = find_implausible(flight);
-  if (!found) return;
-  throw InputError(path, found->row + detail::first_data_line, detail::column_in_file(path, found->field),
-                   found->expected, found->found);
+  if (const auto found = find_implausible(flight)) throw detail::implausible_in_file(path, *found);
 }
 
 /// Throws InputError where a command stands still in a block of a flight that was read from `path`: nothing to learn there,
@@ -221,9 +212,9 @@ inline void require_varied_commands(const std::string& path, const Flight& fligh
     }
     if (high - low > smallest_range) continue;
     const std::size_t field = detail::first_command_field + rotor;
-    throw InputError(path, block.begin + detail::first_data_line, detail::column_in_file(path, field),
-                     "commands that change " + detail::column_text(field),
-                     detail::number_text(low) + " in all " + std::to_string(block.size()) + " " + block_name + " rows");
+    throw detail::implausible_in_file(
+        path, {block.begin, field, "commands that change " + detail::column_text(field),
+               detail::number_text(low) + " in all " + std::to_string(block.size()) + " " + block_name + " rows"});
   }
 }
 
