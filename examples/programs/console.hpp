@@ -45,8 +45,8 @@ inline void take_closed_streams() {
 
 }  // namespace detail
 
-/// Runs a program: `body()` gives its exit code; what it throws becomes one line and exit_bad_input. Standard output that
-/// could not be written (a full disk, a closed pipe: files are finished all the same) is told the same way.
+/// Runs a program: `body()` gives its exit code; what it throws becomes one line and exit_bad_input. Standard output
+/// that could not be written (a full disk, a closed pipe: files are finished all the same) is told the same way.
 template <class Body>
 int run_program(const char* program, const Body& body) {
   detail::take_closed_streams();

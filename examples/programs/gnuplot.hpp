@@ -40,8 +40,8 @@ inline std::string without_empty_groups(const std::string& svg) {
 }
 }  // namespace detail
 
-/// Draws a picture; the file appears whole or not at all. `script` is what follows gnuplot_head. False, after one line on
-/// stderr, as in run_gnuplot. Throws OutputError where the file cannot be written.
+/// Draws a picture; the file appears whole or not at all. `script` is what follows gnuplot_head. False, after one line
+/// on stderr, as in run_gnuplot. Throws OutputError where the file cannot be written.
 inline bool draw_svg(const std::string& svg, int width, int height, const std::string& script) {
   pinnquad::AtomicFile file(svg);
   const std::optional<std::string> drawn = run_gnuplot(gnuplot_head(width, height) + script);

@@ -98,8 +98,8 @@ inline std::string exchange(Pipe& script, Pipe& picture, const std::string& text
 
 }  // namespace detail
 
-/// What gnuplot draws from a script that sets an SVG terminal. Nothing, after one line on stderr, if gnuplot is missing or
-/// fails, or if what it drew is not whole.
+/// What gnuplot draws from a script that sets an SVG terminal. Nothing, after one line on stderr, if gnuplot is missing
+/// or fails, or if what it drew is not whole.
 inline std::optional<std::string> run_gnuplot(const std::string& script_text) {
   detail::Pipe script, picture;
   pid_t process = 0;

@@ -138,8 +138,8 @@ inline StoredRows read_rows(const std::string& path) {
   return stored;
 }
 
-/// Throws std::invalid_argument, one line, for a row of a training that is not in `own` (trainings and their epochs), that
-/// had other epochs, or whose weights were chosen where `best_weights` does not allow it.
+/// Throws std::invalid_argument, one line, for a row of a training that is not in `own` (trainings and their epochs),
+/// that had other epochs, or whose weights were chosen where `best_weights` does not allow it.
 inline void require_own_rows(const std::string& path, const StoredRows& stored, const std::map<RowId, int>& own,
                              bool best_weights) {
   for (const auto& [id, line] : stored.rows) {

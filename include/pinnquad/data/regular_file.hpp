@@ -19,8 +19,8 @@ inline constexpr std::uintmax_t most_input_bytes = std::uintmax_t{1} << 33;
   throw InputError(path, 0, 0, "a file of at most " + std::to_string(most_input_bytes >> 30) + " GiB", "a larger one");
 }
 
-/// Throws InputError, one line, for all that is there and is not such a file. What is absent passes: who opens it has the
-/// system's reason.
+/// Throws InputError, one line, for all that is there and is not such a file. What is absent passes: who opens it has
+/// the system's reason.
 inline void require_regular_file(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code ignored;
