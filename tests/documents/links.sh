@@ -78,7 +78,7 @@ if [ "$sources" = yes ]; then
   # a file that only its writers have
   while IFS= read -r where; do
     fault "$where" "cites NOTES, which are not in the tree: docs/paper.md, deviation n"
-  done < <(grep -rnE 'NOTES( #|\.md)' README.md docs include examples tests bench scripts --exclude-dir=documents | cut -d: -f1,2)
+  done < <(grep -rnw 'NOTES' README.md docs include examples tests bench scripts --exclude-dir=documents | cut -d: -f1,2)
 fi
 
 if [ "$faults" -ne 0 ]; then exit 1; fi
