@@ -59,6 +59,7 @@ struct Implausible {
 namespace detail {
 
 inline constexpr std::size_t first_command_field = 17;
+
 inline std::vector<double> column_of(const Flight& flight, std::size_t field) {
   std::vector<double> column;
   column.reserve(flight.size());
