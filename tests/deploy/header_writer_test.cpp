@@ -246,6 +246,10 @@ TEST_CASE("a model tells how it was judged, and at its head if it is not for fli
   CHECK(header.find("// NOT FOR FLIGHT: ") < header.find("#pragma once"));
   CHECK(header.find("bool worse_than_mean = true;") != std::string::npos);
   CHECK(header.find("bool beats_linear_regression = false;") != std::string::npos);
+  from.verdict = Verdict{0.12345678901, -1e300};
+  header = written(some_model(1), {Model::FeatureVector{}}, from);
+  CHECK(header.find("double test_r_squared = 0.123457;") != std::string::npos);
+  CHECK(header.find("double linear_regression_r_squared = -1e+300;") != std::string::npos);
   from.verdict = Verdict{std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()};
   header = written(some_model(1), {Model::FeatureVector{}}, from);
   CHECK(header.find("r_squared") == std::string::npos);  // no literal for that

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <locale>
 #include <optional>
@@ -205,7 +206,9 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   if (provenance.verdict) {
     const Verdict& verdict = *provenance.verdict;
     const auto figure = [&](const char* name, double value) {
-      if (is_finite(value)) out << "  static constexpr double " << name << " = " << detail::literal(value) << ";\n";
+      constexpr double digits = 1e6;  // as far as sums over the test rows are the same on every machine
+      const double rounded = std::abs(value) < digits ? std::round(value * digits) / digits : value;
+      if (is_finite(value)) out << "  static constexpr double " << name << " = " << detail::literal(rounded) << ";\n";
     };
     const auto fact = [&](const char* name, bool value) {
       out << "  static constexpr bool " << name << " = " << (value ? "true" : "false") << ";\n";

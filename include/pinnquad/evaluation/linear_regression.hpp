@@ -79,7 +79,10 @@ LinearRegression<InputCount, OutputCount> fit_linear_regression(
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t row = 0; row < features.size(); ++row) mean[i] += value(row, i) / rows;
     double squares = 0;
-    for (std::size_t row = 0; row < features.size(); ++row) squares += std::pow(value(row, i) - mean[i], 2);
+    for (std::size_t row = 0; row < features.size(); ++row) {
+      const double difference = value(row, i) - mean[i];
+      squares += difference * difference;
+    }
     spread[i] = std::sqrt(squares / rows);
     if (!(spread[i] > rounding * std::abs(mean[i]))) spread[i] = 0;
   }
