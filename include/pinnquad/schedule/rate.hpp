@@ -13,8 +13,8 @@ template <class T, class = void>
 struct IsRate : std::false_type {};
 template <class T>
 struct IsRate<T, std::void_t<decltype(std::declval<const T&>().factor(0.5))>>
-    : std::bool_constant<std::is_convertible_v<decltype(std::declval<const T&>().factor(0.5)), double>&& noexcept(
-          std::declval<const T&>().factor(0.5))> {};
+    : std::bool_constant<noexcept(std::declval<const T&>().factor(0.5)) &&
+                         std::is_convertible_v<decltype(std::declval<const T&>().factor(0.5)), double>> {};
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.

@@ -13,8 +13,8 @@ template <class T, class = void>
 struct IsSchedule : std::false_type {};
 template <class T>
 struct IsSchedule<T, std::void_t<decltype(std::declval<const T&>().weight(0, 1))>>
-    : std::bool_constant<std::is_convertible_v<decltype(std::declval<const T&>().weight(0, 1)), double>&& noexcept(
-          std::declval<const T&>().weight(0, 1))> {};
+    : std::bool_constant<noexcept(std::declval<const T&>().weight(0, 1)) &&
+                         std::is_convertible_v<decltype(std::declval<const T&>().weight(0, 1)), double>> {};
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
