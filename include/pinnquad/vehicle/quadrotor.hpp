@@ -148,7 +148,7 @@ class Quadrotor {
     const Scalar half_factor = lag_factor(airframe_.rotor_time_constant_s, step_s / Scalar(2));
     const Commands<Scalar> middle = lagged(state.rotors, commands, half_factor);
     const Commands<Scalar> end = lagged(middle, commands, half_factor);
-    const Commands<Scalar>& start = airframe_.rotor_time_constant_s > Scalar(0) ? state.rotors : end;
+    const Commands<Scalar> start = airframe_.rotor_time_constant_s > Scalar(0) ? state.rotors : end;
     Status air = Status::ok;
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
       const Commands<Scalar>& rotors = offset_s == Scalar(0) ? start : (offset_s < step_s ? middle : end);
