@@ -17,11 +17,17 @@ struct DemoQuadModel {
 
   // provenance
   static constexpr const char* training_data = "flight.csv";
-  static constexpr std::uint64_t training_data_hash = 0xed754caf84de5cba;
+  static constexpr std::uint64_t training_data_hash = 0xffc75d13f065d38b;
   static constexpr int training_rows = 9000;
   static constexpr std::uint64_t seed = 2u;
   static constexpr int epochs = 300;
   static constexpr const char* loss = "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing";
+
+  // how it was judged, on rows that it was not trained on: R^2, mean over the commands
+  static constexpr double test_r_squared = 0.977576;
+  static constexpr double linear_regression_r_squared = 0.501877;
+  static constexpr bool worse_than_mean = false;
+  static constexpr bool beats_linear_regression = true;
 
   // what it was trained for; require_model() compares with Features, Outputs and Vehicle
   static constexpr const char* frame = "body FRD, world NED";
