@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What stands between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>, a list of
 // policies that the compiler checks for sense. The order in the list has no meaning: inputs are checked first, then the
-// envelope, then the outputs' numbers and limits; what passes may have to
-// agree with another inverse; where all that declines, the fallback is asked.
+// envelope, then the outputs' numbers and limits; what passes may have to agree with another inverse; where all that declines,
+// the fallback is asked.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ struct FiniteInputs {};
 /// Every feature lies in what the model was trained on, margin included: else `outside_envelope`.
 /// A box, feature by feature: it does not know which features came together. A motion whose features are each within it can lie
 /// far from every motion of the training data: in level hover a pure roll demand of 30 to 60 rad/s^2 passes the envelope of
-/// examples/models/demo_quadrotor.hpp, and the commands make 5 to 36 % too little torque. Agreement
-/// finds the worst of such motions.
+/// examples/models/demo_quadrotor.hpp, and the commands make 5 to 36 % too little torque. Agreement finds the worst of such
+/// motions.
 struct TrainingEnvelope {};
 
 /// Features outside the envelope are moved to its border: `limited`. The network is asked for another motion then, which a

@@ -86,8 +86,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// Ok if the network by itself, whatever the guard, reproduces every golden command within golden_tolerance, and every golden
 /// vector lies in the envelope, and every weight, scaler and border of the envelope is a number. Else `self_test_failed`: a
 /// wrong kernel, compiler flag or bit in flash, or no golden vector. Every NaN and infinity is found, under -ffast-math too,
-/// where a prediction may lose it on its way to the commands. A wrong bit of a weight is found if it moves a golden command by more than the tolerance: a bit that
-/// matters less than rounding is for a checksum to find.
+/// where a prediction may lose it on its way to the commands. A wrong bit of a weight is found if it moves a golden command by
+/// more than the tolerance: a bit that matters less than rounding is for a checksum to find.
 template <class Model, class Guard>
 Status self_test(const InverseDynamics<Model, Guard>& inverse,
                  SelfTestReport<typename Model::Scalar>& report) noexcept {
