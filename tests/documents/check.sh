@@ -151,7 +151,7 @@ configure() { # <line>
     fi
     block "$1" | grep -v '^#line'
   } >"$folder/CMakeLists.txt"
-  if ! cmake -S "$folder" -B "$folder/build" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" \
+  if ! cmake -S "$folder" -B "$folder/build" -G Ninja -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" \
     -DFETCHCONTENT_SOURCE_DIR_PINNQUAD="$root" >"$work/$1.log" 2>&1; then
     fault "$1" "CMake does not take it:"
     tail -n 20 "$work/$1.log"

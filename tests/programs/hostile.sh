@@ -43,6 +43,7 @@ expect() {
   count
   command=("$@")
   "$@" >stdout.txt 2>stderr.txt || actual=$?
+  sed -i '/^train: warning: /d' stderr.txt # of a poor network: one epoch makes no other
   for word in "$@"; do
     case $word in fly | train | paper_study | fly_export | demo) program=$word && break ;; esac
   done
@@ -85,7 +86,11 @@ full_disk() { (trap '' XFSZ; ulimit -f "$blocks"; "$@"); }
 full_disk_signal() { (ulimit -f "$blocks"; "$@"); }
 no_threads() { (ulimit -s 4000000 && ulimit -v 3500000; "$@"); }
 one_thread() { (ulimit -s 1500000 && ulimit -v 2800000; "$@"); }
-few_files() { (ulimit -n 4; "$@"); }
+few_files() ( # whatever files the caller left open
+  for ((file = 3; file < 250; ++file)); do eval "exec $file<&-"; done
+  ulimit -n 4
+  "$@"
+)
 in_surroundings() { # <NAME=value>... -- <command>
   settings=()
   while [ "$1" != -- ]; do settings+=("$1") && shift; done
@@ -268,7 +273,7 @@ hostile_train() {
   for surroundings in closed_stdout full_stdout reader_left; do
     expect 2 files $surroundings "${one[@]}" --out run/o --block run/o/model.block
     for name in model.hpp model.block replay.txt results.csv; do [ -s "run/o/$name" ] || problem "$name was lost"; done
-    if grep -qs 'judge' run/o/*; then problem "what is printed is in a file"; fi
+    if grep -qsF '[3/5]' run/o/*; then problem "what is printed is in a file"; fi
     fresh
   done
   for blocks in 1 8 60; do

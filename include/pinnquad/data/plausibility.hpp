@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "pinnquad/data/csv_table.hpp"
@@ -168,9 +170,13 @@ inline std::optional<Implausible> find_degrees(const Flight& flight) {
   return std::nullopt;
 }
 
-/// InputError at the value of a flight that was read from `path`.
+/// InputError at the value of a flight that was read from `path`; where that is no file (any more), at the place that the
+/// value has in one of ours.
 inline InputError implausible_in_file(const std::string& path, const Implausible& found) {
-  std::size_t rows = 0, in_line = 0, in_column = 0;
+  constexpr std::size_t lines_before_rows = 1;
+  std::size_t rows = 0, in_line = found.row + lines_before_rows + 1, in_column = found.field + 1;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {path, in_line, in_column, found.expected, found.found};
   for_each_csv_row(path, {std::string(sample_field_names[found.field])}, 1,
                    [&](const std::vector<double>&, std::size_t line, const std::vector<std::size_t>& fields) {
                      if (rows++ != found.row) return;
