@@ -37,4 +37,4 @@ function(pinnquad_state_build_flags target)
 endfunction()
 
 set(PINNQUAD_UNOPTIMISED "" CACHE STRING
-  "Rooms whose tests, and programs, that are compiled with -O0: what takes longer to optimise than to run as it is")
+  "Rooms whose tests are compiled with -O0: what takes longer to optimise than to run as it is")
