@@ -13,24 +13,16 @@
 #include <unistd.h>
 
 #include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/printable.hpp"
 
 namespace programs {
 
 constexpr int exit_failed = 1;
 constexpr int exit_bad_input = 2;
 
-/// Text of anywhere (a path, an argument) as part of one line: no line ends and no orders to a terminal in it.
-inline std::string one_line(std::string text) {
-  for (char& c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) c = '?';
-  }
-  return text;
-}
-
-/// "fly: what is wrong" on stderr.
+/// "fly: what is wrong" on stderr: one line, whatever stands in a path or an argument.
 inline void complain(const char* program, const std::string& what) {
-  std::fprintf(stderr, "%s: %s\n", program, one_line(what).c_str());
+  std::fprintf(stderr, "%s: %s\n", program, pinnquad::printable(what).c_str());
 }
 
 namespace detail {

@@ -137,7 +137,10 @@ class Campaign {
     const bool drawn =
         options_.pictures.empty() || programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_,
                                                            ground_effect_, std::is_same_v<PaperFlight, WindyFlight>);
-    return drawn ? 0 : programs::exit_failed;
+    if (drawn) return 0;
+    if (!programs::interrupted()) return programs::exit_failed;
+    programs::complain("fly", "interrupted; the flight is written, pictures are missing");
+    return programs::exit_interrupted;
   }
 
  private:
@@ -317,7 +320,7 @@ int run(int argument_count, char** arguments) {
       "fly"};
   app.footer(
       "Exit codes: 0; 1 the flight ended early, or gnuplot is missing or failed; 2 bad input or a file that can't be "
-      "read or\nwritten; 130 interrupted, nothing was written.");
+      "read or\nwritten; 130 interrupted: nothing was written, or pictures alone are missing.");
   app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3")->capture_default_str();
   add_path(app, "--out", options.out, "FILE.csv", "the flight, or with --statistics the table");
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,

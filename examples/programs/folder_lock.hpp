@@ -3,14 +3,13 @@
 #pragma once
 
 #include <cerrno>
-#include <filesystem>
 #include <string>
-#include <system_error>
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "folders.hpp"
 #include "pinnquad/data/file_error.hpp"
 
 namespace programs {
@@ -20,9 +19,7 @@ class FolderLock {
  public:
   /// Makes the folder if it is not there. Throws OutputError, one line: it cannot be, or another program has it.
   explicit FolderLock(const std::string& path) {
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
-    if (error) throw pinnquad::OutputError(path, error.message());
+    make_folders(path);
     lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0) throw pinnquad::OutputError(path, pinnquad::detail::system_reason(errno, "it does not open"));
     if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;

@@ -83,10 +83,23 @@ int run_campaign(const Options& options, const char* kind, std::vector<study::Co
   if (code == 0) study::print_summary(plan, campaign.rows());
   // a shard's rows are for merge; an ablation is no Table 3
   if (code == 0 && plan.kind == "table 2" && options.shard == "1/1") {
-    study::draw_flights(options.out, options.flight_seed);
+    if (!study::draw_flights(options.out, options.flight_seed) && programs::interrupted()) {
+      programs::complain("paper_study", "interrupted; all trainings are in " + options.out +
+                                            "/rows.csv, the report is missing; the same command goes on");
+      return programs::exit_interrupted;
+    }
     write_report(options.out);
   }
   return code;
+}
+
+/// A command takes its options behind its name; one before it would decide nothing.
+void require_nothing_before(const CLI::App& app, const CLI::App& command) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0) continue;
+    throw std::invalid_argument(option->get_name() + " stands before " + command.get_name() +
+                                ", which takes its options behind it (see --help)");
+  }
 }
 
 int run(int argument_count, char** arguments) {
@@ -103,7 +116,7 @@ int run(int argument_count, char** arguments) {
       "paper_study"};
   app.footer(
       "Exit codes: 0; 1 a merge of parts that are not all there; 2 bad input or a file that can't be read or written; "
-      "130 interrupted.");
+      "130 interrupted.\nWithout gnuplot the pictures are left out, with a line.");
   add_path(app, "--out", options.out, "DIR", "folder of rows.csv, study.json and series/");
   app.add_option("--models", options.models, "models of Table 2, such as 2,4,5-8 (default: all 14)");
   add_number(app, "--flights", options.flights, 1, 1000,
@@ -124,6 +137,7 @@ int run(int argument_count, char** arguments) {
       ->delimiter(',');
   add_campaign_options(*ablation, options);
   if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
+  for (const CLI::App* command : app.get_subcommands()) require_nothing_before(app, *command);
   if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
   if (merge->parsed()) return study::merge(options.parts, options.out);
   if (report->parsed()) {

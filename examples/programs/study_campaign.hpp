@@ -13,6 +13,7 @@
 
 #include "console.hpp"
 #include "folder_lock.hpp"
+#include "folders.hpp"
 #include "interrupt.hpp"
 #include "parallel.hpp"
 #include "study_configuration.hpp"
@@ -74,9 +75,7 @@ class StudyFolder {
  public:
   /// Makes the folder if it is not there. Throws OutputError: not writable, or another program is at work in it.
   explicit StudyFolder(const std::string& path) : path_(path), lock_(path) {
-    std::error_code error;
-    std::filesystem::create_directories(path + "/series", error);
-    if (error) throw pinnquad::OutputError(path + "/series", error.message());
+    programs::make_folders(path + "/series");
     remove_partial_files();
   }
 

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,6 +48,7 @@ struct Part {
   nlohmann::json configuration;
   StoredRows stored;
   std::map<RowId, int> own;  ///< the trainings of its study and their epochs
+  double share = 1;          ///< of its rows, what the folder to write did not hold already
 };
 
 inline Part read_part(const std::string& path) {
@@ -65,18 +68,49 @@ inline Part read_part(const std::string& path) {
   return part;
 }
 
-/// One study.json for all parts: times added up, processors named.
+/// A row of each training in `part` into `rows`. Throws std::invalid_argument: rows of another study, or figures that are not
+/// those of a part before.
+inline void add_rows(const Part& part, std::map<RowId, std::string>& rows) {
+  require_own_rows(part.path + "/rows.csv", part.stored, part.own, part.configuration.value("weights", "") == "best");
+  for (const auto& [id, row] : part.stored.rows) {
+    const auto [known, is_new] = rows.emplace(id, row);
+    if (!is_new && without_time(known->second) != without_time(row)) {
+      throw std::invalid_argument("merge: " + part.path + " has other figures than a part before for " + to_string(id));
+    }
+  }
+}
+
+/// What the folder to write holds already. Throws InputError: rows without settings.
+inline std::optional<Part> held_before(const StudyFolder& folder) {
+  std::error_code error;
+  if (std::filesystem::exists(folder.configuration(), error)) return read_part(folder.path());
+  if (std::filesystem::exists(folder.rows(), error))
+    throw pinnquad::InputError(folder.configuration(), 0, 0, "the settings of the rows beside it", "none");
+  return {};
+}
+
+/// How much of a part's rows `before` does not have.
+inline double new_share(const Part& part, const Part& before) {
+  if (part.stored.rows.empty()) return 0;
+  const auto is_new = [&before](const auto& row) { return before.stored.rows.count(row.first) == 0; };
+  const auto count = std::count_if(part.stored.rows.begin(), part.stored.rows.end(), is_new);
+  return static_cast<double>(count) / static_cast<double>(part.stored.rows.size());
+}
+
+/// One study.json for all parts: times added up as far as the parts' rows are new, processors named.
 inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
   nlohmann::json joined = parts.front().configuration;
   std::set<std::string> processors;
   double wall_s = 0;
   std::string started = joined.value("started", ""), finished;
-  int threads = 0;
+  int threads = 0, folders = 0;
   for (const Part& part : parts) {
     const nlohmann::json& c = part.configuration;
-    processors.insert(c.value("cpu", "unknown"));
-    wall_s += c.value("wall_s", 0.0);
-    threads += c.value("threads", 0);
+    std::istringstream cpu(c.value("cpu", "unknown"));  // of a merged folder: several
+    for (std::string name; std::getline(cpu >> std::ws, name, ';');) processors.insert(name);
+    wall_s += part.share * c.value("wall_s", 0.0);
+    if (part.share > 0) threads += c.value("threads", 0);
+    if (part.share > 0) folders += c.value("parts", 1);
     started = std::min(started, c.value("started", started));
     if (c.contains("finished") && c["finished"].is_string())
       finished = std::max(finished, c["finished"].get<std::string>());
@@ -89,40 +123,32 @@ inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
   joined["started"] = started;
   joined["finished"] = finished;
   joined["shard"] = "1/1";
-  joined["parts"] = parts.size();
+  joined["parts"] = folders;
   return joined;
 }
 
 }  // namespace detail
 
-/// Exit code: 0, or 1 if trainings are missing. Throws InputError, OutputError; std::invalid_argument for parts of
-/// different studies and for two different rows of one training.
+/// Joins the parts `paths` with what `out` holds already; `out` itself may be among them. Exit code: 0, or 1 if trainings
+/// are missing. Throws InputError, OutputError; std::invalid_argument for parts of different studies and for two different
+/// rows of one training.
 inline int merge(const std::vector<std::string>& paths, const std::string& out) {
   std::vector<detail::Part> parts;
+  std::map<RowId, std::string> rows;
   programs::FileRoles roles;
   for (const std::string& path : paths) {
     std::error_code error;
-    if (std::filesystem::equivalent(path, out, error))
-      throw std::invalid_argument("merge: " + path + " is the folder to write");
+    if (std::filesystem::equivalent(path, out, error)) continue;
     for (const char* name : {"/study.json", "/rows.csv"}) roles.reads("merge", path + name);
     parts.push_back(detail::read_part(path));
     const std::string differs = difference(parts.front().configuration, parts.back().configuration, {"shard"});
     if (!differs.empty()) {
-      throw std::invalid_argument("merge: " + path + " is of another study than " + paths.front() + ": " + differs);
+      throw std::invalid_argument("merge: " + path + " is of another study than " + parts.front().path + ": " +
+                                  differs);
     }
-    const detail::Part& part = parts.back();
-    require_own_rows(path + "/rows.csv", part.stored, part.own, part.configuration.value("weights", "") == "best");
+    detail::add_rows(parts.back(), rows);
   }
-  std::map<RowId, std::string> rows;
-  for (const detail::Part& part : parts) {
-    for (const auto& [id, row] : part.stored.rows) {
-      const auto [known, is_new] = rows.emplace(id, row);
-      if (!is_new && without_time(known->second) != without_time(row)) {
-        throw std::invalid_argument("merge: " + part.path + " has other figures than a part before for " +
-                                    to_string(id));
-      }
-    }
-  }
+  if (parts.empty()) throw std::invalid_argument("merge: " + out + " is the folder to write; there is nothing to join");
   std::error_code error;
   std::set<std::string> series;
   for (const detail::Part& part : parts) {
@@ -135,12 +161,19 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   for (const char* name : {"/study.json", "/rows.csv"}) roles.writes("--out", out + name);
   for (const std::string& name : series) roles.writes("--out", out + "/series/" + name);
   nlohmann::json joined = detail::joined_configuration(parts);
+  const std::size_t named = parts.size();
+  std::size_t held = 0;
   const StudyFolder folder(out);
-  if (std::filesystem::exists(folder.configuration(), error)) {
-    const std::string differs = difference(read_configuration(folder.configuration()), joined);
+  if (std::optional<detail::Part> before = detail::held_before(folder)) {
+    const std::string differs = difference(before->configuration, joined);
     if (!differs.empty()) {
       throw std::invalid_argument(folder.configuration() + ": of another study: " + differs + "; give another --out");
     }
+    detail::add_rows(*before, rows);
+    held = before->stored.rows.size();
+    for (detail::Part& part : parts) part.share = detail::new_share(part, *before);
+    parts.push_back(*std::move(before));
+    joined = detail::joined_configuration(parts);
   }
   const std::vector<std::pair<RowId, int>> expected = detail::expected_rows(joined);
   std::vector<std::string> lines;
@@ -153,8 +186,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
       missing = &id;
     }
   }
-  for (const detail::Part& part : parts) {
-    for (const auto& entry : std::filesystem::directory_iterator(part.path + "/series", error)) {
+  for (std::size_t i = 0; i < named; ++i) {
+    for (const auto& entry : std::filesystem::directory_iterator(parts[i].path + "/series", error)) {
       if (entry.path().extension() != ".csv") continue;
       pinnquad::AtomicFile copy(out + "/series/" + entry.path().filename().string());
       copy.stream() << pinnquad::detail::file_text(entry.path().string());
@@ -166,8 +199,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   if (missing != nullptr) joined["finished"] = nlohmann::json();
   write_configuration(folder.configuration(), joined);
   write_rows(folder.rows(), lines);
-  std::printf("%zu of %zu trainings from %zu folders are in %s\n", lines.size(), expected.size(), parts.size(),
-              folder.rows().c_str());
+  std::printf("%zu of %zu trainings from %zu folders are in %s, %zu of them from before\n", lines.size(),
+              expected.size(), named, folder.rows().c_str(), held);
   if (missing == nullptr) return 0;
   programs::complain("paper_study", "merge: " + std::to_string(expected.size() - lines.size()) +
                                         " trainings are missing, the first is " + to_string(*missing));

@@ -2,16 +2,14 @@
 // Pictures of the study's flights, Figs. 2, 4 (d), 5 and 6, drawn into its folder for the report to embed.
 #pragma once
 
-#include <filesystem>
 #include <random>
 #include <string>
-#include <system_error>
 #include <type_traits>
 #include <vector>
 
 #include "flight_pictures.hpp"
 #include "flight_trace.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "folders.hpp"
 #include "study_flights.hpp"
 
 namespace study {
@@ -32,9 +30,7 @@ inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
         fly(vehicle, PaperFlight::pilot(vehicle, std::mt19937_64(seed)), PaperFlight::plan(),
             [&](const FlightRow& row) { trace.push_back(programs::trace_row(vehicle, without, row.vehicle)); });
     const std::string into = folder + "/flights/" + PaperFlight::name;
-    std::error_code error;
-    std::filesystem::create_directories(into, error);
-    if (error) throw pinnquad::OutputError(into, error.message());
+    programs::make_folders(into);
     drawn = programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
                                   std::is_same_v<PaperFlight, WindyFlight>);
   });

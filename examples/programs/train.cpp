@@ -150,6 +150,16 @@ void draw(const std::string& folder, const Flight& flight, const IndexRange& tes
   if (drawn) std::printf("  pictures: %sellipses.svg, errors.svg, prediction.svg\n", folder.c_str());
 }
 
+/// "; of an earlier training: ..." with the files an export would have replaced; nothing where there are none.
+std::string earlier_export(const Options& options) {
+  std::string names;
+  for (const std::string& path : {options.out + "/model.hpp", options.out + "/replay.txt", options.block}) {
+    std::error_code ignored;
+    if (!path.empty() && std::filesystem::exists(path, ignored)) names += (names.empty() ? "" : ", ") + path;
+  }
+  return names.empty() ? names : "; of an earlier training: " + names;
+}
+
 /// Says how the best network stands beside the mean and linear regression. False if it must not be exported.
 bool fit_for_export(const Options& options, const Verdict& verdict) {
   std::printf("  best network on the test rows: R^2 %.4f; linear regression on the same features: R^2 %.4f\n",
@@ -157,13 +167,12 @@ bool fit_for_export(const Options& options, const Verdict& verdict) {
   std::fflush(stdout);
   if (verdict.worse_than_mean()) {
     if (!options.allow_poor) {
-      const std::string header = options.out + "/model.hpp";
-      std::error_code ignored;
-      std::fprintf(stderr,
-                   "train: not exported: on the test rows the best network is worse than the mean of the commands "
-                   "(R^2 %.4f); more epochs or a better flight, or --allow-poor%s\n",
-                   verdict.test_r_squared,
-                   std::filesystem::exists(header, ignored) ? "; the model.hpp there is of an earlier training" : "");
+      char r_squared[32];
+      std::snprintf(r_squared, sizeof r_squared, "%.4f", verdict.test_r_squared);
+      programs::complain(
+          "train", std::string("not exported: on the test rows the best network is worse than the mean of "
+                               "the commands (R^2 ") +
+                       r_squared + "); more epochs or a better flight, or --allow-poor" + earlier_export(options));
       return false;
     }
     std::fprintf(stderr, "train: warning: NOT FOR FLIGHT: the best network is worse than the mean of the commands\n");
@@ -275,14 +284,9 @@ int train_judge_export(const Options& options, const Flight& flight) {
     programs::complain("train", std::string(none ? "no physics-informed network was finished"
                                                  : "no physics-informed network predicts finite commands on the "
                                                    "validation rows") +
-                                    "; nothing to export");
+                                    "; nothing to export" + earlier_export(options));
     return programs::interrupted() ? programs::exit_interrupted : programs::exit_failed;
   }
-  std::vector<std::size_t> shown;
-  if (best_vanilla) shown.push_back(*best_vanilla);
-  shown.push_back(*best);
-  draw<Context>(folder, flight, split.test, results, predictions, shown, {linear_name, vanilla, informed});
-
   const bool exported = fit_for_export(options, verdict);
   if (exported) {
     std::printf("[4/5] export\n");
@@ -290,6 +294,11 @@ int train_judge_export(const Options& options, const Flight& flight) {
                  {flight_name, content_hash(flight), split.train.size(), results[*best].seed, options.epochs,
                   "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing", verdict});
   }
+  // last: a picture that cannot be drawn costs nothing else
+  std::vector<std::size_t> shown;
+  if (best_vanilla) shown.push_back(*best_vanilla);
+  shown.push_back(*best);
+  draw<Context>(folder, flight, split.test, results, predictions, shown, {linear_name, vanilla, informed});
   if (programs::interrupted()) {
     std::fprintf(stderr, "train: interrupted; %zu of %d trainings were finished and kept\n", trainings.size(),
                  2 * options.seeds);
@@ -340,8 +349,10 @@ int run(int argument_count, char** arguments) {
   CLI::App app{"Trains vanilla and physics-informed networks on a flight, judges them, exports the best as a header.",
                "train"};
   app.footer(
-      "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the commands;\n"
-      "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.");
+      "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
+      "commands;\n"
+      "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
+      "Without gnuplot the pictures are left out, with a line.");
   add_path(app, "--flight", options.flight, "FILE.csv", "recorded flight, CSV as `fly` writes it")->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
       ->capture_default_str();

@@ -19,6 +19,14 @@ skip() {
   exit 0
 }
 
+# absolute <path>: as the caller meant it, in whatever folder the script goes on
+absolute() {
+  case $1 in
+    /*) echo "$1" ;;
+    *) echo "$PWD/$1" ;;
+  esac
+}
+
 # need_value <option> <number of arguments left, the option included>
 need_value() {
   if [ "$2" -lt 2 ]; then die 2 "option $1 needs a value (see --help)"; fi

@@ -21,10 +21,14 @@ cmp flight.csv again.csv || fail "the same seed flew another flight"
 cmp a/model.hpp b/model.hpp || fail "the same seeds trained other weights"
 cmp a/model.block b/model.block || fail "the same seeds wrote another block"
 
-# the exported header in a project of its own
+# the exported header in a project of its own, from a folder of any name
+odd='a @place@ "of"; its own'
+mkdir "$odd"
+cp a/model.hpp "$odd"
 cmake -S "$source_dir/examples/fly_export" -B fly_export -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS="$compiler_flags" \
-  -DPINNQUAD_MODEL_HEADER="$work/a/model.hpp" >configure.txt
+  -DPINNQUAD_MODEL_HEADER="$work/$odd/model.hpp" >configure.txt
+cmp a/model.hpp fly_export/include/model.hpp || fail "the configured header is another one"
 cmake --build fly_export >build.txt || { cat build.txt; fail "the exported header does not compile"; }
 fly_export/fly_export --replay a/replay.txt >flown.txt 2>flown_errors.txt || true # 8 epochs need not fly well
 cat flown.txt

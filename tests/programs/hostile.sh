@@ -54,6 +54,7 @@ expect() {
   elif [ "$lines" -ne 1 ] && [ "$stderr_is_there" = yes ]; then
     problem "$lines lines on stderr"
   fi
+  if LC_ALL=C grep -qaP '[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]|\xc2[\x80-\x9f]|\xe2\x80[\xa8-\xae]' stderr.txt; then problem "steers the terminal"; fi
   there=$(find run ./*.partial-* -type f ! -name hard ! -name flight_hard ! -name large.csv ! -name mine.partial-1 2>/dev/null || true)
   if [ "$left" = nothing ] && [ -n "$there" ]; then problem "left ${there//$'\n'/ }"; fi
   if [[ $there == *.partial-* || $(echo in/*) == *.partial-* ]]; then problem "left a partial file"; fi
@@ -145,7 +146,7 @@ hostile_fly() {
     # shellcheck disable=SC2086
     refused "${few[@]}" --out run/f.csv $words
   done
-  for text in '' ' ' $'d1\n' $'\xff' D1 d1,d2 "$(printf 'd%.0s' {1..5000})"; do
+  for text in '' ' ' $'d1\n' $'\xff' $'\xc2\x9b31m' $'\xe2\x80\xae1d' D1 d1,d2 "$(printf 'd%.0s' {1..5000})"; do
     refused "${few[@]}" "$text" --out run/f.csv
     refused "${few[@]}" --airframe "$text" --out run/f.csv
     if [ -n "$text" ]; then refused "${few[@]}" --ground-effect "$text" --out run/f.csv; fi
@@ -241,7 +242,7 @@ hostile_train() {
     # shellcheck disable=SC2086
     refused train --flight in/flight.csv --out run/o $words
   done
-  for text in '' ' ' 3rd 'a b' 'a;b' ü $'a\nb' 'a::b' "$(printf '9%.0s' {1..3000})"; do refused "${one[@]}" --out run/o --name "$text"; done
+  for text in '' ' ' 3rd $'\xc2\x9b31m' $'\xe2\x80\xaemodel' 'a b' 'a;b' ü $'a\nb' 'a::b' "$(printf '9%.0s' {1..3000})"; do refused "${one[@]}" --out run/o --name "$text"; done
   for path in "${unreadable[@]}" in/sticks.csv; do left_alone train --flight "$path" "${short[@]}" --out run/o; done
   for path in '' in/short.csv in/short.csv/x /dev/null /dev/null/x /proc/x run/fifo run/dangling run/loop "run/$(printf 'n%.0s' {1..256})"; do
     left_alone "${one[@]}" --out "$path"
@@ -276,10 +277,14 @@ hostile_train() {
     if grep -qsF '[3/5]' run/o/*; then problem "what is printed is in a file"; fi
     fresh
   done
-  for blocks in 1 8 60; do
+  for blocks in 1 8 60 400; do # the last: header and replay fit, not every picture
     for disk in full_disk full_disk_signal; do
       expect 2 files $disk "${one[@]}" --out run/o
       for picture in run/o/*.svg; do [ ! -e "$picture" ] || tail -c 8 "$picture" | grep -q '</svg>' || problem "$picture is cut"; done
+      if [ "$blocks" -eq 400 ]; then
+        for name in model.hpp replay.txt; do [ -s "run/o/$name" ] || problem "$name was lost to a picture"; done
+        [ ! -e run/o/ellipses.svg ] || problem "the pictures fit: this check needs fewer blocks"
+      fi
       fresh
     done
   done

@@ -21,3 +21,31 @@ kept=$(sed -nE 's/.*interrupted; ([0-9]+) of.*/\1/p' stderr.txt)
 [ "$(wc -l <out/results.csv)" -eq $((kept + 2)) ] || fail "results.csv does not hold the $kept finished trainings"
 [ -s out/model.hpp ] || fail "nothing was exported although trainings were finished"
 [ -z "$(find out -name '*.partial*')" ] || fail "a half-written file was left behind"
+
+# Ctrl-C while gnuplot draws (one that never ends): what is finished is kept, one line, the code of an interrupt
+mkdir tools pictures exported
+printf '#!/bin/sh\n: >"%s/drawing"\nexec sleep 300\n' "$work" >tools/gnuplot
+chmod +x tools/gnuplot
+# interrupted_drawing <pattern> <command>...: 130 and that line, beside warnings
+interrupted_drawing() {
+  local pattern=$1 code=0
+  shift
+  rm -f drawing
+  PATH=$work/tools:$PATH setsid "$@" >stdout.txt 2>stderr.txt &
+  pid=$!
+  for ((wait = 0; wait < 6000; ++wait)); do
+    if [ -e drawing ] || ! kill -0 "$pid" 2>/dev/null; then break; fi
+    sleep 0.02
+  done
+  kill -INT -- "-$pid" || fail "$* was over before it drew: $(cat stderr.txt)"
+  wait "$pid" || code=$?
+  [ "$code" -eq 130 ] || fail "exit code $code instead of 130: $*; said: $(cat stderr.txt)"
+  [ "$(grep -vc '^train: warning: ' stderr.txt)" -eq 1 ] || fail "not one line: $(cat stderr.txt)"
+  grep -q "$pattern" stderr.txt || fail "said: $(cat stderr.txt)"
+}
+interrupted_drawing 'the flight is written, pictures are missing' "$fly" --samples 40 --out drawn.csv --pictures pictures
+[ "$(wc -l <drawn.csv)" -eq 41 ] || fail "the flight was lost"
+interrupted_drawing '2 of 2 trainings were finished and kept' "$train" --flight flight.csv --out exported --seeds 1 --epochs 4 \
+  --block exported/model.block --allow-poor
+for file in results.csv report.json model.hpp replay.txt model.block; do [ -s "exported/$file" ] || fail "$file was lost to a picture"; done
+[ -z "$(find pictures exported -name '*.partial*')" ] || fail "a half-written file was left behind"

@@ -64,11 +64,16 @@ for file in results.csv report.json; do [ -s "poor/$file" ] || fail "$file is mi
 for file in model.hpp model.block replay.txt; do [ ! -e "poor/$file" ] || fail "$file of a refused model was written"; done
 grep -q '"worse_than_mean": true' poor/report.json || fail "report.json does not say it"
 grep -q '"exported": false' poor/report.json || fail "report.json does not say that nothing was exported"
-"$train" --flight noise.csv --out poor --epochs 2 --seeds 1 --allow-poor >poor.txt 2>stderr.txt
+"$train" --flight noise.csv --out poor --epochs 2 --seeds 1 --allow-poor --block poor/model.block >poor.txt 2>stderr.txt
 grep -q 'NOT FOR FLIGHT' poor.txt || fail "stdout does not warn: $(cat poor.txt)"
 head -n 3 poor/model.hpp | grep -q '^// NOT FOR FLIGHT' || fail "the header's head does not warn"
 grep -q 'bool worse_than_mean = true;' poor/model.hpp || fail "the header does not mark the model"
 grep -q '"exported": true' poor/report.json || fail "report.json does not say that it was exported"
+# one that is refused where another was exported: what there is old is named
+cp -r poor stale
+expect_line 1 'of an earlier training: stale/model.hpp, stale/replay.txt, stale/model.block$' \
+  "$train" --flight noise.csv --out stale --epochs 2 --seeds 1 --block stale/model.block
+for file in model.hpp replay.txt model.block; do cmp "poor/$file" "stale/$file" || fail "$file was changed by a refused training"; done
 
 # no better than linear regression: a warning, and the fact in header and report. The commands are a linear map.
 awk -F, -v OFS=, 'NR > 1 { for (i = 18; i <= 21; i++) $i = 0.5 + 0.01 * $(i - 16) + 0.01 * $(i - 8) } { print }' \

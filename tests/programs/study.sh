@@ -87,6 +87,32 @@ same whole merged
 "$study" "${options[@]}" --out merged >resumed.txt # a merged folder is a study like any other
 grep -q ", $trainings of them from before" resumed.txt || fail "said: $(cat resumed.txt)"
 
+# part by part, and again: what --out holds stays, and no time counts twice; --out may be among the folders
+seconds() { sed -n 's/^  "wall_s": \(.*\),$/\1/p' "$@" | awk '{ sum += $1 } END { printf "%.3f\n", sum }'; }
+mkdir gathered
+for shard in 1 2 3; do cp -r "part$shard" "gathered/$shard"; done
+total=$(seconds part?/study.json)
+code=0
+"$study" merge gathered/1 gathered/3 --out gathered/all >/dev/null 2>stderr.txt || code=$?
+[ "$code" -eq 1 ] || fail "exit code $code of a merge without part 2"
+"$study" merge gathered/2 --out gathered/all >stdout.txt 2>stderr.txt || fail "a merge lost the rows of its folder: $(cat stderr.txt)"
+grep -q "$trainings of $trainings trainings from 1 folders are in .*, 7 of them from before" stdout.txt || fail "said: $(cat stdout.txt)"
+for again in once twice; do
+  same whole gathered/all
+  [ "$(seconds gathered/all/study.json)" = "$total" ] || fail "$(seconds gathered/all/study.json) s instead of $total s, merged $again"
+  grep -q '"parts": 3,' gathered/all/study.json || fail "not of three parts, merged $again"
+  "$study" merge gathered/* --out gathered/all >/dev/null || fail "a merge into one of the folders named"
+done
+cp gathered/all/rows.csv before.csv
+awk -F, -v OFS=, 'NR == 2 { $7 = "0.5" } { print }' before.csv >gathered/all/rows.csv
+cp gathered/all/rows.csv before.csv
+expect_line 2 'gathered/all has other figures than a part before for model' "$study" merge part1 part2 part3 --out gathered/all
+cmp before.csv gathered/all/rows.csv || fail "a refused merge changed the rows"
+rm gathered/all/study.json
+expect_line 2 'gathered/all/study.json: expected the settings of the rows beside it, found none' "$study" merge part1 --out gathered/all
+cmp before.csv gathered/all/rows.csv || fail "a refused merge changed the rows"
+expect_line 2 'merge: whole is the folder to write; there is nothing to join' "$study" merge whole --out whole
+
 mkdir -p linked/series
 ln -s ../part1/rows.csv linked/rows.csv
 cp part1/rows.csv before.csv
@@ -158,6 +184,8 @@ expect_line 2 'expected i/n' "$study" --shard 4/3 --out no
 expect_line 2 '--out DIR is needed' "$study" --seeds 1
 expect_line 2 "no variant .z.; known: vanilla, " "$study" ablation --variants vanilla,z --out no
 expect_line 2 '--seeds' "$study" --seeds 0 --out no
+expect_line 2 '--models stands before ablation' "$study" --models 2 --flights 3 ablation --seeds 1 --epochs 1 --out no
+expect_line 2 '--epochs stands before merge' "$study" --epochs 3 merge part1 --out no
 : >a_file
 expect_line 2 'a_file/out' "$study" "${options[@]}" --out a_file/out
 rm -rf garbage

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# options.sh <repository>: --help of the two commands states every exit code; a wrong option is one line and code 2.
+# options.sh <repository>: --help of the commands states every exit code; a wrong option is one line and code 2; and a caller's
+# CDPATH, which cd prints what it finds by, turns no script away from its repository.
 set -euo pipefail
 cd -- "$1"
 
@@ -9,7 +10,8 @@ fail() {
   echo "FAILED: $*" >&2
   exit 1
 }
-for script in scripts/test scripts/demo scripts/bare_machine; do
+export CDPATH=$PWD
+for script in scripts/test scripts/demo scripts/bare_machine scripts/models; do
   help=$("$script" --help) || fail "$script --help: exit code $?"
   codes=$(sed -n '/^Exit code/,$p' <<<"$help")
   for code in 0 1 2 130; do
@@ -20,3 +22,9 @@ for script in scripts/test scripts/demo scripts/bare_machine; do
   [ "$code" -eq 2 ] || fail "$script --no-such-option: exit code $code"
   [ "$said" = "${script##*/}: unknown option '--no-such-option' (see --help)" ] || fail "$script said: $said"
 done
+bench/run --help >/dev/null || fail "bench/run --help: exit code $?"
+# those that do their work as soon as they are called
+for script in scripts/heavy/* .ci/run; do
+  awk '/^unset CDPATH$/ { unset_ = 1 } /(^|[^a-z])cd / && !/^#/ && !unset_ { exit 1 }' "$script" || fail "$script goes where CDPATH says"
+done
+grep -q 'nothing was exported' <<<"$(scripts/demo --help)" || fail "scripts/demo --help does not say what train's code 1 is"
