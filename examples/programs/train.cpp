@@ -162,17 +162,28 @@ std::string earlier_export(const Options& options) {
 
 /// Says how the best network stands beside the mean and linear regression. False if it must not be exported.
 bool fit_for_export(const Options& options, const Verdict& verdict) {
-  std::printf("  best network on the test rows: R^2 %.4f; linear regression on the same features: R^2 %.4f\n",
-              verdict.test_r_squared, verdict.linear_regression_r_squared);
+  std::printf(
+      "  best network on the test rows: R^2 %.4f, worst motor %.4f; linear regression on the same features: R^2 %.4f\n",
+      verdict.test_r_squared, verdict.worst_motor_r_squared, verdict.linear_regression_r_squared);
   std::fflush(stdout);
   if (verdict.worse_than_mean()) {
     if (!options.allow_poor) {
+<<<<<<< HEAD
       char r_squared[32];
       std::snprintf(r_squared, sizeof r_squared, "%.4f", verdict.test_r_squared);
       programs::complain(
           "train", std::string("not exported: on the test rows the best network is worse than the mean of "
                                "the commands (R^2 ") +
                        r_squared + "); more epochs or a better flight, or --allow-poor" + earlier_export(options));
+=======
+      const std::string header = options.out + "/model.hpp";
+      std::error_code ignored;
+      std::fprintf(stderr,
+                   "train: not exported: on the test rows the best network is worse than the mean of the commands "
+                   "(R^2 %.4f, worst motor %.4f); more epochs or a better flight, or --allow-poor%s\n",
+                   verdict.test_r_squared, verdict.worst_motor_r_squared,
+                   std::filesystem::exists(header, ignored) ? "; the model.hpp there is of an earlier training" : "");
+>>>>>>> i10-lib2
       return false;
     }
     std::fprintf(stderr, "train: warning: NOT FOR FLIGHT: the best network is worse than the mean of the commands\n");
@@ -241,10 +252,11 @@ int train_judge_export(const Options& options, const Flight& flight) {
   Verdict verdict;
   nlohmann::json verdict_row;
   if (best) {
-    verdict = {results[*best].test.errors.mean.r_squared, regression_r_squared};
+    verdict = verdict_on(results[*best].test.errors, regression_r_squared);
     verdict_row = {{"model", informed},
                    {"seed", results[*best].seed},
                    {"r2", verdict.test_r_squared},
+                   {"worst_motor_r2", verdict.worst_motor_r_squared},
                    {"linear_regression_r2", verdict.linear_regression_r_squared},
                    {"worse_than_mean", verdict.worse_than_mean()},
                    {"beats_linear_regression", verdict.beats_linear_regression()},
@@ -351,8 +363,12 @@ int run(int argument_count, char** arguments) {
   app.footer(
       "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
       "commands;\n"
+<<<<<<< HEAD
       "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
       "Without gnuplot the pictures are left out, with a line.");
+=======
+      "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.");
+>>>>>>> i10-lib2
   add_path(app, "--flight", options.flight, "FILE.csv", "recorded flight, CSV as `fly` writes it")->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
       ->capture_default_str();

@@ -4,6 +4,7 @@
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
 // CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
 // CASE NO_BACKWARD_RULE: pinnquad: this layer cannot be trained; specialise BackwardRule
+// CASE BACKWARD_RULE_MAY_THROW: pinnquad: a BackwardRule's backward.. must be noexcept
 // CASE NO_SLOPE: pinnquad: this layer cannot be trained; an element-wise layer needs slope
 // CASE NOT_AN_OPTIMIZER: pinnquad: Trainer's third argument is not an optimiser
 // CASE SCHEDULED_NOT_AN_OPTIMIZER: pinnquad: Scheduled's first argument is not an optimiser
@@ -45,6 +46,12 @@ struct Reverse {
   };
 };
 
+/// The same, with the derivative.
+struct Turned : Reverse {
+  template <class Scalar, int In>
+  struct Bind : Reverse::Bind<Scalar, In> {};
+};
+
 struct Square {
   template <class Scalar, int In>
   struct Bind : pinnquad::ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
@@ -66,6 +73,21 @@ struct MayThrow {
   double factor(double) const { return 1.0; }
 };
 
+}  // namespace
+
+template <class Scalar, int In>
+struct pinnquad::BackwardRule<Turned::Bind<Scalar, In>> {
+  static void backward(const Scalar*, const Scalar*, const Scalar*, const Scalar* dy, Scalar* dx, Scalar*)
+#if !defined(BACKWARD_RULE_MAY_THROW)
+      noexcept
+#endif
+  {
+    for (int i = 0; i < In; ++i) dx[i] = dy[In - 1 - i];
+  }
+};
+
+namespace {
+
 #if defined(INPUTS_DIFFER)
 using Net = Network<float, Inputs<15>, Dense<8>, Relu, Dense<4>>;
 #elif defined(OUTPUTS_DIFFER)
@@ -81,7 +103,7 @@ using Net = Network<float, Inputs<16>, Dense<8>, Relu, pinnquad::BatchNorm, Dens
 #elif defined(NOT_A_NETWORK)
 using Net = Dense<4>;
 #else
-using Net = Network<float, Inputs<16>, Dense<8>, Relu, Dense<4>>;
+using Net = Network<float, Inputs<16>, Dense<8>, Relu, Turned, Dense<4>>;
 #endif
 
 #if defined(NOT_A_LOSS)

@@ -9,12 +9,19 @@
 // CASE ALL_SPIN_ALIKE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
 // CASE READS_THE_ROTORS_WRENCH: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
 // CASE READS_THE_ROTORS_THRUSTS: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
-// CASE SURROUNDINGS_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
-// CASE WRENCH_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
-// CASE BOUND_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.. and bound.. must be noexcept
-// CASE WRENCH_IS_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.. or wrench_on.. can.t be called as the contract says
-// CASE SURROUNDINGS_ARE_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.. or wrench_on.. can.t be called
-// CASE GROUND_EFFECT_WITH_A_POLE: pinnquad: an effect does not hold for this airframe
+// CASE SURROUNDINGS_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
+// CASE WRENCH_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
+// CASE BOUND_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
+// CASE WRENCH_IS_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.., wrench_on.., bound.. or status.. can.t be called as the contract says
+// CASE SURROUNDINGS_ARE_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.., wrench_on.., bound.. or status.. can.t be called
+// CASE STATUS_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
+// CASE STATUS_IS_A_BOOL: pinnquad: an effect's surroundings.., wrench.., wrench_on.., bound.. or status.. can.t be called
+// CASE STATUS_IS_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.., wrench_on.., bound.. or status.. can.t be called
+// CASE STATUS_OF_ANOTHER_SCALAR: pinnquad: an effect's surroundings.., wrench.., wrench_on.., bound.. or status.. can.t be called
+// CASE BOUND_IS_PASSED_OVER: pinnquad: an effect's surroundings.., wrench.., wrench_on.., bound.. or status.. can.t be called
+// CASE BOUND_WRENCH_MAY_THROW: pinnquad: what an effect's bound.. returns flies in its place: it must be an effect
+// CASE BOUND_IS_NO_EFFECT: pinnquad: what an effect's bound.. returns flies in its place: it must be an effect
+// CASE GROUND_EFFECT_WITH_A_POLE: pinnquad: an effect, as it is by default, refuses this airframe .its status...
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -30,6 +37,13 @@ struct ForceOnly {
   pinnquad::Vector3<Scalar> wrench(const pinnquad::AeroCondition<Scalar>&,
                                    const pinnquad::Airframe<Scalar>&) const noexcept {
     return pinnquad::Vector3<Scalar>::Zero();
+  }
+};
+
+struct MayThrow {
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>&, const pinnquad::Airframe<Scalar>&) const {
+    return {};
   }
 };
 
@@ -75,12 +89,40 @@ struct Whole {
   }
 
   template <class Scalar>
-  Whole bound(const pinnquad::Airframe<Scalar>&) const
+#if defined(STATUS_IS_A_BOOL)
+  bool status(const pinnquad::Airframe<Scalar>&) const
+#elif defined(STATUS_IS_PASSED_OVER)
+  pinnquad::Status status(const pinnquad::Airframe<Scalar>&)
+#elif defined(STATUS_OF_ANOTHER_SCALAR)
+  std::enable_if_t<std::is_same_v<Scalar, float>, pinnquad::Status> status(const pinnquad::Airframe<Scalar>&) const
+#else
+  pinnquad::Status status(const pinnquad::Airframe<Scalar>&) const
+#endif
+#if !defined(STATUS_MAY_THROW)
+      noexcept
+#endif
+  {
+    return {};
+  }
+
+#if defined(BOUND_WRENCH_MAY_THROW)
+  using Kept = MayThrow;
+#elif defined(BOUND_IS_NO_EFFECT)
+  using Kept = Nothing;
+#else
+  using Kept = Whole;
+#endif
+  template <class Scalar>
+#if defined(BOUND_IS_PASSED_OVER)
+  Kept bound(const pinnquad::Airframe<Scalar>&, Scalar) const
+#else
+  Kept bound(const pinnquad::Airframe<Scalar>&) const
+#endif
 #if !defined(BOUND_MAY_THROW)
       noexcept
 #endif
   {
-    return *this;
+    return {};
   }
 };
 
@@ -138,5 +180,5 @@ int main() {
   if (status == pinnquad::Status::ok) status = NearGround::of<Vehicle>().step(state, {}, 0.001);
 #endif
   return static_cast<int>(quadrotor.status()) + static_cast<int>(status) +
-         static_cast<int>(sizeof(Nothing) + sizeof(ForceOnly) + sizeof(Changed)) - 3;
+         static_cast<int>(sizeof(Nothing) + sizeof(ForceOnly) + sizeof(Changed) + sizeof(MayThrow)) - 4;
 }

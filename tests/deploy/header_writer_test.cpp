@@ -219,7 +219,7 @@ TEST_CASE("no locale plays a part, whether it is the stream's or the program's")
   from.training_rows = 1234567;
   from.seed = 7654321;
   from.epochs = 300000;
-  from.verdict = Verdict{0.875, 1234.5};
+  from.verdict = Verdict{0.875, 1234.5, 0.5};
   const std::vector<Model::FeatureVector> golden(3, Model::FeatureVector{0.5f, 1.5f, -2.5f});
   const std::string plain = written(some_model(1), golden, from);
   CHECK(plain.find("training_rows = 1234567;") != std::string::npos);
@@ -234,23 +234,27 @@ TEST_CASE("no locale plays a part, whether it is the stream's or the program's")
 TEST_CASE("a model tells how it was judged, and at its head if it is not for flight") {
   Provenance from;
   CHECK(written(some_model(1), {Model::FeatureVector{}}, from).find("worse_than_mean") == std::string::npos);
-  from.verdict = Verdict{0.75, 0.5};
+  from.verdict = Verdict{0.75, 0.5, 0.25};
   std::string header = written(some_model(1), {Model::FeatureVector{}}, from);
   for (const char* line : {"double test_r_squared = 0.75;", "double linear_regression_r_squared = 0.5;",
                            "bool worse_than_mean = false;", "bool beats_linear_regression = true;"}) {
     CHECK(header.find(line) != std::string::npos);
   }
   CHECK(header.find("NOT FOR FLIGHT") == std::string::npos);
-  from.verdict = Verdict{-0.25, 0.5};
+  from.verdict = Verdict{-0.25, 0.5, -0.75};
   header = written(some_model(1), {Model::FeatureVector{}}, from);
-  CHECK(header.find("// NOT FOR FLIGHT: ") < header.find("#pragma once"));
+  CHECK(header.find("worse than the mean of the commands.\n") < header.find("#pragma once"));
   CHECK(header.find("bool worse_than_mean = true;") != std::string::npos);
   CHECK(header.find("bool beats_linear_regression = false;") != std::string::npos);
-  from.verdict = Verdict{0.12345678901, -1e300};
+  from.verdict = Verdict{0.05, 0.0, -2.5};
+  header = written(some_model(1), {Model::FeatureVector{}}, from);
+  CHECK(header.find("// NOT FOR FLIGHT: ") < header.find("#pragma once"));
+  CHECK(header.find("worse than the mean of one motor's commands.\n") < header.find("#pragma once"));
+  from.verdict = Verdict{0.12345678901, -1e300, 0};
   header = written(some_model(1), {Model::FeatureVector{}}, from);
   CHECK(header.find("double test_r_squared = 0.123457;") != std::string::npos);
   CHECK(header.find("double linear_regression_r_squared = -1e+300;") != std::string::npos);
-  from.verdict = Verdict{std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()};
+  from.verdict = Verdict{std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity(), 0};
   header = written(some_model(1), {Model::FeatureVector{}}, from);
   CHECK(header.find("r_squared") == std::string::npos);  // no literal for that
   CHECK(header.find("bool worse_than_mean = true;") != std::string::npos);

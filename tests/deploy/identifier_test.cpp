@@ -6,7 +6,8 @@
 using pinnquad::is_identifier;
 
 TEST_CASE("names of structs") {
-  for (const char* name : {"MyQuadModel", "Model2", "my_model", "m", "TrainedQuadModel", "Class", "NULLish"}) {
+  for (const char* name : {"MyQuadModel", "Model2", "my_model", "m", "TrainedQuadModel", "Class", "NULLish", "eigen",
+                           "EigenModel", "Model_t2", "t", "model_T", "Uint", "timer"}) {
     CAPTURE(name);
     CHECK(is_identifier(name));
   }
@@ -49,7 +50,27 @@ TEST_CASE("no name: other characters, keywords, what C++ and its macros have tak
                            "pinnquad",
                            "time",
                            "exp",
-                           "y0"}) {
+                           "y0",
+                           "Eigen",
+                           "EIGEN_ARCH_i386",
+                           "M_PIf",
+                           "P_tmpdir",
+                           "size_t",
+                           "int32_t",
+                           "my_model_t",
+                           "tm",
+                           "timespec",
+                           "timeval",
+                           "itimerspec",
+                           "sigevent",
+                           "lconv",
+                           "va_list",
+                           "uint",
+                           "ulong",
+                           "ushort",
+                           "u_int",
+                           "fd_set",
+                           "random_data"}) {
     CAPTURE(name);
     CHECK_FALSE(is_identifier(name));
   }

@@ -49,7 +49,8 @@ template <class Header>
 Provenance provenance() {
   std::optional<Verdict> verdict;
   if constexpr (HasVerdict<Header>::value) {
-    verdict = Verdict{Header::test_r_squared, Header::linear_regression_r_squared};
+    const double worst_motor = Header::worse_than_mean ? -1.0 : 0.0;  // what the header says of it
+    verdict = Verdict{Header::test_r_squared, Header::linear_regression_r_squared, worst_motor};
   }
   return {Header::training_data,
           Header::training_data_hash,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every number of a model made NaN or infinite in turn: no self test passes, no block opens, and a NaN weight reaches the
-// commands. Compiled by check.sh with and without -ffast-math, so nothing here may ask a floating-point number whether it is
+// commands. A verdict with such a number lets no model fly. Compiled by check.sh with and without -ffast-math, so nothing here may ask a floating-point number whether it is
 // NaN.
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include "../../examples/models/demo_quadrotor.hpp"
 #include "../support/block_bytes.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/evaluation/verdict.hpp"
 #include "pinnquad/inference/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
@@ -149,9 +150,25 @@ void try_block() {
   }
 }
 
+/// The judgement of a model whose error is no number.
+void try_verdict() {
+  volatile std::uint64_t stored = 0x7ff8000000000000u;
+  const std::uint64_t bits = stored;
+  double bad = 0;
+  std::memcpy(&bad, &bits, sizeof bad);
+  expect(!Verdict{0.5, 0.25, 0.5}.worse_than_mean(), "sound verdict", 0);
+  expect((Verdict{bad, 0.25, 0.5}.worse_than_mean()), "verdict, NaN as mean", 0);
+  expect((Verdict{0.5, 0.25, bad}.worse_than_mean()), "verdict, NaN as worst motor", 0);
+  expect((verdict_on(PredictionErrors<2>{{{{0, 0, bad}, {0, 0, 0.5}}}, {0, 0, 0.5}}, 0).worse_than_mean()),
+         "verdict, NaN as first motor", 0);
+  expect(!(Verdict{bad, bad, bad}.beats_linear_regression()), "verdict beside linear regression", 0);
+  expect((Verdict{0.5, bad, 0.5}.beats_linear_regression()), "verdict without linear regression", 0);
+}
+
 }  // namespace
 
 int main() {
+  try_verdict();
   expect(self_test(InverseDynamics<Model>{}) == Status::ok, "sound header", 0);
   constexpr std::size_t last = Model::parameters.size() - 1;
   try_header<0, false>();

@@ -74,6 +74,15 @@ case $what in
     done
     same=$(printf '%b' "$names" | cut -d' ' -f1 | sort | uniq -d)
     [ -z "$same" ] || fail "one name for several: $same of $(printf '\n%b' "$names")"
+    # with double in hardware and without: Cortex-M7 and Cortex-M4
+    if command -v arm-none-eabi-g++ > /dev/null; then
+      thumb="-mthumb -mfloat-abi=hard"
+      # shellcheck disable=SC2086
+      single=$(compiler=arm-none-eabi-g++ space_of $thumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16)
+      # shellcheck disable=SC2086
+      double=$(compiler=arm-none-eabi-g++ space_of $thumb -mcpu=cortex-m7 -mfpu=fpv5-d16)
+      [ "$single" != "$double" ] || fail "one name for Cortex-M4 and Cortex-M7: $single"
+    fi
     # objects of two kinds of AVX-512 have nothing that the linker could take from the other
     compile prediction.cpp first.o -DPREDICT=predict_first -mavx512f -mfma "$@"
     compile prediction.cpp second.o -DPREDICT=predict_second -march=skylake-avx512 "$@"

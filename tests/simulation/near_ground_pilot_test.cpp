@@ -149,6 +149,30 @@ TEST_CASE("the near-ground pilot: the same engine state, the same set points") {
   CHECK(differs);
 }
 
+TEST_CASE("a seed's first take-off and first leg are the same whatever the number of legs") {
+  NearGroundStyle one, five;
+  one.max_legs = 1;
+  five.max_legs = 5;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    Pilot short_sorties(std::mt19937_64(seed), one), long_sorties(std::mt19937_64(seed), five);
+    IdealVehicle vehicle;
+    bool has_flown_a_leg = false;
+    for (int i = 0; i < 10000; ++i) {
+      const SetPoint<double> asked = short_sorties(vehicle.state, i * tick_s);
+      const SetPoint<double> other = long_sorties(vehicle.state, i * tick_s);
+      has_flown_a_leg = has_flown_a_leg || short_sorties.phase() == NearGroundPhase::hover ||
+                        short_sorties.phase() == NearGroundPhase::traverse;
+      if (short_sorties.phase() == NearGroundPhase::landing) break;
+      REQUIRE(asked.velocity_m_s == other.velocity_m_s);
+      REQUIRE(asked.yaw_rate_rad_s == other.yaw_rate_rad_s);
+      vehicle.fly(asked);
+    }
+    CHECK(has_flown_a_leg);
+    CHECK(short_sorties.phase() == NearGroundPhase::landing);
+  }
+}
+
 TEST_CASE("styles at their ends: no lag, stays of no time, no legs; what is asked for stays a number") {
   NearGroundStyle style;
   style.velocity_lag_s = style.yaw_rate_lag_s = 0;

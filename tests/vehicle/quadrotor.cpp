@@ -722,6 +722,25 @@ TEST_CASE_TEMPLATE("a vehicle is a value: its copy flies the same", Scalar, floa
   CHECK(a.rotors == b.rotors);
 }
 
+namespace {
+/// It has no value by default that could be flown.
+struct MeasuredDrag : pinnquad::QuadraticDrag {
+  double measured = 0;
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>&) const noexcept {
+    return measured > 0 ? Status::ok : Status::out_of_range;
+  }
+};
+}  // namespace
+
+TEST_CASE("a vehicle of effects that are given is judged by these, not by what they are by default") {
+  using Vehicle = Quadrotor<double, MeasuredDrag>;
+  MeasuredDrag drag;
+  drag.measured = 1;
+  CHECK(Vehicle::of<pinnquad::PaperQuadrotor>(Site<double>{}, drag).status() == Status::ok);
+  CHECK(Vehicle::of<pinnquad::PaperQuadrotor>(Site<double>{}, MeasuredDrag{}).status() == Status::out_of_range);
+}
+
 TEST_CASE("an effect that is not named costs no memory") {
   static_assert(sizeof(Quadrotor<float, pinnquad::QuadraticDrag>) <= sizeof(Quadrotor<float>) + sizeof(float));
   CHECK(true);

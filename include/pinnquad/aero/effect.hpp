@@ -89,7 +89,6 @@ enum class VariesWith : std::uint8_t {
 namespace detail {
 struct EffectProbe {
   static Surroundings<double>& surroundings() noexcept;
-  static const AeroCondition<double>& condition() noexcept;
   static const RotorCondition<double>& rotor_condition() noexcept;
   static const Airframe<double>& airframe() noexcept;
 };
@@ -129,11 +128,16 @@ struct IsBindable<Effect, Scalar,
       noexcept(std::declval<const Effect&>().bound(std::declval<const Airframe<Scalar>&>()));
 };
 template <class Effect, class Scalar, class = void>
-struct HasStatus : std::false_type {};
+struct HasStatus : std::false_type {
+  static constexpr bool is_noexcept = true;
+};
 template <class Effect, class Scalar>
 struct HasStatus<Effect, Scalar,
                  std::void_t<decltype(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()))>>
-    : std::is_same<Status, decltype(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()))> {};
+    : std::is_same<Status, decltype(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()))> {
+  static constexpr bool is_noexcept =
+      noexcept(std::declval<const Effect&>().status(std::declval<const Airframe<Scalar>&>()));
+};
 /// Whether a class has a member of this name, whatever it is: two of one name can't be told apart.
 struct SurroundingsName {
   void surroundings();
@@ -143,6 +147,12 @@ struct WrenchName {
 };
 struct WrenchOnName {
   void wrench_on();
+};
+struct BoundName {
+  void bound();
+};
+struct StatusName {
+  void status();
 };
 template <class Effect, class Name>
 struct Joined : Effect, Name {};
@@ -159,6 +169,14 @@ template <class Effect, class = void>
 struct NamesWrenchOn : std::true_type {};
 template <class Effect>
 struct NamesWrenchOn<Effect, std::void_t<decltype(&Joined<Effect, WrenchOnName>::wrench_on)>> : std::false_type {};
+template <class Effect, class = void>
+struct NamesBound : std::true_type {};
+template <class Effect>
+struct NamesBound<Effect, std::void_t<decltype(&Joined<Effect, BoundName>::bound)>> : std::false_type {};
+template <class Effect, class = void>
+struct NamesStatus : std::true_type {};
+template <class Effect>
+struct NamesStatus<Effect, std::void_t<decltype(&Joined<Effect, StatusName>::status)>> : std::false_type {};
 
 template <class Effect, class = void>
 struct Variation : std::integral_constant<VariesWith, VariesWith::place_and_time> {};
@@ -195,23 +213,25 @@ template <class Effect>
 inline constexpr bool has_thrust_branches = detail::HasBranches<Effect>::value;
 
 /// False where the effect has a function of the contract's name that can't be called as the contract says, or returns
-/// something else: it would be passed over in silence.
-template <class Effect>
+/// something else: it would be passed over in silence. A `final` class is not looked into: C++ tells its names to nobody.
+template <class Effect, class Scalar = double>
 constexpr bool is_whole_effect() noexcept {
   if constexpr (std::is_class_v<Effect> && !std::is_final_v<Effect>) {
     return changes_surroundings<Effect> == detail::NamesSurroundings<Effect>::value &&
            makes_wrench<Effect> == detail::NamesWrench<Effect>::value &&
-           has_thrust_branches<Effect> == detail::NamesWrenchOn<Effect>::value;
+           has_thrust_branches<Effect> == detail::NamesWrenchOn<Effect>::value &&
+           detail::IsBindable<Effect, Scalar>::value == detail::NamesBound<Effect>::value &&
+           detail::HasStatus<Effect, Scalar>::value == detail::NamesStatus<Effect>::value;
   } else {
     return true;
   }
 }
 
 /// True if each of the effect's functions is noexcept: it runs in flight.
-template <class Effect>
-inline constexpr bool is_noexcept_effect =
-    detail::HasSurroundings<Effect>::is_noexcept&& detail::HasWrench<Effect, RotorCondition<double>>::is_noexcept&&
-        detail::HasBranches<Effect>::is_noexcept&& detail::IsBindable<Effect, double>::is_noexcept;
+template <class Effect, class Scalar = double>
+inline constexpr bool is_noexcept_effect = detail::HasSurroundings<Effect>::is_noexcept&&
+    detail::HasWrench<Effect, RotorCondition<double>>::is_noexcept&& detail::HasBranches<Effect>::is_noexcept&&
+        detail::IsBindable<Effect, Scalar>::is_noexcept&& detail::HasStatus<Effect, Scalar>::is_noexcept;
 
 /// True for what has `bound(airframe)`, see the head of this file.
 template <class Effect, class Scalar>
@@ -226,6 +246,10 @@ auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexce
     return effect;
   }
 }
+
+/// Its type: an effect too.
+template <class Effect, class Scalar>
+using BoundEffect = decltype(bound_effect(std::declval<const Effect&>(), std::declval<const Airframe<Scalar>&>()));
 
 /// Status of an effect for an airframe; ok for an effect that has no `status`.
 template <class Effect, class Scalar>

@@ -13,6 +13,8 @@ namespace pinnquad {
 /// Cheeseman and Bennett (1955): r = 1 / (1 - (R / 4Z)^2) for Z/R > 0.25, else 1: also below the ground, where the low side
 /// of a tilted vehicle may reach. The pole at Z/R = 0.25 is cut at `most_ratio`, which the formula passes at Z/R =
 /// 0.250125; NaN stays NaN.
+/// Near its pole the formula is wrong, which is a known fault of this model: a vehicle that hovers at Z/R = 0.2501 is thrown
+/// up at 500 g. Trust it above Z/R of about 0.35, where the ratio is 2; to fly near the ground, take Conyers.
 struct CheesemanBennett {
   static constexpr double most_ratio = 1000;
 

@@ -14,7 +14,9 @@ namespace pinnquad {
 
 namespace detail {
 template <class Policy, class Scalar, class = void>
-struct IsFeedForward : std::false_type {};
+struct IsFeedForward : std::false_type {
+  static constexpr bool is_noexcept = true;
+};
 template <class Policy, class Scalar>
 struct IsFeedForward<Policy, Scalar,
                      std::void_t<decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
@@ -22,12 +24,20 @@ struct IsFeedForward<Policy, Scalar,
                                                                   Scalar(0), std::declval<Commands<Scalar>&>()))>>
     : std::is_same<Status, decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
                                                             std::declval<const Accelerations<Scalar>&>(), Scalar(0),
-                                                            std::declval<Commands<Scalar>&>()))> {};
+                                                            std::declval<Commands<Scalar>&>()))> {
+  static constexpr bool is_noexcept = noexcept(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
+                                                                       std::declval<const Accelerations<Scalar>&>(),
+                                                                       Scalar(0), std::declval<Commands<Scalar>&>()));
+};
 }  // namespace detail
 
-/// True for a type that fulfils the contract at the head of this file.
+/// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Policy, class Scalar>
 inline constexpr bool is_feed_forward = detail::IsFeedForward<Policy, Scalar>::value;
+
+/// True if the policy's call is noexcept: it flies.
+template <class Policy, class Scalar>
+inline constexpr bool is_noexcept_feed_forward = detail::IsFeedForward<Policy, Scalar>::is_noexcept;
 
 /// No feed-forward: the commands of the hover, whatever is wanted.
 template <class Scalar>

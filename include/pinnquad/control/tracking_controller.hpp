@@ -14,6 +14,8 @@ template <class Scalar, class FeedForward>
 class TrackingController {
   static_assert(is_feed_forward<FeedForward, Scalar>,
                 "pinnquad: this type is no feed-forward policy (control/feed_forward.hpp)");
+  static_assert(is_noexcept_feed_forward<FeedForward, Scalar>,
+                "pinnquad: a feed-forward policy flies: its operator() must be noexcept (control/feed_forward.hpp)");
 
  public:
   /// `density_ratio` rho / rho_0 of the place, by which rotor thrust scales.

@@ -4,8 +4,9 @@
 //   namespace pinnquad { inline namespace PINNQUAD_INSTRUCTION_SET { ... } }
 #pragma once
 
-// A family, then a letter for each extension that a compiler uses in code without intrinsics, then "fast_math" where it was
-// told that there is no NaN: sse2_, avx2_7812lpm65s3fast_math. Equal names: what one unit was compiled for runs in the other.
+// For x86 and Arm: a family, then a letter for each extension that a compiler uses in code without intrinsics, then
+// "fast_math" where it was told that there is no NaN: sse2_, avx2_7812lpm65s3fast_math. Equal names: what one unit was
+// compiled for runs in the other.
 #if defined(__AVX512F__)
 #define PINNQUAD_SET_FAMILY avx512_
 #elif defined(__AVX2__) && defined(__FMA__)
@@ -232,6 +233,11 @@
 #else
 #define PINNQUAD_SET_IDIV
 #endif
+#if defined(__ARM_FP) && (__ARM_FP & 8)
+#define PINNQUAD_SET_DOUBLE W
+#else
+#define PINNQUAD_SET_DOUBLE
+#endif
 
 // arithmetic
 #if __FINITE_MATH_ONLY__
@@ -259,7 +265,10 @@
                     PINNQUAD_SET_DOTPROD, PINNQUAD_SET_I8MM)
 #define PINNQUAD_SET_6                                                                                               \
   PINNQUAD_SET_JOIN(PINNQUAD_SET_FRINT, PINNQUAD_SET_JCVT, PINNQUAD_SET_LSE, PINNQUAD_SET_NEON, PINNQUAD_SET_MAXMIN, \
-                    PINNQUAD_SET_IDIV, PINNQUAD_SET_MATH)
+                    PINNQUAD_SET_IDIV, PINNQUAD_SET_DOUBLE)
+#define PINNQUAD_SET_PASTE_2(a, b) a##b
+#define PINNQUAD_SET_JOIN_2(a, b) PINNQUAD_SET_PASTE_2(a, b)
+#define PINNQUAD_SET_7 PINNQUAD_SET_JOIN_2(PINNQUAD_SET_6, PINNQUAD_SET_MATH)
 #define PINNQUAD_INSTRUCTION_SET                                                                         \
   PINNQUAD_SET_JOIN(PINNQUAD_SET_FAMILY, PINNQUAD_SET_1, PINNQUAD_SET_2, PINNQUAD_SET_3, PINNQUAD_SET_4, \
-                    PINNQUAD_SET_5, PINNQUAD_SET_6)
+                    PINNQUAD_SET_5, PINNQUAD_SET_7)

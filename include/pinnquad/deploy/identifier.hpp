@@ -9,8 +9,8 @@ namespace pinnquad {
 
 namespace detail {
 
-/// Keywords and alternative tokens of C++ up to C++20, and what its headers take at global scope in lower case: macros,
-/// namespaces, and functions of the C library that a struct of that name would hide.
+/// Keywords and alternative tokens of C++ up to C++20, and what its headers and Eigen take at global scope: macros,
+/// namespaces, types of the C library that flight.hpp brings with it, and functions that a struct of that name would hide.
 inline constexpr std::string_view taken_names[] = {
     // clang-format off
     "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch", "char",
@@ -23,7 +23,9 @@ inline constexpr std::string_view taken_names[] = {
     "true", "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
     "wchar_t", "while", "xor", "xor_eq",
     "assert", "errno", "linux", "unix", "stdin", "stdout", "stderr", "signbit", "isnan", "isinf", "isfinite", "offsetof",
-    "main", "std", "pinnquad", "size_t",
+    "main", "std", "pinnquad", "Eigen", "math_errhandling", "L_ctermid", "L_cuserid", "L_tmpnam", "P_tmpdir",
+    "drand48_data", "fd_mask", "fd_set", "itimerspec", "lconv", "random_data", "sched_param", "sigevent", "timespec",
+    "timeval", "timex", "tm", "u_char", "u_int", "u_long", "u_short", "uint", "ulong", "ushort", "va_list",
     "abort", "abs", "acos", "asin", "atan", "atof", "atoi", "ceil", "clock", "cos", "div", "exit", "exp", "fabs", "floor",
     "fmod", "free", "gamma", "index", "j0", "j1", "jn", "labs", "log", "malloc", "pow", "qsort", "rand", "read", "remove",
     "round", "signal", "sin", "sqrt", "system", "tan", "time", "write", "y0", "y1", "yn"};
@@ -32,7 +34,8 @@ inline constexpr std::string_view taken_names[] = {
 }  // namespace detail
 
 /// True for a name that a struct at global scope may have: letters, digits and underscores, the first a letter, no two
-/// underscores in a row, at least one lower-case letter (NULL, EOF and M_PI are macros), no keyword.
+/// underscores in a row, at least one lower-case letter (NULL, EOF and M_PI are macros, as are M_PIf and what begins with
+/// EIGEN_), no `_t` at the end (POSIX has these), no keyword.
 inline bool is_identifier(std::string_view name) {
   const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto letter = [lower](char c) { return lower(c) || (c >= 'A' && c <= 'Z'); };
@@ -42,7 +45,8 @@ inline bool is_identifier(std::string_view name) {
     if (!letter(c) && !(c >= '0' && c <= '9') && c != '_') return false;
     has_lower = has_lower || lower(c);
   }
-  if (!has_lower) return false;
+  if (!has_lower || name.substr(0, 2) == "M_" || name.substr(0, 6) == "EIGEN_") return false;
+  if (name.size() > 2 && name.substr(name.size() - 2) == "_t") return false;
   for (const std::string_view taken : detail::taken_names) {
     if (name == taken) return false;
   }

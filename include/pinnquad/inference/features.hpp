@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Raw inputs -> X: the feature set as a type. The network's input count, names and order are said here, once.
 // Contract: `Inputs<Scalar>` (raw, a named struct), `size`, `names`, `units`, `angular_acceleration` (index of p_dot in X, -1
-// if X has none), `extract(inputs, x)` and `check(inputs)`, both noexcept. An input that is not finite makes a feature that is not: a Guard
-// without FiniteInputs relies on it.
+// if X has none), `extract(inputs, x)` and `check(inputs)`, both noexcept. An input that is not finite makes a feature that is
+// not: a Guard without FiniteInputs relies on it.
 #pragma once
 
 #include <array>
@@ -130,9 +130,6 @@ struct IsFeatureSet<T,
                                 decltype(T::extract(std::declval<const typename T::template Inputs<double>&>(),
                                                     static_cast<double*>(nullptr)))>>
     : std::bool_constant<T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size)> {};
-}  // namespace detail
-
-namespace detail {
 template <class T, class Inputs = typename T::template Inputs<double>>
 inline constexpr bool is_noexcept_feature_set = noexcept(T::check(std::declval<const Inputs&>())) && noexcept(
     T::extract(std::declval<const Inputs&>(), static_cast<double*>(nullptr)));

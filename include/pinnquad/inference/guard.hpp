@@ -147,7 +147,7 @@ struct PolicyTraits<Reference<I>> {
   static constexpr bool known = true;
 };
 
-/// Numbers, and the lower not above the upper; what is compared with NaN or infinity is neither clipped nor refused.
+/// Both limits are numbers; what is compared with NaN or infinity is neither clipped nor refused.
 template <class Limits>
 constexpr bool finite_limits() noexcept {
   return is_finite_constant(double(Limits::lower)) && is_finite_constant(double(Limits::upper));
@@ -167,9 +167,6 @@ struct ArgumentOf<Template, Default, Template<Argument>, Rest...> {
   static constexpr int count = 1 + ArgumentOf<Template, Default, Rest...>::count;
 };
 
-}  // namespace detail
-
-namespace detail {
 /// What a guard holds besides its rules: the fallback, else the reference.
 template <class... Policies>
 struct OtherInverse {

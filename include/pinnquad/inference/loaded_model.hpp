@@ -36,7 +36,8 @@ inline constexpr std::size_t loaded_golden_vectors = 8;
 
 /// A model as `InverseDynamics` reads it, with weights of its own: as in the block, for batches and derivatives, and packed
 /// for prediction where there is a vector unit. About as large as its weights, twice with a vector unit, so not a thing for a
-/// small stack; with a vector unit it is aligned to 64 bytes, as a PackedNetwork is. As made, it declines: its envelope is empty and its self test fails.
+/// small stack; with a vector unit it is aligned to 64 bytes, as a PackedNetwork is. As made, it declines: its envelope is
+/// empty and its self test fails.
 template <class ShapeType>
 class LoadedModel : public ModelScales<ShapeType> {
  public:

@@ -65,9 +65,6 @@ struct IsOutputSchema<T, std::void_t<decltype(T::names), decltype(T::unit),
                                      decltype(T::command(0.0, std::declval<const Airframe<double>&>())),
                                      decltype(T::command_slope(0.0, std::declval<const Airframe<double>&>()))>>
     : std::true_type {};
-}  // namespace detail
-
-namespace detail {
 template <class T>
 inline constexpr bool is_noexcept_output_schema =
     noexcept(T::command(0.0, std::declval<const Airframe<double>&>())) && noexcept(T::command_slope(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The contract of a layer. A spec (`Dense<25>`) names what is wanted; Bind<Scalar, Inputs> makes it a layer:
-//   using Scalar;  static constexpr int inputs, outputs, parameter_count;  static void forward(const Scalar* parameters, const Scalar* x,
-//   Scalar* y) noexcept;
+//   using Scalar;  static constexpr int inputs, outputs, parameter_count;
+//   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
 // Layers are types without data: a network owns all parameters in one flat array, as the exported header does.
 // forward(), activate() and slope() are noexcept. They are asked about samples alone: where a batch is padded to whole packs, the
 // padding repeats a sample or is left out (training), and what a pack gives in lanes past the last neuron, NaN too, is not read.

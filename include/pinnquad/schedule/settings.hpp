@@ -16,7 +16,28 @@ namespace detail {
 template <class T, class = void>
 struct ChecksSettings : std::false_type {};
 template <class T>
-struct ChecksSettings<T, std::void_t<decltype(std::declval<const T&>().check())>> : std::true_type {};
+struct ChecksSettings<T, std::void_t<decltype(std::declval<const T&>().check())>>
+    : std::is_void<decltype(std::declval<const T&>().check())> {};
+/// Whether a class has a member of this name, whatever it is: two of one name can't be told apart.
+struct CheckName {
+  void check();
+};
+template <class T>
+struct JoinedWithCheck : T, CheckName {};
+template <class T, class = void>
+struct NamesCheck : std::true_type {};
+template <class T>
+struct NamesCheck<T, std::void_t<decltype(&JoinedWithCheck<T>::check)>> : std::false_type {};
+
+/// False where a policy has a check that isn't `void check() const`. A `final` class is not looked into.
+template <class T>
+constexpr bool has_whole_check() noexcept {
+  if constexpr (std::is_class_v<T> && !std::is_final_v<T>) {
+    return ChecksSettings<T>::value == NamesCheck<T>::value;
+  } else {
+    return true;
+  }
+}
 
 template <class Number>
 [[noreturn]] void refuse_setting(const char* setting, const char* expected, Number found) {
@@ -41,6 +62,10 @@ constexpr void expect_from_zero(const char* setting, double value) {
 /// Asks a policy for its numbers; one without check() has none that could be wrong.
 template <class Policy>
 constexpr void check_settings(const Policy& policy) {
+  static_assert(
+      detail::has_whole_check<Policy>(),
+      "pinnquad: a policy's check() must be `void check() const` without parameters; this one would be passed "
+      "over (schedule/settings.hpp)");
   if constexpr (detail::ChecksSettings<Policy>::value) policy.check();
 }
 

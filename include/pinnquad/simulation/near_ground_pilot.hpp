@@ -92,7 +92,7 @@ class NearGroundPilot {
     switch (phase_) {
       case NearGroundPhase::stay:
         legs_left_ = 1;
-        if (style_.max_legs > 1) {
+        if (style_.max_legs >= 1) {  // drawn for one too, so that a seed flies the same whatever their number
           legs_left_ += static_cast<int>(uniform_index(engine_, static_cast<std::uint64_t>(style_.max_legs)));
         }
         change_height(NearGroundPhase::take_off, flight_height_m(), style_.max_climb_m_s);

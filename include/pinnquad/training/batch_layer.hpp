@@ -15,6 +15,8 @@ template <class Layer, class Pack, int BatchSize, class = void>
 struct BatchLayer {
   static_assert(is_trainable<Layer>,
                 "pinnquad: this layer cannot be trained; specialise BackwardRule (training/backward/backward.hpp)");
+  static_assert(is_noexcept_backward<Layer>,
+                "pinnquad: a BackwardRule's backward() must be noexcept (training/backward/backward.hpp)");
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = false;
   static constexpr bool needs_output = true;      ///< backward() looks at y, so nobody may overwrite it

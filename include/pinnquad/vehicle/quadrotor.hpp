@@ -49,27 +49,34 @@ class Quadrotor {
   static_assert(
       (is_effect<Effects> && ...),
       "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
+  static_assert((is_whole_effect<Effects, Scalar>() && ...),
+                "pinnquad: an effect's surroundings(), wrench(), wrench_on(), bound() or status() can't be called as "
+                "the contract "
+                "says, or returns something else: it would be passed over (aero/effect.hpp)");
+  static_assert((is_noexcept_effect<Effects, Scalar> && ...),
+                "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on(), bound() and status() must be "
+                "noexcept (aero/effect.hpp)");
   static_assert(
-      (is_whole_effect<Effects>() && ...),
-      "pinnquad: an effect's surroundings(), wrench() or wrench_on() can't be called as the contract says, or "
-      "returns something else: it would be passed over (aero/effect.hpp)");
-  static_assert((is_noexcept_effect<Effects> && ...),
-                "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on() and bound() must be noexcept "
-                "(aero/effect.hpp)");
+      ((is_effect<BoundEffect<Effects, Scalar>> && is_whole_effect<BoundEffect<Effects, Scalar>, Scalar>() &&
+        is_noexcept_effect<BoundEffect<Effects, Scalar>, Scalar>)&&...),
+      "pinnquad: what an effect's bound() returns flies in its place: it must be an effect whose functions are "
+      "as the contract says and noexcept (aero/effect.hpp)");
 
  public:
   /// The vehicle of an airframe known when compiled, `Quadrotor<double, QuadraticDrag>::of<Crazyflie>(site)`: what
-  /// airframe_value() refuses, and a model of an effect that doesn't hold for the airframe, is a compile error.
+  /// airframe_value() refuses is a compile error. What the effects say of the airframe is in status().
   template <class Vehicle>
   static Quadrotor of(const Site<Scalar>& site, const Effects&... effects) noexcept {
-    static_assert(((detail::DefaultStatus<Effects, Vehicle>::value == Status::ok) && ...),
-                  "pinnquad: an effect does not hold for this airframe: a ground effect's fit has a pole or an "
-                  "implausible ratio at its motor spacing and propeller radius (aero/ground_effect.hpp)");
     return Quadrotor(airframe_value<Vehicle, Scalar>(), site, effects...);
   }
-  /// The same with effects as they are by default.
+  /// The same with effects as they are by default: one that refuses the airframe is a compile error too.
   template <class Vehicle, std::size_t Count = sizeof...(Effects), std::enable_if_t<(Count > 0), int> = 0>
   static Quadrotor of(const Site<Scalar>& site = {}) noexcept {
+    static_assert(
+        ((detail::DefaultStatus<Effects, Vehicle>::value == Status::ok) && ...),
+        "pinnquad: an effect, as it is by default, refuses this airframe (its status()): a ground effect's fit "
+        "that has a pole or an implausible ratio at its motor spacing and propeller radius, for example "
+        "(aero/ground_effect.hpp)");
     return of<Vehicle>(site, Effects{}...);
   }
 
@@ -306,7 +313,7 @@ class Quadrotor {
   Airframe<Scalar> airframe_;
   Scalar inverse_mass_;
   Site<Scalar> site_;
-  std::tuple<decltype(bound_effect(std::declval<Effects>(), std::declval<Airframe<Scalar>>()))...> effects_;
+  std::tuple<BoundEffect<Effects, Scalar>...> effects_;
   Rotors<Scalar> rotors_;
   Status status_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// tanh, sqrt and positive part of one scalar. The standard library's float overloads are functions of their own in unoptimised code, compiled
-// for the instruction set of whoever comes first; the compiler's builtins are not.
+// tanh, sqrt and positive part of one scalar. The standard library's float overloads are functions of their own in
+// unoptimised code, compiled for the instruction set of whoever comes first; the compiler's builtins are not.
 #pragma once
 
 #include <cmath>

@@ -17,19 +17,29 @@ struct BackwardRule;
 
 namespace detail {
 template <class Layer, class = void>
-struct HasSampleRule : std::false_type {};
+struct HasSampleRule : std::false_type {
+  static constexpr bool is_noexcept = true;
+};
 template <class Layer>
 struct HasSampleRule<Layer,
                      std::void_t<decltype(BackwardRule<Layer>::backward(
                          std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
                          std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
                          std::declval<typename Layer::Scalar*>(), std::declval<typename Layer::Scalar*>()))>>
-    : std::true_type {};
+    : std::true_type {
+  static constexpr bool is_noexcept = noexcept(BackwardRule<Layer>::backward(
+      std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
+      std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
+      std::declval<typename Layer::Scalar*>(), std::declval<typename Layer::Scalar*>()));
+};
 }  // namespace detail
 
-/// True for a bound layer that can be trained.
+/// True for a bound layer that can be trained, but for `noexcept`.
 template <class Layer>
-inline constexpr bool is_trainable =
-    is_elementwise<Layer> ? has_slope<Layer> : detail::HasSampleRule<Layer>::value;
+inline constexpr bool is_trainable = is_elementwise<Layer> ? has_slope<Layer> : detail::HasSampleRule<Layer>::value;
+
+/// True if the layer's BackwardRule, where it has one, is noexcept: the Trainer's backward pass is.
+template <class Layer>
+inline constexpr bool is_noexcept_backward = detail::HasSampleRule<Layer>::is_noexcept;
 
 }  // namespace pinnquad
