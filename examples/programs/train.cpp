@@ -168,22 +168,14 @@ bool fit_for_export(const Options& options, const Verdict& verdict) {
   std::fflush(stdout);
   if (verdict.worse_than_mean()) {
     if (!options.allow_poor) {
-<<<<<<< HEAD
-      char r_squared[32];
-      std::snprintf(r_squared, sizeof r_squared, "%.4f", verdict.test_r_squared);
-      programs::complain(
-          "train", std::string("not exported: on the test rows the best network is worse than the mean of "
-                               "the commands (R^2 ") +
-                       r_squared + "); more epochs or a better flight, or --allow-poor" + earlier_export(options));
-=======
-      const std::string header = options.out + "/model.hpp";
-      std::error_code ignored;
-      std::fprintf(stderr,
-                   "train: not exported: on the test rows the best network is worse than the mean of the commands "
-                   "(R^2 %.4f, worst motor %.4f); more epochs or a better flight, or --allow-poor%s\n",
-                   verdict.test_r_squared, verdict.worst_motor_r_squared,
-                   std::filesystem::exists(header, ignored) ? "; the model.hpp there is of an earlier training" : "");
->>>>>>> i10-lib2
+      char r_squared[64];
+      std::snprintf(r_squared, sizeof r_squared, "%.4f, worst motor %.4f", verdict.test_r_squared,
+                    verdict.worst_motor_r_squared);
+      programs::complain("train",
+                         "not exported: on the test rows the best network is worse than the mean of the commands "
+                         "(R^2 " +
+                             std::string(r_squared) + "); more epochs or a better flight, or --allow-poor" +
+                             earlier_export(options));
       return false;
     }
     std::fprintf(stderr, "train: warning: NOT FOR FLIGHT: the best network is worse than the mean of the commands\n");
@@ -363,12 +355,8 @@ int run(int argument_count, char** arguments) {
   app.footer(
       "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
       "commands;\n"
-<<<<<<< HEAD
       "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
       "Without gnuplot the pictures are left out, with a line.");
-=======
-      "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.");
->>>>>>> i10-lib2
   add_path(app, "--flight", options.flight, "FILE.csv", "recorded flight, CSV as `fly` writes it")->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
       ->capture_default_str();
