@@ -185,6 +185,12 @@ bool fit_for_export(const Options& options, const Verdict& verdict) {
                  "against %.4f): a linear map would fly as well\n",
                  verdict.test_r_squared, verdict.linear_regression_r_squared);
   }
+  if (verdict.has_poor_motor()) {
+    std::fprintf(stderr,
+                 "train: warning: one motor's commands are predicted worse than by their mean (R^2 %.4f on the test "
+                 "rows)\n",
+                 verdict.worst_motor_r_squared);
+  }
   return true;
 }
 

@@ -246,10 +246,6 @@ TEST_CASE("a model tells how it was judged, and at its head if it is not for fli
   CHECK(header.find("worse than the mean of the commands.\n") < header.find("#pragma once"));
   CHECK(header.find("bool worse_than_mean = true;") != std::string::npos);
   CHECK(header.find("bool beats_linear_regression = false;") != std::string::npos);
-  from.verdict = Verdict{0.05, 0.0, -2.5};
-  header = written(some_model(1), {Model::FeatureVector{}}, from);
-  CHECK(header.find("// NOT FOR FLIGHT: ") < header.find("#pragma once"));
-  CHECK(header.find("worse than the mean of one motor's commands.\n") < header.find("#pragma once"));
   from.verdict = Verdict{0.12345678901, -1e300, 0};
   header = written(some_model(1), {Model::FeatureVector{}}, from);
   CHECK(header.find("double test_r_squared = 0.123457;") != std::string::npos);

@@ -183,9 +183,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
       << ". Generated: export again rather than edit.\n"
       << "// SI units, rad. Commands in the order of the airframe's rotors.\n";
   if (provenance.verdict && provenance.verdict->worse_than_mean()) {
-    const bool one_motor = provenance.verdict->test_r_squared >= 0;
-    out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of "
-        << (one_motor ? "one motor's" : "the") << " commands.\n";
+    out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
   out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n"
       << "struct " << struct_name << " {\n"

@@ -19,12 +19,10 @@ struct Verdict {
   /// Of the model, the least of the motors; NaN if one is, or if nothing is said of it.
   double worst_motor_r_squared = std::numeric_limits<double>::quiet_NaN();
 
-  /// Answering always with the mean command would have been better, over all motors or for one; so too if an R^2 is NaN.
-  /// Such a model is not for flight: three good motors don't hold up a vehicle.
-  bool worse_than_mean() const noexcept {
-    return !(is_finite(test_r_squared) && is_finite(worst_motor_r_squared) && test_r_squared >= 0 &&
-             worst_motor_r_squared >= 0);
-  }
+  /// Answering always with the mean command would have been better; so too if R^2 is NaN. Such a model is not for flight.
+  bool worse_than_mean() const noexcept { return !(is_finite(test_r_squared) && test_r_squared >= 0); }
+  /// The same of one motor: a good mean may hide it.
+  bool has_poor_motor() const noexcept { return is_finite(worst_motor_r_squared) && worst_motor_r_squared < 0; }
   /// False if the plain linear map predicts the commands as well or better: the network has learned nothing beyond it.
   bool beats_linear_regression() const noexcept {
     return is_finite(test_r_squared) &&
