@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "axis_motion.hpp"
-#include "degrees.hpp"
 #include "parallel.hpp"
 #include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
@@ -73,7 +72,7 @@ inline const std::vector<FlightColumn>& flight_columns() {
       {"min_altitude_m", "lowest, m", "%.2f", [](const FlightFigures& f) { return f.report.min_altitude_m; }},
       {"max_altitude_m", "highest, m", "%.2f", [](const FlightFigures& f) { return f.report.max_altitude_m; }},
       {"max_tilt_deg", "tilt, deg", "%.1f",
-       [](const FlightFigures& f) { return degrees_per_radian * f.report.max_tilt_rad; }},
+       [](const FlightFigures& f) { return pinnquad::degrees_per_radian * f.report.max_tilt_rad; }},
       {"saturated_percent", "saturated, %", "%.2f",
        [](const FlightFigures& f) { return 100 * f.report.saturated_share; }},
       {"pcc_roll", "PCC roll", "%.3f", [](const FlightFigures& f) { return f.correlation[0]; }},

@@ -230,7 +230,7 @@ class Campaign {
     std::printf(", %zu rows at %.3g s, %.1f s\n", report.rows, plan_.sample_period_s(),
                 static_cast<double>(report.rows) * plan_.sample_period_s());
     std::printf("speed       up to %.2f m/s; tilt up to %.1f deg\n", report.max_speed_m_s,
-                programs::degrees_per_radian * report.max_tilt_rad);
+                pinnquad::degrees_per_radian * report.max_tilt_rad);
     std::printf("altitude    %.*f to %.*f m above ground\n", report.max_altitude_m < 5 ? 2 : 1, report.min_altitude_m,
                 report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
     std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);

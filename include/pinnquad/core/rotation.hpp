@@ -10,6 +10,9 @@
 
 namespace pinnquad {
 
+/// For what people read and logs hold; the library computes in radians.
+inline constexpr double degrees_per_radian = 57.295779513082320877;
+
 /// Rotation body (FRD) -> world (NED): v_world = q v_body q*.
 template <class Scalar>
 struct Quaternion {

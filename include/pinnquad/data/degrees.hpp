@@ -20,8 +20,6 @@ struct DegreesFound {
 
 namespace detail {
 
-inline constexpr double degrees_per_radian = 57.295779513082320877;
-
 /// Body rates, mean over a step of `dt_s`, that turn the attitude (roll, pitch, yaw, rad) of its begin into that of its end.
 inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const std::array<double, 3>& end, double dt_s) {
   const auto quaternion = [](const std::array<double, 3>& angles) {
@@ -78,12 +76,12 @@ inline DegreesFound find_degrees_by_motion(const Flight& flight) {
       std::array<double, 3> from = begin, to = end;
       for (std::size_t i = 0; i < 3; ++i) {
         if ((choice >> i & 1u) == 0) continue;
-        from[i] /= detail::degrees_per_radian;
-        to[i] /= detail::degrees_per_radian;
+        from[i] /= degrees_per_radian;
+        to[i] /= degrees_per_radian;
       }
       const Vector3<double> turning = detail::turning_rate(from, to, dt_s);
       residual[choice][0] += (rate - turning).squaredNorm();
-      residual[choice][1] += (rate - turning * detail::degrees_per_radian).squaredNorm();
+      residual[choice][1] += (rate - turning * degrees_per_radian).squaredNorm();
     }
   }
   DegreesFound found;
