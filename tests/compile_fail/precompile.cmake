@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 #
-# Writes the header PRECOMPILED, which includes the whole library, and beside it what g++ and clang++ take instead.
+# Writes the header PRECOMPILED, which includes what flies, and beside it what g++ and clang++ take instead. The rest of the
+# library is parsed by those who include it: g++ instantiates again, in each unit, what a precompiled header has used.
 cmake_minimum_required(VERSION 3.22)
 
 include("${CMAKE_CURRENT_LIST_DIR}/command.cmake")
-file(WRITE "${PRECOMPILED}" "#pragma once\n#include <pinnquad/pinnquad.hpp>\n")
+if(COMPILER_ID MATCHES "Clang")
+  list(APPEND command -fpch-instantiate-templates) # here, not in each unit
+endif()
+file(WRITE "${PRECOMPILED}" "#pragma once\n#include <pinnquad/flight.hpp>\n")
 execute_process(COMMAND ${command} -x c++-header "${PRECOMPILED}" -o "${PRECOMPILED}.gch"
   RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT code EQUAL 0)

@@ -27,7 +27,11 @@ using pinnquad::test::SmallModel;
 
 namespace {
 
-constexpr int inputs_per_guard = 60000;
+#if defined(__OPTIMIZE__)
+constexpr int inputs_per_guard = 60000, inputs_at_least = 1000000;
+#else
+constexpr int inputs_per_guard = 12000, inputs_at_least = 200000;
+#endif
 
 template <class Scalar>
 using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
@@ -300,7 +304,7 @@ void attack_all() {
 
 }  // namespace
 
-TEST_CASE("a million hostile inputs: no surprise") {
+TEST_CASE("hostile inputs, a million where optimised: no surprise") {
   attacked = 0;
   const auto start = std::chrono::steady_clock::now();
   attack_all<SmallModel>();
@@ -308,7 +312,7 @@ TEST_CASE("a million hostile inputs: no surprise") {
   attack("an instance", InverseDynamics<SmallInstance>(SmallInstance{}), 12);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   MESSAGE(attacked, " inputs in ", seconds, " s");
-  CHECK(attacked >= 1000000);
+  CHECK(attacked >= inputs_at_least);
 }
 
 TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or infinite") {

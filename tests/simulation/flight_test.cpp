@@ -17,6 +17,7 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
+#include "support/long_flight.hpp"
 
 namespace {
 
@@ -151,7 +152,7 @@ TEST_CASE("a row holds the command as the rotors clip it, and the height above g
   CHECK(sample.linear_acceleration_m_s2[2] == standard_gravity_m_s2<double>);  // rotors still: free fall
 }
 
-TEST_CASE("bounds over seeds: speed, tilt, altitude, saturation") {
+TEST_CASE("bounds over seeds: speed, tilt, altitude, saturation" * pinnquad::test::long_flight()) {
   const PilotStyle style;
   for (std::uint64_t seed = 11; seed < 19; ++seed) {
     CAPTURE(seed);
@@ -171,7 +172,8 @@ TEST_CASE("bounds over seeds: speed, tilt, altitude, saturation") {
   }
 }
 
-TEST_CASE("a full flight: signed command sums follow angular accelerations, and the blocks of the split are alike") {
+TEST_CASE("a full flight: signed command sums follow angular accelerations, and the blocks of the split are alike" *
+          pinnquad::test::long_flight()) {
   const Vehicle quadrotor = vehicle();
   const Flight flight = flown(1, 15000).flight;
   REQUIRE(flight.size() == 15000);

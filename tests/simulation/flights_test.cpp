@@ -15,6 +15,7 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "support/long_flight.hpp"
 
 namespace {
 
@@ -53,7 +54,7 @@ std::vector<double> feature_spreads(const Flight& flight) {
 
 }  // namespace
 
-TEST_CASE("D1: bounds, and the flight that the library's parts make by default") {
+TEST_CASE("D1: bounds, and the flight that the library's parts make by default" * pinnquad::test::long_flight()) {
   for (std::uint64_t seed = 1; seed <= last_seed; ++seed) {
     CAPTURE(seed);
     const RecordedFlight recorded = flown<AgileFlight>(seed);
@@ -68,7 +69,8 @@ TEST_CASE("D1: bounds, and the flight that the library's parts make by default")
   CHECK(content_hash(fly(quadrotor, pilot).flight) == content_hash(flown<AgileFlight>(1).flight));
 }
 
-TEST_CASE("D2: heights within 0.1 to 2 m and over most of them, landings and flights, all features vary") {
+TEST_CASE("D2: heights within 0.1 to 2 m and over most of them, landings and flights, all features vary" *
+          pinnquad::test::long_flight()) {
   for (std::uint64_t seed = 1; seed <= last_seed; ++seed) {
     CAPTURE(seed);
     const RecordedFlight recorded = flown<NearGroundFlight>(seed);
@@ -129,7 +131,7 @@ TEST_CASE("a ground effect of one's choice: the flight's own gives the same bits
   CHECK(own != hash_of(flight_vehicle<NearGroundFlight>(airframe, GroundEffectModel::cheeseman_bennett)));
 }
 
-TEST_CASE("styles follow the airframe: the heavy one flies all three within bounds") {
+TEST_CASE("styles follow the airframe: the heavy one flies all three within bounds" * pinnquad::test::long_flight()) {
   const Airframe<double> heavy = airframe_value<ReferenceQuadrotor15, double>();
   const auto vehicle = flight_vehicle<NearGroundFlight>(heavy);
   const NearGroundStyle style = near_ground_style(vehicle, NearGroundFlight::plan().start_m);

@@ -11,6 +11,7 @@
 #include "../examples/models/demo_quadrotor.hpp"
 #include "pinnquad/data/sample_inputs.hpp"
 #include "pinnquad/simulation/flights.hpp"
+#include "support/long_flight.hpp"
 
 namespace {
 
@@ -83,7 +84,8 @@ double checked_share(std::uint64_t seed, double max_speed_m_s) {
 
 }  // namespace
 
-TEST_CASE("ordinary flights: the network flies nearly all of them, the formula the rest, and nobody declines") {
+TEST_CASE("ordinary flights: the network flies nearly all of them, the formula the rest, and nobody declines" *
+          pinnquad::test::long_flight()) {
   double sum = 0;
   for (const std::uint64_t seed : {1001u, 1002u, 1003u}) {
     const double share = checked_share(seed, PilotStyle{}.max_speed_m_s);
@@ -97,7 +99,7 @@ TEST_CASE("flown faster than it was trained, the network gives way to the formul
   CHECK(checked_share(1004, 1.5 * PilotStyle{}.max_speed_m_s) > 0.02);
 }
 
-TEST_CASE("agreement with the formula: ordinary flights stay the network's") {
+TEST_CASE("agreement with the formula: ordinary flights stay the network's" * pinnquad::test::long_flight()) {
   for (const std::uint64_t seed : {1001u, 1002u}) {
     CHECK(checked_share<FlownInAgreement>(seed, PilotStyle{}.max_speed_m_s) <= largest_fallback_share);
   }

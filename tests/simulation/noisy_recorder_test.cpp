@@ -16,6 +16,7 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/simulation/flight.hpp"
+#include "support/long_flight.hpp"
 
 namespace {
 
@@ -224,7 +225,8 @@ struct Together {
 
 }  // namespace
 
-TEST_CASE("Fig. 2: exact rows correlate above 0.95, the two stated errors bring roll to the paper's 0.67") {
+TEST_CASE("Fig. 2: exact rows correlate above 0.95, the two stated errors bring roll to the paper's 0.67" *
+          pinnquad::test::long_flight()) {
   constexpr double paper_correlation = 0.67, tolerance = 0.03;
   const Vehicle quadrotor = vehicle();
   const auto roll_signs = allocation_signs(quadrotor.airframe(), 0);

@@ -4,8 +4,10 @@
 
 /// Inlines a function whatever the optimiser thinks: prediction kernels must not be emitted out of line, where the linker
 /// could pick a copy compiled for another instruction set.
-/// Sanitizers are left to inline as they like: instrumented kernels inlined by force take minutes to compile.
-#if (defined(__GNUC__) || defined(__clang__)) && !defined(__SANITIZE_ADDRESS__)
+/// Sanitizers, and a program that defines PINNQUAD_INLINE_AS_COMPILER_LIKES in all its units, are left to inline as they like:
+/// instrumented or unoptimised kernels inlined by force take minutes to compile.
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(PINNQUAD_INLINE_AS_COMPILER_LIKES)
 #define PINNQUAD_ALWAYS_INLINE inline __attribute__((always_inline))
 #else
 #define PINNQUAD_ALWAYS_INLINE inline
