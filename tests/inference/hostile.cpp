@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// More than a million hostile inputs against every kind of guard, float and double: NaN, infinities, denormals, random bits,
-// attitudes that are none. What must hold is counted by an eye of its own (std::isfinite, memcmp), not by the guard's.
+// More than a million hostile inputs (a fifth where nothing is optimised) against every kind of guard, float and double: NaN,
+// infinities, denormals, random bits, attitudes that are none. What must hold is counted by an eye of its own (std::isfinite,
+// memcmp), not by the guard's.
 #include <doctest/doctest.h>
 
 #include <array>
