@@ -114,12 +114,12 @@ void check_sizes(std::mt19937_64& engine) {
              engine);
 }
 
-/// B is 1 to half of Count and C is Count down to the other half; A is odd and even, small and large: 17 is prime to Count.
+/// B is 1 to half of Count and C is Count down to the other half; A is odd and even, small and large: 11 is prime to Count.
 template <class Pack, int Count, int... Each>
 void check_all_sizes(std::integer_sequence<int, Each...>) {
-  static_assert(Count % 2 == 0 && Count % 17 != 0 && sizeof...(Each) == Count / 2);
+  static_assert(Count % 2 == 0 && Count % 11 != 0 && sizeof...(Each) == Count / 2);
   std::mt19937_64 engine(41);
-  (check_sizes<Pack, (17 * Each + 15) % Count + 1, Each + 1, Count - Each>(engine), ...);
+  (check_sizes<Pack, (11 * Each + 15) % Count + 1, Each + 1, Count - Each>(engine), ...);
 }
 
 /// 1 / v, with a pack form: infinite in lanes that hold nothing.
