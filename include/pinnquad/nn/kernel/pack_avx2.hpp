@@ -56,12 +56,6 @@ struct PackAvx2 {
     const __m256 positive = _mm256_cmp_ps(gate.value, _mm256_setzero_ps(), _CMP_GT_OQ);
     return {_mm256_and_ps(positive, a.value)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackAvx2 hyperbolic_tangent(PackAvx2 a) noexcept {
-    alignas(32) float lane[width];
-    _mm256_store_ps(lane, a.value);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return {_mm256_load_ps(lane)};
-  }
 
   // A layer in registers (register_layer.hpp): four rows, each in two neighbouring lanes that take two inputs; two such
   // sums make a register of eight values.

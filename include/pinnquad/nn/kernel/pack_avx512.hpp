@@ -60,12 +60,6 @@ struct PackAvx512 {
     const __mmask16 positive = _mm512_cmp_ps_mask(gate.value, _mm512_setzero_ps(), _CMP_GT_OQ);
     return {_mm512_maskz_mov_ps(positive, a.value)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackAvx512 hyperbolic_tangent(PackAvx512 a) noexcept {
-    alignas(64) float lane[width];
-    _mm512_store_ps(lane, a.value);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return {_mm512_load_ps(lane)};
-  }
 
   // A layer in registers (register_layer.hpp): eight rows, each in two neighbouring lanes that take two inputs.
   static constexpr int columns = 2;

@@ -74,10 +74,6 @@ struct GenericPack {
     for (int i = 0; i < Width; ++i) a.lane[i] = gate.lane[i] > Scalar(0) ? a.lane[i] : Scalar(0);
     return a;
   }
-  static PINNQUAD_ALWAYS_INLINE GenericPack hyperbolic_tangent(GenericPack a) noexcept {
-    for (int i = 0; i < Width; ++i) a.lane[i] = detail::hyperbolic_tangent(a.lane[i]);
-    return a;
-  }
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

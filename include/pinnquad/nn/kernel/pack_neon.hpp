@@ -50,12 +50,6 @@ struct PackNeon {
   static PINNQUAD_ALWAYS_INLINE PackNeon where_positive(PackNeon gate, PackNeon a) noexcept {
     return {vreinterpretq_f32_u32(vandq_u32(vcgtzq_f32(gate.value), vreinterpretq_u32_f32(a.value)))};
   }
-  static PINNQUAD_ALWAYS_INLINE PackNeon hyperbolic_tangent(PackNeon a) noexcept {
-    alignas(16) float lane[width];
-    a.store(lane);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return load(lane);
-  }
 
   // A layer in registers (register_layer.hpp): four rows, one input.
   static constexpr int columns = 1;

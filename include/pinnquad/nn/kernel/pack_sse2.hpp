@@ -53,12 +53,6 @@ struct PackSse2 {
   static PINNQUAD_ALWAYS_INLINE PackSse2 where_positive(PackSse2 gate, PackSse2 a) noexcept {
     return {_mm_and_ps(_mm_cmpgt_ps(gate.value, _mm_setzero_ps()), a.value)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 hyperbolic_tangent(PackSse2 a) noexcept {
-    alignas(16) float lane[width];
-    a.store(lane);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return load(lane);
-  }
 
   // A layer in registers (register_layer.hpp): four rows, one input.
   static constexpr int columns = 1;

@@ -55,6 +55,12 @@ struct RegisterValues {
       return value[Register];
     }
   }
+  /// Every value through `activation`, which maps a pack to a pack.
+  template <class Activation>
+  PINNQUAD_ALWAYS_INLINE void apply(const Activation& activation) noexcept {
+    unroll<registers>([&](auto r) PINNQUAD_INLINE_LAMBDA { value[r] = activation(value[r]); });
+    if constexpr (lone) last = activation(last);
+  }
   /// y[0, Size) and nothing behind.
   PINNQUAD_ALWAYS_INLINE void store(float* y) const noexcept {
     unroll<registers>([&](auto r) PINNQUAD_INLINE_LAMBDA {
