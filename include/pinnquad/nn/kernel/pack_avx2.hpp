@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Eight floats with AVX2 and FMA.
-// Same interface as pack_generic.hpp; include only where the compiler targets AVX2 and FMA.
+// The interface is that of pack_contract.hpp; include only where the compiler targets AVX2 and FMA.
 #pragma once
 
 #if defined(__AVX2__) && defined(__FMA__)  // elsewhere this header is empty
@@ -17,6 +17,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// 8 floats in one register.
 struct PackAvx2 {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::avx2;
+  static constexpr bool fused = true;
   static constexpr int width = 8;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;

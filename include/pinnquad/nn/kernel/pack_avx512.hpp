@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sixteen floats with AVX-512.
-// Same interface as pack_generic.hpp; include only where the compiler targets AVX-512F.
+// The interface is that of pack_contract.hpp; include only where the compiler targets AVX-512F.
 #pragma once
 
 #if defined(__AVX512F__)  // elsewhere this header is empty
@@ -17,6 +17,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// 16 floats in one register.
 struct PackAvx512 {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::avx512;
+  static constexpr bool fused = true;
   static constexpr int width = 16;
   static constexpr int tile_rows = 8;
   static constexpr int tile_vectors = 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A pack of scalars without instruction set: plain loops that a compiler may vectorise.
-// The interface that every pack has; used for double, for other scalars, and where no vector unit is targeted.
+// The interface is that of pack_contract.hpp; used for double, for other scalars, and where no vector unit is targeted.
 #pragma once
 
 #include "pinnquad/core/attributes.hpp"
@@ -14,6 +14,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class ScalarType, int Width>
 struct GenericPack {
   using Scalar = ScalarType;
+  static constexpr VectorUnit unit = VectorUnit::none;
+  static constexpr bool fused = false;
   static constexpr int width = Width;
   static constexpr int tile_rows = 4;  ///< register tile of tile.hpp
   static constexpr int tile_vectors = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Four floats with NEON (aarch64).
-// Same interface as pack_generic.hpp; include only where the compiler targets aarch64.
+// The interface is that of pack_contract.hpp; include only where the compiler targets aarch64.
 #pragma once
 
 #if defined(__ARM_NEON) && defined(__aarch64__)  // elsewhere this header is empty
@@ -17,6 +17,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// 4 floats in one register.
 struct PackNeon {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::neon;
+  static constexpr bool fused = true;
   static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;

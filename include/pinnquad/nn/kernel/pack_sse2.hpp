@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Four floats with SSE2, which every x86-64 has.
-// Same interface as pack_generic.hpp; include only where the compiler targets SSE2.
+// The interface is that of pack_contract.hpp; include only where the compiler targets SSE2.
 #pragma once
 
 #if defined(__SSE2__)  // elsewhere this header is empty
 
 #include <emmintrin.h>
+#if defined(__FMA__)
+#include <immintrin.h>
+#elif defined(__FMA4__)
+#include <x86intrin.h>
+#endif
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
@@ -14,9 +19,11 @@
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// 4 floats in one register. Product and sum are rounded separately.
+/// 4 floats in one register. Product and sum are rounded once where the processor has the instruction without AVX2.
 struct PackSse2 {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::sse2;
+  static constexpr bool fused = detail::fuses_float;
   static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 1;
@@ -27,7 +34,15 @@ struct PackSse2 {
   static PINNQUAD_ALWAYS_INLINE PackSse2 broadcast(float v) noexcept { return {_mm_set1_ps(v)}; }
   PINNQUAD_ALWAYS_INLINE void store(float* p) const noexcept { _mm_storeu_ps(p, value); }
   /// a * b + c
-  static PINNQUAD_ALWAYS_INLINE PackSse2 multiply_add(PackSse2 a, PackSse2 b, PackSse2 c) noexcept { return a * b + c; }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 multiply_add(PackSse2 a, PackSse2 b, PackSse2 c) noexcept {
+#if defined(__FMA__)
+    return {_mm_fmadd_ps(a.value, b.value, c.value)};
+#elif defined(__FMA4__)
+    return {_mm_macc_ps(a.value, b.value, c.value)};
+#else
+    return a * b + c;
+#endif
+  }
   friend PINNQUAD_ALWAYS_INLINE PackSse2 operator+(PackSse2 a, PackSse2 b) noexcept {
     return {_mm_add_ps(a.value, b.value)};
   }
