@@ -140,9 +140,8 @@ struct BatchedNetwork {
     PINNQUAD_ALWAYS_INLINE At visit(const At& at) const noexcept {
       Scalar* into = Step::last ? y : at.target;
       const int stride = Step::last ? y_stride : lanes;
-      constexpr int offset = NetworkType::Sizes::offset(Step::index);
-      detail::batched_layer<typename Step::Layer, typename Step::Activation, Pack, lanes>(parameters + offset, at.x,
-                                                                                          at.x_stride, into, stride);
+      detail::batched_layer<typename Step::Layer, typename Step::Activation, Pack, lanes>(
+          parameters + Step::parameters_offset, at.x, at.x_stride, into, stride);
       return {into, stride, at.other, at.target};
     }
   };

@@ -171,7 +171,8 @@ class JacobianPass {
  private:
   template <int Index, class Pointer>
   static PINNQUAD_ALWAYS_INLINE Pointer outputs_of(Pointer kept) noexcept {
-    return kept + kept_inputs + NetworkType::Sizes::outputs_before(Index);
+    constexpr int offset = kept_inputs + NetworkType::Sizes::outputs_before(Index);
+    return kept + offset;
   }
   template <int Index>
   static PINNQUAD_ALWAYS_INLINE const Scalar* inputs_of(const Scalar* x, const Scalar* kept) noexcept {
@@ -197,7 +198,7 @@ class JacobianPass {
     template <class Step>
     PINNQUAD_ALWAYS_INLINE const Scalar* visit(const Scalar* x) const noexcept {
       Scalar* const y = outputs_of<Step::index>(kept);
-      detail::keep_layer<typename Step::Layer>(parameters + NetworkType::Sizes::offset(Step::index), x, y);
+      detail::keep_layer<typename Step::Layer>(parameters + Step::parameters_offset, x, y);
       return y;
     }
   };
@@ -237,7 +238,7 @@ class JacobianPass {
         const Scalar* seen = nullptr;
         if constexpr (Step::fused) seen = seen_by<index - 1>(x, kept);
         detail::pull_back<StepLayer, typename Step::Activation, Pack, rows, stride>(
-            parameters + NetworkType::Sizes::offset(index), inputs_of<index>(x, kept), outputs_of<index>(kept), seen,
+            parameters + Step::parameters_offset, inputs_of<index>(x, kept), outputs_of<index>(kept), seen,
             gradients.from, gradients.to);
         return {gradients.to, gradients.from};
       }

@@ -117,7 +117,7 @@ struct MemoryRun {
     template <class Step>
     constexpr Scalar* visit(Scalar* packed) const noexcept {
       using Packed = PackedLayer<typename Step::Layer, Pack>;
-      Packed::pack(parameters + Sizes::offset(Step::index), packed);
+      Packed::pack(parameters + Step::parameters_offset, packed);
       return packed + Packed::size;
     }
   };
@@ -139,7 +139,7 @@ struct MemoryRun {
       constexpr int outputs = Step::Layer::outputs;
       if constexpr (keeps_sums<Keep, Activation>()) {
         Packed::forward(at.packed, at.x, at.target, Unchanged{});
-        keep(Sizes::outputs_before(Step::index), StoredOutputs<Scalar, outputs>{at.target});
+        keep(Step::sums_offset, StoredOutputs<Scalar, outputs>{at.target});
         for (int i = 0; i < padded<Pack>(outputs); i += Pack::width) {
           Activation::activate(Pack::load(at.target + i)).store(at.target + i);
         }
@@ -147,7 +147,7 @@ struct MemoryRun {
         Packed::forward(at.packed, at.x, at.target, Activate<Activation>{});
       }
       if constexpr (Keep::keeps) {
-        keep(Sizes::outputs_before(Step::next - 1), StoredOutputs<Scalar, outputs>{at.target});
+        keep(Step::outputs_offset, StoredOutputs<Scalar, outputs>{at.target});
       }
       return {at.packed + Packed::size, at.target, at.other, at.target};
     }
@@ -208,7 +208,7 @@ struct RegisterRun {
       using Layer = Dense<Step, State>;
       constexpr int count = Loops::template together<Step, State>;
       for (int i = 0; i < count; ++i) {
-        const float* own = parameters + Sizes::offset(Step::index) + i * Step::Layer::parameter_count;
+        const float* own = parameters + Step::parameters_offset + i * Step::Layer::parameter_count;
         Layer::pack(own, own + Step::Layer::weight_count, state.packed + i * Layer::size);
       }
       return Place<typename Layer::Result>{state.packed + count * Layer::size};
@@ -248,13 +248,13 @@ struct RegisterRun {
       using Activation = typename Step::Activation;
       if constexpr (keeps_sums<Keep, Activation>()) {
         auto result = Layer::multiply(packed, x, Unchanged{});
-        keep(Sizes::outputs_before(Step::index) + turn * stride, result);
+        keep(Step::sums_offset + turn * stride, result);
         result.apply(Activate<Activation>{});
-        keep(Sizes::outputs_before(Step::next - 1) + turn * stride, result);
+        keep(Step::outputs_offset + turn * stride, result);
         return result;
       } else {
         const auto result = Layer::multiply(packed, x, Activate<Activation>{});
-        if constexpr (Keep::keeps) keep(Sizes::outputs_before(Step::next - 1) + turn * stride, result);
+        if constexpr (Keep::keeps) keep(Step::outputs_offset + turn * stride, result);
         return result;
       }
     }

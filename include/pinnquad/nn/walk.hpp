@@ -59,6 +59,13 @@ struct Step {
   /// The element-wise layer that runs with this one, or void.
   using Activation = typename LayerIf<fused, Network, Index + static_cast<int>(way)>::type;
 
+  // constants, not calls: unoptimised code would emit a function of the network, for whatever instruction set
+  /// Of the layer's parameters among all.
+  static constexpr int parameters_offset = Network::Sizes::offset(Index);
+  /// Of the layer's outputs among those of all layers, and of what the step gives on the way forward.
+  static constexpr int sums_offset = Network::Sizes::outputs_before(Index);
+  static constexpr int outputs_offset = Network::Sizes::outputs_before(Index + length - 1);
+
   /// How often the step stands here in a row, its activation included: one, two, ...
   static constexpr int count_alike() noexcept {
     if constexpr (last) {
