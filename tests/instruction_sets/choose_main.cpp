@@ -28,8 +28,7 @@ bool golden(const float* commands) {
 int main(int argc, char** argv) {
   using pinnquad::Status;
   if (argc != 2) return 2;
-  const pinnquad::CompiledPrediction<float>* const candidates[] = {&predict_avx512, &predict_avx2,
-                                                                   &predict_baseline};
+  const pinnquad::CompiledPrediction<float>* const candidates[] = {&predict_avx512, &predict_avx2, &predict_baseline};
   const auto* chosen = pinnquad::choose_prediction(candidates);
   if (chosen == nullptr) {
     std::puts("none runs here");
