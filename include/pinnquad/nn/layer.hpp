@@ -11,9 +11,9 @@
 // are [what it answers, next state]; forward() stays a pure function of them, so that every pass, batch, Jacobian and self test
 // keeps its meaning. Who calls the network owns the state: a feature set that holds it beside the motion (as a window holds its
 // past), filled from the outputs of the call before and set to zero with it after a gap. A layer that takes only a part of what
-// reaches it passes the rest on. It is trained over windows: a Network of the cell repeated once per tap and its parameters
-// shared is one layer, `Unrolled<Cell, Taps>`, whose forward() calls the cell's `Taps` times and whose BackwardRule and PullBack
-// go the same way back (back-propagation through time); its inputs are the window, and what is exported is the cell.
+// reaches it passes the rest on. It is trained over windows: one layer `Unrolled<Cell, Taps>` with the cell's parameters, whose
+// forward() calls the cell's once per tap and whose BackwardRule goes the same way back (back-propagation through time). What is
+// exported is the network of the cell, with the parameters found.
 #pragma once
 
 #include <type_traits>
