@@ -22,7 +22,7 @@
 #elif defined(__ARM_NEON) && defined(__aarch64__)
 #define PINNQUAD_SET_FAMILY neon_
 #define PINNQUAD_UNIT_NEON
-#elif defined(__FMA__) || defined(__FMA4__) || defined(__ARM_FEATURE_FMA)
+#elif defined(__FP_FAST_FMAF) || defined(__FMA__) || defined(__FMA4__) || defined(__ARM_FEATURE_FMA)
 #define PINNQUAD_SET_FAMILY portable_fma_
 #elif defined(__AVX__)
 #define PINNQUAD_SET_FAMILY avx_

@@ -23,7 +23,11 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 struct PackSse2 {
   using Scalar = float;
   static constexpr VectorUnit unit = VectorUnit::sse2;
-  static constexpr bool fused = detail::fuses_float;
+#if defined(__FMA__) || defined(__FMA4__)
+  static constexpr bool fused = true;
+#else
+  static constexpr bool fused = false;
+#endif
   static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 1;
