@@ -17,7 +17,11 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/training/initialization.hpp"
 
 namespace {

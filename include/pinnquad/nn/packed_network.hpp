@@ -167,7 +167,7 @@ struct RegisterRun {
   }
   template <class Keep>
   static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const float* x, float* y, const Keep& keep) noexcept {
-    walk_forward<Network, Kernel>(Forward<Keep>{{}, keep}, At<Inputs>{packed, {x}}).values.store(y);
+    run<0>(packed, Inputs{x}, y, keep);
   }
 
  private:
@@ -215,50 +215,56 @@ struct RegisterRun {
     }
   };
 
-  /// Weights and inputs of a step.
-  template <class ValuesType>
-  struct At {
-    using Values = ValuesType;
-    const float* packed;
-    Values values;
-  };
-  template <class Keep>
-  struct Forward : Loops {
-    const Keep& keep;
-    template <class Step, class State>
-    PINNQUAD_ALWAYS_INLINE auto visit(const State& state) const noexcept {
-      using Layer = Dense<Step, State>;
-      constexpr int count = Loops::template together<Step, State>;
-      const float* const next = state.packed + count * Layer::size;
-      if constexpr (count == 1) {
-        return At<typename Layer::Result>{next, multiply<Layer, Step>(state.packed, state.values, 0)};
-      } else {
-        State at{next, state.values};
-        for (int i = 0; i < count; ++i) {
-          at.values = multiply<Layer, Step>(state.packed + i * Layer::size, at.values, i);
-        }
-        return at;
-      }
+  /// The steps from `Index` on, as walk_forward() takes them. Handed on from call to call: values returned from visit to visit
+  /// would cost registers.
+  template <int Index, class Values, class Keep>
+  static PINNQUAD_ALWAYS_INLINE void run(const float* packed, const Values& x, float* y, const Keep& keep) noexcept {
+    using Here = Step<Network, Kernel, Index>;
+    using Layer = RegisterLayer<Pack, Here::Layer::outputs, Values>;
+    constexpr int count = Loops::template together<Here, Place<Values>>;
+    const typename Layer::Result result = multiply<Here, count>(packed, x, keep);
+    if constexpr (Here::ends_with(count)) {
+      result.store(y);
+    } else {
+      run<Index + count * Here::advance>(packed + count * Layer::size, result, y, keep);
     }
-    /// Layer `turn` of a loop.
-    template <class Layer, class Step, class Values>
-    PINNQUAD_ALWAYS_INLINE typename Layer::Result multiply(const float* packed, const Values& x,
-                                                           int turn) const noexcept {
-      constexpr int stride = Sizes::outputs_before(Step::next) - Sizes::outputs_before(Step::index);
-      using Activation = typename Step::Activation;
-      if constexpr (keeps_sums<Keep, Activation>()) {
-        auto result = Layer::multiply(packed, x, Unchanged{});
-        keep(Step::sums_offset + turn * stride, result);
+  }
+  template <class Here, int Count, class Values, class Keep>
+  static PINNQUAD_ALWAYS_INLINE auto multiply(const float* packed, const Values& x, const Keep& keep) noexcept {
+    using Layer = RegisterLayer<Pack, Here::Layer::outputs, Values>;
+    using Activation = typename Here::Activation;
+    constexpr int stride = Sizes::outputs_before(Here::next) - Sizes::outputs_before(Here::index);
+    if constexpr (keeps_sums<Keep, Activation>()) {
+      return in_turn<Layer, Count>(x, [&](const auto& values, int turn) PINNQUAD_INLINE_LAMBDA {
+        auto result = Layer::multiply(packed + turn * Layer::size, values, Unchanged{});
+        keep(Here::sums_offset + turn * stride, result);
         result.apply(Activate<Activation>{});
-        keep(Step::outputs_offset + turn * stride, result);
+        keep(Here::outputs_offset + turn * stride, result);
         return result;
-      } else {
-        const auto result = Layer::multiply(packed, x, Activate<Activation>{});
-        if constexpr (Keep::keeps) keep(Step::outputs_offset + turn * stride, result);
-        return result;
+      });
+    } else if constexpr (Count == 1) {
+      const typename Layer::Result result = Layer::multiply(packed, x, Activate<Activation>{});
+      if constexpr (Keep::keeps) keep(Here::outputs_offset, result);
+      return result;
+    } else {
+      typename Layer::Result result = x;
+      for (int i = 0; i < Count; ++i) {
+        result = Layer::multiply(packed + i * Layer::size, result, Activate<Activation>{});
+        if constexpr (Keep::keeps) keep(Here::outputs_offset + i * stride, result);
       }
+      return result;
     }
-  };
+  }
+  template <class Layer, int Count, class Values, class Turn>
+  static PINNQUAD_ALWAYS_INLINE typename Layer::Result in_turn(const Values& x, const Turn& turn) noexcept {
+    if constexpr (Count == 1) {
+      return turn(x, 0);
+    } else {
+      typename Layer::Result result = x;
+      for (int i = 0; i < Count; ++i) result = turn(result, i);
+      return result;
+    }
+  }
 };
 
 /// True for activations that go through a pack lane by lane: registers hold a value in several lanes, so each would be worked
