@@ -18,6 +18,7 @@
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/evaluation/verdict.hpp"
 #include "pinnquad/flight.hpp"
+#include "pinnquad/inference/choose_prediction.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/loss/pearson_correlation.hpp"

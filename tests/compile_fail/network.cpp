@@ -6,6 +6,8 @@
 // CASE FORWARD_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
 // CASE ACTIVATION_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
 // CASE SLOPE_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+// CASE SLOPE_FROM_INPUT_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+// CASE TWO_SLOPES: pinnquad: an element-wise layer gives slope.y. or slope_from_input.v., not both
 // CASE NO_LAYERS: pinnquad: a network needs at least one layer
 #include "pinnquad/nn/network.hpp"
 
@@ -62,6 +64,18 @@ struct Square {
   };
 };
 
+template <bool FromInputIsNoexcept>
+struct SquareByInput {
+  template <class Scalar, int In>
+  struct Bind : pinnquad::ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
+    static Scalar activate(Scalar v) noexcept { return v * v; }
+    static Scalar slope_from_input(Scalar v) noexcept(FromInputIsNoexcept) { return v + v; }
+#ifdef TWO_SLOPES
+    static Scalar slope(Scalar y) noexcept { return y; }
+#endif
+  };
+};
+
 #if defined(NOT_A_LAYER)
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, Nothing>;
 #elif defined(LAYER_WITHOUT_FORWARD)
@@ -76,11 +90,13 @@ using Net = pinnquad::Network<float, pinnquad::Inputs<4>, ForwardMayThrow>;
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>, Square<false, true>>;
 #elif defined(SLOPE_MAY_THROW)
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>, Square<true, false>>;
+#elif defined(SLOPE_FROM_INPUT_MAY_THROW)
+using Net = pinnquad::Network<float, pinnquad::Inputs<4>, SquareByInput<false>>;
 #elif defined(NO_LAYERS)
 using Net = pinnquad::Network<float, pinnquad::Inputs<4>>;
 #else
-using Net =
-    pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, pinnquad::Relu, Square<true, true>, FourWide>;
+using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, pinnquad::Relu, Square<true, true>,
+                              SquareByInput<true>, FourWide>;
 #endif
 
 }  // namespace

@@ -17,7 +17,11 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/training/initialization.hpp"
 
 namespace {
@@ -90,6 +94,11 @@ TEST_CASE("a literal reads back as the same bits and has the type of its value")
 TEST_CASE("type names are those that another translation unit can write") {
   CHECK(type_name<float>() == "float");
   CHECK(type_name<PaperFeatures>() == "pinnquad::PaperFeatures");
+  CHECK(
+      type_name<
+          Network<float, Inputs<3>, Dense<2>, pinnquad::Gelu, pinnquad::Silu, pinnquad::Softplus, pinnquad::Sine>>() ==
+      "pinnquad::Network<float, pinnquad::Inputs<3>, pinnquad::Dense<2>, pinnquad::Gelu, pinnquad::Silu, "
+      "pinnquad::Softplus, pinnquad::Sine>");
   CHECK(type_name<Net>().find("pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<5>, pinnquad::Relu, "
                               "pinnquad::Dense<4>>") == 0);  // with every compiler
 }

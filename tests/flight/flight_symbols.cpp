@@ -220,6 +220,14 @@ void pinnquad_flight_tanh_network(const float* parameters, const float* x, float
   Net::forward(parameters, x, y);
 }
 
+void pinnquad_flight_smooth_network(const float* parameters, const float* x, float* y, float* jacobian) {
+  using Net = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
+                                pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus, pinnquad::Dense<9>,
+                                pinnquad::Sine, pinnquad::Dense<4>>;
+  pinnquad::JacobianPass<Net>::run(parameters, x, y, jacobian);
+  pinnquad::BatchedNetwork<Net>::forward(parameters, x, y, 5);
+}
+
 void pinnquad_flight_double_network(const double* parameters, const double* x, double* y) {
   using Net = pinnquad::Mlp<double, pinnquad::Inputs<16>, pinnquad::Hidden<1, 8>, pinnquad::Outputs<4>, pinnquad::Relu>;
   Net::forward(parameters, x, y);

@@ -5,6 +5,7 @@
 #   gate   every weak symbol of an object names its instruction set
 #   mixed  one program of the gate's baseline, AVX2 and AVX-512 objects, in both link orders, run on a machine without
 #          AVX; the gate goes before it in the same work folder
+#   choose one program of three objects that offer the same model: takes the one that the processor runs
 #   leaks  the two above reject leaks.cpp: they can fail
 #   names  two sets of flags that let the compiler emit different instructions have two names
 #   neon   the prediction for aarch64, cross-compiled, under emulation: right numbers, no timing
@@ -115,6 +116,27 @@ case $what in
       # the wide calls, where this machine has them: as many numbers to get wrong
       if grep -q avx2 /proc/cpuinfo; then ./mixed avx2 || fail "avx2, order $order"; fi
       if grep -q avx512vl /proc/cpuinfo; then ./mixed avx512 || fail "avx512, order $order"; fi
+    done
+    ;;
+  choose)
+    for_each_set compiled.cpp "$@"
+    for set in baseline avx2 avx512; do
+      foreign=$(foreign_symbols "compiled.$set.o" "$(space_of "-march=${machine[$set]}")") && fail "weak symbols of $set: $foreign"
+    done
+    compile choose_main.cpp choose_main.o "-march=${machine[baseline]}" "$@"
+    for order in "baseline avx2 avx512" "avx512 avx2 baseline"; do
+      objects=""
+      for set in $order; do objects="$objects compiled.$set.o"; done
+      # shellcheck disable=SC2086
+      "$compiler" $objects choose_main.o -o choose || fail "link $order"
+      here_runs=sse2_
+      if grep -qw avx2 /proc/cpuinfo && grep -qw movbe /proc/cpuinfo; then here_runs=avx2_; fi
+      if [ $here_runs = avx2_ ] && grep -qw avx512vl /proc/cpuinfo; then here_runs=avx512_; fi
+      ./choose $here_runs || fail "on this machine, order $order"
+      [ -n "$emulator" ] || skip "no qemu-x86_64: chosen on this machine only"
+      "$emulator" -cpu Nehalem ./choose sse2_ || fail "without AVX, order $order"
+      if "$emulator" -cpu Haswell true 2>&1 | grep -q "support.*avx2"; then continue; fi  # an old emulator
+      "$emulator" -cpu Haswell ./choose avx2_ || fail "with AVX2, order $order"
     done
     ;;
   leaks)

@@ -45,6 +45,40 @@ bool agrees(const std::vector<std::size_t>& sizes, const Parameters& parameters,
   return true;
 }
 
+/// Gelu, SiLU, softplus and sine between five dense layers, in double; four ways to the same outputs and two to a Jacobian.
+bool agrees_smoothly(const float* x, const float* y) {
+  const auto p = instruction_sets::some_parameters<instruction_sets::SmoothNet>();
+  std::vector<double> values(x, x + 16);
+  std::size_t next = 0;
+  for (int layer = 0; layer < 5; ++layer) {
+    std::vector<double> sums(layer < 4 ? 9 : 4);
+    for (std::size_t row = 0; row < sums.size(); ++row) {
+      sums[row] = static_cast<double>(p[next + sums.size() * values.size() + row]);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        sums[row] += static_cast<double>(p[next + row * values.size() + i]) * values[i];
+    }
+    next += sums.size() * (values.size() + 1);
+    for (double& v : sums) {
+      if (layer == 0) v = v / 2 * (1 + std::erf(v / std::sqrt(2.0)));
+      if (layer == 1) v = v / (1 + std::exp(-v));
+      if (layer == 2) v = std::log(1 + std::exp(v));
+      if (layer == 3) v = std::sin(v);
+    }
+    values = sums;
+  }
+  for (std::size_t way = 0; way < 4; ++way) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto value = static_cast<double>(y[4 * way + i]);
+      if (!(std::fabs(value - values[i]) <= 1e-5)) {
+        std::printf("way %zu, smooth output %zu is %.9g instead of %.9g\n", way, i, value, values[i]);
+        return false;
+      }
+    }
+  }
+  if (!(y[16] <= 1e-5f)) std::printf("smooth Jacobians differ by %.3g\n", static_cast<double>(y[16]));
+  return y[16] <= 1e-5f;
+}
+
 /// u = (n / n_max)^2 of the golden commands taken for speeds.
 bool golden_speeds(const float* commands) {
   const double n_max = pinnquad::PaperQuadrotor::value<double>().max_rotor_speed_rev_s;
@@ -164,7 +198,7 @@ int main(int argc, char** argv) {
                   agrees({16, 70, 4}, some_parameters<WideNet>(), x, y + 4, tanh) &&
                   agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y + 8, relu) && golden_commands(y + 12) &&
                   golden_speeds(y + 16) && golden_commands(y + 20) && golden_commands(y + 24) &&
-                  agrees_with_norm(x, y + 28);
+                  agrees_with_norm(x, y + 28) && agrees_smoothly(x, y + 32);
   std::puts(ok ? "predicts" : "predicts something else");
   return ok ? 0 : 1;
 }

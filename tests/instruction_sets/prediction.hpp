@@ -8,8 +8,13 @@
 #include "pinnquad/inference/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
+#include "pinnquad/nn/batched_network.hpp"
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
 
 namespace instruction_sets {
@@ -17,6 +22,11 @@ namespace instruction_sets {
 using Net = pinnquad::Mlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<3, 25>, pinnquad::Outputs<4>, pinnquad::Relu>;
 /// Runs from memory to memory: too wide for registers, with an activation that calls the C library.
 using WideNet = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<70>, pinnquad::Tanh, pinnquad::Dense<4>>;
+
+/// Every smooth activation that calls the C library, and derivatives asked with inputs.
+using SmoothNet = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
+                                    pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus, pinnquad::Dense<9>,
+                                    pinnquad::Sine, pinnquad::Dense<4>>;
 
 /// Numbers in +-0.5 without a pattern that a sum would cancel: a linear congruence.
 template <class Network>
@@ -55,7 +65,9 @@ extern unsigned char block[];
 extern std::size_t block_bytes;
 
 /// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel, y[12, 16) of the exported model,
-/// y[16, 20) of its outputs as speeds, y[20, 28) from its block: in place, loaded; y[28, 32) with batch norm.
-inline constexpr int outputs = 32;
+/// y[16, 20) of its outputs as speeds, y[20, 28) from its block: in place, loaded; y[28, 32) with batch norm,
+/// y[32, 36) of smooth activations by the vector unit, y[36, 40) by the portable kernel, y[40, 44) in a batch, y[44, 48) beside
+/// the Jacobian, y[48] the largest difference of its entries to those of the portable pass.
+inline constexpr int outputs = 49;
 
 }  // namespace instruction_sets

@@ -10,7 +10,11 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "support/own_layers.hpp"
 
@@ -69,6 +73,7 @@ void check_all_sizes() {
 TEST_CASE_TEMPLATE("every sample of a batch as if alone", Net, Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>,
                    Mlp<double, Inputs<17>, Hidden<2, 9>, Outputs<4>, Tanh>, Network<float, Inputs<1>, Dense<1>>,
                    Network<float, Inputs<5>, Relu, DenseWithoutBias<8>, Tanh, Dense<13>>,
+                   Network<float, Inputs<6>, Dense<7>, Gelu, DenseWithoutBias<5>, Silu, Sine, Dense<3>, Softplus>,
                    Network<float, Inputs<6>, Dense<7>, test::LeakyRelu, test::ChannelScale, Dense<2>>) {
   using Scalar = typename Net::Scalar;
   SUBCASE("native pack") { check_all_sizes<Net, NativePack<Scalar>>(); }

@@ -6,11 +6,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "support/own_layers.hpp"
 
@@ -71,7 +76,10 @@ TEST_CASE_TEMPLATE("Jacobian against central differences", Net,
                    Mlp<double, Inputs<17>, Hidden<3, 32>, Outputs<4>, Tanh>, From16<double, Dense<1>>,
                    From16<double, Dense<7>, Tanh, Dense<9>>, From16<double, DenseWithoutBias<5>, Relu, Dense<13>, Tanh>,
                    From16<double, Dense<6>, test::LeakyRelu, Dense<3>>,
-                   Network<double, Inputs<1>, Dense<3>, Tanh, Dense<2>>,
+                   From16<double, Dense<7>, Gelu, Dense<9>, Silu, Dense<5>, Softplus, Dense<4>, Sine, Dense<3>>,
+                   From16<double, Gelu, DenseWithoutBias<5>, Sine, Silu, Dense<3>, Gelu>,
+                   From16<double, test::ScalarSquare, Dense<5>, test::Square, test::ScalarSquare, Dense<3>>,
+                   Network<double, Inputs<3>, Sine, Dense<1>>, Network<double, Inputs<1>, Dense<3>, Tanh, Dense<2>>,
                    Network<double, Inputs<3>, Tanh, Dense<40>, Relu, Relu, Dense<4>>) {
   std::mt19937_64 engine(7);
   for (int round = 0; round < 5; ++round) {
@@ -109,6 +117,36 @@ TEST_CASE_TEMPLATE("float agrees with double, with every pack", Pack, NativePack
   constexpr double rounding = 2e-6;  // of 250 products in a chain of eleven layers
   for (int i = 0; i < 64; ++i)
     CHECK(std::abs(static_cast<double>(jacobian[i]) - jacobian_wide[i]) <= rounding * largest);
+}
+
+TEST_CASE_TEMPLATE("the vector unit's way forward keeps what slopes are asked with", Net,
+                   From16<float, Dense<25>, test::Square, Dense<25>, test::Square, Dense<25>, test::Square, Dense<4>>,
+                   From16<float, Dense<7>, Gelu, Dense<7>, Gelu, Dense<7>, Sine, Relu, Silu, Dense<4>>,
+                   From16<float, Gelu, Dense<50>, test::Square, Dense<4>, Softplus>,
+                   From16<float, Dense<5>, test::ScalarSquare, DenseWithoutBias<5>, Sine, Dense<4>>) {
+  std::mt19937_64 engine(11);
+  auto net = random_network<Net>(engine);
+  for (float& v : net.parameters) v *= 0.5f;
+  typename Net::template Rebind<double> wide;
+  for (std::size_t i = 0; i < net.parameters.size(); ++i) wide.parameters[i] = static_cast<double>(net.parameters[i]);
+  std::array<float, 16> x{};
+  std::array<double, 16> x_wide{};
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x_wide[i] = static_cast<double>(x[i] = static_cast<float>(uniform(engine, -1.0, 1.0)));
+  float y[4], jacobian[64];
+  double y_wide[4], jacobian_wide[64];
+  const auto packed = std::make_unique<PackedNetwork<Net>>(net.parameters);
+  JacobianPass<Net>::run(*packed, net.parameters.data(), x.data(), y, jacobian);
+  JacobianPass<typename Net::template Rebind<double>>::run(wide.parameters.data(), x_wide.data(), y_wide,
+                                                           jacobian_wide);
+  double largest = 0, value = 0;
+  for (const double j : jacobian_wide) largest = std::max(largest, std::abs(j));
+  for (const double v : y_wide) value = std::max(value, std::abs(v));
+  REQUIRE(largest > 1e-6);
+  constexpr double rounding = 5e-6;  // of 50 products, three layers deep, squared
+  for (int i = 0; i < 64; ++i)
+    CHECK(std::abs(static_cast<double>(jacobian[i]) - jacobian_wide[i]) <= rounding * largest);
+  for (int i = 0; i < 4; ++i) CHECK(std::abs(static_cast<double>(y[i]) - y_wide[i]) <= rounding * value);
 }
 
 TEST_CASE("NaN in an input reaches the value") {

@@ -8,7 +8,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "support/plain_network.hpp"
 #include "support/random_network.hpp"
@@ -184,6 +188,8 @@ TEST_CASE_TEMPLATE("fused activations and loops over equal layers keep the bits 
   compare(Network<Scalar, Inputs<6>, Relu, D6, Relu, Relu, D6, D6, Relu>{});      // activation first, twice, last
   compare(Network<Scalar, Inputs<6>, Scale, Relu, Scale, Relu, Dense<3>>{});      // repeats in twos: no step of its own
   compare(Network<Scalar, Inputs<6>, pinnquad::DenseWithoutBias<6>, Relu, pinnquad::DenseWithoutBias<6>, Relu, D6>{});
+  using pinnquad::Gelu;
+  compare(Network<Scalar, Inputs<6>, D6, Gelu, D6, Gelu, D6, pinnquad::Silu, D6, pinnquad::Softplus, pinnquad::Sine>{});
   compare(Network<Scalar, Inputs<70>, Dense<60>, Relu, Dense<60>, Relu, Dense<60>, Relu, Dense<2>>{});
 }
 

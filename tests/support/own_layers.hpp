@@ -91,6 +91,35 @@ struct Reciprocal {
   using Bind = ReciprocalLayer<Scalar, In>;
 };
 
+/// y = v^2: two inputs have the same output, so the slope is asked with the input. Packs too, without a call: it runs in registers.
+template <class ScalarType, int Size>
+struct SquareLayer : ElementwiseLayer<SquareLayer<ScalarType, Size>, ScalarType, Size> {
+  template <class Value>
+  static Value activate(Value v) noexcept {
+    return v * v;
+  }
+  static ScalarType slope_from_input(ScalarType v) noexcept { return v + v; }
+  template <class Pack>
+  static Pack scaled_from_input(Pack v, Pack dy) noexcept {
+    return (v + v) * dy;
+  }
+};
+struct Square {
+  template <class Scalar, int In>
+  using Bind = SquareLayer<Scalar, In>;
+};
+
+/// The same without a pack form.
+template <class ScalarType, int Size>
+struct ScalarSquareLayer : ElementwiseLayer<ScalarSquareLayer<ScalarType, Size>, ScalarType, Size> {
+  static ScalarType activate(ScalarType v) noexcept { return v * v; }
+  static ScalarType slope_from_input(ScalarType v) noexcept { return v + v; }
+};
+struct ScalarSquare {
+  template <class Scalar, int In>
+  using Bind = ScalarSquareLayer<Scalar, In>;
+};
+
 /// The same, a whole pack at a time.
 template <class ScalarType, int Size>
 struct PackReciprocalLayer : ElementwiseLayer<PackReciprocalLayer<ScalarType, Size>, ScalarType, Size> {

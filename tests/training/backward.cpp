@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Every layer's backward rule, alone and in its mini-batch form, against central differences in double.
-#include "pinnquad/nn/relu.hpp"
-#include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/training/backward/backward.hpp"
+#include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
+#include "pinnquad/nn/tanh.hpp"
 
 #include <doctest/doctest.h>
 
@@ -72,7 +76,9 @@ void check_rule() {
     std::vector<double> y(c.size());
     Layer::forward(parameters.data(), x.data(), y.data());
     if constexpr (is_elementwise<Layer>) {
-      for (std::size_t i = 0; i < x.size(); ++i) dx[i] = c[i] * Layer::slope(y[i]);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        dx[i] = pinnquad::detail::scaled_by_slope<Layer>(pinnquad::slopes_from_input<Layer> ? x[i] : y[i], c[i]);
+      }
     } else {
       for (double& v : dx) v = 99.0;  // the rule sets dx
       BackwardRule<Layer>::backward(parameters.data(), x.data(), y.data(), c.data(), dx.data(), gradient.data());
@@ -154,7 +160,9 @@ struct NoRule {
 
 TEST_CASE_TEMPLATE("backward rule of every layer", Layer, Bound<Dense<1>, 1>, Bound<Dense<5>, 3>, Bound<Dense<25>, 16>,
                    Bound<DenseWithoutBias<1>, 1>, Bound<DenseWithoutBias<5>, 3>, Bound<DenseWithoutBias<25>, 16>,
-                   Bound<Relu, 7>, Bound<Tanh, 6>, Bound<LeakyRelu, 5>, Bound<ChannelScale, 6>, Bound<Softmax, 5>) {
+                   Bound<Relu, 7>, Bound<Tanh, 6>, Bound<pinnquad::Gelu, 5>, Bound<pinnquad::Silu, 6>,
+                   Bound<pinnquad::Softplus, 7>, Bound<pinnquad::Sine, 4>, Bound<pinnquad::test::ScalarSquare, 3>,
+                   Bound<LeakyRelu, 5>, Bound<ChannelScale, 6>, Bound<Softmax, 5>) {
   SUBCASE("alone") { check_rule<Layer>(); }
   SUBCASE("mini-batch, packs of 4") { check_batch<Layer, GenericPack<double, 4>>(); }
   SUBCASE("mini-batch, packs of 3") { check_batch<Layer, GenericPack<double, 3>>(); }

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Back-propagation through whole networks against central differences, in double.
 #include "pinnquad/training/network_gradient.hpp"
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
 
 #include <doctest/doctest.h>
@@ -18,11 +22,15 @@
 
 using pinnquad::Dense;
 using pinnquad::DenseWithoutBias;
+using pinnquad::Gelu;
 using pinnquad::GenericPack;
 using pinnquad::Inputs;
 using pinnquad::Network;
 using pinnquad::NetworkGradient;
 using pinnquad::Relu;
+using pinnquad::Silu;
+using pinnquad::Sine;
+using pinnquad::Softplus;
 using pinnquad::Tanh;
 using pinnquad::test::central_differences;
 using pinnquad::test::ChannelScale;
@@ -33,7 +41,9 @@ using pinnquad::test::kink_margin;
 using pinnquad::test::LeakyRelu;
 using pinnquad::test::PackReciprocal;
 using pinnquad::test::Reciprocal;
+using pinnquad::test::ScalarSquare;
 using pinnquad::test::Softmax;
+using pinnquad::test::Square;
 using pinnquad::test::UnitLength;
 
 namespace {
@@ -149,6 +159,16 @@ TEST_CASE_TEMPLATE("a layer whose rule needs its output keeps it, whatever follo
                    Network<double, Inputs<5>, Tanh, Tanh, Dense<3>>,
                    Network<double, Inputs<5>, Dense<6>, Tanh, Tanh, Tanh>) {
   check_network<Net, Packs4>();
+}
+
+TEST_CASE_TEMPLATE("a layer whose slope is asked with its input finds it, whatever stands before and behind", Net,
+                   Network<double, Inputs<5>, Dense<6>, Gelu, Dense<9>, Silu, Dense<2>>,
+                   Network<double, Inputs<5>, Dense<6>, Sine, Sine, Softplus, Dense<2>, Gelu>,
+                   Network<double, Inputs<5>, Gelu, Tanh, Sine, Dense<3>>,
+                   Network<double, Inputs<5>, Dense<6>, Gelu, Relu, Dense<3>>,
+                   Network<double, Inputs<5>, Dense<6>, Tanh, Square, Softmax, ScalarSquare, Dense<3>>) {
+  SUBCASE("packs of 4") { check_network<Net, Packs4>(); }
+  SUBCASE("packs of 3") { check_network<Net, Packs3>(); }
 }
 
 TEST_CASE_TEMPLATE("a layer without a value at 0 sees no padding row: it would spread NaN to every weight", Net,

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: MIT
-// What the compiler may emit in this translation unit, as the name of an inline namespace: prediction code that can be emitted
-// out of line lives in it, so that the linker never takes a copy compiled for another machine or for another arithmetic.
+// What the compiler may emit in this translation unit, decided here and nowhere else: the vector unit that kernels use, whether
+// a product and a sum are rounded once, and a name for all of it. The name is that of an inline namespace: prediction code that
+// can be emitted out of line lives in it, so that the linker never takes a copy compiled for another machine or for another
+// arithmetic.
 //   namespace pinnquad { inline namespace PINNQUAD_INSTRUCTION_SET { ... } }
+// A new instruction set: a branch below, a value of VectorUnit, a pack (nn/kernel/pack_contract.hpp) and a line in
+// nn/kernel/pack.hpp, which asserts that the three agree.
 #pragma once
+
+#include <string_view>
 
 // For x86 and Arm: a family, then a letter for each extension that a compiler uses in code without intrinsics, then
 // "fast_math" where it was told that there is no NaN: sse2_, avx2_7812lpm65s3fast_math. Equal names: what one unit was
 // compiled for runs in the other.
 #if defined(__AVX512F__)
 #define PINNQUAD_SET_FAMILY avx512_
+#define PINNQUAD_UNIT_AVX512
 #elif defined(__AVX2__) && defined(__FMA__)
 #define PINNQUAD_SET_FAMILY avx2_
+#define PINNQUAD_UNIT_AVX2
 #elif defined(__ARM_NEON) && defined(__aarch64__)
 #define PINNQUAD_SET_FAMILY neon_
-#elif defined(__FMA__) || defined(__ARM_FEATURE_FMA)
+#define PINNQUAD_UNIT_NEON
+#elif defined(__FP_FAST_FMAF) || defined(__FMA__) || defined(__FMA4__) || defined(__ARM_FEATURE_FMA)
 #define PINNQUAD_SET_FAMILY portable_fma_
 #elif defined(__AVX__)
 #define PINNQUAD_SET_FAMILY avx_
@@ -23,6 +32,10 @@
 #define PINNQUAD_SET_FAMILY sse2_
 #else
 #define PINNQUAD_SET_FAMILY portable_
+#endif
+// every x86-64 without one of the above
+#if defined(__SSE2__) && !defined(PINNQUAD_UNIT_AVX512) && !defined(PINNQUAD_UNIT_AVX2)
+#define PINNQUAD_UNIT_SSE2
 #endif
 
 // x86
@@ -272,3 +285,56 @@
 #define PINNQUAD_INSTRUCTION_SET                                                                         \
   PINNQUAD_SET_JOIN(PINNQUAD_SET_FAMILY, PINNQUAD_SET_1, PINNQUAD_SET_2, PINNQUAD_SET_3, PINNQUAD_SET_4, \
                     PINNQUAD_SET_5, PINNQUAD_SET_7)
+
+namespace pinnquad {
+
+/// What kernels of float compute with.
+enum class VectorUnit { none, sse2, avx2, avx512, neon };
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+#if defined(PINNQUAD_UNIT_AVX512)
+inline constexpr VectorUnit vector_unit = VectorUnit::avx512;
+#elif defined(PINNQUAD_UNIT_AVX2)
+inline constexpr VectorUnit vector_unit = VectorUnit::avx2;
+#elif defined(PINNQUAD_UNIT_SSE2)
+inline constexpr VectorUnit vector_unit = VectorUnit::sse2;
+#elif defined(PINNQUAD_UNIT_NEON)
+inline constexpr VectorUnit vector_unit = VectorUnit::neon;
+#else
+inline constexpr VectorUnit vector_unit = VectorUnit::none;
+#endif
+
+/// True where the hardware rounds a * b + c once. Elsewhere it would take a library call, and is rounded twice.
+#if defined(__FP_FAST_FMAF) || defined(__FMA__) || defined(__FMA4__) || defined(__ARM_FEATURE_FMA) || \
+    defined(__AVX512F__)
+inline constexpr bool fuses_float = true;
+#else
+inline constexpr bool fuses_float = false;
+#endif
+#if defined(__FP_FAST_FMA) || defined(__FMA__) || (defined(__ARM_FEATURE_FMA) && defined(__aarch64__))
+inline constexpr bool fuses_double = true;
+#else
+inline constexpr bool fuses_double = false;
+#endif
+
+#define PINNQUAD_SET_TEXT_OF(name) #name
+#define PINNQUAD_SET_TEXT(name) PINNQUAD_SET_TEXT_OF(name)
+/// PINNQUAD_INSTRUCTION_SET as text.
+inline constexpr std::string_view instruction_set = PINNQUAD_SET_TEXT(PINNQUAD_INSTRUCTION_SET);
+#undef PINNQUAD_SET_TEXT
+#undef PINNQUAD_SET_TEXT_OF
+
+constexpr bool named(std::string_view family) noexcept { return instruction_set.substr(0, family.size()) == family; }
+static_assert(named("avx512_") == (vector_unit == VectorUnit::avx512) &&
+                  named("avx2_") == (vector_unit == VectorUnit::avx2) &&
+                  named("neon_") == (vector_unit == VectorUnit::neon) &&
+                  (!named("sse2_") || vector_unit == VectorUnit::sse2),
+              "pinnquad: the instruction set's name is not that of the vector unit");
+static_assert(fuses_float == (named("avx512_") || named("avx2_") || named("neon_") || named("portable_fma_")),
+              "pinnquad: the instruction set's name does not say whether products and sums are rounded once");
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+}  // namespace pinnquad

@@ -72,11 +72,8 @@ template <class Layer, class Activation, class Pack, int Lanes>
 PINNQUAD_NOINLINE void batched_layer(const typename Layer::Scalar* parameters, const typename Layer::Scalar* x,
                                      int x_stride, typename Layer::Scalar* y, int y_stride) noexcept {
   using Batched = BatchedLayer<Layer, Pack, Lanes>;
-  if constexpr (!std::is_void_v<Activation>) {
-    Batched::forward(parameters, x, x_stride, y, y_stride,
-                     [](Pack v) PINNQUAD_INLINE_LAMBDA { return Activation::activate(v); });
-  } else if constexpr (Batched::fuses_activation) {
-    Batched::forward(parameters, x, x_stride, y, y_stride, [](Pack v) PINNQUAD_INLINE_LAMBDA { return v; });
+  if constexpr (Batched::fuses_activation) {
+    Batched::forward(parameters, x, x_stride, y, y_stride, Activate<Activation>{});
   } else {
     Batched::forward(parameters, x, x_stride, y, y_stride);
   }
@@ -123,39 +120,36 @@ struct BatchedNetwork {
   }
 
  private:
-  static constexpr int layer_count = NetworkType::layer_count;
-  template <int Index>
-  using Layer = typename NetworkType::template Layer<Index>;
-  template <int Index>
-  static constexpr bool fused() noexcept {
-    if constexpr (Index + 1 < layer_count) {
-      return detail::BatchedLayer<Layer<Index>, Pack, lanes>::fuses_activation && is_elementwise<Layer<Index + 1>> &&
-             activates_pack<Layer<Index + 1>, Pack>;
-    } else {
-      return false;
+  struct Kernel {
+    template <class Layer, class Elementwise>
+    static constexpr bool fuses =
+        detail::BatchedLayer<Layer, Pack, lanes>::fuses_activation&& activates_pack<Elementwise, Pack>;
+  };
+  /// Inputs of a step, and the two buffers: it writes to `target`.
+  struct At {
+    const Scalar* x;
+    int x_stride;
+    Scalar* target;
+    Scalar* other;
+  };
+  struct Visitor : detail::StepByStep {
+    const Scalar* parameters;
+    Scalar* y;
+    int y_stride;
+    template <class Step>
+    PINNQUAD_ALWAYS_INLINE At visit(const At& at) const noexcept {
+      Scalar* into = Step::last ? y : at.target;
+      const int stride = Step::last ? y_stride : lanes;
+      detail::batched_layer<typename Step::Layer, typename Step::Activation, Pack, lanes>(
+          parameters + Step::parameters_offset, at.x, at.x_stride, into, stride);
+      return {into, stride, at.other, at.target};
     }
-  }
+  };
 
   static void block(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y, int y_stride) noexcept {
     alignas(64) Scalar even[static_cast<std::size_t>(NetworkType::widest * lanes)];
     alignas(64) Scalar odd[static_cast<std::size_t>(NetworkType::widest * lanes)];
-    run<0>(parameters, x, x_stride, even, odd, y, y_stride);
-  }
-
-  template <int Index>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* target,
-                                         Scalar* other, Scalar* y, int y_stride) noexcept {
-    constexpr int next = Index + (fused<Index>() ? 2 : 1);
-    Scalar* into = next == layer_count ? y : target;
-    const int stride = next == layer_count ? y_stride : lanes;
-    constexpr int offset = NetworkType::Sizes::offset(Index);
-    const Scalar* own = parameters + offset;
-    if constexpr (fused<Index>()) {
-      detail::batched_layer<Layer<Index>, Layer<Index + 1>, Pack, lanes>(own, x, x_stride, into, stride);
-    } else {
-      detail::batched_layer<Layer<Index>, void, Pack, lanes>(own, x, x_stride, into, stride);
-    }
-    if constexpr (next < layer_count) run<next>(parameters, into, stride, other, target, y, y_stride);
+    detail::walk_forward<NetworkType, Kernel>(Visitor{{}, parameters, y, y_stride}, At{x, x_stride, even, odd});
   }
 };
 

@@ -12,8 +12,8 @@ namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// How a layer turns the gradients by its outputs into those by its inputs, `Rows` of them, both row-major with `Stride`:
-///   static void run<Pack, Rows, Stride>(parameters, y, by_output, by_input, finish)
-/// where `finish(column, pack)` is applied to what is stored. Specialise it for a layer of your own that is not element-wise.
+///   static void run<Pack, Rows, Stride>(parameters, x, y, by_output, by_input, finish) noexcept
+/// where x and y are the layer's inputs and outputs, and `finish(column, pack)` is applied to what is stored. Specialise it for a layer of your own that is not element-wise.
 template <class Layer>
 struct PullBack {
   static_assert(is_elementwise<Layer>,
@@ -63,8 +63,8 @@ PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar
 template <class Scalar, int In, int Out>
 struct PullBack<DenseLayer<Scalar, In, Out>> {
   template <class Pack, int Rows, int Stride, class Finish>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
-                                         Scalar* by_input, const Finish& finish) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar*,
+                                         const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {
     detail::pull_back_product<Pack, Rows, Stride, In, Out, Out>(parameters, by_output, by_input,
                                                                 finish);  // the bias is behind
   }
@@ -73,8 +73,8 @@ struct PullBack<DenseLayer<Scalar, In, Out>> {
 template <class Scalar, int In, int Out>
 struct PullBack<DenseWithoutBiasLayer<Scalar, In, Out>> {
   template <class Pack, int Rows, int Stride, class Finish>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
-                                         Scalar* by_input, const Finish& finish) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar*,
+                                         const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {
     detail::pull_back_product<Pack, Rows, Stride, In, Out, 0>(parameters, by_output, by_input, finish);
   }
 };
@@ -83,8 +83,8 @@ struct PullBack<DenseWithoutBiasLayer<Scalar, In, Out>> {
 template <class Scalar, int Size>
 struct PullBack<BatchNormLayer<Scalar, Size>> {
   template <class Pack, int Rows, int Stride, class Finish>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar* by_output,
-                                         Scalar* by_input, const Finish& finish) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar*,
+                                         const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {
     using Lane = GenericPack<Scalar, 1>;
     for (int i = 0; i < Size; ++i) {
       const Scalar factor = parameters[i] / detail::square_root(parameters[3 * Size + i] + Scalar(batch_norm_epsilon));
@@ -105,18 +105,18 @@ PINNQUAD_NOINLINE void keep_layer(const typename Layer::Scalar* parameters, cons
   Layer::forward(parameters, x, y);
 }
 
-/// One layer back, and the activation before it (void: none), whose outputs are `activated`. Out of line, as above.
+/// One layer back, and the activation before it (void: none), of which `seen` is what its slope is asked with. Out of line, as
+/// above.
 template <class Layer, class Activation, class Pack, int Rows, int Stride>
-PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const typename Layer::Scalar* y,
-                                 const typename Layer::Scalar* activated, const typename Layer::Scalar* by_output,
-                                 typename Layer::Scalar* by_input) noexcept {
+PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const typename Layer::Scalar* x,
+                                 const typename Layer::Scalar* y, const typename Layer::Scalar* seen,
+                                 const typename Layer::Scalar* by_output, typename Layer::Scalar* by_input) noexcept {
   if constexpr (std::is_void_v<Activation>) {
-    PullBack<Layer>::template run<Pack, Rows, Stride>(parameters, y, by_output, by_input, NoSlope{});
+    PullBack<Layer>::template run<Pack, Rows, Stride>(parameters, x, y, by_output, by_input, NoSlope{});
   } else {
     PullBack<Layer>::template run<Pack, Rows, Stride>(
-        parameters, y, by_output, by_input, [activated](int column, auto gradient) PINNQUAD_INLINE_LAMBDA {
-          using Lane = decltype(gradient);
-          return Activation::scaled(Lane::load(activated + column), gradient);
+        parameters, x, y, by_output, by_input, [seen](int column, auto gradient) PINNQUAD_INLINE_LAMBDA {
+          return scaled_by_slope<Activation>(decltype(gradient)::load(seen + column), gradient);
         });
   }
 }
@@ -136,95 +136,126 @@ class JacobianPass {
   using Scalar = typename NetworkType::Scalar;
   using Pack = PackType;
 
-  /// Stack that a call needs, about: all activations and two sets of gradients.
+ private:
+  static constexpr int layer_count = NetworkType::layer_count;
+  static constexpr int rows = NetworkType::outputs;
+  static constexpr int stride = padded<Pack>(NetworkType::widest);
+  template <int Index>
+  using Layer = typename NetworkType::template Layer<Index>;
+  // kept: the inputs, where the first layer's slope is asked with them, then each layer's outputs; a whole pack may be read at
+  // the last one
+  static constexpr int kept_inputs = is_elementwise<Layer<0>> && slopes_from_input<Layer<0>> ? NetworkType::inputs : 0;
+  static constexpr int all_kept = kept_inputs + NetworkType::Sizes::outputs_before(layer_count) + Pack::width;
+
+ public:
+  /// Stack that a call needs, about: what is kept and two sets of gradients.
   static constexpr std::size_t workspace_bytes =
-      sizeof(Scalar) *
-      static_cast<std::size_t>(NetworkType::Sizes::outputs_before(NetworkType::layer_count) + Pack::width +
-                               2 * NetworkType::outputs * padded<Pack>(NetworkType::widest));
+      sizeof(Scalar) * static_cast<std::size_t>(all_kept + 2 * rows * stride);
 
   /// Forward by the portable kernel.
   static void run(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* jacobian) noexcept {
-    Scalar values[static_cast<std::size_t>(all_values)];
-    forward<0>(parameters, x, values);
-    for (int i = 0; i < rows; ++i) y[i] = values[offset<layer_count - 1> + i];
-    back(parameters, values, jacobian);
+    Scalar kept[static_cast<std::size_t>(all_kept)];
+    detail::walk_forward<NetworkType, detail::FusesNothing>(Forward{{}, parameters, kept}, x);
+    for (int i = 0; i < rows; ++i) y[i] = outputs_of<layer_count - 1>(kept)[i];
+    back(parameters, x, kept, jacobian);
   }
 
   /// Forward by the vector unit; `packed` holds the same parameters.
   static void run(const PackedNetwork<NetworkType, Pack>& packed, const Scalar* parameters, const Scalar* x, Scalar* y,
                   Scalar* jacobian) noexcept {
-    Scalar values[static_cast<std::size_t>(all_values)];
-    packed.forward_keeping(x, y, values);
-    back(parameters, values, jacobian);
+    Scalar kept[static_cast<std::size_t>(all_kept)];
+    packed.forward_keeping(x, y, kept + kept_inputs);
+    back(parameters, x, kept, jacobian);
   }
 
  private:
-  static PINNQUAD_ALWAYS_INLINE void back(const Scalar* parameters, const Scalar* values, Scalar* jacobian) noexcept {
+  template <int Index, class Pointer>
+  static PINNQUAD_ALWAYS_INLINE Pointer outputs_of(Pointer kept) noexcept {
+    constexpr int offset = kept_inputs + NetworkType::Sizes::outputs_before(Index);
+    return kept + offset;
+  }
+  template <int Index>
+  static PINNQUAD_ALWAYS_INLINE const Scalar* inputs_of(const Scalar* x, const Scalar* kept) noexcept {
+    if constexpr (Index > 0) {
+      return outputs_of<Index - 1>(kept);
+    } else {
+      return kept_inputs > 0 ? kept : x;
+    }
+  }
+  /// What the slope of an element-wise layer is asked with.
+  template <int Index>
+  static PINNQUAD_ALWAYS_INLINE const Scalar* seen_by(const Scalar* x, const Scalar* kept) noexcept {
+    if constexpr (slopes_from_input<Layer<Index>>) {
+      return inputs_of<Index>(x, kept);
+    } else {
+      return outputs_of<Index>(kept);
+    }
+  }
+
+  struct Forward : detail::StepByStep {
+    const Scalar* parameters;
+    Scalar* kept;
+    template <class Step>
+    PINNQUAD_ALWAYS_INLINE const Scalar* visit(const Scalar* x) const noexcept {
+      Scalar* const y = outputs_of<Step::index>(kept);
+      detail::keep_layer<typename Step::Layer>(parameters + Step::parameters_offset, x, y);
+      return y;
+    }
+  };
+
+  /// The activation before a layer is applied to what the layer stores, if it takes whole packs.
+  struct BackKernel {
+    template <class StepLayer, class Elementwise>
+    static constexpr bool fuses = !is_elementwise<StepLayer> && scales_pack<Elementwise, Pack>;
+  };
+  /// Gradients by the outputs of a step, and where those by its inputs go.
+  struct Gradients {
+    Scalar* from;
+    Scalar* to;
+  };
+  struct Back : detail::StepByStep {
+    const Scalar* parameters;
+    const Scalar* x;
+    const Scalar* kept;
+    template <class Step>
+    PINNQUAD_ALWAYS_INLINE Gradients visit(const Gradients& gradients) const noexcept {
+      using StepLayer = typename Step::Layer;
+      constexpr int index = Step::index;
+      if constexpr (is_elementwise<StepLayer>) {
+        static_assert(
+            has_slope<StepLayer>,
+            "pinnquad: this layer has no Jacobian; an element-wise layer needs slope(y) or slope_from_input(v) "
+            "(nn/layer.hpp)");
+        const Scalar* const seen = seen_by<index>(x, kept);
+        for (int row = 0; row < rows; ++row) {
+          for (int i = 0; i < StepLayer::outputs; ++i) {
+            Scalar& gradient = gradients.from[row * stride + i];
+            gradient = detail::scaled_by_slope<StepLayer>(seen[i], gradient);
+          }
+        }
+        return gradients;
+      } else {
+        const Scalar* seen = nullptr;
+        if constexpr (Step::fused) seen = seen_by<index - 1>(x, kept);
+        detail::pull_back<StepLayer, typename Step::Activation, Pack, rows, stride>(
+            parameters + Step::parameters_offset, inputs_of<index>(x, kept), outputs_of<index>(kept), seen,
+            gradients.from, gradients.to);
+        return {gradients.to, gradients.from};
+      }
+    }
+  };
+
+  static PINNQUAD_ALWAYS_INLINE void back(const Scalar* parameters, const Scalar* x, Scalar* kept,
+                                          Scalar* jacobian) noexcept {
+    for (int i = 0; i < kept_inputs; ++i) kept[i] = x[i];
     alignas(64) Scalar gradients[2][static_cast<std::size_t>(rows * stride)] = {};
     for (int i = 0; i < rows; ++i) gradients[0][i * stride + i] = Scalar(1);
-    const Scalar* by_input = back<layer_count - 1>(parameters, values, gradients[0], gradients[1]);
+    const Gradients end = detail::walk_back<NetworkType, BackKernel>(Back{{}, parameters, x, kept},
+                                                                     Gradients{gradients[0], gradients[1]});
     for (int row = 0; row < rows; ++row) {
-      for (int i = 0; i < NetworkType::inputs; ++i)
-        jacobian[row * NetworkType::inputs + i] = by_input[row * stride + i];
-    }
-  }
-
-  static constexpr int layer_count = NetworkType::layer_count;
-  static constexpr int all_outputs = NetworkType::Sizes::outputs_before(layer_count);
-  static constexpr int rows = NetworkType::outputs;
-  static constexpr int stride = padded<Pack>(NetworkType::widest);
-  static constexpr int all_values = all_outputs + Pack::width;  ///< a whole pack may be read at the last value
-  template <int Index>
-  using Layer = typename NetworkType::template Layer<Index>;
-  /// Of a layer's outputs among the values, and of its parameters.
-  template <int Index>
-  static constexpr int offset = NetworkType::Sizes::outputs_before(Index);
-  template <int Index>
-  static constexpr int parameters_offset = NetworkType::Sizes::offset(Index);
-
-  template <int Index>
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* values) noexcept {
-    Scalar* y = values + offset<Index>;
-    detail::keep_layer<Layer<Index>>(parameters + parameters_offset<Index>, x, y);
-    if constexpr (Index + 1 < layer_count) forward<Index + 1>(parameters, y, values);
-  }
-
-  /// From the gradients by this layer's output down to those by the network's input: where they ended up.
-  template <int Index>
-  static PINNQUAD_ALWAYS_INLINE const Scalar* back(const Scalar* parameters, const Scalar* values, Scalar* from,
-                                                   Scalar* to) noexcept {
-    if constexpr (Index < 0) {
-      return from;
-    } else if constexpr (is_elementwise<Layer<Index>>) {
-      static_assert(has_slope<Layer<Index>>,
-                    "pinnquad: this layer has no Jacobian; an element-wise layer needs slope(y) (nn/layer.hpp)");
-      for (int row = 0; row < rows; ++row) {
-        for (int i = 0; i < Layer<Index>::outputs; ++i) {
-          from[row * stride + i] *= Layer<Index>::slope(values[offset<Index> + i]);
-        }
+      for (int i = 0; i < NetworkType::inputs; ++i) {
+        jacobian[row * NetworkType::inputs + i] = end.from[row * stride + i];
       }
-      return back<Index - 1>(parameters, values, from, to);
-    } else {
-      const Scalar* own = parameters + parameters_offset<Index>;
-      const Scalar* y = values + offset<Index>;
-      if constexpr (fuses<Index>()) {
-        detail::pull_back<Layer<Index>, Layer<Index - 1>, Pack, rows, stride>(own, y, values + offset<Index - 1>, from,
-                                                                              to);
-        return back<Index - 2>(parameters, values, to, from);
-      } else {
-        detail::pull_back<Layer<Index>, void, Pack, rows, stride>(own, y, nullptr, from, to);
-        return back<Index - 1>(parameters, values, to, from);
-      }
-    }
-  }
-
-  /// The activation before this layer takes whole packs: its slope is applied to what this layer stores.
-  template <int Index>
-  static constexpr bool fuses() noexcept {
-    if constexpr (Index > 0) {
-      return is_elementwise<Layer<Index - 1>> && scales_pack<Layer<Index - 1>, Pack>;
-    } else {
-      return false;
     }
   }
 };

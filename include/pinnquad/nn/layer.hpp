@@ -3,8 +3,17 @@
 //   using Scalar;  static constexpr int inputs, outputs, parameter_count;
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
 // Layers are types without data: a network owns all parameters in one flat array, as the exported header does.
-// forward(), activate() and slope() are noexcept. They are asked about samples alone: where a batch is padded to whole packs, the
-// padding repeats a sample or is left out (training), and what a pack gives in lanes past the last neuron, NaN too, is not read.
+// forward(), activate() and the slope are noexcept. They are asked about samples alone: where a batch is padded to whole packs,
+// the padding repeats a sample or is left out (training), and what a pack gives in lanes past the last neuron, NaN too, is not
+// read.
+//
+// A layer has no memory. One with a state (a recurrent cell) is a layer whose inputs are [what is new, state] and whose outputs
+// are [what it answers, next state]; forward() stays a pure function of them, so that every pass, batch, Jacobian and self test
+// keeps its meaning. Who calls the network owns the state: a feature set that holds it beside the motion (as a window holds its
+// past), filled from the outputs of the call before and set to zero with it after a gap. A layer that takes only a part of what
+// reaches it passes the rest on. It is trained over windows: one layer `Unrolled<Cell, Taps>` with the cell's parameters, whose
+// forward() calls the cell's once per tap and whose BackwardRule goes the same way back (back-propagation through time). What is
+// exported is the network of the cell, with the parameters found.
 #pragma once
 
 #include <type_traits>
@@ -64,9 +73,24 @@ struct SlopeMayThrow : std::false_type {};
 template <class Layer>
 struct SlopeMayThrow<Layer, std::void_t<decltype(Layer::slope(std::declval<typename Layer::Scalar>()))>>
     : std::bool_constant<!noexcept(Layer::slope(std::declval<typename Layer::Scalar>()))> {};
+template <class Layer, class = void>
+struct HasSlopeFromInput : std::false_type {};
 template <class Layer>
-inline constexpr bool is_noexcept_layer =
-    ForwardIsNoexcept<Layer>::value && !ActivateMayThrow<Layer>::value && !SlopeMayThrow<Layer>::value;
+struct HasSlopeFromInput<Layer, std::void_t<decltype(Layer::slope_from_input(std::declval<typename Layer::Scalar>()))>>
+    : std::true_type {
+  static constexpr bool may_throw = !noexcept(Layer::slope_from_input(std::declval<typename Layer::Scalar>()));
+};
+template <class Layer>
+constexpr bool slope_from_input_may_throw() noexcept {
+  if constexpr (HasSlopeFromInput<Layer>::value) {
+    return HasSlopeFromInput<Layer>::may_throw;
+  } else {
+    return false;
+  }
+}
+template <class Layer>
+inline constexpr bool is_noexcept_layer = ForwardIsNoexcept<Layer>::value && !ActivateMayThrow<Layer>::value &&
+                                          !SlopeMayThrow<Layer>::value && !slope_from_input_may_throw<Layer>();
 
 template <class Layer, class Pack, class = void>
 struct ActivatesPack : std::false_type {};
@@ -86,6 +110,12 @@ struct ScalesPack : std::false_type {};
 template <class Layer, class Pack>
 struct ScalesPack<Layer, Pack, std::void_t<decltype(Layer::scaled(std::declval<Pack>(), std::declval<Pack>()))>>
     : std::true_type {};
+template <class Layer, class Pack, class = void>
+struct ScalesPackFromInput : std::false_type {};
+template <class Layer, class Pack>
+struct ScalesPackFromInput<Layer, Pack,
+                           std::void_t<decltype(Layer::scaled_from_input(std::declval<Pack>(), std::declval<Pack>()))>>
+    : std::true_type {};
 }  // namespace detail
 
 /// True for a spec that fulfils the contract at the head of this file.
@@ -100,13 +130,37 @@ inline constexpr bool is_elementwise = detail::IsElementwise<Layer>::value;
 template <class Layer, class Pack>
 inline constexpr bool activates_pack = detail::ActivatesPack<Layer, Pack>::value;
 
-/// An element-wise layer that can be differentiated gives `slope(y)` = d activate / d v, from its output.
+/// An element-wise layer that can be differentiated gives d activate / d v: `slope(y)` from its output or, where the output does
+/// not tell (two inputs have it, or it takes more to invert than to keep the input), `slope_from_input(v)`.
 template <class Layer>
-inline constexpr bool has_slope = detail::HasSlope<Layer>::value;
+inline constexpr bool has_slope = detail::HasSlope<Layer>::value || detail::HasSlopeFromInput<Layer>::value;
 
-/// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy for a whole pack.
+/// True for a layer whose slope is asked with its input: what it was given is kept until then.
+template <class Layer>
+inline constexpr bool slopes_from_input = detail::HasSlopeFromInput<Layer>::value;
+
+/// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole pack.
 template <class Layer, class Pack>
-inline constexpr bool scales_pack = detail::ScalesPack<Layer, Pack>::value;
+inline constexpr bool scales_pack =
+    slopes_from_input<Layer> ? detail::ScalesPackFromInput<Layer, Pack>::value : detail::ScalesPack<Layer, Pack>::value;
+
+namespace detail {
+/// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the output.
+template <class Layer, class Value>
+PINNQUAD_ALWAYS_INLINE Value scaled_by_slope(const Value& seen, const Value& dy) noexcept {
+  if constexpr (std::is_same_v<Value, typename Layer::Scalar>) {
+    if constexpr (slopes_from_input<Layer>) {
+      return dy * Layer::slope_from_input(seen);
+    } else {
+      return dy * Layer::slope(seen);
+    }
+  } else if constexpr (slopes_from_input<Layer>) {
+    return Layer::scaled_from_input(seen, dy);
+  } else {
+    return Layer::scaled(seen, dy);
+  }
+}
+}  // namespace detail
 
 /// Base of element-wise layers: the sizes and a forward pass from `Derived::activate`.
 template <class Derived, class ScalarType, int Size>

@@ -10,6 +10,7 @@
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "pinnquad/nn/layer.hpp"
+#include "pinnquad/nn/walk.hpp"
 
 namespace pinnquad {
 
@@ -27,6 +28,8 @@ struct Chain<Scalar, In, First, Rest...> {
   using Layer = typename First::template Bind<Scalar, In>;
   static_assert(detail::is_noexcept_layer<Layer>,
                 "pinnquad: a layer's forward(), activate() and slope() must be noexcept: they fly (nn/layer.hpp)");
+  static_assert(!(detail::HasSlope<Layer>::value && detail::HasSlopeFromInput<Layer>::value),
+                "pinnquad: an element-wise layer gives slope(y) or slope_from_input(v), not both (nn/layer.hpp)");
   static_assert(Layer::inputs == In, "pinnquad: a layer does not take the outputs of the layer before it");
   using Layers = decltype(std::tuple_cat(std::declval<std::tuple<Layer>>(),
                                          std::declval<typename Chain<Scalar, Layer::outputs, Rest...>::Layers>()));
@@ -74,81 +77,65 @@ inline constexpr bool fuses_activation = FusesActivation<Layer, Activation>::val
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The forward pass of a Network, layer by layer. Code for flash: an activation is applied to the sums of the layer before
-/// it, and equal layers in a row are one loop.
+/// The forward pass of a Network, step by step (nn/walk.hpp). Code for flash: an activation is applied to the sums of the layer
+/// before it, and equal steps in a row are one loop.
 template <class NetworkType>
 class PortablePass {
   using Scalar = typename NetworkType::Scalar;
-  using Sizes = typename NetworkType::Sizes;
-  template <int Index>
-  using Layer = typename NetworkType::template Layer<Index>;
-  static constexpr int layer_count = NetworkType::layer_count;
 
  public:
   /// y = network(x); out of line, so that an image holds it once.
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Scalar even[static_cast<std::size_t>(NetworkType::widest)];
     Scalar odd[static_cast<std::size_t>(NetworkType::widest)];
-    run<0>(parameters, x, even, odd, y);
+    detail::walk_forward<NetworkType, Kernel>(Visitor{y}, At{parameters, x, even, odd});
   }
 
  private:
-  /// Number of layers that run as one from `Index` on: two for a layer with the activation behind it.
-  template <int Index>
-  static constexpr int length() noexcept {
-    if constexpr (Index + 1 < layer_count) {
-      if constexpr (is_elementwise<Layer<Index + 1>>) {
-        return detail::fuses_activation<Layer<Index>, Layer<Index + 1>> ? 2 : 1;
+  struct Kernel {
+    template <class Layer, class Elementwise>
+    static constexpr bool fuses = detail::fuses_activation<Layer, Elementwise>;
+  };
+  /// Parameters and inputs of a step, and the two buffers: it writes to `target`.
+  struct At {
+    const Scalar* own;
+    const Scalar* x;
+    Scalar* target;
+    Scalar* other;
+  };
+  struct Visitor {
+    Scalar* y;
+
+    /// All that are alike but the one that makes the network's outputs: it writes elsewhere.
+    template <class Step, class>
+    static constexpr int together = Step::last ? 1
+                                               : Step::count_alike() - (Step::ends_with(Step::count_alike()) ? 1 : 0);
+
+    template <class Step>
+    PINNQUAD_ALWAYS_INLINE At visit(At at) const noexcept {
+      if constexpr (Step::last) {
+        apply<Step>(at.own, at.x, y);
       } else {
-        return 1;
+        constexpr int stride = NetworkType::Sizes::offset(Step::next) - NetworkType::Sizes::offset(Step::index);
+        for (int i = 0; i < together<Step, At>; ++i) {
+          Scalar* const made = at.target;
+          apply<Step>(at.own, at.x, made);
+          at.own += stride;
+          at.x = made;
+          at.target = at.other;
+          at.other = made;
+        }
       }
-    } else {
-      return 1;
+      return at;
     }
-  }
+  };
 
-  /// How often what runs from `Index` on stands there in a row; what makes the network's outputs is not counted.
-  template <int Index, int Next>
-  static constexpr int repetitions() noexcept {
-    constexpr int step = length<Index>();
-    if constexpr (Next + step >= layer_count) {
-      return 0;
-    } else if constexpr (length<Next>() != step || !std::is_same_v<Layer<Index>, Layer<Next>> ||
-                         !std::is_same_v<Layer<Index + step - 1>, Layer<Next + step - 1>>) {
-      return 0;
-    } else {
-      return 1 + repetitions<Index, Next + step>();
-    }
-  }
-
-  template <int Index>
+  template <class Step>
   static PINNQUAD_ALWAYS_INLINE void apply(const Scalar* own, const Scalar* x, Scalar* y) noexcept {
-    if constexpr (length<Index>() == 2) {
-      Layer<Index>::template forward_fused<Layer<Index + 1>>(own, x, y);
+    if constexpr (Step::fused) {
+      Step::Layer::template forward_fused<typename Step::Activation>(own, x, y);
     } else {
-      Layer<Index>::forward(own, x, y);
-    }
-  }
-
-  /// The layers from `Index` on, whose parameters begin at `own`.
-  template <int Index>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* own, const Scalar* x, Scalar* target, Scalar* other,
-                                         Scalar* y) noexcept {
-    constexpr int step = length<Index>();
-    if constexpr (Index + step >= layer_count) {
-      apply<Index>(own, x, y);
-    } else {
-      constexpr int count = repetitions<Index, Index>();
-      constexpr int stride = Sizes::offset(Index + step) - Sizes::offset(Index);
-      for (int i = 0; i < count; ++i) {
-        Scalar* const made = target;
-        apply<Index>(own, x, made);
-        own += stride;
-        x = made;
-        target = other;
-        other = made;
-      }
-      run<Index + count * step>(own, x, target, other, y);
+      Step::Layer::forward(own, x, y);
     }
   }
 };

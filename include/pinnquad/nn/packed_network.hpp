@@ -44,14 +44,6 @@ struct PackedLayer<DenseLayer<ScalarType, In, Out>, Pack> {
   }
 };
 
-/// The activation of an element-wise layer, for a pack or a scalar.
-template <class Layer>
-struct Activate {
-  template <class Value>
-  PINNQUAD_ALWAYS_INLINE Value operator()(const Value& v) const noexcept {
-    return Layer::activate(v);
-  }
-};
 /// For a forward pass whose layers' outputs nobody asks for. Not called: a reference to registers would cost some of them.
 struct KeepNothing {
   static constexpr bool keeps = false;
@@ -75,139 +67,201 @@ struct StoredOutputs {
   }
 };
 
-/// Layer `Index` of a network and, where it is dense, the activation behind it.
-template <class Network, class Pack, int Index>
-struct FusedLayer {
-  using Layer = typename Network::template Layer<Index>;
-  using Packed = PackedLayer<Layer, Pack>;
-  static constexpr bool fused() noexcept {
-    if constexpr (Packed::dense && Index + 1 < Network::layer_count) {
-      using Next = typename Network::template Layer<Index + 1>;
-      return is_elementwise<Next> && activates_pack<Next, Pack>;
-    } else {
-      return false;
-    }
-  }
-  static constexpr int next = Index + (fused() ? 2 : 1);
-  static constexpr bool last = next == Network::layer_count;
-  using Activation = std::conditional_t<fused(), Activate<typename Network::template Layer<next - 1>>, Unchanged>;
-  /// Of this layer's outputs, activated, among those of all layers of the network.
-  static constexpr int outputs_offset = Network::Sizes::outputs_before(next - 1);
+/// What PackedLayer can: a dense layer passes its sums through an activation that takes a pack.
+template <class Pack>
+struct PackedKernel {
+  template <class Layer, class Elementwise>
+  static constexpr bool fuses = PackedLayer<Layer, Pack>::dense&& activates_pack<Elementwise, Pack>;
 };
 
-/// The layers from `Index` on, each from memory to memory: any layer, size and scalar.
-template <class Network, class Pack, int Index = 0>
+/// True where what an activation is given is asked for afterwards too.
+template <class Keep, class Activation>
+constexpr bool keeps_sums() noexcept {
+  if constexpr (Keep::keeps && !std::is_void_v<Activation>) {
+    return slopes_from_input<Activation>;
+  } else {
+    return false;
+  }
+}
+
+/// The steps of a network, each from memory to memory: any layer, size and scalar.
+template <class Network, class Pack>
 struct MemoryRun {
   using Scalar = typename Network::Scalar;
-  using Fused = FusedLayer<Network, Pack, Index>;
-  using Packed = typename Fused::Packed;
-  using Rest = MemoryRun<Network, Pack, Fused::next>;
+  using Kernel = PackedKernel<Pack>;
+  using Sizes = typename Network::Sizes;
   static constexpr int width = padded<Pack>(Network::widest);
 
-  static constexpr int size() noexcept {
-    if constexpr (Fused::last) {
-      return Packed::size;
-    } else {
-      return Packed::size + Rest::size();
-    }
-  }
+  static constexpr int size() noexcept { return walk_forward<Network, Kernel>(CountSize{}, 0); }
   static constexpr void pack(const Scalar* parameters, Scalar* packed) noexcept {
-    Packed::pack(parameters, packed);
-    if constexpr (!Fused::last) Rest::pack(parameters + Fused::Layer::parameter_count, packed + Packed::size);
+    walk_forward<Network, Kernel>(Arrange{{}, parameters}, packed);
   }
   template <class Keep>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* y,
                                              const Keep& keep) noexcept {
     alignas(64) Scalar even[width];
     alignas(64) Scalar odd[width];
-    forward(packed, x, even, odd, y, keep);
-  }
-  template <class Keep>
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* target, Scalar* other,
-                                             Scalar* y, const Keep& keep) noexcept {
-    Packed::forward(packed, x, target, typename Fused::Activation{});
-    if constexpr (Keep::keeps) keep(Fused::outputs_offset, StoredOutputs<Scalar, Fused::Layer::outputs>{target});
-    if constexpr (Fused::last) {
-      for (int i = 0; i < Network::outputs; ++i) y[i] = target[i];
-    } else {
-      Rest::forward(packed + Packed::size, target, other, target, y, keep);
-    }
-  }
-};
-
-/// Layers from `Index` on that are the same, activations included: one, two, ...
-template <class Network, class Pack, int Index>
-constexpr int count_alike() noexcept {
-  using This = FusedLayer<Network, Pack, Index>;
-  if constexpr (This::last) {
-    return 1;
-  } else {
-    using Next = FusedLayer<Network, Pack, This::next>;
-    if constexpr (std::is_same_v<typename This::Layer, typename Next::Layer> &&
-                  std::is_same_v<typename This::Activation, typename Next::Activation>) {
-      return 1 + count_alike<Network, Pack, This::next>();
-    } else {
-      return 1;
-    }
-  }
-}
-
-/// The layers from `Index` on, from register to register: dense layers of float, each with at most one activation, small
-/// enough for the registers. Hidden layers that are all the same are a loop.
-template <class Network, class Pack, int Index = 0, class Values = MemoryValues<Pack, Network::inputs>>
-struct RegisterRun {
-  using Fused = FusedLayer<Network, Pack, Index>;
-  using Layer = typename Fused::Layer;
-  using Activation = typename Fused::Activation;
-  using Dense = RegisterLayer<Pack, Layer::outputs, Values>;
-  using Result = typename Dense::Result;
-  static constexpr int count = std::is_same_v<Values, Result> ? count_alike<Network, Pack, Index>() : 1;
-  static constexpr int next = Index + count * (Fused::next - Index);
-  static constexpr bool last = next >= Network::layer_count;
-  using Rest = RegisterRun<Network, Pack, next, Result>;
-
-  static constexpr int size() noexcept {
-    if constexpr (last) {
-      return count * Dense::size;
-    } else {
-      return count * Dense::size + Rest::size();
-    }
-  }
-  static constexpr void pack(const float* parameters, float* packed) noexcept {
-    for (int i = 0; i < count; ++i) {
-      const float* own = parameters + i * Layer::parameter_count;
-      Dense::pack(own, own + Layer::weight_count, packed + i * Dense::size);
-    }
-    if constexpr (!last) Rest::pack(parameters + count * Layer::parameter_count, packed + count * Dense::size);
-  }
-  template <class Keep>
-  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const Values& x, float* y,
-                                             const Keep& keep) noexcept {
-    const Result result = multiply(packed, x, keep);
-    if constexpr (Keep::keeps && count == 1) keep(Fused::outputs_offset, result);
-    if constexpr (last) {
-      result.store(y);
-    } else {
-      Rest::forward(packed + count * Dense::size, result, y, keep);
-    }
-  }
-  template <class Keep>
-  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const float* x, float* y, const Keep& keep) noexcept {
-    forward(packed, Values{x}, y, keep);
+    const At end = walk_forward<Network, Kernel>(Forward<Keep>{{}, keep}, At{packed, x, even, odd});
+    for (int i = 0; i < Network::outputs; ++i) y[i] = end.x[i];
   }
 
  private:
+  struct CountSize : StepByStep {
+    template <class Step>
+    constexpr int visit(int size) const noexcept {
+      return size + PackedLayer<typename Step::Layer, Pack>::size;
+    }
+  };
+  struct Arrange : StepByStep {
+    const Scalar* parameters;
+    template <class Step>
+    constexpr Scalar* visit(Scalar* packed) const noexcept {
+      using Packed = PackedLayer<typename Step::Layer, Pack>;
+      Packed::pack(parameters + Step::parameters_offset, packed);
+      return packed + Packed::size;
+    }
+  };
+
+  /// Weights and inputs of a step, and the two buffers: it writes to `target`.
+  struct At {
+    const Scalar* packed;
+    const Scalar* x;
+    Scalar* target;
+    Scalar* other;
+  };
   template <class Keep>
-  static PINNQUAD_ALWAYS_INLINE Result multiply(const float* packed, const Values& x, const Keep& keep) noexcept {
-    if constexpr (count == 1) {
-      return Dense::multiply(packed, x, Activation{});
-    } else {
-      constexpr int step = Network::Sizes::outputs_before(Fused::next) - Network::Sizes::outputs_before(Index);
-      Result result = x;
-      for (int i = 0; i < count; ++i) {
-        result = Dense::multiply(packed + i * Dense::size, result, Activation{});
-        if constexpr (Keep::keeps) keep(Fused::outputs_offset + i * step, result);
+  struct Forward : StepByStep {
+    const Keep& keep;
+    template <class Step>
+    PINNQUAD_ALWAYS_INLINE At visit(const At& at) const noexcept {
+      using Activation = typename Step::Activation;
+      using Packed = PackedLayer<typename Step::Layer, Pack>;
+      constexpr int outputs = Step::Layer::outputs;
+      if constexpr (keeps_sums<Keep, Activation>()) {
+        Packed::forward(at.packed, at.x, at.target, Unchanged{});
+        keep(Step::sums_offset, StoredOutputs<Scalar, outputs>{at.target});
+        for (int i = 0; i < padded<Pack>(outputs); i += Pack::width) {
+          Activation::activate(Pack::load(at.target + i)).store(at.target + i);
+        }
+      } else {
+        Packed::forward(at.packed, at.x, at.target, Activate<Activation>{});
       }
+      if constexpr (Keep::keeps) {
+        keep(Step::outputs_offset, StoredOutputs<Scalar, outputs>{at.target});
+      }
+      return {at.packed + Packed::size, at.target, at.other, at.target};
+    }
+  };
+};
+
+/// The steps of a network, from register to register: dense layers of float, each with at most one activation, small enough for
+/// the registers. Hidden layers that are all the same are a loop.
+template <class Network, class Pack>
+struct RegisterRun {
+  using Kernel = PackedKernel<Pack>;
+  using Sizes = typename Network::Sizes;
+
+  static constexpr int size() noexcept { return walk_forward<Network, Kernel>(CountSize{}, Count<Inputs>{0}).size; }
+  static constexpr void pack(const float* parameters, float* packed) noexcept {
+    walk_forward<Network, Kernel>(Arrange{{}, parameters}, Place<Inputs>{packed});
+  }
+  template <class Keep>
+  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const float* x, float* y, const Keep& keep) noexcept {
+    run<0>(packed, Inputs{x}, y, keep);
+  }
+
+ private:
+  using Inputs = MemoryValues<Pack, Network::inputs>;
+  template <class Step, class State>
+  using Dense = RegisterLayer<Pack, Step::Layer::outputs, typename State::Values>;
+
+  /// A layer that gives its values as it takes them is followed by the next one alike in a loop.
+  struct Loops {
+    template <class Step, class State>
+    static constexpr int together = std::is_same_v<typename State::Values, typename Dense<Step, State>::Result>
+                                        ? Step::count_alike()
+                                        : 1;
+  };
+
+  template <class ValuesType>
+  struct Count {
+    using Values = ValuesType;
+    int size;
+  };
+  struct CountSize : Loops {
+    template <class Step, class State>
+    constexpr auto visit(const State& state) const noexcept {
+      using Layer = Dense<Step, State>;
+      return Count<typename Layer::Result>{state.size + Loops::template together<Step, State> * Layer::size};
+    }
+  };
+
+  template <class ValuesType>
+  struct Place {
+    using Values = ValuesType;
+    float* packed;
+  };
+  struct Arrange : Loops {
+    const float* parameters;
+    template <class Step, class State>
+    constexpr auto visit(const State& state) const noexcept {
+      using Layer = Dense<Step, State>;
+      constexpr int count = Loops::template together<Step, State>;
+      for (int i = 0; i < count; ++i) {
+        const float* own = parameters + Step::parameters_offset + i * Step::Layer::parameter_count;
+        Layer::pack(own, own + Step::Layer::weight_count, state.packed + i * Layer::size);
+      }
+      return Place<typename Layer::Result>{state.packed + count * Layer::size};
+    }
+  };
+
+  /// The steps from `Index` on, as walk_forward() takes them. Handed on from call to call: values returned from visit to visit
+  /// would cost registers.
+  template <int Index, class Values, class Keep>
+  static PINNQUAD_ALWAYS_INLINE void run(const float* packed, const Values& x, float* y, const Keep& keep) noexcept {
+    using Here = Step<Network, Kernel, Index>;
+    using Layer = RegisterLayer<Pack, Here::Layer::outputs, Values>;
+    constexpr int count = Loops::template together<Here, Place<Values>>;
+    const typename Layer::Result result = multiply<Here, count>(packed, x, keep);
+    if constexpr (Here::ends_with(count)) {
+      result.store(y);
+    } else {
+      run<Index + count * Here::advance>(packed + count * Layer::size, result, y, keep);
+    }
+  }
+  template <class Here, int Count, class Values, class Keep>
+  static PINNQUAD_ALWAYS_INLINE auto multiply(const float* packed, const Values& x, const Keep& keep) noexcept {
+    using Layer = RegisterLayer<Pack, Here::Layer::outputs, Values>;
+    using Activation = typename Here::Activation;
+    constexpr int stride = Sizes::outputs_before(Here::next) - Sizes::outputs_before(Here::index);
+    if constexpr (keeps_sums<Keep, Activation>()) {
+      return in_turn<Layer, Count>(x, [&](const auto& values, int turn) PINNQUAD_INLINE_LAMBDA {
+        auto result = Layer::multiply(packed + turn * Layer::size, values, Unchanged{});
+        keep(Here::sums_offset + turn * stride, result);
+        result.apply(Activate<Activation>{});
+        keep(Here::outputs_offset + turn * stride, result);
+        return result;
+      });
+    } else if constexpr (Count == 1) {
+      const typename Layer::Result result = Layer::multiply(packed, x, Activate<Activation>{});
+      if constexpr (Keep::keeps) keep(Here::outputs_offset, result);
+      return result;
+    } else {
+      typename Layer::Result result = x;
+      for (int i = 0; i < Count; ++i) {
+        result = Layer::multiply(packed + i * Layer::size, result, Activate<Activation>{});
+        if constexpr (Keep::keeps) keep(Here::outputs_offset + i * stride, result);
+      }
+      return result;
+    }
+  }
+  template <class Layer, int Count, class Values, class Turn>
+  static PINNQUAD_ALWAYS_INLINE typename Layer::Result in_turn(const Values& x, const Turn& turn) noexcept {
+    if constexpr (Count == 1) {
+      return turn(x, 0);
+    } else {
+      typename Layer::Result result = x;
+      for (int i = 0; i < Count; ++i) result = turn(result, i);
       return result;
     }
   }
@@ -217,24 +271,26 @@ struct RegisterRun {
 /// out several times.
 template <class Activation, class = void>
 inline constexpr bool lane_by_lane = false;
-template <class Layer>
-inline constexpr bool lane_by_lane<Activate<Layer>, std::void_t<decltype(Layer::lane_by_lane)>> = Layer::lane_by_lane;
+template <class Activation>
+inline constexpr bool lane_by_lane<Activation, std::void_t<decltype(Activation::lane_by_lane)>> =
+    Activation::lane_by_lane;
 
 /// Dense layers up to this many inputs and outputs run in registers; behind it the unrolled code outgrows its use.
 inline constexpr int largest_in_registers = 40;
 
-/// True if all layers from `Index` on can be a RegisterRun.
-template <class Network, class Pack, int Index = 0>
-constexpr bool fits_registers() noexcept {
-  using Fused = FusedLayer<Network, Pack, Index>;
-  if constexpr (!keeps_layers_in_registers<Pack> || !Fused::Packed::dense || lane_by_lane<typename Fused::Activation> ||
-                Fused::Layer::inputs > largest_in_registers || Fused::Layer::outputs > largest_in_registers) {
-    return false;
-  } else if constexpr (Fused::last) {
-    return true;
-  } else {
-    return fits_registers<Network, Pack, Fused::next>();
+/// True if all steps of a network can be a RegisterRun.
+template <class Network, class Pack>
+struct FitsRegisters : StepByStep {
+  template <class Step>
+  constexpr bool visit(bool fits) const noexcept {
+    using Layer = typename Step::Layer;
+    return fits && PackedLayer<Layer, Pack>::dense && !lane_by_lane<typename Step::Activation> &&
+           Layer::inputs <= largest_in_registers && Layer::outputs <= largest_in_registers;
   }
+};
+template <class Network, class Pack>
+constexpr bool fits_registers() noexcept {
+  return walk_forward<Network, PackedKernel<Pack>>(FitsRegisters<Network, Pack>{}, keeps_layers_in_registers<Pack>);
 }
 
 template <class Network, class Pack, bool InRegisters = fits_registers<Network, Pack>()>
@@ -278,7 +334,7 @@ class PackedNetwork {
     Run::forward(packed_, x, y, detail::KeepNothing{});
   }
   /// The same; each layer's outputs are left in `kept`, layer by layer as Sizes::outputs_before() counts them. The outputs of a
-  /// layer whose activation is fused into it are not written.
+  /// layer whose activation is fused into it are written only where the activation slopes_from_input.
   PINNQUAD_ALWAYS_INLINE void forward_keeping(const Scalar* x, Scalar* y, Scalar* kept) const noexcept {
     Run::forward(packed_, x, y, detail::KeepOutputs<Scalar>{kept});
   }

@@ -2,6 +2,7 @@
 // Hyperbolic tangent activation: y = tanh(v). Calls the C library once per neuron.
 #pragma once
 
+#include "pinnquad/nn/kernel/each_lane.hpp"
 #include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
@@ -14,7 +15,7 @@ struct TanhLayer : ElementwiseLayer<TanhLayer<ScalarType, Size>, ScalarType, Siz
   static PINNQUAD_ALWAYS_INLINE ScalarType activate(ScalarType v) noexcept { return detail::hyperbolic_tangent(v); }
   template <class Pack>
   static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
-    return Pack::hyperbolic_tangent(v);
+    return detail::each_lane(v, [](ScalarType lane) PINNQUAD_INLINE_LAMBDA { return activate(lane); });
   }
   /// 1 - y^2.
   static PINNQUAD_ALWAYS_INLINE ScalarType slope(ScalarType y) noexcept { return ScalarType(1) - y * y; }

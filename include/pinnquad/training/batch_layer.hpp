@@ -127,15 +127,17 @@ template <class Scalar, int In, int Out, class Pack, int BatchSize>
 struct BatchLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, BatchSize, void>
     : detail::BatchDense<Scalar, In, Out, false, Pack> {};
 
-/// Element-wise: forward works on its own buffer or on that of the layer before, dx overwrites dy. The padding columns of both
-/// may hold anything: no layer reads them into a real column.
+/// Element-wise, with a slope from the output: forward works on its own buffer or on that of the layer before, dx overwrites dy.
+/// The padding columns of both may hold anything: no layer reads them into a real column.
+/// With a slope from the input, the input is left as it is, and dx goes to a buffer of its own.
 template <class Layer, class Pack, int BatchSize>
 struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>>> {
   static_assert(is_trainable<Layer>,
-                "pinnquad: this layer cannot be trained; an element-wise layer needs slope(y) (nn/layer.hpp)");
+                "pinnquad: this layer cannot be trained; an element-wise layer needs slope(y) or slope_from_input(v) "
+                "(nn/layer.hpp)");
   using Scalar = typename Layer::Scalar;
-  static constexpr bool in_place = true;  ///< if the layer before does not need its output
-  static constexpr bool needs_output = true;
+  static constexpr bool in_place = !slopes_from_input<Layer>;  ///< if the layer before does not need its output
+  static constexpr bool needs_output = in_place;
   static constexpr bool couples_samples = false;
   static constexpr bool whole_tiles = false;
   static constexpr int size = 0;
@@ -146,20 +148,29 @@ struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>
   void store_gradient(Scalar*) const noexcept {}
   void refresh() noexcept {}
 
-  void forward(Scalar* values, int samples) const noexcept {
+  void forward(Scalar* values, int samples) const noexcept { forward(values, values, samples); }
+  void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
     if constexpr (activates_pack<Layer, Pack>) {
-      for (int i = 0; i < samples * stride; i += Pack::width) Layer::activate(Pack::load(values + i)).store(values + i);
+      for (int i = 0; i < samples * stride; i += Pack::width) Layer::activate(Pack::load(x + i)).store(y + i);
     } else {
-      for (int i = 0; i < samples; ++i) Layer::forward(nullptr, values + i * stride, values + i * stride);
+      for (int i = 0; i < samples; ++i) Layer::forward(nullptr, x + i * stride, y + i * stride);
     }
   }
-  void backward(const Scalar* y, Scalar* delta, int samples) noexcept {
-    if constexpr (scales_pack<Layer, Pack>) {
-      for (int i = 0; i < samples * stride; i += Pack::width) {
-        Layer::scaled(Pack::load(y + i), Pack::load(delta + i)).store(delta + i);
+  void backward(const Scalar* y, Scalar* delta, int samples) noexcept { scale(y, delta, delta, samples); }
+  /// `delta` holds dy; dx goes to `previous` (which may be null for the first layer).
+  void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous, int samples) noexcept {
+    if (previous != nullptr) scale(x, delta, previous, samples);
+  }
+
+ private:
+  static void scale(const Scalar* seen, const Scalar* dy, Scalar* dx, int samples) noexcept {
+    constexpr int step = scales_pack<Layer, Pack> ? Pack::width : 1;
+    for (int i = 0; i < samples * stride; i += step) {
+      if constexpr (scales_pack<Layer, Pack>) {
+        detail::scaled_by_slope<Layer>(Pack::load(seen + i), Pack::load(dy + i)).store(dx + i);
+      } else {
+        dx[i] = detail::scaled_by_slope<Layer>(seen[i], dy[i]);
       }
-    } else {
-      for (int i = 0; i < samples * stride; ++i) delta[i] *= Layer::slope(y[i]);
     }
   }
 };

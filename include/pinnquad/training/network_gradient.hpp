@@ -64,13 +64,13 @@ class NetworkGradient {
   /// Outputs of the first `samples` inputs (at most `capacity`), batch norm by the statistics of these samples.
   void forward(int samples) noexcept {
     clear_padding(input_, input_stride, samples);
-    forward_from<0, true>(samples);
+    detail::walk_forward<NetworkType, Kernel>(Forward<true>{{}, *this}, samples);
   }
 
   /// The same with batch norm's running statistics: outputs of the network as it will fly. backward() does not fit this pass.
   void predict(int samples) noexcept {
     clear_padding(input_, input_stride, samples);
-    forward_from<0, false>(samples);
+    detail::walk_forward<NetworkType, Kernel>(Forward<false>{{}, *this}, samples);
   }
 
   /// Running statistics follow the batch of the last forward().
@@ -83,7 +83,7 @@ class NetworkGradient {
   /// Gradients of all layers.
   void backward(int samples) noexcept {
     clear_padding(delta_[0], output_stride, samples);
-    backward_from<last>(delta_[0], delta_[1], samples);
+    detail::walk_back<NetworkType, detail::FusesNothing>(Backward{{}, *this, samples}, Deltas{delta_[0], delta_[1]});
   }
 
   /// function(layer, integral_constant<index>) for every layer.
@@ -104,14 +104,16 @@ class NetworkGradient {
   template <int Index>
   using Layer = std::tuple_element_t<static_cast<std::size_t>(Index), Layers>;
 
-  /// An element-wise layer overwrites the output of the layer before, unless that one's backward pass needs it.
+  /// An element-wise layer that works in place runs with the layer before it, unless that one's backward pass needs what it gave.
+  struct Kernel {
+    template <class NetworkLayer, class Elementwise>
+    static constexpr bool fuses =
+        !BatchLayer<NetworkLayer, Pack, BatchSize>::needs_output && BatchLayer<Elementwise, Pack, BatchSize>::in_place;
+  };
+  /// True for a layer in the buffer of the layer before it, or of the inputs.
   template <int Index>
   static constexpr bool overwrites() noexcept {
-    if constexpr (Index == 0) {
-      return Layer<Index>::in_place;
-    } else {
-      return Layer<Index>::in_place && !Layer<Index - 1>::needs_output;
-    }
+    return detail::runs_with_layer_before<NetworkType, Kernel, Index>() || (Index == 0 && Layer<Index>::in_place);
   }
   template <int Index>
   static constexpr int stride = padded<Pack>(NetworkType::template Layer<Index>::outputs);
@@ -145,44 +147,63 @@ class NetworkGradient {
     }
   }
 
-  template <int Index, bool Training>
-  void forward_from(int samples) noexcept {
-    if constexpr (Index < layer_count) {
-      auto& layer = std::get<Index>(layers_);
-      const int rows = rows_of<Index>(samples);
-      Scalar* values = activations<Index>();
-      if constexpr (Layer<Index>::in_place) {
-        if constexpr (!overwrites<Index>()) {
-          const Scalar* before = activations<Index - 1>();
-          for (int i = 0; i < rows * stride<Index>; ++i) values[i] = before[i];
-        }
-        layer.forward(values, rows);
-      } else if constexpr (Layer<Index>::couples_samples && !Training) {
-        layer.predict(activations<Index - 1>(), values, rows);
-      } else {
-        layer.forward(activations<Index - 1>(), values, rows);
+  /// A layer, and the one that works in its buffer.
+  template <bool Training>
+  struct Forward : detail::StepByStep {
+    NetworkGradient& of;
+    template <class Step>
+    int visit(int samples) const noexcept {
+      of.template run<Step::index, Training>(samples);
+      if constexpr (Step::fused) {
+        std::get<Step::index + 1>(of.layers_).forward(of.template activations<Step::index>(), samples);
       }
-      clear_padding(values, stride<Index>, samples);
-      forward_from<Index + 1, Training>(samples);
+      clear_padding(of.template activations<Step::index>(), stride<Step::index>, samples);
+      return samples;
+    }
+  };
+  template <int Index, bool Training>
+  void run(int samples) noexcept {
+    auto& layer = std::get<Index>(layers_);
+    const int rows = rows_of<Index>(samples);
+    Scalar* values = activations<Index>();
+    if constexpr (Layer<Index>::in_place) {
+      if constexpr (!overwrites<Index>()) {
+        const Scalar* before = activations<Index - 1>();
+        for (int i = 0; i < rows * stride<Index>; ++i) values[i] = before[i];
+      }
+      layer.forward(values, rows);
+    } else if constexpr (Layer<Index>::couples_samples && !Training) {
+      layer.predict(activations<Index - 1>(), values, rows);
+    } else {
+      layer.forward(activations<Index - 1>(), values, rows);
     }
   }
 
-  template <int Index>
-  void backward_from(Scalar* delta, Scalar* other, int samples) noexcept {
-    if constexpr (Index >= 0) {
-      auto& layer = std::get<Index>(layers_);
-      const int rows = rows_of<Index>(samples);
-      if constexpr (Layer<Index>::in_place) {
-        layer.backward(activations<Index>(), delta, rows);
-        backward_from<Index - 1>(delta, other, samples);
+  /// Gradients by what a layer gave, and the other buffer.
+  struct Deltas {
+    Scalar* here;
+    Scalar* other;
+  };
+  struct Backward : detail::StepByStep {
+    NetworkGradient& of;
+    int samples;
+    template <class Step>
+    Deltas visit(const Deltas& delta) const noexcept {
+      constexpr int index = Step::index;
+      auto& layer = std::get<index>(of.layers_);
+      const int rows = rows_of<index>(samples);
+      if constexpr (Layer<index>::in_place) {
+        layer.backward(of.template activations<index>(), delta.here, rows);
+        return delta;
       } else {
-        Scalar* previous = Index > 0 ? other : nullptr;
-        layer.backward(activations<Index - 1>(), activations<Index>(), delta, previous, rows);
-        if constexpr (Index > 0) clear_padding(previous, stride<Index - 1>, samples);
-        backward_from<Index - 1>(other, delta, samples);
+        Scalar* previous = index > 0 ? delta.other : nullptr;
+        layer.backward(of.template activations<index - 1>(), of.template activations<index>(), delta.here, previous,
+                       rows);
+        if constexpr (index > 0) clear_padding(previous, stride<index - 1>, samples);
+        return {delta.other, delta.here};
       }
     }
-  }
+  };
 
   Layers layers_{};
   Buffers buffers_{};

@@ -60,6 +60,7 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Pack, int Rows, int Columns, class Activation>
 PINNQUAD_ALWAYS_INLINE void multiply_packed(const typename Pack::Scalar* packed, const typename Pack::Scalar* x,
                                             typename Pack::Scalar* y, const Activation& activation) noexcept {
+  static_assert(require_pack<Pack>());
   constexpr int stride = padded<Pack>(Rows);
   constexpr int vectors = stride / Pack::width;
   constexpr int whole = vectors / 4 * 4;  // four packs of rows at once

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Chooses the pack of a scalar type from what the compiler targets: the one place that asks.
+// The pack of a scalar type on the vector unit that core/instruction_set.hpp decided for.
 // Kernels are templates on the pack, so code compiled for different instruction sets has different symbols.
 #pragma once
 
+#include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/nn/kernel/pack_contract.hpp"
 #include "pinnquad/nn/kernel/pack_generic.hpp"
 
-#if defined(__AVX512F__)
+#if defined(PINNQUAD_UNIT_AVX512)
 #include "pinnquad/nn/kernel/pack_avx512.hpp"
 #define PINNQUAD_FLOAT_PACK PackAvx512
-#elif defined(__AVX2__) && defined(__FMA__)
+#elif defined(PINNQUAD_UNIT_AVX2)
 #include "pinnquad/nn/kernel/pack_avx2.hpp"
 #define PINNQUAD_FLOAT_PACK PackAvx2
-#elif defined(__SSE2__)
+#elif defined(PINNQUAD_UNIT_SSE2)
 #include "pinnquad/nn/kernel/pack_sse2.hpp"
 #define PINNQUAD_FLOAT_PACK PackSse2
-#elif defined(__ARM_NEON) && defined(__aarch64__)
+#elif defined(PINNQUAD_UNIT_NEON)
 #include "pinnquad/nn/kernel/pack_neon.hpp"
 #define PINNQUAD_FLOAT_PACK PackNeon
 #endif
@@ -36,6 +38,10 @@ struct NativePack<float> {
 };
 #undef PINNQUAD_FLOAT_PACK
 #endif
+static_assert(NativePack<float>::type::unit == vector_unit,
+              "pinnquad: this pack is not of the vector unit that core/instruction_set.hpp names");
+static_assert(!NativePack<float>::vector_unit || NativePack<float>::type::fused == fuses_float,
+              "pinnquad: this pack and the portable kernel round a * b + c differently");
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 

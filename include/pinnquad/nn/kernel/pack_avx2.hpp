@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Eight floats with AVX2 and FMA.
-// Same interface as pack_generic.hpp; include only where the compiler targets AVX2 and FMA.
+// The interface is that of pack_contract.hpp; include only where the compiler targets AVX2 and FMA.
 #pragma once
 
 #if defined(__AVX2__) && defined(__FMA__)  // elsewhere this header is empty
@@ -17,6 +17,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// 8 floats in one register.
 struct PackAvx2 {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::avx2;
+  static constexpr bool fused = true;
   static constexpr int width = 8;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
@@ -55,12 +57,6 @@ struct PackAvx2 {
   static PINNQUAD_ALWAYS_INLINE PackAvx2 where_positive(PackAvx2 gate, PackAvx2 a) noexcept {
     const __m256 positive = _mm256_cmp_ps(gate.value, _mm256_setzero_ps(), _CMP_GT_OQ);
     return {_mm256_and_ps(positive, a.value)};
-  }
-  static PINNQUAD_ALWAYS_INLINE PackAvx2 hyperbolic_tangent(PackAvx2 a) noexcept {
-    alignas(32) float lane[width];
-    _mm256_store_ps(lane, a.value);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return {_mm256_load_ps(lane)};
   }
 
   // A layer in registers (register_layer.hpp): four rows, each in two neighbouring lanes that take two inputs; two such

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sixteen floats with AVX-512.
-// Same interface as pack_generic.hpp; include only where the compiler targets AVX-512F.
+// The interface is that of pack_contract.hpp; include only where the compiler targets AVX-512F.
 #pragma once
 
 #if defined(__AVX512F__)  // elsewhere this header is empty
@@ -17,6 +17,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// 16 floats in one register.
 struct PackAvx512 {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::avx512;
+  static constexpr bool fused = true;
   static constexpr int width = 16;
   static constexpr int tile_rows = 8;
   static constexpr int tile_vectors = 2;
@@ -59,12 +61,6 @@ struct PackAvx512 {
   static PINNQUAD_ALWAYS_INLINE PackAvx512 where_positive(PackAvx512 gate, PackAvx512 a) noexcept {
     const __mmask16 positive = _mm512_cmp_ps_mask(gate.value, _mm512_setzero_ps(), _CMP_GT_OQ);
     return {_mm512_maskz_mov_ps(positive, a.value)};
-  }
-  static PINNQUAD_ALWAYS_INLINE PackAvx512 hyperbolic_tangent(PackAvx512 a) noexcept {
-    alignas(64) float lane[width];
-    _mm512_store_ps(lane, a.value);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return {_mm512_load_ps(lane)};
   }
 
   // A layer in registers (register_layer.hpp): eight rows, each in two neighbouring lanes that take two inputs.

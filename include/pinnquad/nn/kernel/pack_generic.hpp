@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A pack of scalars without instruction set: plain loops that a compiler may vectorise.
-// The interface that every pack has; used for double, for other scalars, and where no vector unit is targeted.
+// The interface is that of pack_contract.hpp; used for double, for other scalars, and where no vector unit is targeted.
 #pragma once
 
 #include "pinnquad/core/attributes.hpp"
@@ -14,6 +14,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class ScalarType, int Width>
 struct GenericPack {
   using Scalar = ScalarType;
+  static constexpr VectorUnit unit = VectorUnit::none;
+  static constexpr bool fused = false;
   static constexpr int width = Width;
   static constexpr int tile_rows = 4;  ///< register tile of tile.hpp
   static constexpr int tile_vectors = 1;
@@ -72,10 +74,6 @@ struct GenericPack {
   /// gate > 0 ? a : 0.
   static PINNQUAD_ALWAYS_INLINE GenericPack where_positive(GenericPack gate, GenericPack a) noexcept {
     for (int i = 0; i < Width; ++i) a.lane[i] = gate.lane[i] > Scalar(0) ? a.lane[i] : Scalar(0);
-    return a;
-  }
-  static PINNQUAD_ALWAYS_INLINE GenericPack hyperbolic_tangent(GenericPack a) noexcept {
-    for (int i = 0; i < Width; ++i) a.lane[i] = detail::hyperbolic_tangent(a.lane[i]);
     return a;
   }
 };

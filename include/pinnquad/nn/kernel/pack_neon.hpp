@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Four floats with NEON (aarch64).
-// Same interface as pack_generic.hpp; include only where the compiler targets aarch64.
+// The interface is that of pack_contract.hpp; include only where the compiler targets aarch64.
 #pragma once
 
 #if defined(__ARM_NEON) && defined(__aarch64__)  // elsewhere this header is empty
@@ -17,6 +17,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// 4 floats in one register.
 struct PackNeon {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::neon;
+  static constexpr bool fused = true;
   static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
@@ -49,12 +51,6 @@ struct PackNeon {
   }
   static PINNQUAD_ALWAYS_INLINE PackNeon where_positive(PackNeon gate, PackNeon a) noexcept {
     return {vreinterpretq_f32_u32(vandq_u32(vcgtzq_f32(gate.value), vreinterpretq_u32_f32(a.value)))};
-  }
-  static PINNQUAD_ALWAYS_INLINE PackNeon hyperbolic_tangent(PackNeon a) noexcept {
-    alignas(16) float lane[width];
-    a.store(lane);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return load(lane);
   }
 
   // A layer in registers (register_layer.hpp): four rows, one input.

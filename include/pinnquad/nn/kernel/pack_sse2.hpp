@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Four floats with SSE2, which every x86-64 has.
-// Same interface as pack_generic.hpp; include only where the compiler targets SSE2.
+// The interface is that of pack_contract.hpp; include only where the compiler targets SSE2.
 #pragma once
 
 #if defined(__SSE2__)  // elsewhere this header is empty
 
 #include <emmintrin.h>
+#if defined(__FMA__)
+#include <immintrin.h>
+#elif defined(__FMA4__)
+#include <x86intrin.h>
+#endif
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
@@ -14,9 +19,15 @@
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// 4 floats in one register. Product and sum are rounded separately.
+/// 4 floats in one register. Product and sum are rounded once where the processor has the instruction without AVX2.
 struct PackSse2 {
   using Scalar = float;
+  static constexpr VectorUnit unit = VectorUnit::sse2;
+#if defined(__FMA__) || defined(__FMA4__)
+  static constexpr bool fused = true;
+#else
+  static constexpr bool fused = false;
+#endif
   static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 1;
@@ -27,7 +38,15 @@ struct PackSse2 {
   static PINNQUAD_ALWAYS_INLINE PackSse2 broadcast(float v) noexcept { return {_mm_set1_ps(v)}; }
   PINNQUAD_ALWAYS_INLINE void store(float* p) const noexcept { _mm_storeu_ps(p, value); }
   /// a * b + c
-  static PINNQUAD_ALWAYS_INLINE PackSse2 multiply_add(PackSse2 a, PackSse2 b, PackSse2 c) noexcept { return a * b + c; }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 multiply_add(PackSse2 a, PackSse2 b, PackSse2 c) noexcept {
+#if defined(__FMA__)
+    return {_mm_fmadd_ps(a.value, b.value, c.value)};
+#elif defined(__FMA4__)
+    return {_mm_macc_ps(a.value, b.value, c.value)};
+#else
+    return a * b + c;
+#endif
+  }
   friend PINNQUAD_ALWAYS_INLINE PackSse2 operator+(PackSse2 a, PackSse2 b) noexcept {
     return {_mm_add_ps(a.value, b.value)};
   }
@@ -52,12 +71,6 @@ struct PackSse2 {
   }
   static PINNQUAD_ALWAYS_INLINE PackSse2 where_positive(PackSse2 gate, PackSse2 a) noexcept {
     return {_mm_and_ps(_mm_cmpgt_ps(gate.value, _mm_setzero_ps()), a.value)};
-  }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 hyperbolic_tangent(PackSse2 a) noexcept {
-    alignas(16) float lane[width];
-    a.store(lane);
-    for (float& v : lane) v = detail::hyperbolic_tangent(v);
-    return load(lane);
   }
 
   // A layer in registers (register_layer.hpp): four rows, one input.

@@ -8,27 +8,28 @@
 #include <cstddef>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
 namespace pinnquad {
 
 /// a * b + c, in one rounding where the hardware has it, in two where it would take a library call.
 PINNQUAD_ALWAYS_INLINE float multiply_add(float a, float b, float c) noexcept {
-#if defined(__FP_FAST_FMAF) || defined(__FMA__) || defined(__ARM_FEATURE_FMA)
-  return __builtin_fmaf(a, b, c);
-#else
-  const float product = a * b;
-  return product + c;
-#endif
+  if constexpr (detail::fuses_float) {
+    return __builtin_fmaf(a, b, c);
+  } else {
+    const float product = a * b;
+    return product + c;
+  }
 }
 
 PINNQUAD_ALWAYS_INLINE double multiply_add(double a, double b, double c) noexcept {
-#if defined(__FP_FAST_FMA) || defined(__FMA__) || (defined(__ARM_FEATURE_FMA) && defined(__aarch64__))
-  return __builtin_fma(a, b, c);
-#else
-  const double product = a * b;
-  return product + c;
-#endif
+  if constexpr (detail::fuses_double) {
+    return __builtin_fma(a, b, c);
+  } else {
+    const double product = a * b;
+    return product + c;
+  }
 }
 
 namespace detail {

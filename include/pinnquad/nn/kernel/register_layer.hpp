@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One dense layer, batch 1, inputs and outputs in registers: a broadcast through memory would wait for the store.
 // A block is one register of rows; a step takes Pack::columns inputs to all rows of a block. Several chains of sums per block
-// hide the latency of the multiply-add. The packs say how rows, inputs and values lie in a register.
+// hide the latency of the multiply-add. How rows, inputs and values lie in a register, the packs say: the second
+// contract of pack_contract.hpp.
 #pragma once
 
 #include <type_traits>
@@ -55,6 +56,12 @@ struct RegisterValues {
       return value[Register];
     }
   }
+  /// Every value through `activation`, which maps a pack to a pack.
+  template <class Activation>
+  PINNQUAD_ALWAYS_INLINE void apply(const Activation& activation) noexcept {
+    unroll<registers>([&](auto r) PINNQUAD_INLINE_LAMBDA { value[r] = activation(value[r]); });
+    if constexpr (lone) last = activation(last);
+  }
   /// y[0, Size) and nothing behind.
   PINNQUAD_ALWAYS_INLINE void store(float* y) const noexcept {
     unroll<registers>([&](auto r) PINNQUAD_INLINE_LAMBDA {
@@ -89,6 +96,7 @@ struct MemoryValues {
 /// W x + b; `Values` is RegisterValues or MemoryValues.
 template <class Pack, int Out, class Values>
 struct RegisterLayer {
+  static_assert(require_pack<Pack>() && require_register_layout<Pack>());
   using Result = RegisterValues<Pack, Out>;
   static constexpr int in = Values::size;
   static constexpr int steps = (in + Pack::columns - 1) / Pack::columns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tanh, sqrt and positive part of one scalar. The standard library's float overloads are functions of their own in
+// What activations need of one scalar: the C library's functions, absolute value, positive part. The standard library's float overloads are functions of their own in
 // unoptimised code, compiled for the instruction set of whoever comes first; the compiler's builtins are not.
 #pragma once
 
@@ -21,12 +21,74 @@ PINNQUAD_ALWAYS_INLINE Scalar hyperbolic_tangent(const Scalar& v) noexcept {
   return tanh(v);
 }
 
+PINNQUAD_ALWAYS_INLINE float sine(float v) noexcept { return __builtin_sinf(v); }
+PINNQUAD_ALWAYS_INLINE double sine(double v) noexcept { return __builtin_sin(v); }
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar sine(const Scalar& v) noexcept {
+  using std::sin;
+  return sin(v);
+}
+
+PINNQUAD_ALWAYS_INLINE float cosine(float v) noexcept { return __builtin_cosf(v); }
+PINNQUAD_ALWAYS_INLINE double cosine(double v) noexcept { return __builtin_cos(v); }
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar cosine(const Scalar& v) noexcept {
+  using std::cos;
+  return cos(v);
+}
+
+PINNQUAD_ALWAYS_INLINE float exponential(float v) noexcept { return __builtin_expf(v); }
+PINNQUAD_ALWAYS_INLINE double exponential(double v) noexcept { return __builtin_exp(v); }
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar exponential(const Scalar& v) noexcept {
+  using std::exp;
+  return exp(v);
+}
+
+PINNQUAD_ALWAYS_INLINE float exponential_minus_one(float v) noexcept { return __builtin_expm1f(v); }
+PINNQUAD_ALWAYS_INLINE double exponential_minus_one(double v) noexcept { return __builtin_expm1(v); }
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar exponential_minus_one(const Scalar& v) noexcept {
+  using std::expm1;
+  return expm1(v);
+}
+
+PINNQUAD_ALWAYS_INLINE float log_of_one_plus(float v) noexcept { return __builtin_log1pf(v); }
+PINNQUAD_ALWAYS_INLINE double log_of_one_plus(double v) noexcept { return __builtin_log1p(v); }
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar log_of_one_plus(const Scalar& v) noexcept {
+  using std::log1p;
+  return log1p(v);
+}
+
+/// 1 - erf(v), without cancellation where erf(v) is near 1.
+PINNQUAD_ALWAYS_INLINE float complementary_error_function(float v) noexcept { return __builtin_erfcf(v); }
+PINNQUAD_ALWAYS_INLINE double complementary_error_function(double v) noexcept { return __builtin_erfc(v); }
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar complementary_error_function(const Scalar& v) noexcept {
+  using std::erfc;
+  return erfc(v);
+}
+
 PINNQUAD_ALWAYS_INLINE float square_root(float v) noexcept { return __builtin_sqrtf(v); }
 PINNQUAD_ALWAYS_INLINE double square_root(double v) noexcept { return __builtin_sqrt(v); }
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar square_root(const Scalar& v) noexcept {
   using std::sqrt;
   return sqrt(v);
+}
+
+PINNQUAD_ALWAYS_INLINE float absolute(float v) noexcept { return __builtin_fabsf(v); }
+PINNQUAD_ALWAYS_INLINE double absolute(double v) noexcept { return __builtin_fabs(v); }
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar absolute(const Scalar& v) noexcept {
+  return v < Scalar(0) ? -v : v;
+}
+
+/// 1 / (1 + exp(-v)). exp(-v) may be infinite: the quotient is 0 then.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar logistic(const Scalar& v) noexcept {
+  return Scalar(1) / (Scalar(1) + exponential(-v));
 }
 
 /// As integers, floats from -0 to -infinity lie below this one, a NaN with a sign, and all other NaNs do not.

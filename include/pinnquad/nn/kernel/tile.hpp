@@ -36,6 +36,7 @@ template <class Columns, int Rows, int RowStride, int DepthStride, class Scalar,
 PINNQUAD_ALWAYS_INLINE void multiply_tile(const Scalar* a, const Scalar* b, int b_stride, int depth, const Start& start,
                                           const Finish& finish, Scalar* c, int c_stride) noexcept {
   using Pack = typename Columns::Pack;
+  static_assert(require_pack<Pack>());
   constexpr int vectors = Columns::vectors;
   Pack sum[Rows][vectors];
   unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// CASE PACK_WITHOUT_MULTIPLY_ADD: pinnquad: this pack lacks multiply_add
+// CASE PACK_WITHOUT_SETTLE: pinnquad: this pack lacks settle
+// CASE PACK_WITHOUT_TILE: pinnquad: this pack lacks tile_rows
+// CASE LAYOUT_WITHOUT_COLLECT: pinnquad: this pack lacks collect
+// CASE LAYOUT_OF_THREE_COLUMNS: pinnquad: this pack's columns are not 1 or 2
+// CASE LAYOUT_OF_OTHER_VALUES: pinnquad: this pack's values are not blocks_per_register
+#include <cmath>
+
+#include "pinnquad/nn/packed_network.hpp"
+#include "pinnquad/nn/relu.hpp"
+
+namespace {
+
+/// Two floats, with a layout of registers.
+struct TwoFloats {
+  using Scalar = float;
+  static constexpr pinnquad::VectorUnit unit = pinnquad::VectorUnit::none;
+  static constexpr bool fused = false;
+  static constexpr int width = 2;
+#ifndef PACK_WITHOUT_TILE
+  static constexpr int tile_rows = 2, tile_vectors = 1;
+#endif
+  float a, b;
+
+  static TwoFloats load(const float* p) noexcept { return {p[0], p[1]}; }
+  static TwoFloats broadcast(float v) noexcept { return {v, v}; }
+  void store(float* p) const noexcept { p[0] = a, p[1] = b; }
+#ifndef PACK_WITHOUT_MULTIPLY_ADD
+  static TwoFloats multiply_add(TwoFloats x, TwoFloats y, TwoFloats z) noexcept { return x * y + z; }
+#endif
+  friend TwoFloats operator+(TwoFloats x, TwoFloats y) noexcept { return {x.a + y.a, x.b + y.b}; }
+  friend TwoFloats operator-(TwoFloats x, TwoFloats y) noexcept { return {x.a - y.a, x.b - y.b}; }
+  friend TwoFloats operator*(TwoFloats x, TwoFloats y) noexcept { return {x.a * y.a, x.b * y.b}; }
+  friend TwoFloats operator/(TwoFloats x, TwoFloats y) noexcept { return {x.a / y.a, x.b / y.b}; }
+  static TwoFloats square_root(TwoFloats v) noexcept { return {std::sqrt(v.a), std::sqrt(v.b)}; }
+  static TwoFloats positive_part(TwoFloats v) noexcept { return {v.a < 0 ? 0 : v.a, v.b < 0 ? 0 : v.b}; }
+  static TwoFloats where_positive(TwoFloats g, TwoFloats v) noexcept { return {g.a > 0 ? v.a : 0, g.b > 0 ? v.b : 0}; }
+#ifndef PACK_WITHOUT_SETTLE
+  void settle() noexcept {}
+#endif
+
+#if defined(LAYOUT_OF_THREE_COLUMNS)
+  static constexpr int columns = 3;
+#else
+  static constexpr int columns = 1;
+#endif
+#if defined(LAYOUT_OF_OTHER_VALUES)
+  static constexpr int values = 3;
+#else
+  static constexpr int values = 2;
+#endif
+  static constexpr int blocks_per_register = 1, blocks_at_once = 1, chains = 1;
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
+  template <int First>
+  TwoFloats spread() const noexcept {
+    return broadcast(First == 0 ? a : b);
+  }
+  static TwoFloats spread(const float* x) noexcept { return broadcast(*x); }
+  static TwoFloats spread_last(TwoFloats v) noexcept { return broadcast(v.a); }
+  static TwoFloats from_scalar(float v) noexcept { return broadcast(v); }
+#ifndef LAYOUT_WITHOUT_COLLECT
+  static TwoFloats collect(const TwoFloats* sum) noexcept { return *sum; }
+#endif
+  template <int Count>
+  TwoFloats keep() const noexcept {
+    return {a, Count > 1 ? b : 0};
+  }
+  TwoFloats sum_of_values() const noexcept { return broadcast(a + b); }
+  float first_value() const noexcept { return a; }
+  template <int Count>
+  void store_values(float* y) const noexcept {
+    y[0] = a;
+    if (Count > 1) y[1] = b;
+  }
+};
+
+using Net = pinnquad::Mlp<float, pinnquad::Inputs<4>, pinnquad::Hidden<2, 5>, pinnquad::Outputs<3>, pinnquad::Relu>;
+
+}  // namespace
+
+int main() {
+  const Net net{};
+  const float x[Net::inputs] = {};
+  float y[Net::outputs] = {};
+  pinnquad::PackedNetwork<Net, TwoFloats>(net.parameters).forward(x, y);
+  return static_cast<int>(y[0]);
+}
