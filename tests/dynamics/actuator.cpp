@@ -129,14 +129,14 @@ TEST_CASE("lag: each rotor by its own time constant, rising and falling, in thru
   const Airframe<double> a = pinnquad::test::uneven_airframe<double>();
   const ThrustFractions<double> before{0.2, 0.8, 0.3, 0.6}, wanted{0.9, 0.1, 1.4, 0.6};
   const double step = 0.007;
-  const auto moved = pinnquad::lagged_step(before, wanted, a, step);
-  CHECK(moved.end[0] == doctest::Approx(0.9 + (0.2 - 0.9) * std::exp(-step / 0.004)).epsilon(1e-14));  // rises
-  CHECK(moved.end[1] == doctest::Approx(0.1 + (0.8 - 0.1) * std::exp(-step / 0.03)).epsilon(1e-14));   // falls
-  CHECK(moved.middle[1] == doctest::Approx(0.1 + (0.8 - 0.1) * std::exp(-step / 0.06)).epsilon(1e-14));
-  CHECK(moved.start[2] == 1.0);  // rises without lag, to its limit
-  CHECK(moved.end[2] == 1.0);
-  CHECK(moved.end[3] == 0.6);
-  CHECK(moved.start[0] == 0.2);
+  const auto tau = pinnquad::time_constants_s(a, before, wanted);
+  CHECK(tau == std::array<double, 4>{0.004, 0.03, 0.0, 0.05});
+  const auto end = pinnquad::lagged(before, wanted, pinnquad::lag_factor(tau, step));
+  CHECK(end[0] == doctest::Approx(0.9 + (0.2 - 0.9) * std::exp(-step / 0.004)).epsilon(1e-14));  // rises
+  CHECK(end[1] == doctest::Approx(0.1 + (0.8 - 0.1) * std::exp(-step / 0.03)).epsilon(1e-14));   // falls
+  CHECK(end[2] == 1.0);                                                                          // its limit, at once
+  CHECK(end[3] == 0.6);
+  CHECK(pinnquad::at_start(before, end, tau) == ThrustFractions<double>{0.2, 0.8, 1.0, 0.6});
 }
 
 TEST_CASE_TEMPLATE("equal time constants: the lag of one for all, to the last bit", Scalar, float, double) {
@@ -144,9 +144,9 @@ TEST_CASE_TEMPLATE("equal time constants: the lag of one for all, to the last bi
   RandomStates random(72);
   for (int draw = 0; draw < draws; ++draw) {
     const ThrustFractions<Scalar> before = random.commands<Scalar>(), wanted = random.commands<Scalar>(-0.2, 1.2);
-    const auto one = pinnquad::lagged_step(before, wanted, a.rotor_time_constant_s, Scalar(0.002));
-    const auto each = pinnquad::lagged_step(before, wanted, a, Scalar(0.002));
-    CHECK((one.start == each.start && one.middle == each.middle && one.end == each.end));
+    const auto each = pinnquad::lag_factor(pinnquad::time_constants_s(a, before, wanted), Scalar(0.002));
+    const Scalar one = pinnquad::lag_factor(a.rotor_time_constant_s, Scalar(0.002));
+    CHECK(pinnquad::lagged(before, wanted, each) == pinnquad::lagged(before, wanted, one));
   }
 }
 

@@ -28,40 +28,52 @@ constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered
   return result;
 }
 
-/// Thrust fractions at the start, in the middle and at the end of a step.
+/// The same with a factor for each rotor.
 template <class Scalar>
-struct LaggedStep {
-  ThrustFractions<Scalar> start, middle, end;
-};
-
-/// A step under fractions held over it, with one time constant for all. A rotor without lag has the wanted thrust at once.
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE LaggedStep<Scalar> lagged_step(const ThrustFractions<Scalar>& before,
-                                                      const ThrustFractions<Scalar>& wanted, Scalar time_constant_s,
-                                                      Scalar step_s) noexcept {
-  const Scalar half_factor = lag_factor(time_constant_s, step_s / Scalar(2));
-  LaggedStep<Scalar> result;
-  result.middle = lagged(before, wanted, half_factor);
-  result.end = lagged(result.middle, wanted, half_factor);
-  result.start = time_constant_s > Scalar(0) ? before : result.end;
+constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered, const ThrustFractions<Scalar>& wanted,
+                                         const std::array<Scalar, rotor_count>& factors) noexcept {
+  ThrustFractions<Scalar> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    const Scalar target = clip_command(wanted[i]);
+    result[i] = target + factors[i] * (filtered[i] - target);
+  }
   return result;
 }
 
-/// The same with each rotor's own time constants. Thrust approaches what is held from one side: a rotor rises or falls all the
-/// step long.
+/// The time constant of each rotor's way from `before` to the fraction wanted: thrust approaches what is held from one side, a
+/// rotor rises or falls all the step long.
 template <class Scalar>
-LaggedStep<Scalar> lagged_step(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted,
-                               const Airframe<Scalar>& airframe, Scalar step_s) noexcept {
-  LaggedStep<Scalar> result;
+constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar>& airframe,
+                                                           const ThrustFractions<Scalar>& before,
+                                                           const ThrustFractions<Scalar>& wanted) noexcept {
+  std::array<Scalar, rotor_count> result{};
   for (std::size_t i = 0; i < rotor_count; ++i) {
-    const Scalar target = clip_command(wanted[i]);
-    const Scalar time_constant_s =
-        target >= before[i] ? airframe.rise_time_constant_s(i) : airframe.fall_time_constant_s(i);
-    const Scalar half_factor = lag_factor(time_constant_s, step_s / Scalar(2));
-    result.middle[i] = target + half_factor * (before[i] - target);
-    result.end[i] = target + half_factor * (result.middle[i] - target);
-    result.start[i] = time_constant_s > Scalar(0) ? before[i] : result.end[i];
+    result[i] =
+        clip_command(wanted[i]) >= before[i] ? airframe.rise_time_constant_s(i) : airframe.fall_time_constant_s(i);
   }
+  return result;
+}
+
+/// lag_factor() of each.
+template <class Scalar>
+std::array<Scalar, rotor_count> lag_factor(const std::array<Scalar, rotor_count>& time_constants_s,
+                                           Scalar step_s) noexcept {
+  std::array<Scalar, rotor_count> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = lag_factor(time_constants_s[i], step_s);
+  return result;
+}
+
+/// The fractions at the start of a step: a rotor without lag has what it has at the end at once.
+template <class Scalar>
+constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
+                                           Scalar time_constant_s) noexcept {
+  return time_constant_s > Scalar(0) ? before : end;
+}
+template <class Scalar>
+constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
+                                           const std::array<Scalar, rotor_count>& time_constants_s) noexcept {
+  ThrustFractions<Scalar> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = time_constants_s[i] > Scalar(0) ? before[i] : end[i];
   return result;
 }
 

@@ -190,11 +190,16 @@ class Quadrotor {
   template <Build build>
   PINNQUAD_FLATTEN Status advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
                                   Scalar step_s) const noexcept {
-    const LaggedStep<Scalar> thrusts = thrusts_over<build>(state.rotors, commands, step_s);
+    const ThrustFractions<Scalar> before = rotors_.template fractions<build>(state.rotors);
+    const ThrustFractions<Scalar> wanted = rotors_.template fractions<build>(commands);
+    const auto time_constant_s = lag_of<build>(before, wanted);
+    const auto half_factor = lag_factor(time_constant_s, step_s / Scalar(2));
+    const ThrustFractions<Scalar> middle = lagged(before, wanted, half_factor);
+    const ThrustFractions<Scalar> end = lagged(middle, wanted, half_factor);
+    const ThrustFractions<Scalar> start = at_start(before, end, time_constant_s);
     Status air = Status::ok;
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
-      const ThrustFractions<Scalar>& now =
-          offset_s == Scalar(0) ? thrusts.start : (offset_s < step_s ? thrusts.middle : thrusts.end);
+      const ThrustFractions<Scalar>& now = offset_s == Scalar(0) ? start : (offset_s < step_s ? middle : end);
       return rate_of_change<build>(body, now, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
     };
     const State<Scalar> next = rk4_step(state.body, step_s, rate);
@@ -202,18 +207,19 @@ class Quadrotor {
     if (!(all_finite(next) && is_unit(next.attitude))) return Status::output_not_finite;
     if (!can_follow(next, step_s)) return Status::out_of_range;
     state.body = next;
-    state.rotors = rotors_.template commands_of<build>(thrusts.end);
+    state.rotors = rotors_.template commands_of<build>(end);
     state.time_s += static_cast<double>(step_s);
     return Status::ok;
   }
 
+  /// One time constant for all, or each rotor's own.
   template <Build build>
-  PINNQUAD_ALWAYS_INLINE LaggedStep<Scalar> thrusts_over(const Commands<Scalar>& before, const Commands<Scalar>& wanted,
-                                                         Scalar step_s) const noexcept {
+  auto lag_of(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted) const noexcept {
     if constexpr (build == Build::plain) {
-      return lagged_step(before, wanted, airframe_.rise_time_constant_s(0), step_s);
+      static_cast<void>(before), static_cast<void>(wanted);
+      return airframe_.rise_time_constant_s(0);
     } else {
-      return lagged_step(rotors_.fractions(before), rotors_.fractions(wanted), airframe_, step_s);
+      return time_constants_s(airframe_, before, wanted);
     }
   }
 
