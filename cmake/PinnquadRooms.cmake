@@ -3,7 +3,7 @@
 # The rooms of include/pinnquad in the order of their imports: a room may include itself and those before it.
 set(PINNQUAD_ROOMS
   core dynamics aero vehicle nn inference control
-  data schedule loss training simulation evaluation deploy)
+  data identification schedule loss training simulation evaluation deploy)
 
 # The rooms that fly: no heap, exceptions, RTTI, iostream; they include each other and nothing else.
 set(PINNQUAD_FLIGHT_ROOMS core dynamics aero vehicle nn inference control)

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "airframe_file.hpp"
 #include "airframes.hpp"
 #include "command_line.hpp"
 #include "console.hpp"
@@ -66,6 +67,7 @@ void list_airframes() {
 void require_separate_files(const Options& options) {
   programs::FileRoles roles;
   roles.reads("--sticks", options.sticks);
+  if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   roles.writes("--record-sticks", options.record_sticks);
   roles.writes("--replay", options.replay);
@@ -272,10 +274,15 @@ void with_all_choices(const Options& options, const Function& function) {
                                 "'; known: none, cheeseman-bennett, conyers");
   }
   std::optional<Airframe<double>> airframe;
-  programs::with_airframe(options.airframe,
-                          [&airframe](auto tag) { airframe = airframe_value<typename decltype(tag)::type, double>(); });
+  if (programs::is_airframe_file(options.airframe)) {
+    airframe = programs::read_airframe_file(options.airframe).value;
+  } else {
+    programs::with_airframe(
+        options.airframe, [&airframe](auto tag) { airframe = airframe_value<typename decltype(tag)::type, double>(); });
+  }
   if (!airframe) {
-    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
+    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names() +
+                                ", or a file whose name ends in .toml");
   }
   const bool known = programs::with_flight(options.flight, [&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
@@ -328,7 +335,9 @@ int run(int argument_count, char** arguments) {
       ->type_name("N");
   add_number(app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
              "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)");
-  app.add_option("--airframe", options.airframe, "one of: " + programs::airframe_names())->capture_default_str();
+  app.add_option("--airframe", options.airframe,
+                 "a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
+      ->capture_default_str();
   add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0,
              "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)");
   app.add_option("--ground-effect", options.ground_effect,

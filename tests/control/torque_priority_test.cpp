@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/uneven_airframe.hpp"
+
 #include <limits>
 
 using pinnquad::Commands;
@@ -38,4 +40,33 @@ TEST_CASE("saturated: a rotor at its end, or NaN") {
   CHECK(saturated(Commands<float>{0.0f, 0.2f, 0.3f, 0.4f}));
   CHECK(saturated(Commands<float>{0.1f, 0.2f, 0.3f, 1.0f}));
   CHECK(saturated(Commands<float>{0.1f, 0.2f, std::numeric_limits<float>::quiet_NaN(), 0.5f}));
+}
+
+TEST_CASE("uneven rotors keep their torque when a command leaves 0..1, and thrust gives way") {
+  const pinnquad::Airframe<double> a = pinnquad::test::uneven_airframe<double>();
+  const pinnquad::Rotors<double> rotors(a);
+  for (const pinnquad::Commands<double>& wanted :
+       {pinnquad::Commands<double>{1.1, 0.8, 0.9, 1.05}, pinnquad::Commands<double>{0.2, -0.1, 0.1, 0.3}}) {
+    const pinnquad::Commands<double> given = keep_torque(rotors, wanted);
+    const pinnquad::Vector3<double> before = rotors.wrench(wanted, 1.0).torque_N_m,
+                                    after = rotors.wrench(given, 1.0).torque_N_m;
+    for (int axis = 0; axis < 3; ++axis) CHECK(after[axis] == doctest::Approx(before[axis]).epsilon(1e-12));
+    double largest = given[0], smallest = given[0];
+    for (const double u : given) {
+      largest = u > largest ? u : largest;
+      smallest = u < smallest ? u : smallest;
+    }
+    CHECK(largest <= 1 + 1e-12);
+    CHECK(smallest >= -1e-12);
+    CHECK((largest >= 1 - 1e-12 || smallest <= 1e-7));  // a quadratic curve at nothing: the root of the rounding
+  }
+}
+
+TEST_CASE("equal rotors: the shift of all commands together, to the last bit") {
+  const pinnquad::Rotors<double> rotors(pinnquad::PaperQuadrotor::value<double>());
+  for (const pinnquad::Commands<double>& u :
+       {pinnquad::Commands<double>{0.9, 1.2, 0.8, 1.0}, pinnquad::Commands<double>{-0.4, 1.2, 0.5, 0.5},
+        pinnquad::Commands<double>{0.1, 0.9, 0.5, 1.0}}) {
+    CHECK(keep_torque(rotors, u) == keep_torque(u));
+  }
 }

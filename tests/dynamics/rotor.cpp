@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pinnquad/dynamics/rotor.hpp"
 
+#include "pinnquad/dynamics/rotor_lag.hpp"
+
 #include <doctest/doctest.h>
 
 #include <array>

@@ -46,6 +46,10 @@ grep -qE 'roll 0\.[0-7]' noisy.txt || fail "noise and latency leave the correlat
 cmp conyers.csv default.csv || fail "d2 flies with Conyers' ground effect"
 ! cmp -s none.csv default.csv || fail "without ground effect d2 is the same"
 
+"$fly" d1 --samples 20 --airframe racer_5_inch --out by_name.csv >/dev/null
+"$fly" d1 --samples 20 --airframe "$source_dir/examples/airframes/racer_5_inch.toml" --out by_file.csv >/dev/null
+cmp by_name.csv by_file.csv || fail "an airframe flies otherwise from its file"
+
 "$fly" --list-airframes >airframes.txt
 grep -q 'paper_quadrotor .*1\.500 kg.*thrust-to-weight 2\.006' airframes.txt || fail "said: $(cat airframes.txt)"
 grep -q 'Table 1' airframes.txt || fail "no source of the values: $(cat airframes.txt)"

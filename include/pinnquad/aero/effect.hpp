@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The contract of an aerodynamic effect: a small value with one or both of two pure functions.
-//   template <class Scalar> void surroundings(Surroundings<Scalar>&) const noexcept;      wind, density: what the air is
+//   template <class Scalar> void surroundings(Surroundings<Scalar>&) const noexcept;      wind, density, battery
 //   template <class Scalar> Wrench<Scalar> wrench(const AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
 // All `surroundings` run first, then the rotors, then each `wrench` in the order of the vehicle's effects.
 // An effect whose wrench depends on the rotors takes a RotorCondition instead, see also `has_thrust_branches`; one that is
@@ -28,8 +28,8 @@ namespace pinnquad {
 template <class Scalar>
 inline constexpr Scalar standard_air_density_kg_m3 = Scalar(101325.0 / (287.053 * 288.15));
 
-/// The air around the vehicle. The first three are given; effects set the rest. An effect that has no answer for a place or
-/// time sets `status`, and what was to come of this air (a step, an inverse) is refused with it.
+/// The air around the vehicle, and the battery in it. The first three are given; effects set the rest. An effect that has no
+/// answer for a place or time sets `status`, and what was to come of this air (a step, an inverse) is refused with it.
 template <class Scalar>
 struct Surroundings {
   Scalar time_s{0};
@@ -37,6 +37,7 @@ struct Surroundings {
   Scalar altitude_m{0};                                  ///< above sea level
   Vector3<Scalar> wind_m_s = Vector3<Scalar>::Zero();    ///< NED, the air's velocity over ground
   Scalar air_density_kg_m3{standard_air_density_kg_m3<Scalar>};
+  Scalar thrust_scale{1};  ///< of all rotors, above 0: below 1 what a sagging battery leaves of thrust and torque
   Status status{Status::ok};
 };
 
@@ -70,7 +71,7 @@ struct AeroCondition {
 template <class Scalar>
 struct RotorCondition : AeroCondition<Scalar> {
   Wrench<Scalar> rotors;                             ///< body wrench of all four
-  std::array<Scalar, rotor_count> rotor_thrust_N{};  ///< of each, along body -z
+  std::array<Scalar, rotor_count> rotor_thrust_N{};  ///< of each, along its axis (body -z unless tilted)
 };
 
 /// Where an effect takes the absolute value of a force that the thrust can turn round, its wrench has two branches.

@@ -6,8 +6,9 @@
 
 namespace pinnquad {
 
-/// F = -k sum_i T_i (v_i,x, v_i,y, 0), v_i = v + omega x r_i the hub's air-relative velocity, body axes; the force acts at
-/// the hub, so a turning vehicle feels a yaw torque r_i x F_i too.
+/// F = -k sum_i T_i (v_i - a_i (a_i . v_i)), v_i = v + omega x r_i the hub's air-relative velocity, body axes, a_i the rotor's
+/// axis: of an upright rotor -k T_i (v_i,x, v_i,y, 0). The force acts at the hub, so a turning vehicle feels a torque
+/// r_i x F_i too.
 /// k [s/m] is the H-force coefficient over thrust, about 0.01 to 0.05 for small propellers. Proportional to thrust, as in
 /// Martin and Salaun, The true role of accelerometer feedback in quadrotor control (2010), near hover.
 struct RotorDrag {
@@ -18,14 +19,18 @@ struct RotorDrag {
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
     const Vector3<Scalar>& v = condition.air_relative_velocity_m_s;
-    const Scalar yaw_rate = condition.body_rates_rad_s[2];
+    const Vector3<Scalar>& rates = condition.body_rates_rad_s;
     const Scalar k = Scalar(coefficient_s_m);
     Wrench<Scalar> result;
     for (std::size_t i = 0; i < rotor_count; ++i) {
       const RotorMount<Scalar>& hub = airframe.rotors[i];
       const Scalar thrust = condition.rotor_thrust_N[i];
-      const Scalar force_x = -k * thrust * (v[0] - yaw_rate * hub.y_m);
-      const Scalar force_y = -k * thrust * (v[1] + yaw_rate * hub.x_m);
+      if (!is_upright(hub) || hub.z_m != Scalar(0)) {
+        add_anywhere(hub, v, rates, k * thrust, result);
+        continue;
+      }
+      const Scalar force_x = -k * thrust * (v[0] - rates[2] * hub.y_m);
+      const Scalar force_y = -k * thrust * (v[1] + rates[2] * hub.x_m);
       result.force_N[0] += force_x;
       result.force_N[1] += force_y;
       result.torque_N_m[2] += hub.x_m * force_y - hub.y_m * force_x;
@@ -37,6 +42,19 @@ struct RotorDrag {
   template <class Scalar>
   constexpr Status status(const Airframe<Scalar>&) const noexcept {
     return detail::plausible_or_zero(coefficient_s_m) ? Status::ok : Status::out_of_range;
+  }
+
+ private:
+  /// One tilted rotor, or one above or below the centre of gravity.
+  template <class Scalar>
+  static PINNQUAD_NOINLINE void add_anywhere(const RotorMount<Scalar>& hub, const Vector3<Scalar>& v,
+                                             const Vector3<Scalar>& rates, Scalar drag_N_s_m,
+                                             Wrench<Scalar>& sum) noexcept {
+    const Vector3<Scalar> arm(hub.x_m, hub.y_m, hub.z_m), axis = to_vector(hub.axis);
+    const Vector3<Scalar> moving = v + cross<Scalar>(rates, arm);
+    const Vector3<Scalar> force = (axis * axis.dot(moving) - moving) * drag_N_s_m;
+    sum.force_N += force;
+    sum.torque_N_m += cross<Scalar>(arm, force);
   }
 };
 

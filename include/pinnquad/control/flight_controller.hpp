@@ -35,18 +35,18 @@ struct FlightLimits {
   Scalar max_yaw_acceleration_rad_s2 = Scalar(4);
 };
 
-/// The default limits, lowered to what the airframe can do at a density ratio rho / rho_0: 97 % of its thrust, and 55 %
+/// The default limits, lowered to what the airframe can do where its thrust has this scale (Quadrotor::rotor_scale): 97 % of its thrust, and 55 %
 /// of the horizontal acceleration that this leaves in level flight; angular accelerations that move a rotor by 60 % (roll,
 /// pitch) and 40 % (yaw) of what hover leaves it; body rates that can be stopped as fast as the attitude loop wants to.
 template <class Scalar>
-FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar density_ratio,
+FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar rotor_scale,
                                    const FlightGains<Scalar>& gains = {}) noexcept {
   using std::sqrt;
   const auto lower = [](Scalar& limit, Scalar value) noexcept {
     if (value < limit) limit = value;
   };
   FlightLimits<Scalar> limits{};
-  const Scalar thrust_to_weight = airframe.thrust_to_weight() * density_ratio;
+  const Scalar thrust_to_weight = airframe.thrust_to_weight() * rotor_scale;
   lower(limits.max_specific_force_m_s2, Scalar(0.97) * thrust_to_weight * standard_gravity_m_s2<Scalar>);
   const Scalar spare = thrust_to_weight * thrust_to_weight - Scalar(1);
   lower(limits.max_horizontal_acceleration_m_s2,
@@ -57,7 +57,7 @@ FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar dens
   Scalar most[3] = {};  // angular acceleration of all rotors together, each moved by what hover leaves
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const Scalar entry : matrix[axis + 1]) most[axis] += entry < Scalar(0) ? -entry : entry;
-    most[axis] *= left * density_ratio / airframe.inertia_kg_m2[axis];
+    most[axis] *= left * rotor_scale / airframe.inertia_kg_m2[axis];
   }
   lower(limits.max_roll_pitch_acceleration_rad_s2, Scalar(0.6) * (most[0] < most[1] ? most[0] : most[1]));
   lower(limits.max_yaw_acceleration_rad_s2, Scalar(0.4) * most[2]);

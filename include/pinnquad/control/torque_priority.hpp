@@ -2,7 +2,9 @@
 // Torque before thrust: commands that leave 0..1 give up collective thrust first, so that the attitude stays in hand.
 #pragma once
 
-#include "pinnquad/core/types.hpp"
+#include <limits>
+
+#include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
 
@@ -27,6 +29,34 @@ constexpr Commands<Scalar> keep_torque(const Commands<Scalar>& commands) noexcep
   Commands<Scalar> result = commands;
   for (Scalar& u : result) u += shift;
   return result;
+}
+
+/// The same for rotors that may differ, sit anywhere and have curves: thrust fractions are shifted along those that make thrust
+/// and no torque. Where these are alike and commands are thrust fractions it is the shift above.
+template <class Scalar>
+Commands<Scalar> keep_torque(const Rotors<Scalar>& rotors, const Commands<Scalar>& commands) noexcept {
+  const ThrustFractions<Scalar> along = rotors.fractions_of_pure_thrust_1_N();
+  constexpr Scalar rounding = Scalar(5000) * std::numeric_limits<Scalar>::epsilon();
+  bool alike = true;
+  for (const Scalar step : along) {
+    const Scalar difference = step - along[0];
+    alike = alike && (difference < Scalar(0) ? -difference : difference) <= rounding * along[0];
+  }
+  ThrustFractions<Scalar> fractions = rotors.fractions(commands);
+  if (alike) return rotors.commands_of(keep_torque<Scalar>(fractions));
+  // shifts at which the first rotor reaches its limit, and at which the last one leaves zero
+  Scalar most = std::numeric_limits<Scalar>::max(), least = -most;
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    if (along[i] == Scalar(0)) continue;
+    const Scalar to_zero = -fractions[i] / along[i], to_limit = (Scalar(1) - fractions[i]) / along[i];
+    const Scalar upper = along[i] > Scalar(0) ? to_limit : to_zero, lower = along[i] > Scalar(0) ? to_zero : to_limit;
+    if (upper < most) most = upper;
+    if (lower > least) least = lower;
+  }
+  Scalar shift = most < Scalar(0) ? most : Scalar(0);
+  if (least > shift) shift = least < most ? least : most;
+  for (std::size_t i = 0; i < rotor_count; ++i) fractions[i] += shift * along[i];
+  return rotors.commands_of(fractions);
 }
 
 /// True if a rotor is at its end: nothing, or its limit.

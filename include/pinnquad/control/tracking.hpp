@@ -46,14 +46,14 @@ TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, con
 
   VehicleState<Scalar> vehicle;
   vehicle.body = {start.position_m, start.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
-  const Scalar density_ratio = quadrotor.density_ratio(quadrotor.surroundings(vehicle.body, Scalar(0)));
+  const Scalar rotor_scale = quadrotor.rotor_scale(quadrotor.surroundings(vehicle.body, Scalar(0)));
   HoverTrim<Scalar> trim;
   result.status = hover_trim(quadrotor, start.position_m, trim);
   if (result.status != Status::ok) return result;
   vehicle.rotors = trim.commands;
 
   TrackingController<Scalar, FeedForward> controller(quadrotor.airframe(), flight_controller, feed_forward,
-                                                     density_ratio);
+                                                     rotor_scale);
   Commands<Scalar> commands{};
   const Scalar tick_s = plan.physics_step_s * Scalar(plan.steps_per_control);
   Scalar squares(0), largest_square(0), largest_speed_square(0);

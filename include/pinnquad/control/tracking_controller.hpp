@@ -6,6 +6,7 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
 #include "pinnquad/control/torque_priority.hpp"
+#include "pinnquad/dynamics/inertia.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
@@ -18,32 +19,34 @@ class TrackingController {
                 "pinnquad: a feed-forward policy flies: its operator() must be noexcept (control/feed_forward.hpp)");
 
  public:
-  /// `density_ratio` rho / rho_0 of the place, by which rotor thrust scales.
+  /// `rotor_scale` of the place, rho / rho_0 times the battery's thrust scale (Quadrotor::rotor_scale).
   TrackingController(const Airframe<Scalar>& airframe, const FlightController<Scalar>& controller,
-                     const FeedForward& feed_forward, Scalar density_ratio = Scalar(1)) noexcept
+                     const FeedForward& feed_forward, Scalar rotor_scale = Scalar(1)) noexcept
       : airframe_(airframe),
         rotors_(airframe),
         controller_(controller),
         feed_forward_(feed_forward),
-        density_ratio_(density_ratio) {}
+        rotor_scale_(rotor_scale) {}
 
-  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), torque before thrust.
+  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust fractions, torque
+  /// before thrust.
   /// Any Status of controller or policy; the commands are untouched unless it is ok.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, Scalar time_s,
                     Commands<Scalar>& commands) noexcept {
     TrackingDemand<Scalar> demand;
     Status status = controller_(state, point, demand);
     if (status != Status::ok) return status;
-    Commands<Scalar> sum{};
-    status = feed_forward_(state, demand.reference, time_s, sum);
+    Commands<Scalar> reference{};
+    status = feed_forward_(state, demand.reference, time_s, reference);
     if (!has_output(status)) return status;
     Wrench<Scalar> feedback;
     feedback.force_N[2] = airframe_.mass_kg * demand.feedback_acceleration_m_s2[2];
-    feedback.torque_N_m = to_vector(airframe_.inertia_kg_m2).cwiseProduct(demand.feedback_angular_acceleration_rad_s2);
-    const Commands<Scalar> correction = rotors_.commands(feedback, density_ratio_);
+    feedback.torque_N_m = inertia_times(airframe_, demand.feedback_angular_acceleration_rad_s2);
+    ThrustFractions<Scalar> sum = rotors_.fractions(reference);
+    const ThrustFractions<Scalar> correction = rotors_.fractions_for(feedback, rotor_scale_);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += correction[i];
     if (!all_finite(sum)) return Status::output_not_finite;
-    commands = keep_torque(sum);
+    commands = keep_torque(rotors_, rotors_.commands_of(sum));
     return Status::ok;
   }
 
@@ -54,7 +57,7 @@ class TrackingController {
   Rotors<Scalar> rotors_;
   FlightController<Scalar> controller_;
   FeedForward feed_forward_;
-  Scalar density_ratio_;
+  Scalar rotor_scale_;
 };
 
 }  // namespace pinnquad

@@ -26,7 +26,7 @@ template <class Scalar>
 using Vector3 = Vector<Scalar, 3>;
 
 /// Motor commands u_1..u_4, dimensionless, 0..1; thrust is proportional to u (docs/paper.md, deviation 6: u = (n /
-/// n_max)^2).
+/// n_max)^2) unless the airframe's rotors have a curve (dynamics/actuator.hpp).
 template <class Scalar>
 using Commands = std::array<Scalar, rotor_count>;
 

@@ -5,24 +5,14 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <type_traits>
 
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 
 namespace pinnquad {
-
-/// Sense of rotation seen from above. The reaction torque on the body has the opposite sense: a counter-clockwise rotor
-/// yaws the body clockwise, which is positive about FRD z.
-enum class Spin : int { counter_clockwise = 1, clockwise = -1 };
-
-/// Place and sense of one rotor, body frame; thrust acts along -z.
-template <class Scalar>
-struct RotorMount {
-  Scalar x_m{};  ///< forward of the centre of gravity
-  Scalar y_m{};  ///< right of the centre of gravity
-  Spin spin{Spin::counter_clockwise};
-};
 
 /// Air density at which thrust coefficients are rated.
 template <class Scalar>
@@ -33,16 +23,21 @@ template <class Scalar>
 inline constexpr Scalar standard_gravity_m_s2 = Scalar(9.80665);
 
 /// The values of Table 1 and what Table 1 leaves out. A literal type: usable in static_assert and in flash.
+/// There are four rotors. That is assumed by `rotor_count` (core/types.hpp), by the 4 x 4 allocation and its inverse
+/// (dynamics/rotor.hpp: thrust and three torques determine four commands) and by the motor diagonal of the ground effect
+/// (aero/ground_effect.hpp); everything else asks for them there.
 template <class Scalar>
 struct Airframe {
   Scalar mass_kg{};
-  std::array<Scalar, 3> inertia_kg_m2{};                 ///< J = diag(Jx, Jy, Jz), FRD
+  std::array<Scalar, 3> inertia_kg_m2{};  ///< Jx, Jy, Jz: the diagonal of J, FRD
+  std::array<Scalar, 3>
+      inertia_products_kg_m2{};  ///< Jxy, Jxz, Jyz: the other entries of J, -integral x y dm and so on
   std::array<RotorMount<Scalar>, rotor_count> rotors{};  ///< in the order of the commands
   Scalar thrust_coefficient{};                           ///< C_T = thrust / (rho n^2 D^4), n in rev/s
   Scalar power_coefficient{};                            ///< C_P = 2 pi torque / (rho n^2 D^5)
   Scalar propeller_diameter_m{};                         ///< D
   Scalar max_rotor_speed_rev_s{};                        ///< n at command 1
-  Scalar rotor_time_constant_s{};                        ///< first-order lag of the thrust command
+  Scalar rotor_time_constant_s{};                        ///< first-order lag of the thrust, of rotors that say nothing
   std::array<Scalar, 3> drag_area_m2{};                  ///< k_i of F_i = -k_i rho |v_i| v_i
   Scalar drag_deadband_m_s{};                            ///< no drag along an axis at or below this speed
 
@@ -57,19 +52,55 @@ struct Airframe {
     const Scalar d = propeller_diameter_m;
     return power_coefficient * rated_air_density_kg_m3<Scalar> * d * d * d * d * d / two_pi;
   }
-  /// Thrust of one rotor at command 1 and rated density, N.
+  /// Thrust of a rotor of scale 1 at command 1 and rated density, N.
   constexpr Scalar max_rotor_thrust_N() const noexcept {
     return dimensional_thrust_coefficient() * max_rotor_speed_rev_s * max_rotor_speed_rev_s;
   }
-  /// Reaction torque of one rotor at command 1 and rated density, N m.
+  /// Reaction torque of a rotor of scale 1 at command 1 and rated density, N m.
   constexpr Scalar max_rotor_torque_N_m() const noexcept {
     return dimensional_torque_coefficient() * max_rotor_speed_rev_s * max_rotor_speed_rev_s;
   }
-  /// Thrust-to-weight ratio at the rated density.
+  /// Thrust-to-weight ratio at the rated density: what all rotors together pull up, along -z.
   constexpr Scalar thrust_to_weight() const noexcept {
-    return Scalar(rotor_count) * max_rotor_thrust_N() / (mass_kg * standard_gravity_m_s2<Scalar>);
+    Scalar upward(0);
+    for (const RotorMount<Scalar>& rotor : rotors) upward -= rotor.thrust_scale * rotor.axis[2];
+    return upward * max_rotor_thrust_N() / (mass_kg * standard_gravity_m_s2<Scalar>);
+  }
+  /// Time constant of a rotor's growing thrust, s.
+  constexpr Scalar rise_time_constant_s(std::size_t rotor) const noexcept {
+    const Scalar own = rotors[rotor].rise_time_constant_s;
+    return own == as_airframe<Scalar> ? rotor_time_constant_s : own;
+  }
+  /// Time constant of a rotor's falling thrust, s.
+  constexpr Scalar fall_time_constant_s(std::size_t rotor) const noexcept {
+    const Scalar own = rotors[rotor].fall_time_constant_s;
+    return own == as_airframe<Scalar> ? rotor_time_constant_s : own;
   }
 };
+
+/// True for a body whose principal axes are those of the body frame.
+template <class Scalar>
+constexpr bool has_diagonal_inertia(const Airframe<Scalar>& airframe) noexcept {
+  const auto& products = airframe.inertia_products_kg_m2;
+  return products[0] == Scalar(0) && products[1] == Scalar(0) && products[2] == Scalar(0);
+}
+
+/// How an airframe is built, for code that leaves out what a plain one can't need.
+enum class Build : bool {
+  plain,  ///< upright rotors whose commands are thrust fractions, with one lag, and a diagonal inertia
+  any,
+};
+
+template <class Scalar>
+constexpr Build build_of(const Airframe<Scalar>& airframe) noexcept {
+  bool plain = has_diagonal_inertia(airframe);
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    plain = plain && is_upright(airframe.rotors[i]) && airframe.rotors[i].thrust_curve == Scalar(0) &&
+            airframe.rise_time_constant_s(i) == airframe.rise_time_constant_s(0) &&
+            airframe.fall_time_constant_s(i) == airframe.rise_time_constant_s(0);
+  }
+  return plain ? Build::plain : Build::any;
+}
 
 namespace detail {
 /// Above zero and no larger than anything that was ever built; false for NaN and Inf.
@@ -93,28 +124,56 @@ constexpr bool all_bounded(const std::array<Scalar, Size>& values) noexcept {
   }
   return true;
 }
+
+/// What products of inertia demand beyond a plausible diagonal: S = tr(J) / 2 - J, the second moments of the mass, must have
+/// no negative eigenvalue (the triangle inequality of the principal moments), and J must be invertible.
+template <class Scalar>
+constexpr bool plausible_products(const Airframe<Scalar>& a) noexcept {
+  if (has_diagonal_inertia(a)) return true;
+  if (!all_bounded(a.inertia_products_kg_m2)) return false;
+  const Scalar size = a.inertia_kg_m2[0] + a.inertia_kg_m2[1] + a.inertia_kg_m2[2];
+  const auto determinant = [](Scalar x, Scalar y, Scalar z, Scalar xy, Scalar xz, Scalar yz) {
+    return x * (y * z - yz * yz) - xy * (xy * z - yz * xz) + xz * (xy * yz - y * xz);
+  };
+  const Scalar jx = a.inertia_kg_m2[0] / size, jy = a.inertia_kg_m2[1] / size, jz = a.inertia_kg_m2[2] / size;
+  const Scalar xy = a.inertia_products_kg_m2[0] / size, xz = a.inertia_products_kg_m2[1] / size,
+               yz = a.inertia_products_kg_m2[2] / size;
+  const Scalar half = Scalar(0.5), rounding = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+  const Scalar sx = half - jx, sy = half - jy, sz = half - jz;
+  return sx * sy - xy * xy >= -rounding && sx * sz - xz * xz >= -rounding && sy * sz - yz * yz >= -rounding &&
+         determinant(sx, sy, sz, -xy, -xz, -yz) >= -rounding && determinant(jx, jy, jz, xy, xz, yz) > rounding;
+}
+
+/// A rotor that can be built: bounded place, an axis of length 1 (to 0.001), a scale above 0, a rising curve, and time
+/// constants of its own that are no less than 0.
+template <class Scalar>
+constexpr bool plausible_rotor(const RotorMount<Scalar>& r) noexcept {
+  const auto time_constant = [](Scalar own) { return own == as_airframe<Scalar> || plausible_or_zero(own); };
+  const Scalar square = r.axis[0] * r.axis[0] + r.axis[1] * r.axis[1] + r.axis[2] * r.axis[2];
+  return bounded(r.x_m) && bounded(r.y_m) && bounded(r.z_m) && square >= Scalar(0.998) && square <= Scalar(1.002) &&
+         (r.spin == Spin::clockwise || r.spin == Spin::counter_clockwise) && plausible(r.thrust_scale) &&
+         r.thrust_curve >= Scalar(0) && r.thrust_curve <= Scalar(1) && time_constant(r.rise_time_constant_s) &&
+         time_constant(r.fall_time_constant_s);
+}
 }  // namespace detail
 
-/// Ok if such a body can exist and hover: positive mass, inertia that meets the triangle inequality, positive rotor
-/// values, rotors at a place, thrust-to-weight above 1. The allocation is checked where it is built (rotor.hpp).
+/// Ok if such a body can exist and hover: positive mass, inertia that meets the triangle inequality about its principal axes,
+/// positive rotor values, rotors at a place with an axis and a rising curve, thrust-to-weight above 1. The allocation is
+/// checked where it is built (rotor.hpp).
 template <class Scalar>
 constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
-  using detail::bounded;
   using detail::plausible;
   using detail::plausible_or_zero;
   const Scalar jx = a.inertia_kg_m2[0], jy = a.inertia_kg_m2[1], jz = a.inertia_kg_m2[2];
   const bool body = plausible(a.mass_kg) && plausible(jx) && plausible(jy) && plausible(jz) && jx + jy >= jz &&
-                    jy + jz >= jx && jz + jx >= jy;
+                    jy + jz >= jx && jz + jx >= jy && detail::plausible_products(a);
   const bool rotors = plausible(a.thrust_coefficient) && plausible(a.power_coefficient) &&
                       plausible(a.propeller_diameter_m) && plausible(a.max_rotor_speed_rev_s) &&
                       plausible_or_zero(a.rotor_time_constant_s);
   const bool drag = plausible_or_zero(a.drag_area_m2[0]) && plausible_or_zero(a.drag_area_m2[1]) &&
                     plausible_or_zero(a.drag_area_m2[2]) && plausible_or_zero(a.drag_deadband_m_s);
   bool mounts = true;
-  for (const RotorMount<Scalar>& rotor : a.rotors) {
-    mounts = mounts && bounded(rotor.x_m) && bounded(rotor.y_m) &&
-             (rotor.spin == Spin::clockwise || rotor.spin == Spin::counter_clockwise);
-  }
+  for (const RotorMount<Scalar>& rotor : a.rotors) mounts = mounts && detail::plausible_rotor(rotor);
   if (!(body && rotors && mounts && drag)) return Status::invalid_airframe;
   return a.thrust_to_weight() > Scalar(1) ? Status::ok : Status::invalid_airframe;
 }

@@ -4,11 +4,13 @@
 // clipped.
 #pragma once
 
+#include "pinnquad/dynamics/inertia.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
 
-/// Eq. (3): v_dot = (-theta T / m, phi T / m, g - T / m), omega_dot = tau / J. `wrench.force_N` is (0, 0, -T).
+/// Eq. (3): v_dot = (-theta T / m, phi T / m, g - T / m), omega_dot = J^-1 tau. `wrench.force_N` is (F_x, F_y, -T); F_x / m and
+/// F_y / m of tilted rotors are added, upright ones have none.
 template <class Scalar>
 Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe, Scalar roll_rad, Scalar pitch_rad,
                                                const Wrench<Scalar>& wrench, Scalar gravity_m_s2) noexcept {
@@ -16,17 +18,20 @@ Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe,
   Accelerations<Scalar> result;
   result.linear_m_s2 =
       Vector3<Scalar>(-pitch_rad * specific_thrust, roll_rad * specific_thrust, gravity_m_s2 - specific_thrust);
-  result.angular_rad_s2 = wrench.torque_N_m.cwiseQuotient(to_vector(airframe.inertia_kg_m2));
+  result.linear_m_s2[0] += wrench.force_N[0] / airframe.mass_kg;
+  result.linear_m_s2[1] += wrench.force_N[1] / airframe.mass_kg;
+  result.angular_rad_s2 = inertia_solved(airframe, wrench.torque_N_m);
   return result;
 }
 
-/// Eq. (3) inverted: T = m (g - v_dot_z), tau = J omega_dot. v_dot_x and v_dot_y are not used.
+/// Eq. (3) inverted: T = m (g - v_dot_z), tau = J omega_dot. v_dot_x and v_dot_y are not used: four rotors command no lateral
+/// force, a tilted rotor's comes with its thrust.
 template <class Scalar>
 Wrench<Scalar> linearized_wrench(const Airframe<Scalar>& airframe, const Accelerations<Scalar>& motion,
                                  Scalar gravity_m_s2) noexcept {
   Wrench<Scalar> result;
   result.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), airframe.mass_kg * (motion.linear_m_s2[2] - gravity_m_s2));
-  result.torque_N_m = to_vector(airframe.inertia_kg_m2).cwiseProduct(motion.angular_rad_s2);
+  result.torque_N_m = inertia_times(airframe, motion.angular_rad_s2);
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Eq. (2): command <-> rotor speed <-> thrust and torque, the allocation matrix with its inverse, and the rotor lag.
+// Eq. (2): command <-> rotor speed <-> thrust and torque, the allocation matrix with its inverse.
 // The only place that knows the allocation's signs; loss, ellipse and controller ask for them here.
 #pragma once
 
@@ -28,23 +28,46 @@ struct Yaw {
   static constexpr const char* name = "yaw";
 };
 
-/// Row-major 4 x 4: (T, tau_x, tau_y, tau_z) = allocation * (u_1..u_4); a literal type.
+/// Thrust of each rotor over its thrust at command 1, in the air and at the battery of the moment. A command is one where
+/// all curves are straight (RotorMount::thrust_curve 0).
+template <class Scalar>
+using ThrustFractions = std::array<Scalar, rotor_count>;
+
+/// Row-major 4 x 4: (T, tau_x, tau_y, tau_z) = allocation * (s_1..s_4), s the thrust fractions; a literal type.
 template <class Scalar>
 using AllocationMatrix = std::array<std::array<Scalar, rotor_count>, 4>;
 
-/// Eq. (2) in commands at the rated density: rows thrust [N], roll, pitch and yaw torque [N m] at command 1.
-/// A thrust T up at (x, y) makes the torque (-y T, x T); the reaction torque has the sign of `Spin`.
+namespace detail {
+/// The torque at thrust fraction 1 of a rotor anywhere: r x t a - spin q a, with thrust t, reaction torque q and axis a.
+template <class Scalar>
+constexpr std::array<Scalar, 3> rotor_torque_N_m(const RotorMount<Scalar>& r, Scalar thrust, Scalar torque) noexcept {
+  const Scalar x = thrust * r.axis[0], y = thrust * r.axis[1], z = thrust * r.axis[2];
+  const Scalar reaction = -Scalar(static_cast<int>(r.spin)) * torque;
+  return {r.y_m * z - r.z_m * y + reaction * r.axis[0], r.z_m * x - r.x_m * z + reaction * r.axis[1],
+          r.x_m * y - r.y_m * x + reaction * r.axis[2]};
+}
+}  // namespace detail
+
+/// Eq. (2) in thrust fractions at the rated density: rows thrust along -z [N], roll, pitch and yaw torque [N m] at fraction 1.
+/// A thrust T up at (x, y) makes the torque (-y T, x T); the reaction torque has the sign of `Spin`. Of a tilted rotor this
+/// is all but its lateral force, see Rotors::wrench().
 template <class Scalar>
 constexpr AllocationMatrix<Scalar> allocation(const Airframe<Scalar>& airframe) noexcept {
   AllocationMatrix<Scalar> matrix{};
-  const Scalar thrust = airframe.max_rotor_thrust_N();
-  const Scalar torque = airframe.max_rotor_torque_N_m();
   for (std::size_t i = 0; i < rotor_count; ++i) {
     const RotorMount<Scalar>& rotor = airframe.rotors[i];
-    matrix[0][i] = thrust;
-    matrix[1][i] = -rotor.y_m * thrust;
-    matrix[2][i] = rotor.x_m * thrust;
-    matrix[3][i] = Scalar(static_cast<int>(rotor.spin)) * torque;
+    const Scalar thrust = rotor.thrust_scale * airframe.max_rotor_thrust_N();
+    const Scalar torque = rotor.thrust_scale * airframe.max_rotor_torque_N_m();
+    if (is_upright(rotor)) {
+      matrix[0][i] = thrust;
+      matrix[1][i] = -rotor.y_m * thrust;
+      matrix[2][i] = rotor.x_m * thrust;
+      matrix[3][i] = Scalar(static_cast<int>(rotor.spin)) * torque;
+    } else {
+      matrix[0][i] = -rotor.axis[2] * thrust;
+      const std::array<Scalar, 3> turning = detail::rotor_torque_N_m(rotor, thrust, torque);
+      for (std::size_t axis = 0; axis < 3; ++axis) matrix[axis + 1][i] = turning[axis];
+    }
   }
   return matrix;
 }
@@ -124,7 +147,8 @@ constexpr Status invert_allocation(AllocationMatrix<Scalar> matrix, AllocationMa
   return Status::ok;
 }
 
-/// Command of a rotor speed, u = (n / n_max)^2 (docs/paper.md, deviation 6).
+/// Command of a rotor speed where thrust is proportional to the command, u = (n / n_max)^2 (docs/paper.md, deviation 6): the
+/// thrust fraction of a speed, of any rotor.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar command_from_speed(const Airframe<Scalar>& airframe,
                                                            Scalar speed_rev_s) noexcept {
@@ -132,11 +156,23 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar command_from_speed(const Airframe<Scalar
   return ratio * ratio;
 }
 
-/// Rotor speed of a command in 0..1, rev/s.
+/// Rotor speed of a command in 0..1 where thrust is proportional to it, rev/s.
 template <class Scalar>
 Scalar speed_from_command(const Airframe<Scalar>& airframe, Scalar command) noexcept {
   using std::sqrt;
   return airframe.max_rotor_speed_rev_s * sqrt(command);
+}
+
+/// The same of one rotor by its own curve: the command of a speed ...
+template <class Scalar>
+Scalar command_from_speed(const Airframe<Scalar>& airframe, std::size_t rotor, Scalar speed_rev_s) noexcept {
+  return command_of_fraction(airframe.rotors[rotor].thrust_curve, command_from_speed(airframe, speed_rev_s));
+}
+
+/// ... and the speed of a command in 0..1, rev/s.
+template <class Scalar>
+Scalar speed_from_command(const Airframe<Scalar>& airframe, std::size_t rotor, Scalar command) noexcept {
+  return speed_from_command(airframe, thrust_fraction(airframe.rotors[rotor].thrust_curve, command));
 }
 
 /// A rotor gives no less than nothing and no more than its limit. NaN stays NaN.
@@ -151,62 +187,100 @@ constexpr Commands<Scalar> clipped(const Commands<Scalar>& commands) noexcept {
   return {clip_command(commands[0]), clip_command(commands[1]), clip_command(commands[2]), clip_command(commands[3])};
 }
 
-/// Eq. (2) ready to use: the four rotors as one actuator.
+/// Eq. (2) ready to use: the four rotors as one actuator. `scale` is by what thrust and torque differ from those at the rated
+/// density and a full battery: rho / rho_0 times the surroundings' thrust scale (Quadrotor::rotor_scale).
 template <class Scalar>
 class Rotors {
  public:
   /// An airframe whose allocation cannot be inverted leaves the inverse at zero; see status().
   constexpr explicit Rotors(const Airframe<Scalar>& airframe) noexcept
-      : allocation_(allocation(airframe)), status_(invert_allocation(allocation_, inverse_)) {}
+      : allocation_(allocation(airframe)), status_(invert_allocation(allocation_, inverse_)) {
+    for (std::size_t i = 0; i < rotor_count; ++i) {
+      const RotorMount<Scalar>& rotor = airframe.rotors[i];
+      curve_[i] = rotor.thrust_curve;
+      most_thrust_N_[i] = rotor.thrust_scale * airframe.max_rotor_thrust_N();
+      lateral_N_[0][i] = rotor.axis[0] * most_thrust_N_[i];
+      lateral_N_[1][i] = rotor.axis[1] * most_thrust_N_[i];
+      straight_ = straight_ && curve_[i] == Scalar(0);
+      upright_ = upright_ && is_upright(rotor);
+    }
+  }
 
   constexpr Status status() const noexcept { return status_; }
 
-  /// Body wrench of commands (not clipped) at a density ratio rho / rho_0: force (0, 0, -T) (docs/paper.md, deviation 2).
-  Wrench<Scalar> wrench(const Commands<Scalar>& u, Scalar density_ratio) const noexcept {
-    const std::array<Scalar, 4> w = product(allocation_, u);
+  /// Thrust fractions of settled commands (not clipped), and back.
+  template <Build build = Build::any>
+  PINNQUAD_ALWAYS_INLINE constexpr ThrustFractions<Scalar> fractions(const Commands<Scalar>& u) const noexcept {
+    if (build == Build::plain || straight_) return u;
+    ThrustFractions<Scalar> result{};
+    for (std::size_t i = 0; i < rotor_count; ++i) result[i] = thrust_fraction(curve_[i], u[i]);
+    return result;
+  }
+  template <Build build = Build::any>
+  PINNQUAD_ALWAYS_INLINE Commands<Scalar> commands_of(const ThrustFractions<Scalar>& fractions) const noexcept {
+    if (build == Build::plain || straight_) return fractions;
+    Commands<Scalar> result{};
+    for (std::size_t i = 0; i < rotor_count; ++i) result[i] = command_of_fraction(curve_[i], fractions[i]);
+    return result;
+  }
+
+  /// Body wrench of thrust fractions (not clipped): force (F_x, F_y, -T), with no lateral force from upright rotors
+  /// (docs/paper.md, deviation 2).
+  template <Build build = Build::any>
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench_of(const ThrustFractions<Scalar>& s, Scalar scale) const noexcept {
+    const std::array<Scalar, 4> w = product(allocation_, s);
     Wrench<Scalar> result;
-    result.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), -w[0] * density_ratio);
-    result.torque_N_m = Vector3<Scalar>(w[1] * density_ratio, w[2] * density_ratio, w[3] * density_ratio);
+    result.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), -w[0] * scale);
+    result.torque_N_m = Vector3<Scalar>(w[1] * scale, w[2] * scale, w[3] * scale);
+    if (build != Build::plain && !upright_) {
+      for (std::size_t i = 0; i < rotor_count; ++i) {
+        result.force_N[0] += lateral_N_[0][i] * s[i] * scale;
+        result.force_N[1] += lateral_N_[1][i] * s[i] * scale;
+      }
+    }
     return result;
   }
+  /// The same of commands.
+  Wrench<Scalar> wrench(const Commands<Scalar>& u, Scalar scale) const noexcept {
+    return wrench_of(fractions(u), scale);
+  }
 
-  /// Thrust of each rotor, N, for commands (not clipped) at a density ratio.
-  constexpr std::array<Scalar, rotor_count> thrusts(const Commands<Scalar>& u, Scalar density_ratio) const noexcept {
+  /// Thrust of each rotor along its axis, N, for thrust fractions (not clipped).
+  constexpr std::array<Scalar, rotor_count> thrusts_of(const ThrustFractions<Scalar>& s, Scalar scale) const noexcept {
     std::array<Scalar, rotor_count> result{};
-    for (std::size_t i = 0; i < rotor_count; ++i) result[i] = allocation_[0][i] * u[i] * density_ratio;
+    for (std::size_t i = 0; i < rotor_count; ++i) result[i] = most_thrust_N_[i] * s[i] * scale;
     return result;
   }
 
-  /// Commands (not clipped) that make a thrust and a torque; the lateral force of a wrench can't be made and is ignored.
-  Commands<Scalar> commands(const Wrench<Scalar>& wrench, Scalar density_ratio) const noexcept {
-    const Scalar scale = Scalar(1) / density_ratio;
-    return product(inverse_, {-wrench.force_N[2] * scale, wrench.torque_N_m[0] * scale, wrench.torque_N_m[1] * scale,
-                              wrench.torque_N_m[2] * scale});
+  /// Thrust fractions (not clipped) that make a thrust and a torque; the lateral force of a wrench can't be commanded and is
+  /// ignored.
+  ThrustFractions<Scalar> fractions_for(const Wrench<Scalar>& wrench, Scalar scale) const noexcept {
+    const Scalar inverse_scale = Scalar(1) / scale;
+    return product(inverse_, {-wrench.force_N[2] * inverse_scale, wrench.torque_N_m[0] * inverse_scale,
+                              wrench.torque_N_m[1] * inverse_scale, wrench.torque_N_m[2] * inverse_scale});
   }
+  /// The commands of these.
+  Commands<Scalar> commands(const Wrench<Scalar>& wrench, Scalar scale) const noexcept {
+    return commands_of(fractions_for(wrench, scale));
+  }
+
+  /// Thrust fractions that make one newton along -z and no torque.
+  constexpr ThrustFractions<Scalar> fractions_of_pure_thrust_1_N() const noexcept {
+    return {inverse_[0][0], inverse_[1][0], inverse_[2][0], inverse_[3][0]};
+  }
+
+  /// True where a command is its thrust fraction: no rotor has a curve.
+  constexpr bool straight() const noexcept { return straight_; }
 
  private:
   AllocationMatrix<Scalar> allocation_{};
   AllocationMatrix<Scalar> inverse_{};
   Status status_{Status::ok};
+  std::array<Scalar, rotor_count> curve_{};
+  std::array<Scalar, rotor_count> most_thrust_N_{};
+  std::array<std::array<Scalar, rotor_count>, 2> lateral_N_{};  ///< rows F_x, F_y
+  bool straight_{true};
+  bool upright_{true};
 };
-
-/// First-order lag of the thrust command, exact for a command held over a step: u_f <- a u_f + (1 - a) u,
-/// a = exp(-dt / tau). A time constant of zero means no lag.
-template <class Scalar>
-Scalar lag_factor(Scalar time_constant_s, Scalar step_s) noexcept {
-  using std::exp;
-  return time_constant_s > Scalar(0) ? Scalar(exp(-step_s / time_constant_s)) : Scalar(0);
-}
-
-template <class Scalar>
-constexpr Commands<Scalar> lagged(const Commands<Scalar>& filtered, const Commands<Scalar>& commands,
-                                  Scalar factor) noexcept {
-  Commands<Scalar> result{};
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    const Scalar target = clip_command(commands[i]);
-    result[i] = target + factor * (filtered[i] - target);
-  }
-  return result;
-}
 
 }  // namespace pinnquad

@@ -157,9 +157,9 @@ class Simulator {
     if (status == Status::ok) status = hover_trim(quadrotor, settings_.start_m, hover);
     if (status != Status::ok) return status;
     vehicle_.rotors = commands_ = hover.commands;
-    const double density_ratio = quadrotor.density_ratio(quadrotor.surroundings(vehicle_.body, 0.0));
+    const double rotor_scale = quadrotor.rotor_scale(quadrotor.surroundings(vehicle_.body, 0.0));
     controller_ =
-        FlightController<double>(settings_.gains, flight_limits(quadrotor.airframe(), density_ratio, settings_.gains),
+        FlightController<double>(settings_.gains, flight_limits(quadrotor.airframe(), rotor_scale, settings_.gains),
                                  quadrotor.site().gravity_m_s2);
     return Status::ok;
   }
@@ -186,7 +186,7 @@ class Simulator {
     Accelerations<double> demand;
     Status status = controller_(vehicle_.body, pilot_(vehicle_.body, vehicle_.time_s), demand);
     if (status == Status::ok) status = inverse_commands(quadrotor, vehicle_.body, demand, vehicle_.time_s, commands_);
-    if (status == Status::ok) commands_ = keep_torque(commands_);
+    if (status == Status::ok) commands_ = keep_torque(quadrotor.rotors(), commands_);
     return status;
   }
 

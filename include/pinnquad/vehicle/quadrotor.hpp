@@ -12,6 +12,7 @@
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/dynamics/rotor_lag.hpp"
 
 namespace pinnquad {
 
@@ -19,7 +20,7 @@ namespace pinnquad {
 template <class Scalar>
 struct VehicleState {
   State<Scalar> body{};
-  Commands<Scalar> rotors{};  ///< lag-filtered commands: thrust of rotor i is proportional to rotors[i]
+  Commands<Scalar> rotors{};  ///< behind the lag: the commands at which the present thrusts would be settled
   double time_s{0};           ///< double also for a float vehicle: in float a millisecond is lost after a few hours
 };
 
@@ -92,6 +93,7 @@ class Quadrotor {
         site_(site),
         effects_(bound_effect(effects, airframe)...),
         rotors_(airframe),
+        build_(build_of(airframe)),
         status_(first_fault(effects...)) {}
 
   const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
@@ -102,7 +104,7 @@ class Quadrotor {
   /// can't be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
   Status status() const noexcept { return status_; }
 
-  /// The air at a place and time: density and wind as the effects set them, and whether they have an answer there.
+  /// The air at a place and time: density, wind and thrust scale as the effects set them, and whether they have an answer there.
   PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
     Surroundings<Scalar> air;
     air.time_s = time_s;
@@ -117,29 +119,36 @@ class Quadrotor {
   /// Body wrench of all effects for given commands of the rotors (settled, not clipped).
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                            const Commands<Scalar>& rotor_commands) const noexcept {
-    return sum_of_effects(state, air, rotor_commands,
-                          [this](const auto& effect, const auto& condition)
-                              PINNQUAD_INLINE_LAMBDA { return effect.wrench(condition, airframe_); });
+    return aerodynamic_wrench_of(rotors_.fractions(rotor_commands), state, air);
+  }
+
+  /// The same for thrust fractions, in which an effect is affine.
+  template <Build build = Build::any>
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench_of(const ThrustFractions<Scalar>& thrusts,
+                                                              const State<Scalar>& state,
+                                                              const Surroundings<Scalar>& air) const noexcept {
+    return sum_of_effects<build>(state, air, thrusts,
+                                 [this](const auto& effect, const auto& condition)
+                                     PINNQUAD_INLINE_LAMBDA { return effect.wrench(condition, airframe_); });
   }
 
   /// The same with every effect that has branches on this one, whether the condition lies on it or not.
-  Wrench<Scalar> aerodynamic_wrench_on(ThrustBranch branch, const State<Scalar>& state, const Surroundings<Scalar>& air,
-                                       const Commands<Scalar>& rotor_commands) const noexcept {
-    return sum_of_effects(state, air, rotor_commands,
-                          [this, branch](const auto& effect, const auto& condition) noexcept {
-                            if constexpr (has_thrust_branches<std::decay_t<decltype(effect)>>) {
-                              return effect.wrench_on(branch, condition, airframe_);
-                            } else {
-                              return effect.wrench(condition, airframe_);
-                            }
-                          });
+  Wrench<Scalar> aerodynamic_wrench_on(ThrustBranch branch, const ThrustFractions<Scalar>& thrusts,
+                                       const State<Scalar>& state, const Surroundings<Scalar>& air) const noexcept {
+    return sum_of_effects(state, air, thrusts, [this, branch](const auto& effect, const auto& condition) noexcept {
+      if constexpr (has_thrust_branches<std::decay_t<decltype(effect)>>) {
+        return effect.wrench_on(branch, condition, airframe_);
+      } else {
+        return effect.wrench(condition, airframe_);
+      }
+    });
   }
 
   /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Checks nothing: they mean
   /// something where status() and the surroundings' status are ok.
   Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                               Scalar time_s) const noexcept {
-    Evaluation<Scalar> result = loads(state, rotor_commands, time_s);
+    Evaluation<Scalar> result = loads(state, rotors_.fractions(rotor_commands), time_s);
     result.motion = accelerations(airframe_, state, total(result), site_.gravity_m_s2);
     return result;
   }
@@ -148,30 +157,19 @@ class Quadrotor {
   /// What status() says; `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of
   /// the body in one step, a clock so late that the step doesn't move it, or air that has no answer (Surroundings);
   /// `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the Status is ok.
-  PINNQUAD_FLATTEN Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
-                               Scalar step_s) const noexcept {
+  Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
     const Status input = check_input(state, commands, step_s);
     if (input != Status::ok) return input;
-    const Scalar half_factor = lag_factor(airframe_.rotor_time_constant_s, step_s / Scalar(2));
-    const Commands<Scalar> middle = lagged(state.rotors, commands, half_factor);
-    const Commands<Scalar> end = lagged(middle, commands, half_factor);
-    const Commands<Scalar> start = airframe_.rotor_time_constant_s > Scalar(0) ? state.rotors : end;
-    Status air = Status::ok;
-    const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
-      const Commands<Scalar>& rotors = offset_s == Scalar(0) ? start : (offset_s < step_s ? middle : end);
-      return rate_of_change(body, rotors, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
-    };
-    const State<Scalar> next = rk4_step(state.body, step_s, rate);
-    if (air != Status::ok) return air;
-    if (!(all_finite(next) && is_unit(next.attitude))) return Status::output_not_finite;
-    if (!can_follow(next, step_s)) return Status::out_of_range;
-    state.body = next;
-    state.rotors = end;
-    state.time_s += static_cast<double>(step_s);
-    return Status::ok;
+    return build_ == Build::plain ? advance<Build::plain>(state, commands, step_s)
+                                  : advance<Build::any>(state, commands, step_s);
   }
 
-  /// rho / rho_0, by which thrust and torque of the rotors scale.
+  /// By what thrust and torque of the rotors differ from those in the standard atmosphere with a full battery.
+  static constexpr Scalar rotor_scale(const Surroundings<Scalar>& air) noexcept {
+    return density_ratio(air) * air.thrust_scale;
+  }
+
+  /// rho / rho_0.
   static constexpr Scalar density_ratio(const Surroundings<Scalar>& air) noexcept {
     constexpr Scalar inverse = Scalar(1) / standard_air_density_kg_m3<Scalar>;
     return air.air_density_kg_m3 * inverse;
@@ -186,6 +184,43 @@ class Quadrotor {
     if (fault == Status::ok && !place) fault = Status::out_of_range;
     ((fault = fault == Status::ok ? effect_status(effects, airframe_) : fault), ...);
     return fault;
+  }
+
+  /// A step whose input is good.
+  template <Build build>
+  PINNQUAD_FLATTEN Status advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                                  Scalar step_s) const noexcept {
+    const ThrustFractions<Scalar> before = rotors_.template fractions<build>(state.rotors);
+    const ThrustFractions<Scalar> wanted = rotors_.template fractions<build>(commands);
+    const auto time_constant_s = lag_of<build>(before, wanted);
+    const auto half_factor = lag_factor(time_constant_s, step_s / Scalar(2));
+    const ThrustFractions<Scalar> middle = lagged(before, wanted, half_factor);
+    const ThrustFractions<Scalar> end = lagged(middle, wanted, half_factor);
+    const ThrustFractions<Scalar> start = at_start(before, end, time_constant_s);
+    Status air = Status::ok;
+    const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
+      const ThrustFractions<Scalar>& now = offset_s == Scalar(0) ? start : (offset_s < step_s ? middle : end);
+      return rate_of_change<build>(body, now, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
+    };
+    const State<Scalar> next = rk4_step(state.body, step_s, rate);
+    if (air != Status::ok) return air;
+    if (!(all_finite(next) && is_unit(next.attitude))) return Status::output_not_finite;
+    if (!can_follow(next, step_s)) return Status::out_of_range;
+    state.body = next;
+    state.rotors = rotors_.template commands_of<build>(end);
+    state.time_s += static_cast<double>(step_s);
+    return Status::ok;
+  }
+
+  /// One time constant for all, or each rotor's own.
+  template <Build build>
+  auto lag_of(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted) const noexcept {
+    if constexpr (build == Build::plain) {
+      static_cast<void>(before), static_cast<void>(wanted);
+      return airframe_.rise_time_constant_s(0);
+    } else {
+      return time_constants_s(airframe_, before, wanted);
+    }
   }
 
   /// Beyond half a turn in one step an attitude is no longer followed but guessed.
@@ -234,9 +269,9 @@ class Quadrotor {
   };
 
   /// Folds the effects in their order; `wrench_of(effect, condition)` evaluates one.
-  template <class WrenchOf>
+  template <Build build = Build::any, class WrenchOf>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
-                                                       const Commands<Scalar>& rotor_commands,
+                                                       const ThrustFractions<Scalar>& thrusts,
                                                        const WrenchOf& wrench_of) const noexcept {
     RotorCondition<Scalar> condition;
     condition.air_relative_velocity_m_s =
@@ -251,8 +286,8 @@ class Quadrotor {
     each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       using Effect = std::decay_t<decltype(effect)>;
       if constexpr (uses_rotor_wrench<Effect>) {
-        condition.rotors = rotors_.wrench(rotor_commands, density_ratio(air));
-        condition.rotor_thrust_N = rotors_.thrusts(rotor_commands, density_ratio(air));
+        condition.rotors = rotors_.template wrench_of<build>(thrusts, rotor_scale(air));
+        condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
       } else if constexpr (makes_wrench<Effect>) {
         const AeroCondition<Scalar>& without_rotors = condition;
@@ -272,22 +307,24 @@ class Quadrotor {
   }
 
   /// An evaluation up to the wrenches.
-  PINNQUAD_ALWAYS_INLINE Evaluation<Scalar> loads(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
+  template <Build build = Build::any>
+  PINNQUAD_ALWAYS_INLINE Evaluation<Scalar> loads(const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts,
                                                   Scalar time_s) const noexcept {
     Evaluation<Scalar> result;
     result.surroundings = surroundings(state, time_s);
-    const Commands<Scalar> turning = clipped(rotor_commands);
-    result.rotors = rotors_.wrench(turning, density_ratio(result.surroundings));
-    result.aerodynamic = aerodynamic_wrench(state, result.surroundings, turning);
+    const ThrustFractions<Scalar> turning = clipped(thrusts);
+    result.rotors = rotors_.template wrench_of<build>(turning, rotor_scale(result.surroundings));
+    result.aerodynamic = aerodynamic_wrench_of<build>(turning, state, result.surroundings);
     return result;
   }
 
   /// The same motion as evaluate()'s, in world axes as the integrator wants it. v_dot = R f / m + g directly: Eq. (1)'s
   /// omega x v_B would be subtracted only to be added again.
+  template <Build build>
   PINNQUAD_ALWAYS_INLINE StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
-                                                                const Commands<Scalar>& rotor_commands, Scalar time_s,
+                                                                const ThrustFractions<Scalar>& thrusts, Scalar time_s,
                                                                 Status& air) const noexcept {
-    const Evaluation<Scalar> e = loads(state, rotor_commands, time_s);
+    const Evaluation<Scalar> e = loads<build>(state, thrusts, time_s);
     if (e.surroundings.status != Status::ok) air = e.surroundings.status;
     const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
@@ -297,7 +334,7 @@ class Quadrotor {
                                         wrench.force_N[2] * inverse_mass_);
     d.acceleration_m_s2[2] += site_.gravity_m_s2;
     d.attitude_rate = attitude_rate(state.attitude, state.body_rates_rad_s);
-    d.angular_acceleration_rad_s2 = accelerations(airframe_, state, wrench, site_.gravity_m_s2).angular_rad_s2;
+    d.angular_acceleration_rad_s2 = angular_acceleration<build>(airframe_, state.body_rates_rad_s, wrench.torque_N_m);
     return d;
   }
 
@@ -315,6 +352,7 @@ class Quadrotor {
   Site<Scalar> site_;
   std::tuple<BoundEffect<Effects, Scalar>...> effects_;
   Rotors<Scalar> rotors_;
+  Build build_;
   Status status_;
 };
 

@@ -15,7 +15,7 @@ std::array<Scalar, 4> commanded_part(const Wrench<Scalar>& w) noexcept {
 }
 
 template <class Scalar>
-Scalar largest_magnitude(const Commands<Scalar>& values) noexcept {
+Scalar largest_magnitude(const ThrustFractions<Scalar>& values) noexcept {
   Scalar largest(0);
   for (const Scalar value : values) {
     const Scalar magnitude = value < Scalar(0) ? -value : value;
@@ -33,31 +33,31 @@ inline constexpr Scalar settled = Scalar(5000) * std::numeric_limits<Scalar>::ep
 template <class Scalar>
 inline constexpr Scalar certainly_met = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
 
-/// What rotors and effects make of commands on one branch, and the commands that make a given wrench.
+/// What rotors and effects make of thrust fractions on one branch, and the fractions that make a given wrench.
 template <class Scalar, class... Effects>
 class RotorEquation {
  public:
   RotorEquation(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
                 const Surroundings<Scalar>& air) noexcept
-      : quadrotor_(quadrotor), state_(state), air_(air), density_ratio_(quadrotor.density_ratio(air)) {}
+      : quadrotor_(quadrotor), state_(state), air_(air), scale_(quadrotor.rotor_scale(air)) {}
 
-  /// A solution on one branch, and how far the true equation, with the branch as it lies, is from met there: in commands.
+  /// A solution on one branch, and how far the true equation, with the branch as it lies, is from met there: in fractions.
   struct Solution {
     Status status{Status::no_solution};
-    Commands<Scalar> commands{};
+    ThrustFractions<Scalar> thrusts{};
     Scalar mismatch{0};
-    Scalar size{1};  ///< 1 + largest command, by which mismatch is to be judged
+    Scalar size{1};  ///< 1 + largest fraction, by which mismatch is to be judged
   };
 
   Solution solve(ThrustBranch branch, const std::array<Scalar, 4>& wanted) const noexcept {
     Solution solution;
-    const auto made = [&](const Commands<Scalar>& u) noexcept {
-      return total(u, quadrotor_.aerodynamic_wrench_on(branch, state_, air_, u));
+    const auto made = [&](const ThrustFractions<Scalar>& s) noexcept {
+      return total(s, quadrotor_.aerodynamic_wrench_on(branch, s, state_, air_));
     };
     AllocationMatrix<Scalar> matrix{}, inverse{};
     const std::array<Scalar, 4> at_rest = made({});
     for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
-      Commands<Scalar> unit{};
+      ThrustFractions<Scalar> unit{};
       unit[rotor] = Scalar(1);
       const std::array<Scalar, 4> column = made(unit);
       for (std::size_t row = 0; row < 4; ++row) matrix[row][rotor] = column[row] - at_rest[row];
@@ -65,21 +65,21 @@ class RotorEquation {
     if (invert_allocation(matrix, inverse) != Status::ok) return solution;
 
     constexpr int rounds = 40;  // an affine equation takes one, the next one confirms it
-    Commands<Scalar>& u = solution.commands;
+    ThrustFractions<Scalar>& s = solution.thrusts;
     for (int round = 0; round < rounds && solution.status != Status::ok; ++round) {
-      const Commands<Scalar> change = product(inverse, difference(wanted, made(u)));
-      for (std::size_t i = 0; i < rotor_count; ++i) u[i] += change[i];
-      solution.size = Scalar(1) + largest_magnitude(u);
+      const ThrustFractions<Scalar> change = product(inverse, difference(wanted, made(s)));
+      for (std::size_t i = 0; i < rotor_count; ++i) s[i] += change[i];
+      solution.size = Scalar(1) + largest_magnitude(s);
       if (largest_magnitude(change) <= settled<Scalar> * solution.size) solution.status = Status::ok;
     }
-    const std::array<Scalar, 4> truly = total(u, quadrotor_.aerodynamic_wrench(state_, air_, u));
+    const std::array<Scalar, 4> truly = total(s, quadrotor_.aerodynamic_wrench_of(s, state_, air_));
     solution.mismatch = largest_magnitude(product(inverse, difference(wanted, truly)));
     return solution;
   }
 
  private:
-  std::array<Scalar, 4> total(const Commands<Scalar>& u, const Wrench<Scalar>& effects) const noexcept {
-    return commanded_part(quadrotor_.rotors().wrench(u, density_ratio_) + effects);
+  std::array<Scalar, 4> total(const ThrustFractions<Scalar>& s, const Wrench<Scalar>& effects) const noexcept {
+    return commanded_part(quadrotor_.rotors().wrench_of(s, scale_) + effects);
   }
   static std::array<Scalar, 4> difference(const std::array<Scalar, 4>& a, const std::array<Scalar, 4>& b) noexcept {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
@@ -88,28 +88,29 @@ class RotorEquation {
   const Quadrotor<Scalar, Effects...>& quadrotor_;
   const State<Scalar>& state_;
   const Surroundings<Scalar>& air_;
-  Scalar density_ratio_;
+  Scalar scale_;
 };
 
 }  // namespace detail
 
 /// Commands (not clipped) with rotors(u) + effects(u) = required in thrust and torque.
-/// Without effects that use the rotors' wrench: u = A^-1 (required - effects). With them the equation is affine in u on each
-/// ThrustBranch: its matrix is read off at u = 0 and at the four unit commands and inverted, so that one round is exact.
+/// It is solved in thrust fractions s and turned into commands by the rotors' curves.
+/// Without effects that use the rotors' wrench: s = A^-1 (required - effects). With them the equation is affine in s on each
+/// ThrustBranch: its matrix is read off at s = 0 and at the four unit fractions and inverted, so that one round is exact.
 /// Ground effect by |F_z|: with k = (r - 1) |R_zz|, more thrust always lifts more while k < 1 and there is one solution.
 /// Beyond (Cheeseman-Bennett below Z/R = 0.354, next to its pole) a wanted force has two solutions, of which the upper
 /// branch's, with the greater thrust, is returned, or none (`no_solution`).
 /// An effect that is only nearly affine is iterated, at most 40 rounds; `no_solution` if they don't settle.
-/// The air's own status, `out_of_range` where there is none (density 0 or less). `commands` is untouched unless ok.
+/// The air's own status, `out_of_range` where there is none (density 0 or less) or no power (thrust scale 0 or less). `commands` is untouched unless ok.
 template <class Scalar, class... Effects>
 Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
                            const Surroundings<Scalar>& air, const Wrench<Scalar>& required,
                            Commands<Scalar>& commands) noexcept {
   if (air.status != Status::ok) return air.status;
-  if (!(air.air_density_kg_m3 > Scalar(0))) return Status::out_of_range;
+  if (!(air.air_density_kg_m3 > Scalar(0) && air.thrust_scale > Scalar(0))) return Status::out_of_range;
   if constexpr (!(uses_rotor_wrench<Effects> || ...)) {
     const Wrench<Scalar> effects = quadrotor.aerodynamic_wrench(state, air, {});
-    commands = quadrotor.rotors().commands(required - effects, quadrotor.density_ratio(air));
+    commands = quadrotor.rotors().commands(required - effects, quadrotor.rotor_scale(air));
     return Status::ok;
   } else {
     const detail::RotorEquation<Scalar, Effects...> equation(quadrotor, state, air);
@@ -125,7 +126,7 @@ Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const
     }
     if (best.status != Status::ok) return best.status;
     if (!(best.mismatch <= detail::settled<Scalar> * best.size)) return Status::no_solution;
-    commands = best.commands;
+    commands = quadrotor.rotors().commands_of(best.thrusts);
     return Status::ok;
   }
 }

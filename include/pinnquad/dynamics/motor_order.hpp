@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// In which order motors are numbered: by the convention of a flight stack, or by where an airframe's rotors sit.
+// Only the place counts; which way a motor turns is the airframe's own.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "pinnquad/dynamics/airframe.hpp"
+
+namespace pinnquad {
+
+/// Corner of an X quadrotor, seen from above.
+enum class Corner : std::uint8_t { front_right, rear_left, front_left, rear_right };
+
+/// The corner of each command, first command first.
+struct MotorOrder {
+  std::string_view name{};  ///< empty for an order that no convention has
+  std::array<Corner, rotor_count> corners{};
+};
+
+/// PX4, "Quadrotor x" of its airframe reference: 1 front right, 2 rear left, 3 front left, 4 rear right. The paper's Eq. (2) and
+/// the airframes here have it too.
+inline constexpr MotorOrder px4_motor_order = {
+    "px4", {Corner::front_right, Corner::rear_left, Corner::front_left, Corner::rear_right}};
+
+/// Betaflight, QUADX of its mixer documentation: 1 rear right, 2 front right, 3 rear left, 4 front left.
+inline constexpr MotorOrder betaflight_motor_order = {
+    "betaflight", {Corner::rear_right, Corner::front_right, Corner::rear_left, Corner::front_left}};
+
+/// Crazyflie 2.x, Bitcraze's documentation, M1..M4 clockwise from the front right: front right, rear right, rear left, front left.
+inline constexpr MotorOrder crazyflie_motor_order = {
+    "crazyflie", {Corner::front_right, Corner::rear_right, Corner::rear_left, Corner::front_left}};
+
+inline constexpr std::array<MotorOrder, 3> motor_orders = {px4_motor_order, betaflight_motor_order,
+                                                           crazyflie_motor_order};
+
+/// True for an order in which each corner occurs once.
+constexpr bool is_motor_order(const std::array<Corner, rotor_count>& corners) noexcept {
+  unsigned seen = 0;
+  for (const Corner corner : corners) {
+    if (static_cast<unsigned>(corner) >= static_cast<unsigned>(rotor_count)) return false;
+    seen |= 1u << static_cast<unsigned>(corner);
+  }
+  return seen == (1u << rotor_count) - 1u;
+}
+
+/// The order of that name; `out_of_range`, and `order` untouched, if there is none.
+constexpr Status motor_order_named(std::string_view name, MotorOrder& order) noexcept {
+  for (const MotorOrder& known : motor_orders) {
+    if (known.name == name) {
+      order = known;
+      return Status::ok;
+    }
+  }
+  return Status::out_of_range;
+}
+
+/// The order of an airframe's commands by its rotors' places, with the name of the convention that has it.
+/// `out_of_range`, and `order` untouched, where the rotors don't sit one in each corner.
+template <class Scalar>
+constexpr Status motor_order_of(const Airframe<Scalar>& airframe, MotorOrder& order) noexcept {
+  MotorOrder found{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    const RotorMount<Scalar>& r = airframe.rotors[i];
+    const bool front = r.x_m > Scalar(0), rear = r.x_m<Scalar(0), right = r.y_m> Scalar(0), left = r.y_m < Scalar(0);
+    if (!((front || rear) && (right || left))) return Status::out_of_range;
+    found.corners[i] =
+        front ? (right ? Corner::front_right : Corner::front_left) : (right ? Corner::rear_right : Corner::rear_left);
+  }
+  if (!is_motor_order(found.corners)) return Status::out_of_range;
+  for (const MotorOrder& known : motor_orders) {
+    bool same = true;
+    for (std::size_t i = 0; i < rotor_count; ++i) same = same && known.corners[i] == found.corners[i];
+    if (same) found.name = known.name;
+  }
+  order = found;
+  return Status::ok;
+}
+
+/// Values by motor (commands, speeds) given in one order, in another: each stays at its corner. Both must be is_motor_order();
+/// a corner that `from` lacks keeps the value at its index.
+template <class Value>
+constexpr std::array<Value, rotor_count> reordered(const std::array<Value, rotor_count>& values, const MotorOrder& from,
+                                                   const MotorOrder& to) noexcept {
+  std::array<Value, rotor_count> result = values;
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    for (std::size_t k = 0; k < rotor_count; ++k) {
+      if (from.corners[k] == to.corners[i]) result[i] = values[k];
+    }
+  }
+  return result;
+}
+
+}  // namespace pinnquad

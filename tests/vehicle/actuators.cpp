@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// The whole vehicle with uneven rotors, products of inertia and a sagging battery.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/rotor_drag.hpp"
+#include "pinnquad/aero/rotor_ground_effect.hpp"
+#include "pinnquad/vehicle/inverse.hpp"
+#include "support/random_states.hpp"
+#include "support/tolerances.hpp"
+#include "support/uneven_airframe.hpp"
+
+using namespace pinnquad;
+using pinnquad::test::draws;
+using pinnquad::test::RandomStates;
+using pinnquad::test::uneven_airframe;
+
+namespace {
+
+/// A battery that has lost a share of its thrust since time 0.
+struct Sag {
+  double per_s{0.01};
+  template <class Scalar>
+  void surroundings(Surroundings<Scalar>& air) const noexcept {
+    air.thrust_scale = Scalar(1) - Scalar(per_s) * air.time_s;
+  }
+};
+
+/// inverse(forward(u)) - u
+template <class... Effects>
+double round_trip(const Quadrotor<double, Effects...>& quadrotor, const State<double>& state,
+                  const Commands<double>& u) {
+  const double time_s = 12.0;
+  Commands<double> again{};
+  const Accelerations<double> motion = quadrotor.evaluate(state, u, time_s).motion;
+  const Status status = inverse_commands(quadrotor, state, motion, time_s, again);
+  return status == Status::ok ? pinnquad::test::distance(again, u) : 1e9;
+}
+
+constexpr double steepest = 20;  // du/ds of a quadratic curve at 0.05
+const double tolerance = steepest * pinnquad::test::inverse_tolerance<double>;
+
+}  // namespace
+
+TEST_CASE("inverse(forward(u)) = u with tilted uneven rotors, products of inertia and a sagging battery") {
+  const Airframe<double> a = uneven_airframe<double>();
+  const Quadrotor<double, StandardAtmosphere, Sag, QuadraticDrag> plain(a);
+  const Quadrotor<double, StandardAtmosphere, Sag, QuadraticDrag, RotorDrag> dragged(a);
+  const Quadrotor<double, Sag, CheesemanBennettRotorGroundEffect, CheesemanBennettGroundEffect> low(a);
+  REQUIRE(plain.status() == Status::ok);
+  RandomStates random(91);
+  for (int draw = 0; draw < draws; ++draw) {
+    State<double> state = random.state<double>();
+    const Commands<double> u = random.commands<double>(0.05, 1.0);
+    CHECK(round_trip(plain, state, u) <= tolerance);
+    CHECK(round_trip(dragged, state, u) <= tolerance);
+    state.position_m[2] = random.scalar<double>(-2.0, -0.4);
+    state.attitude = from_euler<double>({random.scalar<double>(-0.4, 0.4), random.scalar<double>(-0.4, 0.4), 1.0});
+    CHECK(round_trip(low, state, u) <= 10 * tolerance);
+  }
+}
+
+TEST_CASE("a battery scales what rotors make, as thin air does, and nothing else") {
+  const Airframe<double> a = PaperQuadrotor::value<double>();
+  const Quadrotor<double, Sag, QuadraticDrag> sagging(a, {}, Sag{0.02}, QuadraticDrag{});
+  const Quadrotor<double, QuadraticDrag> full(a);
+  RandomStates random(92);
+  const State<double> state = random.state<double>();
+  const Commands<double> u{0.5, 0.6, 0.7, 0.8};
+  const Evaluation<double> one = full.evaluate(state, u, 10.0), other = sagging.evaluate(state, u, 10.0);
+  CHECK(pinnquad::test::distance(other.rotors.force_N, Vector3<double>(0.8 * one.rotors.force_N)) <= 1e-13);
+  CHECK(pinnquad::test::distance(other.rotors.torque_N_m, Vector3<double>(0.8 * one.rotors.torque_N_m)) <= 1e-13);
+  CHECK(other.aerodynamic.force_N == one.aerodynamic.force_N);
+  Commands<double> untouched{0.1, 0.2, 0.3, 0.4};
+  const Commands<double> before = untouched;
+  CHECK(inverse_commands(sagging, state, one.motion, 60.0, untouched) == Status::out_of_range);  // empty
+  CHECK(untouched == before);
+}
+
+TEST_CASE("what a command means does not change a flight: the same vehicle told in thrust and in speed") {
+  const Airframe<double> thrust = PaperQuadrotor::value<double>();
+  Airframe<double> speed = thrust;
+  for (auto& rotor : speed.rotors) rotor.thrust_curve = 1.0;
+  const Quadrotor<double, QuadraticDrag> a(thrust), b(speed);
+  VehicleState<double> at_a, at_b;
+  at_a.rotors = {0.49, 0.49, 0.49, 0.49};
+  for (std::size_t i = 0; i < 4; ++i) at_b.rotors[i] = std::sqrt(at_a.rotors[i]);
+  for (int i = 0; i < 500; ++i) {
+    const double t = 0.002 * i;
+    const Commands<double> u{0.5 + 0.1 * std::sin(5 * t), 0.5, 0.5 - 0.1 * std::sin(3 * t), 0.51};
+    Commands<double> n{};
+    for (std::size_t k = 0; k < 4; ++k) n[k] = std::sqrt(u[k]);
+    REQUIRE(a.step(at_a, u, 0.002) == Status::ok);
+    REQUIRE(b.step(at_b, n, 0.002) == Status::ok);
+  }
+  CHECK(pinnquad::test::distance(at_a.body.position_m, at_b.body.position_m) <= 1e-11);
+  CHECK(pinnquad::test::distance(at_a.body.body_rates_rad_s, at_b.body.body_rates_rad_s) <= 1e-11);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(at_b.rotors[i] * at_b.rotors[i] == doctest::Approx(at_a.rotors[i]));
+}
+
+TEST_CASE_TEMPLATE("one airframe by both builds of the step: the general one gives the plain one's motion", Scalar,
+                   float, double) {
+  const Airframe<Scalar> plain = PaperQuadrotor::value<Scalar>();
+  Airframe<Scalar> general = plain;
+  general.rotors[0].rise_time_constant_s =
+      plain.rotor_time_constant_s * Scalar(1.0000002);  // not alike: the general build
+  REQUIRE(build_of(plain) == Build::plain);
+  REQUIRE(build_of(general) == Build::any);
+  const Quadrotor<Scalar, QuadraticDrag, RotorDrag> a(plain), b(general);
+  VehicleState<Scalar> at_a, at_b;
+  at_a.body.body_rates_rad_s = at_b.body.body_rates_rad_s = Vector3<Scalar>(Scalar(1), Scalar(-2), Scalar(0.5));
+  for (int i = 0; i < 100; ++i) {
+    const Commands<Scalar> u{Scalar(0.6), Scalar(0.5), Scalar(0.55), Scalar(0.52)};
+    REQUIRE(a.step(at_a, u, Scalar(0.002)) == Status::ok);
+    REQUIRE(b.step(at_b, u, Scalar(0.002)) == Status::ok);
+  }
+  CHECK(pinnquad::test::distance(at_a.body.velocity_m_s, at_b.body.velocity_m_s) <= 1e-5);
+  CHECK(pinnquad::test::distance(at_a.body.body_rates_rad_s, at_b.body.body_rates_rad_s) <= 1e-4);
+}
+
+TEST_CASE("rotor drag on a tilted rotor has no part along its axis; a raised hub feels roll and pitch rates") {
+  Airframe<double> a = uneven_airframe<double>();
+  RotorCondition<double> condition;
+  condition.rotor_thrust_N = {0.0, 3.0, 0.0, 0.0};
+  condition.air_relative_velocity_m_s = Vector3<double>(4, -3, 2);
+  condition.body_rates_rad_s = Vector3<double>(1, 2, -0.5);
+  const auto& hub = a.rotors[1];
+  const Vector3<double> axis = to_vector(hub.axis), arm(hub.x_m, hub.y_m, hub.z_m);
+  Wrench<double> w = RotorDrag{0.03}.wrench(condition, a);
+  CHECK(std::fabs(w.force_N.dot(axis)) <= 1e-14);
+  const Vector3<double> v = condition.air_relative_velocity_m_s + cross<double>(condition.body_rates_rad_s, arm);
+  CHECK(pinnquad::test::distance(w.force_N, Vector3<double>(-0.09 * (v - axis * v.dot(axis)))) <= 1e-14);
+  CHECK(pinnquad::test::distance(w.torque_N_m, cross<double>(arm, w.force_N)) <= 1e-14);
+  a.rotors[1].axis = {0, 0, -1};  // upright and raised
+  a.rotors[1].z_m = -0.1;
+  w = RotorDrag{0.03}.wrench(condition, a);
+  CHECK(w.force_N[0] == doctest::Approx(-0.09 * (4 + 2 * -0.1 - -0.5 * a.rotors[1].y_m)));
+}
