@@ -50,6 +50,22 @@ inline std::vector<std::size_t> locate_columns(const std::string& path, const st
   return fields;
 }
 
+/// The names of a file's columns as its header has them; none of an empty file.
+inline std::vector<std::string> csv_header(const std::string& path) {
+  CsvRecords records(path);
+  std::string_view record;
+  std::string unquoted;
+  std::vector<std::string_view> cells;
+  if (records.next(record)) {
+    if (records.has_quotes()) {
+      split_quoted_fields(record, cells, unquoted);
+    } else {
+      split_fields(record, cells);
+    }
+  }
+  return {cells.begin(), cells.end()};
+}
+
 /// Reads the named columns and calls `on_row(values, line, fields)` for each row: its values in the order of `columns`,
 /// its line, and the field index (from 0) of each column. Returns nothing: the callee keeps what it wants.
 template <class OnRow>
