@@ -225,9 +225,9 @@ inline void write_results(const std::string& path, const std::vector<Result>& re
   text += ",validation_mae,training_s\n";
   for (const Result& result : results) {
     text += result.model + "," + std::to_string(result.seed);
-    for (const Figure& figure : list) text += "," + pinnquad::detail::number_text(figure.of(result.test, figure.index));
-    text += "," + pinnquad::detail::number_text(result.validation_error);
-    text += "," + pinnquad::detail::number_text(result.training_s) + "\n";
+    for (const Figure& figure : list) text += "," + pinnquad::number_text(figure.of(result.test, figure.index));
+    text += "," + pinnquad::number_text(result.validation_error);
+    text += "," + pinnquad::number_text(result.training_s) + "\n";
   }
   pinnquad::AtomicFile file(path);
   file.stream() << text;

@@ -62,7 +62,7 @@ void write_replay(const std::string& path, const Model& model, const RowSet& row
     const Inputs in = SampleInputs<Inputs>::from(sample);
     const auto predicted = model.predict(sample);
     std::string line;
-    const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + detail::number_text(value); };
+    const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + number_text(value); };
     for (const auto* vector :
          {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s, &in.body_rates_rad_s}) {
       for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
@@ -247,15 +247,14 @@ void print_split(const Dataset& dataset, const RowSplit& split) {
 
 /// What report.json says of the flights: of one its name, of several which block each went to.
 nlohmann::json described(const Dataset& dataset, const RowSplit& split) {
-  nlohmann::json result = {{"flight", flight_names(dataset)},
-                           {"flight_hash", detail::hexadecimal(content_hash(dataset))},
-                           {"rows", dataset.rows()}};
+  nlohmann::json result = {
+      {"flight", flight_names(dataset)}, {"flight_hash", hexadecimal(content_hash(dataset))}, {"rows", dataset.rows()}};
   if (dataset.size() == 1) return result;
   result["flights"] = nlohmann::json::array();
   const auto list = [&](const RowSet& block, const char* name) {
     for (const FlightRows& piece : block.pieces()) {
       result["flights"].push_back({{"flight", piece.flight->name},
-                                   {"flight_hash", detail::hexadecimal(content_hash(*piece.flight))},
+                                   {"flight_hash", hexadecimal(content_hash(*piece.flight))},
                                    {"rows", piece.rows.size()},
                                    {"block", name}});
     }

@@ -44,8 +44,8 @@ inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows 
       [&](const std::vector<double>& values, std::size_t line, const std::vector<std::size_t>& fields) {
         if (!flight.empty() && !(values[0] > flight.back().time_s)) {
           throw InputError(path, line, fields[0] + 1,
-                           "a time above " + detail::number_text(flight.back().time_s) + " in column t",
-                           detail::number_text(values[0]));
+                           "a time above " + number_text(flight.back().time_s) + " in column t",
+                           number_text(values[0]));
         }
         // room for all rows at once: growing would hold the flight twice
         if (flight.empty()) flight.reserve(detail::most_records(path, fields.size()));

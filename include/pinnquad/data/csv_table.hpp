@@ -24,9 +24,8 @@ struct CsvTable {
   std::vector<std::vector<double>> rows;
 };
 
-namespace detail {
-
-/// Field index (from 0) of each wanted column in the header line.
+/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column that is
+/// missing or there twice.
 inline std::vector<std::size_t> locate_columns(const std::string& path, const std::vector<std::string_view>& header,
                                                const std::vector<std::string>& columns) {
   std::vector<std::size_t> fields;
@@ -49,6 +48,8 @@ inline std::vector<std::size_t> locate_columns(const std::string& path, const st
   }
   return fields;
 }
+
+namespace detail {
 
 /// The names of a file's columns as its header has them; none of an empty file.
 inline std::vector<std::string> csv_header(const std::string& path) {

@@ -70,6 +70,12 @@ constexpr std::size_t place_of() noexcept {
   return place;
 }
 
+/// A feature set with a past (inference/windowed.hpp).
+template <class Features, class = void>
+struct HasWindow : std::false_type {};
+template <class Features>
+struct HasWindow<Features, std::void_t<typename Features::Window>> : std::true_type {};
+
 template <class Features, class = void>
 struct ExtraColumnsOf {
   static constexpr std::array<const char*, 0> names{};
@@ -124,6 +130,9 @@ template <class FeatureSet, class... Column>
 struct WithColumns {
   static_assert(is_feature_set<FeatureSet>,
                 "pinnquad: WithColumns' first argument is not a feature set (inference/features.hpp)");
+  static_assert(
+      !detail::HasWindow<FeatureSet>::value,
+      "pinnquad: columns belong inside a window, whose history then takes them too: Windowed<WithColumns<...>, ...>");
   static_assert(sizeof...(Column) > 0, "pinnquad: WithColumns needs a column");
   static_assert((is_column<Column> && ...),
                 "pinnquad: a column of WithColumns has no name or no unit "

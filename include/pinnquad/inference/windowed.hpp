@@ -110,11 +110,6 @@ constexpr std::array<const char*, sizeof...(Entry)> window_units(std::integer_se
   return {FeatureSet::units[std::size_t(Entry % FeatureSet::size)]...};
 }
 
-template <class T>
-struct IsWindowInputs : std::false_type {};
-template <class Tap, class Scalar, class Window>
-struct IsWindowInputs<WindowInputs<Tap, Scalar, Window>> : std::true_type {};
-
 }  // namespace detail
 
 /// A feature set with a window: X of `Features` at the present instant, then at each other tap, in the order of
@@ -123,6 +118,8 @@ template <class FeatureSet, int Taps, class Period, class Reach = Causal>
 struct Windowed {
   static_assert(is_feature_set<FeatureSet>,
                 "pinnquad: Windowed's first argument is not a feature set (inference/features.hpp)");
+  static_assert(!detail::HasWindow<FeatureSet>::value,
+                "pinnquad: a window of windows is one with more taps: Windowed has no Windowed inside");
   static_assert(Reach::template fits<Taps>,
                 "pinnquad: a window has one tap or more, a centred one an odd number (inference/windowed.hpp)");
 
@@ -167,15 +164,8 @@ struct Windowed {
   }
 };
 
-namespace detail {
-template <class T>
-struct IsWindowed : std::false_type {};
-template <class FeatureSet, int Taps, class Period, class Reach>
-struct IsWindowed<Windowed<FeatureSet, Taps, Period, Reach>> : std::true_type {};
-}  // namespace detail
-
 /// True for a feature set that asks for a window.
 template <class Features>
-inline constexpr bool is_windowed = detail::IsWindowed<Features>::value;
+inline constexpr bool is_windowed = detail::HasWindow<Features>::value;
 
 }  // namespace pinnquad

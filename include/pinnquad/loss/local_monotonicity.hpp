@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "pinnquad/loss/signed_command_sum.hpp"
-#include "pinnquad/schedule/settings.hpp"
+#include "pinnquad/data/settings.hpp"
 
 namespace pinnquad {
 

@@ -13,7 +13,7 @@
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"
-#include "pinnquad/schedule/settings.hpp"
+#include "pinnquad/data/settings.hpp"
 
 namespace pinnquad {
 

@@ -8,7 +8,7 @@
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/schedule/schedule.hpp"
-#include "pinnquad/schedule/settings.hpp"
+#include "pinnquad/data/settings.hpp"
 
 namespace pinnquad {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pinnquad/schedule/schedule.hpp"
-#include "pinnquad/schedule/settings.hpp"
+#include "pinnquad/data/settings.hpp"
 
 namespace pinnquad {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "pinnquad/schedule/schedule.hpp"
-#include "pinnquad/schedule/settings.hpp"
+#include "pinnquad/data/settings.hpp"
 
 namespace pinnquad {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "pinnquad/nn/kernel/pack.hpp"
-#include "pinnquad/schedule/settings.hpp"
+#include "pinnquad/data/settings.hpp"
 
 namespace pinnquad {
 

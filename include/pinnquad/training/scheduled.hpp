@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pinnquad/schedule/rate.hpp"
-#include "pinnquad/schedule/settings.hpp"
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/training/optimizer.hpp"
 
 namespace pinnquad {
