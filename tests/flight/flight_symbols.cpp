@@ -164,11 +164,12 @@ unsigned char pinnquad_flight_history(const float* state, const float* wanted, d
   using Measured = pinnquad::WithColumns<pinnquad::PaperFeatures, pinnquad::BatteryVoltage>;
   using Past = pinnquad::Windowed<Measured, 3, pinnquad::PeriodMicroseconds<20000>>;
   using History = pinnquad::InputHistory<Past, float>;
-  static History history;
+  History history;
   const auto vehicle = read(state);
   History::Present present;
   static_cast<pinnquad::MotionInputs<float>&>(present) = pinnquad::motion_inputs(vehicle.body, motion(wanted));
   present.column<pinnquad::BatteryVoltage>() = voltage_V;
+  static_cast<void>(history.take(present, time_s - 0.02));
   const Status status = history.take(present, time_s);
   Past::extract(history.inputs(), x);
   return static_cast<unsigned char>(status == Status::ok ? Past::check(history.inputs()) : status);

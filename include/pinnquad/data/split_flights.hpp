@@ -3,6 +3,7 @@
 // each flight. No row is in two blocks, and no block has rows of a flight next to another block's, but where it says so.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
