@@ -26,7 +26,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     block_incompatible,   ///< a block of another format, network or feature set
     block_corrupt,        ///< a block whose checksum or contents are wrong
     disagreement,         ///< the network's commands are further from another inverse's than the guard allows
-    warming_up,           ///< a model with a past has not seen enough of it yet, or lost it in a gap (inference/windowed.hpp)
+    warming_up,  ///< a model with a past has not seen enough of it yet, or lost it in a gap (inference/windowed.hpp)
 };
 
 /// Number of Status values, for counters by Status.

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/data/settings.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 
 namespace pinnquad {
 

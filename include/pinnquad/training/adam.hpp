@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/data/settings.hpp"
+#include "pinnquad/nn/kernel/pack.hpp"
 
 namespace pinnquad {
 
