@@ -23,10 +23,9 @@
 #include "judgement.hpp"
 #include "model_predictions.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/data/plausibility.hpp"
-#include "pinnquad/data/split_flights.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "plots.hpp"
+#include "training_flights.hpp"
 
 namespace {
 
@@ -210,73 +209,18 @@ void export_model(const Options& options, const Model& model, const RowSplit& sp
   std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), block.size());
 }
 
-/// Throws InputError where a command stands still in a flight's part of a block.
-void require_varied_commands(const Options& options, const Dataset& dataset, const RowSet& block,
-                             const std::string& block_name) {
-  for (const FlightRows& piece : block.pieces()) {
-    const auto index = static_cast<std::size_t>(piece.flight - dataset.flights().data());
-    require_varied_commands(options.flights[index], *piece.flight, piece.rows, block_name);
-  }
-}
-
-/// "a.csv", or "a.csv, b.csv, c.csv".
-std::string flight_names(const std::vector<const Flight*>& flights) {
-  std::string names;
-  for (const Flight* flight : flights) names += (names.empty() ? "" : ", ") + flight->name;
-  return names;
-}
-std::string flight_names(const RowSet& rows) {
-  std::vector<const Flight*> flights;
-  for (const FlightRows& piece : rows.pieces()) flights.push_back(piece.flight);
-  return flight_names(flights);
-}
-std::string flight_names(const Dataset& dataset) {
-  std::vector<const Flight*> flights;
-  for (const Flight& flight : dataset.flights()) flights.push_back(&flight);
-  return flight_names(flights);
-}
-
-void print_split(const Dataset& dataset, const RowSplit& split) {
-  const bool one = dataset.size() == 1;
-  std::printf("      %zu rows: %zu train, %zu validate, %zu test, in %s\n", dataset.rows(), split.train.size(),
-              split.validation.size(), split.test.size(), one ? "contiguous blocks" : "whole flights");
-  if (one) return;
-  std::printf("      train: %s\n      validate: %s\n      test: %s\n", flight_names(split.train).c_str(),
-              flight_names(split.validation).c_str(), flight_names(split.test).c_str());
-}
-
-/// What report.json says of the flights: of one its name, of several which block each went to.
-nlohmann::json described(const Dataset& dataset, const RowSplit& split) {
-  nlohmann::json result = {
-      {"flight", flight_names(dataset)}, {"flight_hash", hexadecimal(content_hash(dataset))}, {"rows", dataset.rows()}};
-  if (dataset.size() == 1) return result;
-  result["flights"] = nlohmann::json::array();
-  const auto list = [&](const RowSet& block, const char* name) {
-    for (const FlightRows& piece : block.pieces()) {
-      result["flights"].push_back({{"flight", piece.flight->name},
-                                   {"flight_hash", hexadecimal(content_hash(*piece.flight))},
-                                   {"rows", piece.rows.size()},
-                                   {"block", name}});
-    }
-  };
-  list(split.train, "train");
-  list(split.validation, "validation");
-  list(split.test, "test");
-  return result;
-}
-
 template <class Vehicle>
 int train_judge_export(const Options& options, const Dataset& dataset) {
   using Context = Context<PaperFeatures, Vehicle>;
   using Model = TrainedModel<programs::PaperNetwork, Context>;
   const RowSplit split = dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
-  require_varied_commands(options, dataset, split.train, "training");
-  require_varied_commands(options, dataset, split.validation, "validation");
-  require_varied_commands(options, dataset, split.test, "test");
+  programs::require_varied_commands(options.flights, dataset, split.train, "training");
+  programs::require_varied_commands(options.flights, dataset, split.validation, "validation");
+  programs::require_varied_commands(options.flights, dataset, split.test, "test");
   warn_of_still_features<PaperFeatures>(split.train);
   const Context context = make_context<Context>(split.train);
   const auto data = standardised<float>(context, split.train);
-  print_split(dataset, split);
+  programs::print_split(dataset, split);
   std::printf("      network %d -> 10 x 25 ReLU -> %d, %d parameters; Adam, batch 64, %d epochs, %d seeds\n",
               programs::PaperNetwork::inputs, programs::PaperNetwork::outputs, programs::PaperNetwork::parameter_count,
               options.epochs, options.seeds);
@@ -329,7 +273,7 @@ int train_judge_export(const Options& options, const Dataset& dataset) {
                              {"hold", CyclicalAnnealing{}.hold},
                              {"step_gain", TanhStep{}.gain},
                              {"finished", trainings.size()}};
-  settings.update(described(dataset, split));
+  settings.update(programs::described(dataset, split));
   programs::write_report(folder + "report.json", std::move(settings), results, verdict_row);
 
   programs::print_table(results, {linear_name, vanilla, informed});
@@ -351,8 +295,8 @@ int train_judge_export(const Options& options, const Dataset& dataset) {
   if (exported) {
     std::printf("[4/5] export\n");
     export_model(options, models[*best - 1], split,  // results[0] is the linearized model
-                 {flight_names(dataset), content_hash(dataset), split.train.size(), results[*best].seed, options.epochs,
-                  "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing", verdict});
+                 {programs::flight_names(dataset), content_hash(dataset), split.train.size(), results[*best].seed,
+                  options.epochs, "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing", verdict});
   }
   // last: a picture that cannot be drawn costs nothing else
   std::vector<std::size_t> shown;
@@ -380,34 +324,6 @@ void require_separate_files(const Options& options) {
   roles.writes("--block", options.block);
 }
 
-/// The flights of the options, each named by its file. Throws InputError, and std::invalid_argument for too few rows in all and
-/// for a flight that comes twice: it would be tested on what it was trained on.
-Dataset read_flights(const Options& options) {
-  const bool one = options.flights.size() == 1;
-  Dataset dataset;
-  for (const std::string& path : options.flights) {
-    Flight flight = read_flight_csv(path, one ? minimum_rows : minimum_flight_rows);
-    require_plausible(path, flight);
-    for (std::size_t other = 0; other < dataset.size(); ++other) {
-      if (content_hash(dataset[other]) != content_hash(flight)) continue;
-      throw std::invalid_argument("--flight " + options.flights[other] + " and " + path +
-                                  " hold the same flight: it would be judged on rows that it was trained on");
-    }
-    const std::string file = printable(std::filesystem::path(path).filename().string());
-    flight.name = file;
-    const auto taken = [&](const Flight& other) { return other.name == flight.name; };
-    for (int copy = 2; std::any_of(dataset.flights().begin(), dataset.flights().end(), taken); ++copy) {
-      flight.name = file + " (" + std::to_string(copy) + ")";
-    }
-    dataset.add(std::move(flight));
-  }
-  if (dataset.rows() < minimum_rows) {
-    throw std::invalid_argument("--flight: expected at least " + std::to_string(minimum_rows) + " rows in " +
-                                std::to_string(dataset.size()) + " flights, found " + std::to_string(dataset.rows()));
-  }
-  return dataset;
-}
-
 /// Trains on the flights of the options: the exit code.
 int train_chosen(const Options& options) {
   if (!is_identifier(options.model_name)) {
@@ -418,7 +334,7 @@ int train_chosen(const Options& options) {
     throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
   }
   require_separate_files(options);
-  const Dataset dataset = read_flights(options);
+  const Dataset dataset = programs::read_flights(options.flights, minimum_rows);
   const programs::FolderLock folder(options.out);
   // what cannot be written is found before the training
   for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
