@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "console.hpp"
 #include "pinnquad/version.hpp"
@@ -67,6 +68,18 @@ inline CLI::Option* add_path(CLI::App& app, const std::string& name, std::string
     path = text;
   };
   return app.add_option_function<std::string>(name, take, description)->type_name(kind);
+}
+
+/// An option that takes one path or more; an empty one is refused, as by add_path.
+inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vector<std::string>& paths,
+                              const std::string& kind, const std::string& description) {
+  const auto take = [&paths, name, kind](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      if (text.empty()) throw CLI::ValidationError(name, "expected " + kind + ", found ''");
+    }
+    paths = texts;
+  };
+  return app.add_option_function<std::vector<std::string>>(name, take, description)->type_name(kind + " ...");
 }
 
 /// Adds --version and parses. Empty to go on; else the exit code: --help and --version have been printed, or one line

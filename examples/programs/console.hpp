@@ -55,7 +55,7 @@ int run_program(const char* program, const Body& body) {
   errno = 0;
   const bool failed_before = std::ferror(stdout) != 0;
   if (std::fflush(stdout) != 0 || failed_before) {
-    const std::string reason = pinnquad::detail::system_reason(errno, "it is closed or full");
+    const std::string reason = pinnquad::system_reason(errno, "it is closed or full");
     if (code == 0) complain(program, pinnquad::OutputError("standard output", reason).what());
     if (code == 0) code = exit_bad_input;
   }

@@ -16,6 +16,7 @@
 #include "model.hpp"
 #include "pinnquad/data/regular_file.hpp"
 #include "pinnquad/flight.hpp"
+#include "pinnquad/simulation/tracking.hpp"
 
 namespace {
 
@@ -41,7 +42,7 @@ struct ReplayRow {
 
 /// Reads the replay file. Throws InputError, one line.
 std::vector<ReplayRow> read_replay(const std::string& path) {
-  detail::require_regular_file(path);
+  require_regular_file(path);
   std::ifstream file(path);
   if (!file) throw InputError(path, 0, 0, "a readable file", "none");
   std::string magic;
@@ -201,7 +202,7 @@ int fly_model(const Flown& model, const std::vector<ReplayRow>& rows) {
 
 /// The same for the weights of a block that a later training has written for this header.
 int fly_block(const std::string& path, const std::vector<ReplayRow>& rows) {
-  detail::require_regular_file(path);
+  require_regular_file(path);
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> block{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   ModelView<Model> view;

@@ -21,7 +21,7 @@ class FolderLock {
   explicit FolderLock(const std::string& path) {
     make_folders(path);
     lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock_ < 0) throw pinnquad::OutputError(path, pinnquad::detail::system_reason(errno, "it does not open"));
+    if (lock_ < 0) throw pinnquad::OutputError(path, pinnquad::system_reason(errno, "it does not open"));
     if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
     const int reason = errno;
     if (reason != EWOULDBLOCK) return;  // a file system without locks

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/data/split.hpp"
+#include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
@@ -40,16 +40,15 @@ struct AxisSeries {
 };
 
 template <class Context>
-std::array<AxisSeries, 3> axis_series(const pinnquad::Flight& flight, const pinnquad::IndexRange& range,
-                                      const Predictions& predictions) {
+std::array<AxisSeries, 3> axis_series(const pinnquad::RowSet& rows, const Predictions& predictions) {
   using pinnquad::signed_sum;
   const std::array<std::array<double, pinnquad::rotor_count>, 3> signs = {Context::template signs<pinnquad::Roll>(),
                                                                           Context::template signs<pinnquad::Pitch>(),
                                                                           Context::template signs<pinnquad::Yaw>()};
   std::array<AxisSeries, 3> series;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < range.size(); ++i) {
-      const pinnquad::Sample& sample = flight[range.begin + i];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const pinnquad::Sample& sample = rows[i];
       series[axis].angular_acceleration.push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
       series[axis].target.push_back(signed_sum(signs[axis], sample.commands));
       series[axis].predicted.push_back(signed_sum(signs[axis], predictions[i]));
@@ -59,12 +58,12 @@ std::array<AxisSeries, 3> axis_series(const pinnquad::Flight& flight, const pinn
 }
 
 template <class Context>
-Judgement judge(const pinnquad::Flight& flight, const pinnquad::IndexRange& range, const Predictions& predictions) {
+Judgement judge(const pinnquad::RowSet& rows, const Predictions& predictions) {
   Predictions targets;
-  for (std::size_t row = range.begin; row < range.end; ++row) targets.push_back(flight[row].commands);
+  for (std::size_t i = 0; i < rows.size(); ++i) targets.push_back(rows[i].commands);
   Judgement result;
   result.errors = pinnquad::prediction_errors(predictions, targets);
-  const std::array<AxisSeries, 3> series = axis_series<Context>(flight, range, predictions);
+  const std::array<AxisSeries, 3> series = axis_series<Context>(rows, predictions);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     result.axes[axis] =
         pinnquad::physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);
@@ -226,9 +225,9 @@ inline void write_results(const std::string& path, const std::vector<Result>& re
   text += ",validation_mae,training_s\n";
   for (const Result& result : results) {
     text += result.model + "," + std::to_string(result.seed);
-    for (const Figure& figure : list) text += "," + pinnquad::detail::number_text(figure.of(result.test, figure.index));
-    text += "," + pinnquad::detail::number_text(result.validation_error);
-    text += "," + pinnquad::detail::number_text(result.training_s) + "\n";
+    for (const Figure& figure : list) text += "," + pinnquad::number_text(figure.of(result.test, figure.index));
+    text += "," + pinnquad::number_text(result.validation_error);
+    text += "," + pinnquad::number_text(result.training_s) + "\n";
   }
   pinnquad::AtomicFile file(path);
   file.stream() << text;

@@ -93,7 +93,7 @@ class StudyFolder {
         const std::string name = entry.path().filename().string();
         if (name.find(".csv.partial-") == std::string::npos && name.find(".json.partial-") == std::string::npos)
           continue;
-        pinnquad::detail::PartialFile::remove_abandoned(entry.path().string());
+        pinnquad::PartialFile::remove_abandoned(entry.path().string());
       }
     }
   }

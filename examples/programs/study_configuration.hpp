@@ -59,7 +59,7 @@ inline nlohmann::json configuration(const Plan& plan, const Flights& flights) {
     flown.push_back({{"name", id.name},
                      {"seed", id.seed},
                      {"rows", rows.size()},
-                     {"content_hash", pinnquad::detail::hexadecimal(pinnquad::content_hash(rows))}});
+                     {"content_hash", pinnquad::hexadecimal(pinnquad::content_hash(rows))}});
   }
   return {{"kind", plan.kind},
           {"version", PINNQUAD_VERSION},
@@ -122,7 +122,7 @@ inline std::string difference(const nlohmann::json& there, const nlohmann::json&
 
 /// Reads DIR/study.json. Throws InputError if it is not one.
 inline nlohmann::json read_configuration(const std::string& path) {
-  const nlohmann::json read = nlohmann::json::parse(pinnquad::detail::file_text(path), nullptr, false);
+  const nlohmann::json read = nlohmann::json::parse(pinnquad::file_text(path), nullptr, false);
   const auto facts_are_usual = [&read] {
     const auto fact = [&read](const char* name, const nlohmann::json& otherwise) {
       return read.value(name, otherwise);

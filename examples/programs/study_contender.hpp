@@ -146,10 +146,11 @@ void judge(const Material<DataSet>& material, const PredictionsOf& predictions_o
   const auto& split = material.split;
   outcome.test_rows = split.test;
   outcome.predictions = predictions_of(split.test);
-  outcome.test = programs::judge<Context>(material.flight, split.test, outcome.predictions);
+  outcome.test = programs::judge<Context>({material.flight, split.test}, outcome.predictions);
   if (split.validation.empty()) return;
-  outcome.validation_mae = programs::judge<Context>(material.flight, split.validation, predictions_of(split.validation))
-                               .errors.mean.mean_absolute;
+  outcome.validation_mae =
+      programs::judge<Context>({material.flight, split.validation}, predictions_of(split.validation))
+          .errors.mean.mean_absolute;
 }
 
 /// Model 1: Eq. (3) inverted.
@@ -162,7 +163,7 @@ Contender linear_contender(const std::string& id, nlohmann::json description) {
     judge(
         material,
         [&](const pinnquad::IndexRange& range) {
-          return programs::linear_predictions<Airframe>(material.flight, range);
+          return programs::linear_predictions<Airframe>({material.flight, range});
         },
         outcome);
     return true;
@@ -198,7 +199,9 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
                                                     material.context, material.flight, material.split.train);
     judge(
         material,
-        [&](const pinnquad::IndexRange& range) { return programs::network_predictions(model, material.flight, range); },
+        [&](const pinnquad::IndexRange& range) {
+          return programs::network_predictions(model, {material.flight, range});
+        },
         outcome);
     return true;
   };

@@ -190,7 +190,7 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
     for (const auto& entry : std::filesystem::directory_iterator(parts[i].path + "/series", error)) {
       if (entry.path().extension() != ".csv") continue;
       pinnquad::AtomicFile copy(out + "/series/" + entry.path().filename().string());
-      copy.stream() << pinnquad::detail::file_text(entry.path().string());
+      copy.stream() << pinnquad::file_text(entry.path().string());
       copy.commit();
     }
   }

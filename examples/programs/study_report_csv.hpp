@@ -29,7 +29,7 @@ inline std::string csv_line(const std::vector<std::string>& fields) {
 }
 
 inline std::string table3_csv(const Study& study) {
-  using pinnquad::detail::number_text;
+  using pinnquad::number_text;
   std::string text = csv_line(
       {"model", "measure", "seeds", "mean", "deviation", "paper_mean", "paper_deviation", "paper_entry_suspect"});
   for (const PaperModel& model : table2) {
@@ -38,7 +38,7 @@ inline std::string table3_csv(const Study& study) {
       const PaperEntry& paper = paper_entry(model.id, m);
       text += csv_line({std::to_string(model.id), table3_measures[m].column, std::to_string(ours.count),
                         number_text(ours.mean), number_text(ours.deviation), number_text(paper.mean),
-                        number_text(model.id == 1 ? pinnquad::detail::not_a_number : paper.deviation),
+                        number_text(model.id == 1 ? pinnquad::not_a_number : paper.deviation),
                         suspect_entry(model.id, m) ? "1" : "0"});
     }
   }
@@ -47,7 +47,7 @@ inline std::string table3_csv(const Study& study) {
 
 inline std::string comparisons_csv(const std::vector<Comparison>& comparisons,
                                    const std::vector<FlightsComparison>& flights) {
-  using pinnquad::detail::number_text;
+  using pinnquad::number_text;
   std::string text = csv_line({"baseline", "candidate", "measure", "flight", "flight_seed", "pairs", "wins", "ties",
                                "losses", "baseline_mean", "candidate_mean", "relative_difference", "p_value",
                                "rank_biserial", "outcome", "paper_relative_difference"});
@@ -58,7 +58,7 @@ inline std::string comparisons_csv(const std::vector<Comparison>& comparisons,
                       flight, seed, std::to_string(r.pairs), std::to_string(r.wins), std::to_string(r.ties),
                       std::to_string(r.losses), number_text(r.baseline_mean), number_text(r.candidate_mean),
                       number_text(r.relative_difference), number_text(r.p_value), number_text(r.rank_biserial),
-                      outcome_name(outcome(r)), number_text(paper.value_or(pinnquad::detail::not_a_number))});
+                      outcome_name(outcome(r)), number_text(paper.value_or(pinnquad::not_a_number))});
   };
   for (const Comparison& c : comparisons) {
     line(c.pair, c.measure, c.flight.name, std::to_string(c.flight.seed), c.result);

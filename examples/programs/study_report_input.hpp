@@ -69,7 +69,7 @@ inline std::string flight_pictures(const std::string& folder, std::string& left_
       const std::string name = file.filename().string();
       if (name.size() < ending.size() || name.compare(name.size() - ending.size(), ending.size(), ending) != 0)
         continue;
-      text += html::figure(html::embedded_svg(pinnquad::detail::file_text(file.string()), picture.name),
+      text += html::figure(html::embedded_svg(pinnquad::file_text(file.string()), picture.name),
                            html::tag("b", std::string(picture.name) + ".") + " " + picture.caption);
       found = true;
       break;

@@ -48,7 +48,7 @@ struct RowCells {
 
   [[noreturn]] void refuse(std::size_t column, const std::string& expected) const {
     throw pinnquad::InputError(path, line, fields[column] + 1, expected + " in column " + columns[column],
-                               pinnquad::detail::quoted_cell(text(column)));
+                               pinnquad::quoted_cell(text(column)));
   }
 
   std::uint64_t count(std::size_t column, std::uint64_t least, std::uint64_t most, const char* expected) const {
@@ -63,10 +63,10 @@ struct RowCells {
   double number(std::size_t column) const {
     const std::string_view cell = text(column);
     for (const std::string_view undefined : {"nan", "-nan", "inf", "-inf"}) {
-      if (cell == undefined) return pinnquad::detail::not_a_number;
+      if (cell == undefined) return pinnquad::not_a_number;
     }
     double value = 0;
-    if (!pinnquad::detail::parse_number(cell, value)) refuse(column, "a number");
+    if (!pinnquad::parse_number(cell, value)) refuse(column, "a number");
     return value;
   }
 };
@@ -79,7 +79,7 @@ struct RowCells {
 inline std::vector<StudyRow> read_study_rows(const std::string& path, std::size_t& cut_rows) {
   cut_rows = 0;
   constexpr std::uint64_t most = ~std::uint64_t{0}, most_epochs = 1000000;
-  const std::string text = pinnquad::detail::file_text(path);
+  const std::string text = pinnquad::file_text(path);
   const std::vector<std::string> columns = study_columns();
   std::string_view rest = text;
   std::vector<std::string_view> cells;
@@ -94,9 +94,9 @@ inline std::vector<StudyRow> read_study_rows(const std::string& path, std::size_
     rest = ended ? rest.substr(end + 1) : std::string_view();
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty() && rest.empty()) break;
-    pinnquad::detail::split_fields(line, cells);
+    pinnquad::split_fields(line, cells);
     if (line_number == 1) {
-      fields = pinnquad::detail::locate_columns(path, cells, columns);
+      fields = pinnquad::locate_columns(path, cells, columns);
       width = cells.size();
       continue;
     }

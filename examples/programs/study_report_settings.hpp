@@ -62,7 +62,7 @@ inline void read_planned_model(const nlohmann::json& model, StudySettings& setti
 
 /// Throws InputError with line and column where the file is no JSON object; where it is that of another kind of study.
 inline StudySettings read_study_settings(const std::string& path) {
-  const std::string text = pinnquad::detail::file_text(path);
+  const std::string text = pinnquad::file_text(path);
   StudySettings settings;
   try {
     settings.all = nlohmann::json::parse(text);
@@ -78,7 +78,7 @@ inline StudySettings read_study_settings(const std::string& path) {
   const auto find = [&](const char* key) { return settings.all.value(key, nlohmann::json()); };
   if (find("kind").is_string() && find("kind") != "table 2") {
     throw pinnquad::InputError(path, 0, 0, "a study of Table 2",
-                               "one of kind " + pinnquad::detail::quoted_cell(find("kind").get<std::string>()));
+                               "one of kind " + pinnquad::quoted_cell(find("kind").get<std::string>()));
   }
   for (const nlohmann::json& flight : find("flights")) {
     if (!flight.is_object() || !flight.contains("name") || !flight["name"].is_string()) continue;

@@ -57,7 +57,7 @@ inline std::string rows_header() {
 
 /// The line of a finished training, without a line end.
 inline std::string row_text(const RowId& id, int epochs, const Outcome& outcome) {
-  using pinnquad::detail::number_text;
+  using pinnquad::number_text;
   std::string text = id.model + "," + id.flight + "," + std::to_string(id.flight_seed) + "," + std::to_string(id.seed) +
                      "," + std::to_string(epochs) + "," + weights_name(outcome.best_weights);
   for (const programs::Figure& figure : programs::figures())
@@ -80,7 +80,7 @@ inline bool parse_seed(std::string_view text, std::uint64_t& value) {
 /// Which training a line holds. False if the line is not whole.
 inline bool parse_row(const std::string& line, std::size_t columns, RowId& id) {
   std::vector<std::string_view> fields;
-  pinnquad::detail::split_fields(line, fields);
+  pinnquad::split_fields(line, fields);
   constexpr std::size_t first_number = 6;
   if (fields.size() != columns || fields[0].empty() ||
       (fields[weights_field] != weights_name(false) && fields[weights_field] != weights_name(true)))
@@ -109,7 +109,7 @@ inline StoredRows read_rows(const std::string& path) {
   StoredRows stored;
   std::error_code error;
   if (!std::filesystem::exists(path, error) && !error) return stored;
-  const std::string text = pinnquad::detail::file_text(path);
+  const std::string text = pinnquad::file_text(path);
   const std::string header = rows_header();
   const auto columns = static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1;
   std::size_t begin = 0, line_number = 0;
@@ -144,7 +144,7 @@ inline void require_own_rows(const std::string& path, const StoredRows& stored, 
                              bool best_weights) {
   for (const auto& [id, line] : stored.rows) {
     std::vector<std::string_view> fields;
-    pinnquad::detail::split_fields(line, fields);
+    pinnquad::split_fields(line, fields);
     const std::string epochs(fields[detail::epochs_field]), weights(fields[detail::weights_field]);
     const auto training = own.find(id);
     std::string differs;
@@ -175,7 +175,7 @@ class RowAppender {
  public:
   explicit RowAppender(const std::string& path)
       : path_(path), file_(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC)) {
-    if (file_ < 0) throw pinnquad::OutputError(path, pinnquad::detail::system_reason(errno, "it does not open"));
+    if (file_ < 0) throw pinnquad::OutputError(path, pinnquad::system_reason(errno, "it does not open"));
   }
   RowAppender(const RowAppender&) = delete;
   RowAppender& operator=(const RowAppender&) = delete;
@@ -197,8 +197,8 @@ class RowAppender {
     const int reason = errno;
     // if this fails too, the next start finds the cut row and runs its training again
     const bool taken_back = before >= 0 && ::ftruncate(file_, before) == 0;
-    throw pinnquad::OutputError(path_, pinnquad::detail::system_reason(reason, "writing failed") +
-                                           (taken_back ? "" : "; its last row may be cut"));
+    throw pinnquad::OutputError(
+        path_, pinnquad::system_reason(reason, "writing failed") + (taken_back ? "" : "; its last row may be cut"));
   }
 
  private:

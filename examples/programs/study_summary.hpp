@@ -19,12 +19,12 @@ inline std::vector<double> column(const StoredRows& stored, const Contender& con
                                   const std::string& name) {
   std::vector<std::string_view> fields;
   const std::string header = rows_header();
-  pinnquad::detail::split_fields(header, fields);
+  pinnquad::split_fields(header, fields);
   const auto at = static_cast<std::size_t>(std::find(fields.begin(), fields.end(), name) - fields.begin());
   std::vector<double> values;
   for (const auto& [id, row] : stored.rows) {
     if (id.model != contender.id || id.flight != contender.flight || id.flight_seed != flight_seed) continue;
-    pinnquad::detail::split_fields(row, fields);
+    pinnquad::split_fields(row, fields);
     double value = 0;
     std::from_chars(fields[at].data(), fields[at].data() + fields[at].size(), value);
     values.push_back(value);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Trains the linearized model's rivals on a recorded flight, judges all on its test block, exports the best
-// physics-informed network as a header.
+// Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part of one
+// flight, or the last of several flights), exports the best physics-informed network as a header.
 //   train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -22,9 +23,9 @@
 #include "judgement.hpp"
 #include "model_predictions.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "plots.hpp"
+#include "training_flights.hpp"
 
 namespace {
 
@@ -36,7 +37,7 @@ constexpr std::size_t golden_count = 8;
 constexpr std::size_t minimum_rows = 2200;
 
 struct Options {
-  std::string flight;
+  std::vector<std::string> flights;
   std::string airframe = PaperQuadrotor::name;
   std::string out = "demo_out";
   std::string model_name = "TrainedQuadModel";
@@ -48,25 +49,26 @@ struct Options {
   bool allow_poor = false;  ///< export what is worse than the mean, marked as such
 };
 
-/// The test flight as the flight side is asked it, and what the trainer predicts: a line of counts, then a row of numbers per
+/// The test rows as the flight side is asked it, and what the trainer predicts: a line of counts, then a row of numbers per
 /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4).
 template <class Model>
-void write_replay(const std::string& path, const Model& model, const Flight& flight, const IndexRange& range) {
+void write_replay(const std::string& path, const Model& model, const RowSet& rows) {
   using Inputs = MotionInputs<typename Model::Scalar>;
   AtomicFile file(path);
-  file.stream() << "pinnquad-replay 1 " << range.size() << " 24\n";
-  for (std::size_t row = range.begin; row < range.end; ++row) {
-    const Inputs in = SampleInputs<Inputs>::from(flight[row]);
-    const auto predicted = model.predict(flight[row]);
+  file.stream() << "pinnquad-replay 1 " << rows.size() << " 24\n";
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const Sample& sample = rows[row];
+    const Inputs in = SampleInputs<Inputs>::from(sample);
+    const auto predicted = model.predict(sample);
     std::string line;
-    const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + detail::number_text(value); };
+    const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + number_text(value); };
     for (const auto* vector :
          {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s, &in.body_rates_rad_s}) {
       for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
     }
     for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z}) add(static_cast<double>(v));
     for (const auto u : predicted) add(static_cast<double>(u));
-    for (const double u : flight[row].commands) add(u);
+    for (const double u : sample.commands) add(u);
     file.stream() << line << '\n';
   }
   file.commit();
@@ -74,21 +76,20 @@ void write_replay(const std::string& path, const Model& model, const Flight& fli
 
 /// Evenly spaced training rows: inside the envelope by construction.
 template <class Model>
-std::vector<typename Model::FeatureVector> golden_features(const Flight& flight, const IndexRange& range) {
+std::vector<typename Model::FeatureVector> golden_features(const RowSet& rows) {
   std::vector<typename Model::FeatureVector> golden;
   for (std::size_t i = 0; i < golden_count; ++i) {
-    const std::size_t row = range.begin + i * (range.size() - 1) / (golden_count - 1);
-    golden.push_back(sample_features<typename Model::Features, typename Model::Scalar>(flight[row]));
+    const std::size_t row = i * (rows.size() - 1) / (golden_count - 1);
+    golden.push_back(sample_features<typename Model::Features, typename Model::Scalar>(rows[row]));
   }
   return golden;
 }
 
 /// Warns of features that stand still in the training rows: they are exported, and flown only where they stood.
 template <class Features>
-void warn_of_still_features(const Flight& flight, const IndexRange& training) {
+void warn_of_still_features(const RowSet& training) {
   std::string names;
-  for (const std::string& name : still_features<Features>(flight, training))
-    names += (names.empty() ? "" : ", ") + name;
+  for (const std::string& name : still_features<Features>(training)) names += (names.empty() ? "" : ", ") + name;
   if (names.empty()) return;
   std::fprintf(stderr,
                "train: warning: %s: nothing changes in the training rows; the model will not know what it does, and "
@@ -98,51 +99,50 @@ void warn_of_still_features(const Flight& flight, const IndexRange& training) {
 
 /// The linearized model and every network on the test rows; predictions in the order of the results.
 template <class Context, class Model>
-std::vector<programs::Result> judge_all(const Flight& flight, const DatasetSplit& split,
-                                        const std::vector<programs::Training>& trainings,
+std::vector<programs::Result> judge_all(const RowSplit& split, const std::vector<programs::Training>& trainings,
                                         const std::vector<Model>& models,
                                         std::vector<programs::Predictions>& predictions) {
   const auto judged = [&](const std::string& name, std::uint64_t seed, double training_s, const auto& predict) {
     predictions.push_back(predict(split.test));
     programs::Result result{name, seed, {}, 0, training_s};
-    result.test = programs::judge<Context>(flight, split.test, predictions.back());
+    result.test = programs::judge<Context>(split.test, predictions.back());
     result.validation_error =
-        programs::judge<Context>(flight, split.validation, predict(split.validation)).errors.mean.mean_absolute;
+        programs::judge<Context>(split.validation, predict(split.validation)).errors.mean.mean_absolute;
     return result;
   };
   std::vector<programs::Result> results;
-  results.push_back(judged(linear_name, 0, 0, [&](const IndexRange& range) {
-    return programs::linear_predictions<typename Context::Vehicle>(flight, range);
+  results.push_back(judged(linear_name, 0, 0, [](const RowSet& rows) {
+    return programs::linear_predictions<typename Context::Vehicle>(rows);
   }));
   for (std::size_t i = 0; i < trainings.size(); ++i) {
     const programs::Training& training = trainings[i];
-    results.push_back(
-        judged(programs::kind_name(training.kind), training.seed, training.training_s,
-               [&](const IndexRange& range) { return programs::network_predictions(models[i], flight, range); }));
+    results.push_back(judged(programs::kind_name(training.kind), training.seed, training.training_s,
+                             [&](const RowSet& rows) { return programs::network_predictions(models[i], rows); }));
   }
   return results;
 }
 
 /// The pictures of the networks `shown` (indices of results), the best of each kind.
 template <class Context>
-void draw(const std::string& folder, const Flight& flight, const IndexRange& test,
-          const std::vector<programs::Result>& results, const std::vector<programs::Predictions>& predictions,
-          const std::vector<std::size_t>& shown, const std::vector<std::string>& kinds) {
+void draw(const std::string& folder, const RowSet& test, const std::vector<programs::Result>& results,
+          const std::vector<programs::Predictions>& predictions, const std::vector<std::size_t>& shown,
+          const std::vector<std::string>& kinds) {
   std::vector<std::string> shown_names;
   std::vector<std::array<programs::AxisSeries, 3>> series;
   std::vector<programs::Judgement> judged;
   std::vector<double> time_s, target;
   std::vector<std::vector<double>> command(shown.size());
-  const IndexRange excerpt = {test.begin, std::min(test.end, test.begin + 200)};
-  for (std::size_t row = excerpt.begin; row < excerpt.end; ++row) {
-    time_s.push_back(flight[row].time_s);
-    target.push_back(flight[row].commands[0]);
+  // of one flight: a curve over its clock
+  const std::size_t excerpt = std::min<std::size_t>(test.pieces().front().rows.size(), 200);
+  for (std::size_t row = 0; row < excerpt; ++row) {
+    time_s.push_back(test[row].time_s);
+    target.push_back(test[row].commands[0]);
   }
   for (std::size_t s = 0; s < shown.size(); ++s) {
     shown_names.push_back(results[shown[s]].model);
-    series.push_back(programs::axis_series<Context>(flight, test, predictions[shown[s]]));
+    series.push_back(programs::axis_series<Context>(test, predictions[shown[s]]));
     judged.push_back(results[shown[s]].test);
-    for (std::size_t i = 0; i < excerpt.size(); ++i) command[s].push_back(predictions[shown[s]][i][0]);
+    for (std::size_t i = 0; i < excerpt; ++i) command[s].push_back(predictions[shown[s]][i][0]);
   }
   const bool drawn = programs::plot_ellipses(folder + "ellipses.svg", shown_names, series, judged) &&
                      programs::plot_errors(folder + "errors.svg", results, kinds) &&
@@ -195,11 +195,10 @@ bool fit_for_export(const Options& options, const Verdict& verdict) {
 }
 
 template <class Model>
-void export_model(const Options& options, const Model& model, const Flight& flight, const DatasetSplit& split,
-                  const Provenance& provenance) {
-  const auto golden = golden_features<Model>(flight, split.train);
+void export_model(const Options& options, const Model& model, const RowSplit& split, const Provenance& provenance) {
+  const auto golden = golden_features<Model>(split.train);
   write_model_header(options.out + "/model.hpp", options.model_name, model, golden, provenance);
-  write_replay(options.out + "/replay.txt", model, flight, split.test);
+  write_replay(options.out + "/replay.txt", model, split.test);
   std::printf("  %s/model.hpp: struct %s, %s of seed %llu (least error on the validation rows)%s\n",
               options.out.c_str(), options.model_name.c_str(), programs::kind_name(programs::Kind::physics_informed),
               static_cast<unsigned long long>(provenance.seed),
@@ -211,18 +210,17 @@ void export_model(const Options& options, const Model& model, const Flight& flig
 }
 
 template <class Vehicle>
-int train_judge_export(const Options& options, const Flight& flight) {
+int train_judge_export(const Options& options, const Dataset& dataset) {
   using Context = Context<PaperFeatures, Vehicle>;
   using Model = TrainedModel<programs::PaperNetwork, Context>;
-  const DatasetSplit split = split_contiguous(flight.size());
-  require_varied_commands(options.flight, flight, split.train, "training");
-  require_varied_commands(options.flight, flight, split.validation, "validation");
-  require_varied_commands(options.flight, flight, split.test, "test");
-  warn_of_still_features<PaperFeatures>(flight, split.train);
-  const Context context = make_context<Context>(flight, split.train);
-  const auto data = standardised<float>(context, flight, split.train);
-  std::printf("      %zu rows: %zu train, %zu validate, %zu test, in contiguous blocks\n", flight.size(),
-              split.train.size(), split.validation.size(), split.test.size());
+  const RowSplit split = dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
+  programs::require_varied_commands(options.flights, dataset, split.train, "training");
+  programs::require_varied_commands(options.flights, dataset, split.validation, "validation");
+  programs::require_varied_commands(options.flights, dataset, split.test, "test");
+  warn_of_still_features<PaperFeatures>(split.train);
+  const Context context = make_context<Context>(split.train);
+  const auto data = standardised<float>(context, split.train);
+  programs::print_split(dataset, split);
   std::printf("      network %d -> 10 x 25 ReLU -> %d, %d parameters; Adam, batch 64, %d epochs, %d seeds\n",
               programs::PaperNetwork::inputs, programs::PaperNetwork::outputs, programs::PaperNetwork::parameter_count,
               options.epochs, options.seeds);
@@ -236,12 +234,12 @@ int train_judge_export(const Options& options, const Flight& flight) {
   std::printf("[3/5] judge\n");
   std::vector<Model> models;
   for (const programs::Training& training : trainings) {
-    models.push_back(make_trained_model(training.network, context, flight, split.train));
+    models.push_back(make_trained_model(training.network, context, split.train));
   }
   std::vector<programs::Predictions> predictions;
-  const auto results = judge_all<Context>(flight, split, trainings, models, predictions);
-  const auto regression = programs::regression_predictions<PaperFeatures>(flight, split.train, split.test);
-  const double regression_r_squared = programs::judge<Context>(flight, split.test, regression).errors.mean.r_squared;
+  const auto results = judge_all<Context>(split, trainings, models, predictions);
+  const auto regression = programs::regression_predictions<PaperFeatures>(split.train, split.test);
+  const double regression_r_squared = programs::judge<Context>(split.test, regression).errors.mean.r_squared;
 
   const std::string vanilla = programs::kind_name(programs::Kind::vanilla);
   const std::string informed = programs::kind_name(programs::Kind::physics_informed);
@@ -261,26 +259,22 @@ int train_judge_export(const Options& options, const Flight& flight) {
                    {"exported", !verdict.worse_than_mean() || options.allow_poor}};
   }
   const std::string folder = options.out + "/";
-  const std::string flight_name = printable(std::filesystem::path(options.flight).filename().string());
   programs::write_results(folder + "results.csv", results);
-  programs::write_report(folder + "report.json",
-                         {{"version", PINNQUAD_VERSION},
-                          {"flight", flight_name},
-                          {"flight_hash", detail::hexadecimal(content_hash(flight))},
-                          {"rows", flight.size()},
-                          {"airframe", Vehicle::name},
-                          {"epochs", options.epochs},
-                          {"first_seed", options.seed},
-                          {"seeds", options.seeds},
-                          {"batch", 64},
-                          {"learning_rate", Adam{}.learning_rate},
-                          {"weight_decay", Adam{}.weight_decay},
-                          {"lambda_max", CyclicalAnnealing{}.maximum},
-                          {"cycles", CyclicalAnnealing{}.cycles},
-                          {"hold", CyclicalAnnealing{}.hold},
-                          {"step_gain", TanhStep{}.gain},
-                          {"finished", trainings.size()}},
-                         results, verdict_row);
+  nlohmann::json settings = {{"version", PINNQUAD_VERSION},
+                             {"airframe", Vehicle::name},
+                             {"epochs", options.epochs},
+                             {"first_seed", options.seed},
+                             {"seeds", options.seeds},
+                             {"batch", 64},
+                             {"learning_rate", Adam{}.learning_rate},
+                             {"weight_decay", Adam{}.weight_decay},
+                             {"lambda_max", CyclicalAnnealing{}.maximum},
+                             {"cycles", CyclicalAnnealing{}.cycles},
+                             {"hold", CyclicalAnnealing{}.hold},
+                             {"step_gain", TanhStep{}.gain},
+                             {"finished", trainings.size()}};
+  settings.update(programs::described(dataset, split));
+  programs::write_report(folder + "report.json", std::move(settings), results, verdict_row);
 
   programs::print_table(results, {linear_name, vanilla, informed});
   programs::print_paired(results, informed, vanilla);
@@ -300,15 +294,15 @@ int train_judge_export(const Options& options, const Flight& flight) {
   const bool exported = fit_for_export(options, verdict);
   if (exported) {
     std::printf("[4/5] export\n");
-    export_model(options, models[*best - 1], flight, split,  // results[0] is the linearized model
-                 {flight_name, content_hash(flight), split.train.size(), results[*best].seed, options.epochs,
-                  "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing", verdict});
+    export_model(options, models[*best - 1], split,  // results[0] is the linearized model
+                 {programs::flight_names(dataset), content_hash(dataset), split.train.size(), results[*best].seed,
+                  options.epochs, "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing", verdict});
   }
   // last: a picture that cannot be drawn costs nothing else
   std::vector<std::size_t> shown;
   if (best_vanilla) shown.push_back(*best_vanilla);
   shown.push_back(*best);
-  draw<Context>(folder, flight, split.test, results, predictions, shown, {linear_name, vanilla, informed});
+  draw<Context>(folder, split.test, results, predictions, shown, {linear_name, vanilla, informed});
   if (programs::interrupted()) {
     std::fprintf(stderr, "train: interrupted; %zu of %d trainings were finished and kept\n", trainings.size(),
                  2 * options.seeds);
@@ -321,16 +315,16 @@ int train_judge_export(const Options& options, const Flight& flight) {
 constexpr std::array<const char*, 7> output_names = {"results.csv",    "report.json", "ellipses.svg", "errors.svg",
                                                      "prediction.svg", "model.hpp",   "replay.txt"};
 
-/// No output takes the place of the flight or of another output.
+/// No output takes the place of a flight or of another output.
 void require_separate_files(const Options& options) {
   programs::FileRoles roles;
-  roles.reads("--flight", options.flight);
+  for (const std::string& path : options.flights) roles.reads("--flight", path);
   roles.writes("--out", options.out);
   for (const char* name : output_names) roles.writes("--out", options.out + "/" + name);
   roles.writes("--block", options.block);
 }
 
-/// Trains on the flight of the options: the exit code.
+/// Trains on the flights of the options: the exit code.
 int train_chosen(const Options& options) {
   if (!is_identifier(options.model_name)) {
     throw std::invalid_argument("--name " + options.model_name +
@@ -340,15 +334,14 @@ int train_chosen(const Options& options) {
     throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
   }
   require_separate_files(options);
-  const Flight flight = read_flight_csv(options.flight, minimum_rows);
-  require_plausible(options.flight, flight);
+  const Dataset dataset = programs::read_flights(options.flights, minimum_rows);
   const programs::FolderLock folder(options.out);
   // what cannot be written is found before the training
   for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
   if (!options.block.empty()) AtomicFile probe(options.block);
   int code = programs::exit_bad_input;
   programs::with_airframe(options.airframe,
-                          [&](auto tag) { code = train_judge_export<typename decltype(tag)::type>(options, flight); });
+                          [&](auto tag) { code = train_judge_export<typename decltype(tag)::type>(options, dataset); });
   return code;
 }
 
@@ -356,14 +349,18 @@ int run(int argument_count, char** arguments) {
   using programs::add_number;
   using programs::add_path;
   Options options;
-  CLI::App app{"Trains vanilla and physics-informed networks on a flight, judges them, exports the best as a header.",
+  CLI::App app{"Trains vanilla and physics-informed networks on flights, judges them, exports the best as a header.",
                "train"};
   app.footer(
       "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
       "commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
       "Without gnuplot the pictures are left out, with a line.");
-  add_path(app, "--flight", options.flight, "FILE.csv", "recorded flight, CSV as `fly` writes it")->required();
+  programs::add_paths(
+      app, "--flight", options.flights, "FILE.csv",
+      "recorded flight, CSV as `fly` writes it: its first part trains, its last tests. Of three or more, "
+      "whole flights, in this order: the first train, the last test")
+      ->required();
   app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
       ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, pictures and the exported header")

@@ -50,7 +50,8 @@ TEST_CASE("a Status prints as the word that documents and code use: its enumerat
                        PINNQUAD_NAMED(block_truncated),
                        PINNQUAD_NAMED(block_incompatible),
                        PINNQUAD_NAMED(block_corrupt),
-                       PINNQUAD_NAMED(disagreement)};
+                       PINNQUAD_NAMED(disagreement),
+                       PINNQUAD_NAMED(warming_up)};
   CHECK(std::size(all) == static_cast<std::size_t>(pinnquad::status_count));
   for (const Named& each : all) CHECK(std::string(pinnquad::to_string(each.status)) == each.name);
 }

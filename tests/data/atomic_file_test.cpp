@@ -121,7 +121,7 @@ TEST_CASE("what killed writers leave does not pile up, and what a living one has
   CHECK(folder.read("out.txt") == "living");
   CHECK(folder.listing() == Names{"out.txt"});
 
-  using pinnquad::detail::PartialFile;
+  using pinnquad::PartialFile;
   REQUIRE(killed());
   PartialFile::remove_abandoned(folder.path("out.txt.partial-1"));
   CHECK(folder.listing() == Names{"out.txt"});
@@ -142,7 +142,7 @@ TEST_CASE("files of partial names that no writer left are neither read, emptied 
   file.stream() << "text";
   file.commit();
   for (const std::string& name : before) {
-    if (name != "other") pinnquad::detail::PartialFile::remove_abandoned(folder.path(name));
+    if (name != "other") pinnquad::PartialFile::remove_abandoned(folder.path(name));
   }
   CHECK(folder.read("out.txt") == "text");
   CHECK(folder.read("other") == "of somebody");

@@ -185,3 +185,45 @@ TEST_CASE("a flight that could not be read back is not written, and the old file
   CHECK(folder.listing() == std::vector<std::string>{"out.csv"});
   CHECK(folder.read("out.csv") == "old");
 }
+
+TEST_CASE("extra columns: written behind the others as name and unit, read where they are asked for") {
+  const TemporaryFolder folder;
+  Flight flight = random_flight(12, 5);
+  flight.add_column({{"battery_voltage", "V"}, std::vector<double>(12, 15.25)});
+  std::vector<double> speeds;
+  for (int i = 0; i < 12; ++i) speeds.push_back(100 + 1.0 / (i + 3));
+  flight.add_column({{"n 1, front", "rev/s"}, speeds});  // a name that needs quotation marks
+  const std::string path = folder.path("flight.csv");
+  write_flight_csv(path, flight);
+
+  const auto columns = pinnquad::extra_columns_in(path);
+  REQUIRE(columns.size() == 2);
+  CHECK(columns[0].name == "battery_voltage");
+  CHECK(columns[1].name == "n 1, front");
+  CHECK(columns[1].unit == "rev/s");
+  const Flight whole = read_flight_csv(path, 1, columns);
+  CHECK(same_bits(whole, flight));
+  CHECK(whole.column("n 1, front")->values == speeds);
+  const Flight one = read_flight_csv(path, 1, {{"battery_voltage", "V"}});
+  CHECK(one.columns().size() == 1);
+  CHECK(one.column("battery_voltage")->values[11] == 15.25);
+  CHECK(read_flight_csv(path).columns().empty());
+
+  const auto refused = [&](const std::vector<pinnquad::ColumnName>& wanted) {
+    try {
+      read_flight_csv(path, 1, wanted);
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(path.size());
+    }
+    return std::string("accepted");
+  };
+  CHECK(refused({{"battery_voltage", "mV"}}) ==
+        ":1: expected a column named battery_voltage [mV], found none of that name among 23 columns");
+  CHECK(pinnquad::extra_columns_in(folder.write("none.csv", "")).empty());
+  CHECK(pinnquad::extra_columns_in(folder.write("odd.csv", "a[V],[V],b [V] x, [V],c []\n")).size() == 1);
+
+  Flight rest;
+  for (std::size_t i = 0; i < 12; ++i) rest.push_back(flight[i]);
+  rest.add_column({{"battery_voltage", "V"}, std::vector<double>(12, std::numeric_limits<double>::quiet_NaN())});
+  CHECK_THROWS_AS(write_flight_csv(folder.path("bad.csv"), rest), OutputError);
+}

@@ -13,6 +13,7 @@
 
 using pinnquad::content_hash;
 using pinnquad::Flight;
+using pinnquad_test::random_flight;
 
 namespace {
 
@@ -31,7 +32,7 @@ TEST_CASE("the hash is FNV-1a: the vectors its authors publish") {
 }
 
 TEST_CASE("the bytes that are hashed are fixed: row count, then IEEE 754 bits, least significant byte first") {
-  CHECK(content_hash({}) == fnv1a(std::string(8, '\0')));
+  CHECK(content_hash(Flight{}) == fnv1a(std::string(8, '\0')));
 
   pinnquad::Sample sample;
   sample.time_s = 1.0;        // 0x3ff0000000000000
@@ -73,4 +74,57 @@ TEST_CASE("signed zeros differ, NaNs do not") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(with_yaw(nan) == with_yaw(-nan));
   CHECK(with_yaw(nan) != with_yaw(std::numeric_limits<double>::infinity()));
+}
+
+TEST_CASE("extra columns: one number per row, names of their own, and they are content") {
+  Flight flight = random_flight(4, 11);
+  const std::uint64_t bare = content_hash(flight);
+  flight.add_column({{"battery_voltage", "V"}, {16, 15.9, 15.8, 15.7}});
+  REQUIRE(flight.column("battery_voltage") != nullptr);
+  CHECK(flight.column("battery_voltage")->values[2] == 15.8);
+  CHECK(flight.column("n1") == nullptr);
+  CHECK(content_hash(flight) != bare);
+  Flight other = random_flight(4, 11);
+  other.add_column({{"battery_voltage", "mV"}, {16, 15.9, 15.8, 15.7}});
+  CHECK(content_hash(other) != content_hash(flight));
+
+  CHECK_THROWS_AS(flight.add_column({{"battery_voltage", "V"}, {1, 2, 3, 4}}), std::invalid_argument);
+  CHECK_THROWS_AS(flight.add_column({{"n1", "rev/s"}, {1, 2, 3}}), std::invalid_argument);
+  CHECK_THROWS_AS(flight.add_column({{"", "V"}, {1, 2, 3, 4}}), std::invalid_argument);
+  CHECK_THROWS_AS(flight.add_column({{"altitude", "m"}, {1, 2, 3, 4}}), std::invalid_argument);
+  CHECK_THROWS_AS(flight.push_back(flight[3]), std::invalid_argument);
+  CHECK(flight.size() == 4);
+  const double volts = 15.6;
+  flight.push_back(flight[3], &volts, 1);
+  CHECK(flight.size() == 5);
+  CHECK(flight.column("battery_voltage")->values.back() == 15.6);
+}
+
+TEST_CASE("a dataset: one flight is that flight; of several, names and clocks are looked at") {
+  const Flight flight = random_flight(30, 12);
+  CHECK(content_hash(pinnquad::Dataset(flight)) == content_hash(flight));
+  pinnquad::Dataset dataset;
+  const auto named = [](const char* name, unsigned seed) {
+    Flight made = random_flight(10, seed);
+    made.name = name;
+    return made;
+  };
+  dataset.add(named("a", 1));
+  dataset.add(named("b", 2));
+  CHECK(dataset.rows() == 20);
+  CHECK_THROWS_WITH_AS(dataset.add(named("a", 3)),
+                       "dataset: expected a name of its own for each flight, found 'a' twice", std::invalid_argument);
+  Flight backwards = named("c", 4);
+  backwards[6].time_s = backwards[5].time_s;
+  CHECK_THROWS_WITH_AS(dataset.add(backwards), "dataset: time does not increase at row 7 of flight 'c'",
+                       std::invalid_argument);
+  Flight weightless = named("c", 4);
+  weightless.weight = 0;
+  CHECK_THROWS_AS(dataset.add(weightless), std::invalid_argument);
+  CHECK(dataset.size() == 2);
+
+  pinnquad::Dataset swapped;
+  swapped.add(named("b", 2));
+  swapped.add(named("a", 1));
+  CHECK(content_hash(swapped) != content_hash(dataset));
 }

@@ -11,8 +11,8 @@
 #include <random>
 #include <string>
 
-using pinnquad::detail::number_text;
-using pinnquad::detail::parse_number;
+using pinnquad::number_text;
+using pinnquad::parse_number;
 
 namespace {
 

@@ -6,10 +6,10 @@
 
 #include "../support/described_model.hpp"
 #include "../support/small_model.hpp"
-#include "pinnquad/control/tracking.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/simulation/tracking.hpp"
 
 namespace {
 
@@ -157,6 +157,22 @@ unsigned char pinnquad_flight_predict_reported(const float* state, const float* 
 unsigned char pinnquad_flight_predict_clamped(const float* state, const float* wanted, float* u) {
   using Clamping = pinnquad::Guard<pinnquad::FiniteInputs, pinnquad::ClampToEnvelope, pinnquad::FiniteOutputs>;
   return predict_and_report(pinnquad::InverseDynamics<SmallModel, Clamping>{}, state, wanted, u);
+}
+
+unsigned char pinnquad_flight_history(const float* state, const float* wanted, double time_s, float voltage_V,
+                                      float* x) {
+  using Measured = pinnquad::WithColumns<pinnquad::PaperFeatures, pinnquad::BatteryVoltage>;
+  using Past = pinnquad::Windowed<Measured, 3, pinnquad::PeriodMicroseconds<20000>>;
+  using History = pinnquad::InputHistory<Past, float>;
+  History history;
+  const auto vehicle = read(state);
+  History::Present present;
+  static_cast<pinnquad::MotionInputs<float>&>(present) = pinnquad::motion_inputs(vehicle.body, motion(wanted));
+  present.column<pinnquad::BatteryVoltage>() = voltage_V;
+  static_cast<void>(history.take(present, time_s - 0.02));
+  const Status status = history.take(present, time_s);
+  Past::extract(history.inputs(), x);
+  return static_cast<unsigned char>(status == Status::ok ? Past::check(history.inputs()) : status);
 }
 
 unsigned char pinnquad_flight_self_test_reported(float* largest_difference) {

@@ -21,6 +21,21 @@ cmp flight.csv again.csv || fail "the same seed flew another flight"
 cmp a/model.hpp b/model.hpp || fail "the same seeds trained other weights"
 cmp a/model.block b/model.block || fail "the same seeds wrote another block"
 
+# several flights: whole ones train, validate and test; the same in one file of its own is another training
+for part in 1 2 3; do
+  sed -n "1p;$((part * 1000 - 998)),$((part * 1000 + 1))p" flight.csv >"part_$part.csv"
+done
+mkdir d
+"$train" --flight part_1.csv part_2.csv --flight part_3.csv --out d --seeds 1 --epochs 2 --allow-poor >d.txt
+grep -q "3000 rows: 1000 train, 1000 validate, 1000 test, in whole flights" d.txt || fail "said: $(cat d.txt)"
+grep -q "test: part_3.csv" d.txt || fail "the last flight is not the test: $(cat d.txt)"
+grep -q 'training_data = "part_1.csv, part_2.csv, part_3.csv"' d/model.hpp || fail "the header does not name its flights"
+[ "$(head -n 1 d/replay.txt)" = "pinnquad-replay 1 1000 24" ] || fail "the replay is not the test flight"
+grep -q '"block": "validation"' d/report.json || fail "report.json does not say which flight validates"
+expect_line 2 'at least 3 flights' "$train" --flight part_1.csv other.csv --out e
+expect_line 2 'part_1.csv and part_1.csv hold the same flight' "$train" --flight part_1.csv part_1.csv part_2.csv --out e
+expect_line 2 'at least 2200 rows in 2 flights, found 2000' "$train" --flight part_1.csv part_2.csv --out e
+
 # the exported header in a project of its own, from a folder of any name
 odd='a @place@ "of"; its own'
 mkdir "$odd"

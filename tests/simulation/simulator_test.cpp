@@ -277,3 +277,47 @@ TEST_CASE("a recorder is told the commands of each tick, and asked for a row aft
   CHECK(ticks == 500);
   CHECK(rows == 20);
 }
+
+namespace {
+
+/// What the first rotor's speed controller says: its thrust grows with the square of its speed.
+struct FirstRotor : pinnquad::RotorSpeed<1> {
+  template <class Quadrotor>
+  double operator()(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state) const {
+    return 100 * std::sqrt(state.rotors[0]);
+  }
+};
+struct Clock {
+  static constexpr const char* name = "clock";
+  static constexpr const char* unit = "s";
+  template <class Quadrotor>
+  double operator()(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state) const {
+    return state.time_s < fails_s ? state.time_s : std::numeric_limits<double>::quiet_NaN();
+  }
+  double fails_s = 100;
+};
+
+}  // namespace
+
+TEST_CASE("a recorder of columns: the same rows, a value per row and column; one that is not finite ends the flight") {
+  using Columns = pinnquad::ColumnRecorder<pinnquad::ExactRecorder, FirstRotor, Clock>;
+  Simulator<Vehicle, Pilot> plain(vehicle(), pilot(7));
+  Simulator<Vehicle, Pilot, Columns> simulator(vehicle(), pilot(7), {}, Columns({}, {}, Clock{2.0}));
+  for (int row = 0; row < 20; ++row) {
+    REQUIRE(plain.next_row());
+    REQUIRE(simulator.next_row());
+    const auto& speeds = simulator.recording().column("n1")->values;
+    REQUIRE(speeds.size() == std::size_t(row) + 1);
+    CHECK(speeds.back() == 100 * std::sqrt(simulator.vehicle().rotors[0]));
+    CHECK(simulator.recording().column("clock")->values.back() == simulator.time_s());
+  }
+  Flight rows = simulator.take_recording();
+  CHECK(rows.columns().size() == 2);
+  CHECK(pinnquad::to_values(rows[19]) == pinnquad::to_values(plain.recording()[19]));
+  REQUIRE(simulator.next_row());  // it goes on with its columns
+  CHECK(simulator.recording().column("clock")->values.size() == 1);
+  while (simulator.next_row()) {
+  }
+  CHECK(simulator.status() == Status::output_not_finite);
+  CHECK(simulator.time_s() == doctest::Approx(2.0));
+}

@@ -9,7 +9,7 @@
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 
-using pinnquad::column_statistics;
+using pinnquad::ColumnStatistics;
 using pinnquad::resolution_of;
 
 namespace {
@@ -18,6 +18,13 @@ std::vector<std::array<double, 1>> column(std::initializer_list<double> values) 
   std::vector<std::array<double, 1>> rows;
   for (const double value : values) rows.push_back({value});
   return rows;
+}
+
+ColumnStatistics statistics(const std::vector<std::array<double, 1>>& rows) {
+  const auto each_row = [&](const auto& visit) {
+    for (const auto& row : rows) visit(row);
+  };
+  return pinnquad::column_statistics<1>(each_row, [](std::size_t) { return "m/s"; })[0];
 }
 
 }  // namespace
@@ -48,16 +55,16 @@ TEST_CASE("a known unit's spread is never below a float's rounding of the value"
 }
 
 TEST_CASE("still or not: scale and margin") {
-  const auto moving = column_statistics(column({1, 3}), 0, "m/s");
+  const auto moving = statistics(column({1, 3}));
   CHECK(moving.mean == 2);
   CHECK(moving.spread == 1);
   CHECK_FALSE(moving.still());
   CHECK(moving.scale() == 1);
   CHECK(moving.margin() == doctest::Approx(0.2));  // a tenth of the range
-  const auto barely = column_statistics(column({1, 1.04}), 0, "m/s");
+  const auto barely = statistics(column({1, 1.04}));
   CHECK_FALSE(barely.still());
   CHECK(barely.margin() == 0.01);  // the smallest spread
-  const auto still = column_statistics(column({1, 1 + 1e-13}), 0, "m/s");
+  const auto still = statistics(column({1, 1 + 1e-13}));
   CHECK(still.still());
   CHECK(still.scale() == 1);
   CHECK(still.margin() == 0.1);
@@ -65,6 +72,6 @@ TEST_CASE("still or not: scale and margin") {
   auto rare = column({0});
   rare.resize(100000, {0});
   rare[500] = {2};
-  CHECK(column_statistics(rare, 0, "m/s").still());
-  CHECK(column_statistics(rare, 0, "m/s").margin() == doctest::Approx(0.2));
+  CHECK(statistics(rare).still());
+  CHECK(statistics(rare).margin() == doctest::Approx(0.2));
 }

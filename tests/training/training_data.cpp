@@ -160,3 +160,33 @@ TEST_CASE("a column that does not vary gets the spread 1, whatever its value") {
     CHECK(std::fabs(data.features_of(5)[7]) <= 1e-9);  // the mean's rounding
   }
 }
+
+TEST_CASE("rows of many flights are one set: as if they had been flown in one, with the weights of their flights") {
+  const Flight whole = random_flight_rows(150, 149);
+  pinnquad::Dataset dataset;
+  Flight first, second;
+  first.name = "first";
+  second.name = "second";
+  second.weight = 2.5;
+  for (std::size_t i = 0; i < 150; ++i) (i < 90 ? first : second).push_back(whole[i]);
+  dataset.add(first);
+  dataset.add(second);
+  pinnquad::RowSet rows;
+  rows.add(dataset[0], {0, 90});
+  rows.add(dataset[1], {0, 30});
+
+  const auto context = make_context<PaperContext>(rows);
+  const auto expected = make_context<PaperContext>(whole, {0, 120});
+  CHECK(context.input.mean == expected.input.mean);
+  CHECK(context.input.spread == expected.input.spread);
+  CHECK(context.output.mean == expected.output.mean);
+  CHECK(context.signed_sum_spread == expected.signed_sum_spread);
+  const auto data = standardised<float>(context, rows);
+  const auto one = standardised<float>(expected, whole, IndexRange{0, 120});
+  CHECK(data.features == one.features);
+  CHECK(data.outputs == one.outputs);
+  CHECK(one.weights.empty());
+  REQUIRE(data.weights.size() == 120);
+  CHECK(data.weights[89] == 1);
+  CHECK(data.weights[90] == 2.5);
+}

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "pinnquad/inference/analytic_inverse.hpp"
+#include "pinnquad/inference/input_history.hpp"
 
 namespace pinnquad {
 
@@ -80,26 +81,50 @@ struct FallbackCount {
   static constexpr std::size_t index(Status status) noexcept { return static_cast<std::size_t>(status) % statuses; }
 };
 
+/// What NetworkInverse is told besides the motion: nothing.
+struct MotionAlone {};
+
 /// The network's prediction for the motion wanted, or what its guard falls back to, counted by why. `InverseDynamics` has the
 /// interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in its guard
 /// the policy declines where the network does.
-template <class InverseDynamics>
+/// A model with a past gets its window of what this policy was asked, by the times given: it declines as `warming_up` first.
+/// A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, called before each prediction:
+/// `void operator()(const State<Scalar>&, Scalar time_s, Inputs& present) noexcept` sets what the motion does not say.
+template <class InverseDynamics, class Measured = MotionAlone>
 class NetworkInverse {
  public:
   using NetworkScalar = typename InverseDynamics::Scalar;
-  static_assert(std::is_same_v<typename InverseDynamics::Inputs, MotionInputs<NetworkScalar>>,
+  using History = InputHistory<typename InverseDynamics::Features, NetworkScalar>;
+  /// The model's inputs, or one tap of them.
+  using Present = typename History::Present;
+  static_assert(std::is_base_of_v<MotionInputs<NetworkScalar>, Present>,
                 "pinnquad: NetworkInverse fills MotionInputs; this model's feature set asks for other inputs "
                 "(inference/features.hpp)");
+  static_assert(
+      !std::is_same_v<Measured, MotionAlone> || std::is_same_v<MotionInputs<NetworkScalar>, Present>,
+      "pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument that measures it "
+      "(control/feed_forward.hpp)");
 
-  explicit NetworkInverse(const InverseDynamics& inverse) noexcept : inverse_(inverse) {}
+  explicit NetworkInverse(const InverseDynamics& inverse, const Measured& measured = Measured{}) noexcept
+      : inverse_(inverse), measured_(measured) {}
 
   template <class Scalar>
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, Scalar time_s,
                     Commands<Scalar>& commands) noexcept {
+    Present present;
+    static_cast<MotionInputs<NetworkScalar>&>(present) = narrowed(motion_inputs(state, desired));
+    if constexpr (!std::is_same_v<Measured, MotionAlone>) {
+      static_assert(
+          std::is_nothrow_invocable_v<Measured&, const State<Scalar>&, Scalar, Present&>,
+          "pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be noexcept "
+          "(control/feed_forward.hpp)");
+      measured_(state, time_s, present);
+    }
+    static_cast<void>(history_.take(present, static_cast<double>(time_s)));  // predict() says it too
     Commands<NetworkScalar> predicted{};
     typename InverseDynamics::Report report;
     const PlaceAndTime<Scalar> place{state.position_m, time_s};
-    const Status status = inverse_.predict(narrowed(motion_inputs(state, desired)), place, predicted, report);
+    const Status status = inverse_.predict(history_.inputs(), place, predicted, report);
     count_.add(report.cause);
     if (!has_output(status)) return status;
     for (std::size_t i = 0; i < predicted.size(); ++i) commands[i] = Scalar(predicted[i]);
@@ -107,6 +132,8 @@ class NetworkInverse {
   }
 
   const FallbackCount& count() const noexcept { return count_; }
+  /// The source of what the motion does not say.
+  Measured& measured() noexcept { return measured_; }
 
  private:
   template <class Scalar>
@@ -120,6 +147,8 @@ class NetworkInverse {
   }
 
   InverseDynamics inverse_;
+  Measured measured_;
+  History history_{};
   FallbackCount count_{};
 };
 

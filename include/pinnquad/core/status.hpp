@@ -26,10 +26,11 @@ enum class [[nodiscard]] Status : std::uint8_t{
     block_incompatible,   ///< a block of another format, network or feature set
     block_corrupt,        ///< a block whose checksum or contents are wrong
     disagreement,         ///< the network's commands are further from another inverse's than the guard allows
+    warming_up,  ///< a model with a past has not seen enough of it yet, or lost it in a gap (inference/windowed.hpp)
 };
 
 /// Number of Status values, for counters by Status.
-inline constexpr int status_count = static_cast<int>(Status::disagreement) + 1;
+inline constexpr int status_count = static_cast<int>(Status::warming_up) + 1;
 
 /// True where the output was written: `ok`, `limited`, `fell_back`.
 PINNQUAD_ALWAYS_INLINE constexpr bool has_output(Status status) noexcept {
@@ -55,6 +56,7 @@ constexpr const char* to_string(Status status) noexcept {
     case Status::block_incompatible: return "block_incompatible";
     case Status::block_corrupt: return "block_corrupt";
     case Status::disagreement: return "disagreement";
+    case Status::warming_up: return "warming_up";
   }
   return "unknown status";
 }

@@ -24,14 +24,14 @@ class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path) : path_(path), target_(resolve(path)) {
     if (const int reason = partial_.claim(target_)) {
-      throw OutputError(path_, detail::system_reason(reason, "no partial file can be made"));
+      throw OutputError(path_, system_reason(reason, "no partial file can be made"));
     }
     errno = 0;
     stream_.open(partial_.path(), std::ios::binary | std::ios::trunc);
     if (!stream_) {
       const int reason = errno;
       discard();
-      throw OutputError(path_, detail::system_reason(reason, "the partial file does not open"));
+      throw OutputError(path_, system_reason(reason, "the partial file does not open"));
     }
   }
 
@@ -62,7 +62,7 @@ class AtomicFile {
     if (!written || !flushed || !closed_) {
       const int reason = flush_reason != 0 ? flush_reason : errno;
       discard();
-      throw OutputError(path_, detail::system_reason(reason, "writing failed"));
+      throw OutputError(path_, system_reason(reason, "writing failed"));
     }
   }
 
@@ -72,7 +72,7 @@ class AtomicFile {
     close();
     if (const int reason = partial_.move_to(target_)) {
       discard();
-      throw OutputError(path_, detail::system_reason(reason, "it does not get its name"));
+      throw OutputError(path_, system_reason(reason, "it does not get its name"));
     }
   }
 
@@ -107,7 +107,7 @@ class AtomicFile {
 
   std::string path_;
   std::filesystem::path target_;
-  detail::PartialFile partial_;
+  PartialFile partial_;
   std::ofstream stream_;
   bool closed_{false};
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A recorded flight as a CSV file: header `t,vdot_bx,...,u4` (`sample_field_names`), one sample per line, SI units.
+// Extra columns stand behind them as `battery_voltage [V]`: name and unit.
 // What is written can be read, and gives the same bits; what cannot be read is refused in one line.
 #pragma once
 
@@ -20,43 +21,69 @@ inline constexpr std::size_t minimum_flight_rows = 10;
 
 namespace detail {
 
-inline std::vector<std::string> flight_columns() { return {sample_field_names.begin(), sample_field_names.end()}; }
+/// The columns of a file: those of every flight, then extra ones.
+template <class Columns>
+std::vector<std::string> flight_columns(const Columns& extra) {
+  std::vector<std::string> columns(sample_field_names.begin(), sample_field_names.end());
+  for (const ColumnName& column : extra) columns.push_back(column.name + " [" + column.unit + "]");
+  return columns;
+}
 
 }  // namespace detail
 
-/// Reads a flight. Columns are found by name, in any order; others are ignored. Units and frames: see `Sample`.
+/// Reads a flight, and the extra columns asked for. Columns are found by name, in any order; others are ignored. Units and
+/// frames: see `Sample`; an extra column is found by its name with its unit, `battery_voltage [V]`.
 /// Throws InputError (all of `read_csv`, and time that does not increase from row to row), its text one line:
 ///   flight.csv:17:5: expected a finite number in column wdot_x, found "abc"
-inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows) {
+inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows,
+                              const std::vector<ColumnName>& extra = {}) {
   Flight flight;
+  for (const ColumnName& column : extra) flight.add_column({column, {}});
   detail::for_each_csv_row(
-      path, detail::flight_columns(), minimum_rows,
+      path, detail::flight_columns(extra), minimum_rows,
       [&](const std::vector<double>& values, std::size_t line, const std::vector<std::size_t>& fields) {
         if (!flight.empty() && !(values[0] > flight.back().time_s)) {
           throw InputError(path, line, fields[0] + 1,
-                           "a time above " + detail::number_text(flight.back().time_s) + " in column t",
-                           detail::number_text(values[0]));
+                           "a time above " + number_text(flight.back().time_s) + " in column t",
+                           number_text(values[0]));
         }
         // room for all rows at once: growing would hold the flight twice
         if (flight.empty()) flight.reserve(detail::most_records(path, fields.size()));
         SampleValues row;
-        std::copy(values.begin(), values.end(), row.begin());
-        flight.push_back(to_sample(row));
+        std::copy_n(values.begin(), row.size(), row.begin());
+        flight.push_back(to_sample(row), values.data() + row.size(), extra.size());
       });
   return flight;
 }
 
-/// Writes a flight; the file appears whole or not at all. `read_flight_csv` gives the same bits back.
+/// The extra columns of a file: those whose heads read `name [unit]`, in the file's order. Throws InputError if it can't be
+/// read.
+inline std::vector<ColumnName> extra_columns_in(const std::string& path) {
+  std::vector<ColumnName> columns;
+  for (const std::string& head : detail::csv_header(path)) {
+    const std::size_t unit = head.rfind(" [");
+    if (unit == std::string::npos || unit == 0 || head.back() != ']') continue;
+    columns.push_back({head.substr(0, unit), head.substr(unit + 2, head.size() - unit - 3)});
+  }
+  return columns;
+}
+
+/// Writes a flight with its extra columns; the file appears whole or not at all. `read_flight_csv` gives the same bits back.
 /// Throws OutputError if the file cannot be written, or if the flight could not be read back: a value that is not
 /// finite, time that does not increase.
 inline void write_flight_csv(const std::string& path, const Flight& flight) {
-  CsvWriter writer(path, detail::flight_columns());
+  const std::vector<std::string> columns = detail::flight_columns(flight.columns());
+  CsvWriter writer(path, columns);
+  std::vector<double> values(columns.size());
   for (std::size_t i = 0; i < flight.size(); ++i) {
-    const SampleValues values = to_values(flight[i]);
+    const SampleValues sample = to_values(flight[i]);
+    std::copy(sample.begin(), sample.end(), values.begin());
+    for (std::size_t k = 0; k < flight.columns().size(); ++k) {
+      values[sample.size() + k] = flight.columns()[k].values[i];
+    }
     for (std::size_t field = 0; field < values.size(); ++field) {
       if (!is_finite(values[field])) {
-        throw OutputError(path,
-                          "sample " + std::to_string(i) + " has no finite " + std::string(sample_field_names[field]));
+        throw OutputError(path, "sample " + std::to_string(i) + " has no finite " + columns[field]);
       }
     }
     if (i > 0 && !(flight[i].time_s > flight[i - 1].time_s)) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 namespace pinnquad {
-namespace detail {
 
 /// A cell as a message shows it: quoted, cut, and on one line whatever bytes it holds.
 inline std::string quoted_cell(std::string_view cell) {
@@ -19,6 +18,8 @@ inline std::string quoted_cell(std::string_view cell) {
   for (const char c : cell.substr(0, most_shown)) shown += c >= ' ' && c <= '~' ? c : '?';
   return shown + (cell.size() > most_shown ? "...\"" : "\"");
 }
+
+namespace detail {
 
 inline std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t";
@@ -86,16 +87,20 @@ inline void split_quoted_fields(std::string_view record, std::vector<std::string
   }
 }
 
+}  // namespace detail
+
 /// The cells of a line without quotation marks.
 inline void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
   for (;;) {
     const std::size_t comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
+    fields.push_back(detail::trimmed(line.substr(0, comma)));
     if (comma == std::string_view::npos) return;
     line.remove_prefix(comma + 1);
   }
 }
+
+namespace detail {
 
 /// Text as a cell that reads back as the same text: in quotation marks where it needs them.
 inline std::string csv_cell(std::string_view text) {

@@ -24,9 +24,8 @@ struct CsvTable {
   std::vector<std::vector<double>> rows;
 };
 
-namespace detail {
-
-/// Field index (from 0) of each wanted column in the header line.
+/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column that is
+/// missing or there twice.
 inline std::vector<std::size_t> locate_columns(const std::string& path, const std::vector<std::string_view>& header,
                                                const std::vector<std::string>& columns) {
   std::vector<std::size_t> fields;
@@ -48,6 +47,24 @@ inline std::vector<std::size_t> locate_columns(const std::string& path, const st
     fields.push_back(found);
   }
   return fields;
+}
+
+namespace detail {
+
+/// The names of a file's columns as its header has them; none of an empty file.
+inline std::vector<std::string> csv_header(const std::string& path) {
+  CsvRecords records(path);
+  std::string_view record;
+  std::string unquoted;
+  std::vector<std::string_view> cells;
+  if (records.next(record)) {
+    if (records.has_quotes()) {
+      split_quoted_fields(record, cells, unquoted);
+    } else {
+      split_fields(record, cells);
+    }
+  }
+  return {cells.begin(), cells.end()};
 }
 
 /// Reads the named columns and calls `on_row(values, line, fields)` for each row: its values in the order of `columns`,

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
-// A recorded flight as rows in time order, and the number that names its content.
-// The number goes into exported headers: it says which flight a model was trained on.
+// Recorded flights: rows in time order with whatever else was measured, many flights as one dataset, and the number that names
+// their content. The number goes into exported headers: it says what a model was trained on.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pinnquad/core/fnv1a.hpp"
@@ -15,25 +20,165 @@
 
 namespace pinnquad {
 
-/// Rows of one flight, time strictly increasing.
-using Flight = std::vector<Sample>;
+/// What a flight has measured besides the numbers of a Sample: battery voltage, rotor speed, anything with a name and a unit.
+struct ColumnName {
+  std::string name;  ///< "battery_voltage"
+  std::string unit;  ///< "V"
+};
 
-/// Provenance of a flight: 64-bit FNV-1a over the number of rows and the IEEE 754 bits of every value, each as eight
-/// bytes, least significant first, rows in order, values in the order of `sample_field_names`.
-/// The same on every compiler and byte order. All NaNs count as one; 0 and -0 differ. No protection against forgery.
-inline std::uint64_t content_hash(const Flight& flight) {
+/// Its values, one per row.
+struct ExtraColumn : ColumnName {
+  std::vector<double> values;
+};
+
+/// Rows of one flight on one clock, time strictly increasing (CSV files and Dataset insist on it), and its extra columns.
+class Flight {
+ public:
+  using value_type = Sample;
+  using iterator = std::vector<Sample>::iterator;
+  using const_iterator = std::vector<Sample>::const_iterator;
+
+  std::string name;  ///< by which a dataset, a message or a report means this flight
+  std::string
+      trajectory;  ///< what was flown; of flights that name the same one, a split by trajectory parts none. May be empty
+  double weight = 1;  ///< how often its rows are seen in training, relative to those of other flights
+
+  Flight() = default;
+  explicit Flight(std::size_t rows) : samples_(rows) {}
+  Flight(std::initializer_list<Sample> rows) : samples_(rows) {}
+
+  std::size_t size() const noexcept { return samples_.size(); }
+  bool empty() const noexcept { return samples_.empty(); }
+  std::size_t capacity() const noexcept { return samples_.capacity(); }
+  Sample& operator[](std::size_t row) { return samples_[row]; }
+  const Sample& operator[](std::size_t row) const { return samples_[row]; }
+  const Sample& front() const { return samples_.front(); }
+  const Sample& back() const { return samples_.back(); }
+  iterator begin() noexcept { return samples_.begin(); }
+  iterator end() noexcept { return samples_.end(); }
+  const_iterator begin() const noexcept { return samples_.begin(); }
+  const_iterator end() const noexcept { return samples_.end(); }
+
+  void reserve(std::size_t rows) {
+    samples_.reserve(rows);
+    for (ExtraColumn& column : columns_) column.values.reserve(rows);
+  }
+  /// Throws std::invalid_argument, and adds nothing, unless there is one number for each extra column.
+  void push_back(const Sample& sample, const double* extra = nullptr, std::size_t extra_count = 0) {
+    if (extra_count != columns_.size()) {
+      throw std::invalid_argument("flight: expected " + std::to_string(columns_.size()) +
+                                  " numbers of extra columns with a row, found " + std::to_string(extra_count));
+    }
+    samples_.push_back(sample);
+    for (std::size_t i = 0; i < extra_count; ++i) columns_[i].values.push_back(extra[i]);
+  }
+
+  const std::vector<ExtraColumn>& columns() const noexcept { return columns_; }
+  /// Null if there is none of that name.
+  const ExtraColumn* column(std::string_view wanted) const noexcept {
+    for (const ExtraColumn& column : columns_) {
+      if (column.name == wanted) return &column;
+    }
+    return nullptr;
+  }
+  /// Throws std::invalid_argument for a column without a name, of a name that is taken, or of another length than the flight.
+  void add_column(ExtraColumn column) {
+    if (column.name.empty()) throw std::invalid_argument("flight: an extra column needs a name");
+    for (const std::string_view taken : sample_field_names) {
+      if (column.name == taken) throw std::invalid_argument("flight: " + column.name + " is a column of every flight");
+    }
+    if (this->column(column.name) != nullptr) {
+      throw std::invalid_argument("flight: it has a column " + column.name + " already");
+    }
+    if (column.values.size() != size()) {
+      throw std::invalid_argument("flight: expected " + std::to_string(size()) + " values of column " + column.name +
+                                  ", found " + std::to_string(column.values.size()));
+    }
+    columns_.push_back(std::move(column));
+  }
+
+ private:
+  std::vector<Sample> samples_;
+  std::vector<ExtraColumn> columns_;
+};
+
+/// Flights, each on a clock of its own: nothing is ever interpolated or windowed across a border between two.
+class Dataset {
+ public:
+  Dataset() = default;
+  /// A flight alone is a dataset.
+  explicit Dataset(Flight flight) { add(std::move(flight)); }
+
+  /// Throws std::invalid_argument, one line, and adds nothing: a name that another flight has, time that does not increase from
+  /// row to row, a weight that is no positive number.
+  void add(Flight flight) {
+    for (const Flight& other : flights_) {
+      if (other.name == flight.name) {
+        throw std::invalid_argument("dataset: expected a name of its own for each flight, found '" + flight.name +
+                                    "' twice");
+      }
+    }
+    for (std::size_t row = 1; row < flight.size(); ++row) {
+      if (flight[row].time_s > flight[row - 1].time_s) continue;
+      throw std::invalid_argument("dataset: time does not increase at row " + std::to_string(row + 1) + " of flight '" +
+                                  flight.name + "'");
+    }
+    if (!(flight.weight > 0 && flight.weight <= std::numeric_limits<double>::max())) {
+      throw std::invalid_argument("dataset: expected a positive weight of flight '" + flight.name + "', found " +
+                                  std::to_string(flight.weight));
+    }
+    rows_ += flight.size();
+    flights_.push_back(std::move(flight));
+  }
+
+  const std::vector<Flight>& flights() const noexcept { return flights_; }
+  std::size_t size() const noexcept { return flights_.size(); }
+  const Flight& operator[](std::size_t flight) const { return flights_[flight]; }
+  /// Of all flights.
+  std::size_t rows() const noexcept { return rows_; }
+
+ private:
+  std::vector<Flight> flights_;
+  std::size_t rows_ = 0;
+};
+
+namespace detail {
+
+inline void absorb_number(Fnv1a& fnv, double value) {
   static_assert(sizeof(double) == sizeof(std::uint64_t) && std::numeric_limits<double>::is_iec559,
                 "content_hash: double must be IEEE 754 binary64");
   constexpr std::uint64_t canonical_nan = 0x7ff8000000000000u;
+  std::uint64_t bits = canonical_nan;
+  if (!std::isnan(value)) std::memcpy(&bits, &value, sizeof bits);
+  fnv.absorb_word(bits);
+}
+
+}  // namespace detail
+
+/// Provenance of a flight: 64-bit FNV-1a over the number of rows and the IEEE 754 bits of every value, each as eight
+/// bytes, least significant first, rows in order, values in the order of `sample_field_names`; then extra column by extra
+/// column, its name, its unit and its values. Name, trajectory and weight are no content.
+/// The same on every compiler and byte order. All NaNs count as one; 0 and -0 differ. No protection against forgery.
+inline std::uint64_t content_hash(const Flight& flight) {
   detail::Fnv1a fnv;
   fnv.absorb_word(flight.size());
   for (const Sample& sample : flight) {
-    for (const double value : to_values(sample)) {
-      std::uint64_t bits = canonical_nan;
-      if (!std::isnan(value)) std::memcpy(&bits, &value, sizeof bits);
-      fnv.absorb_word(bits);
-    }
+    for (const double value : to_values(sample)) detail::absorb_number(fnv, value);
   }
+  for (const ExtraColumn& column : flight.columns()) {
+    fnv.absorb_text(column.name);
+    fnv.absorb_text(column.unit);
+    for (const double value : column.values) detail::absorb_number(fnv, value);
+  }
+  return fnv.hash;
+}
+
+/// Provenance of a dataset: of one flight that flight's, of several the FNV-1a of their number and of each one's, in order.
+inline std::uint64_t content_hash(const Dataset& dataset) {
+  if (dataset.size() == 1) return content_hash(dataset[0]);
+  detail::Fnv1a fnv;
+  fnv.absorb_word(dataset.size());
+  for (const Flight& flight : dataset.flights()) fnv.absorb_word(content_hash(flight));
   return fnv.hash;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -117,10 +118,12 @@ inline char* print_number(char* buffer, double value) {
 
 #endif
 
+}  // namespace detail
+
 /// Shortest text that reads back to the same bits.
 inline std::string number_text(double value) {
-  char buffer[longest_number];
-  return std::string(buffer, print_number(buffer, value));
+  char buffer[detail::longest_number];
+  return std::string(buffer, detail::print_number(buffer, value));
 }
 
 /// The whole cell as a finite number; a leading plus sign is accepted.
@@ -128,8 +131,15 @@ inline bool parse_number(std::string_view cell, double& value) {
   const char* first = cell.data();
   const char* const last = first + cell.size();
   if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') ++first;
-  return read_number(first, last, value);
+  return detail::read_number(first, last, value);
 }
 
-}  // namespace detail
+/// "0x" and sixteen digits: how hashes are written.
+inline std::string hexadecimal(std::uint64_t value) {
+  char text[17];
+  const auto end = std::to_chars(text, text + 16, value, 16).ptr;
+  const std::string digits(text, end);
+  return "0x" + std::string(16 - digits.size(), '0') + digits;
+}
+
 }  // namespace pinnquad

@@ -38,13 +38,9 @@ struct OutputError : std::runtime_error {
   std::string path;
 };
 
-namespace detail {
-
 /// The system's words for an errno value, or `otherwise` when it is 0.
 inline std::string system_reason(int error_number, const char* otherwise) {
   return error_number != 0 ? std::generic_category().message(error_number) : std::string(otherwise);
 }
-
-}  // namespace detail
 
 }  // namespace pinnquad

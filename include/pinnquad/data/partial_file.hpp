@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace pinnquad::detail {
+namespace pinnquad {
 
 /// A partial file, held by a lock (flock) that ends with its writer, however that ends.
 class PartialFile {
@@ -110,4 +110,4 @@ class PartialFile {
   int lock_{-1};
 };
 
-}  // namespace pinnquad::detail
+}  // namespace pinnquad

@@ -221,7 +221,7 @@ inline void require_varied_commands(const std::string& path, const Flight& fligh
     const std::size_t field = detail::first_command_field + rotor;
     throw detail::implausible_in_file(
         path, {block.begin, field, "commands that change " + detail::column_text(field),
-               detail::number_text(low) + " in all " + std::to_string(block.size()) + " " + block_name + " rows"});
+               number_text(low) + " in all " + std::to_string(block.size()) + " " + block_name + " rows"});
   }
 }
 

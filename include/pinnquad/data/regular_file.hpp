@@ -10,7 +10,9 @@
 
 #include "pinnquad/data/file_error.hpp"
 
-namespace pinnquad::detail {
+namespace pinnquad {
+
+namespace detail {
 
 /// Most bytes of a file that is read: the longest flight that `fly` records has 4e9.
 inline constexpr std::uintmax_t most_input_bytes = std::uintmax_t{1} << 33;
@@ -18,6 +20,8 @@ inline constexpr std::uintmax_t most_input_bytes = std::uintmax_t{1} << 33;
 [[noreturn]] inline void refuse_size(const std::string& path) {
   throw InputError(path, 0, 0, "a file of at most " + std::to_string(most_input_bytes >> 30) + " GiB", "a larger one");
 }
+
+}  // namespace detail
 
 /// Throws InputError, one line, for all that is there and is not such a file. What is absent passes: who opens it has
 /// the system's reason.
@@ -29,7 +33,7 @@ inline void require_regular_file(const std::string& path) {
   if (fs::is_directory(status)) throw InputError(path, 0, 0, "a readable file", "a folder");
   if (!fs::is_regular_file(status)) throw InputError(path, 0, 0, "a regular file", "a device or a pipe");
   const std::uintmax_t bytes = fs::file_size(path, ignored);
-  if (!ignored && bytes > most_input_bytes) refuse_size(path);
+  if (!ignored && bytes > detail::most_input_bytes) detail::refuse_size(path);
 }
 
-}  // namespace pinnquad::detail
+}  // namespace pinnquad

@@ -35,11 +35,9 @@ struct DatasetSplit {
 /// Rows that a block with a share above 0 needs at least: local monotonicity looks at pairs.
 inline constexpr std::size_t minimum_block_rows = 2;
 
-/// Splits `rows` rows into contiguous blocks. Both inner borders are rounded to the nearest row, halves up:
-///   train = [0, round(rows train)), validation = [.., round(rows (train + validation))), test = [.., rows)
-/// so that 15000 rows give 9000 / 3000 / 3000 by default. Each block is within one row of its exact share.
-/// Throws std::invalid_argument, in one line: shares that are no shares; too few rows for `minimum_block_rows`.
-inline DatasetSplit split_contiguous(std::size_t rows, const SplitShares& shares = {}) {
+namespace detail {
+/// Throws std::invalid_argument, in one line, for shares that are no shares.
+inline void require_shares(const SplitShares& shares) {
   constexpr double sum_tolerance = 1e-9;  // decimal shares such as 0.7 + 0.2 + 0.1 miss 1 by a few ulp
   const auto is_share = [](double share) { return share >= 0 && share <= 1; };
   if (!is_share(shares.train) || !is_share(shares.validation) || !is_share(shares.test) ||
@@ -48,6 +46,15 @@ inline DatasetSplit split_contiguous(std::size_t rows, const SplitShares& shares
                                 std::to_string(shares.train) + ", " + std::to_string(shares.validation) + ", " +
                                 std::to_string(shares.test));
   }
+}
+}  // namespace detail
+
+/// Splits `rows` rows into contiguous blocks. Both inner borders are rounded to the nearest row, halves up:
+///   train = [0, round(rows train)), validation = [.., round(rows (train + validation))), test = [.., rows)
+/// so that 15000 rows give 9000 / 3000 / 3000 by default. Each block is within one row of its exact share.
+/// Throws std::invalid_argument, in one line: shares that are no shares; too few rows for `minimum_block_rows`.
+inline DatasetSplit split_contiguous(std::size_t rows, const SplitShares& shares = {}) {
+  detail::require_shares(shares);
   const auto border = [rows](double share) {
     const double exact = static_cast<double>(rows) * share;
     const auto rounded = static_cast<std::size_t>(std::floor(exact + 0.5));

@@ -56,13 +56,18 @@ class TextFile {
 
 inline constexpr std::size_t read_block = std::size_t{1} << 18;
 
+}  // namespace detail
+
+/// The whole of a file. Throws InputError, one line: no such file, a folder, a device, a pipe, a read error.
 inline std::string file_text(const std::string& path) {
-  TextFile file(path);
+  detail::TextFile file(path);
   std::string text;
-  std::vector<char> block(read_block);
+  std::vector<char> block(detail::read_block);
   while (const std::size_t count = file.read(block.data(), block.size())) text.append(block.data(), count);
   return text;
 }
+
+namespace detail {
 
 /// Records of so many cells that a file holds at most: no more than its lines, and a record has a digit and a separator per
 /// cell.

@@ -16,6 +16,7 @@
 
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/atomic_file.hpp"
+#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/data/printable.hpp"
 #include "pinnquad/deploy/identifier.hpp"
 #include "pinnquad/deploy/type_name.hpp"
@@ -83,13 +84,6 @@ void write_braced(std::ostream& out, const Range& values, const std::string& ind
     column = (column + 1) % per_line;
   }
   out << '}';
-}
-
-inline std::string hexadecimal(std::uint64_t value) {
-  char text[17];
-  const auto end = std::to_chars(text, text + 16, value, 16).ptr;
-  const std::string digits(text, end);
-  return "0x" + std::string(16 - digits.size(), '0') + digits;
 }
 
 /// Throws std::invalid_argument, one line, for a number that is not finite: it has no literal and must not fly.
@@ -197,8 +191,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   text("name", struct_name);
   out << "\n  // provenance\n";
   text("training_data", provenance.training_data);
-  out << "  static constexpr std::uint64_t training_data_hash = " << detail::hexadecimal(provenance.training_data_hash)
-      << ";\n"
+  out << "  static constexpr std::uint64_t training_data_hash = " << hexadecimal(provenance.training_data_hash) << ";\n"
       << "  static constexpr int training_rows = " << provenance.training_rows << ";\n"
       << "  static constexpr std::uint64_t seed = " << provenance.seed << "u;\n"
       << "  static constexpr int epochs = " << provenance.epochs << ";\n";

@@ -20,11 +20,11 @@ inline constexpr double pi = 3.14159265358979323846;
 /// An ellipse in the plane of x and y: centre, semi-axes, angle of the major axis from +x towards +y in (-90, 90].
 /// A circle has no angle; it is given as 0.
 struct ConfidenceEllipse {
-  double center_x = detail::not_a_number;
-  double center_y = detail::not_a_number;
-  double semi_major = detail::not_a_number;
-  double semi_minor = detail::not_a_number;
-  double angle_deg = detail::not_a_number;
+  double center_x = not_a_number;
+  double center_y = not_a_number;
+  double semi_major = not_a_number;
+  double semi_minor = not_a_number;
+  double angle_deg = not_a_number;
 };
 
 /// The ellipse of given moments: semi-axes are `sigmas` times the roots of the eigenvalues of the covariance matrix,

@@ -18,7 +18,7 @@ namespace pinnquad {
 /// Throws std::invalid_argument for series of different length.
 inline double pearson_correlation(const std::vector<double>& x, const std::vector<double>& y) {
   const JointMoments moments = joint_moments(x, y);
-  if (!(moments.variance_x > 0) || !(moments.variance_y > 0)) return detail::not_a_number;
+  if (!(moments.variance_x > 0) || !(moments.variance_y > 0)) return not_a_number;
   const double correlation = moments.covariance / (std::sqrt(moments.variance_x) * std::sqrt(moments.variance_y));
   return std::isnan(correlation) ? correlation : std::clamp(correlation, -1.0, 1.0);
 }

@@ -58,7 +58,7 @@ PredictionErrors<Motors> prediction_errors(const std::vector<std::array<double, 
     ErrorMeasures& measures = errors.per_motor[motor];
     measures.mean_absolute = absolute / rows;
     measures.root_mean_square = std::sqrt(squares / rows);
-    measures.r_squared = squares_of_mean > 0 ? 1 - squares / squares_of_mean : detail::not_a_number;
+    measures.r_squared = squares_of_mean > 0 ? 1 - squares / squares_of_mean : not_a_number;
 
     constexpr auto motors = static_cast<double>(Motors);
     errors.mean.mean_absolute += measures.mean_absolute / motors;

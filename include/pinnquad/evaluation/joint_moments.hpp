@@ -25,11 +25,11 @@ inline void require_equal_length(const char* who, std::size_t first, std::size_t
 
 /// First and second moments of paired series x, y: means, and the 2x2 covariance matrix (divisor n - 1).
 struct JointMoments {
-  double mean_x = detail::not_a_number;
-  double mean_y = detail::not_a_number;
-  double variance_x = detail::not_a_number;
-  double variance_y = detail::not_a_number;
-  double covariance = detail::not_a_number;
+  double mean_x = not_a_number;
+  double mean_y = not_a_number;
+  double variance_x = not_a_number;
+  double variance_y = not_a_number;
+  double covariance = not_a_number;
 };
 
 /// Moments of the pairs (x[i], y[i]). Variances and covariance are NaN for fewer than two pairs.

@@ -99,7 +99,7 @@ inline PairedComparison compare_paired(const std::vector<double>& candidate, con
   result.baseline_mean = detail::mean_of(baseline);
   result.mean_difference = detail::mean_of(differences);
   result.relative_difference =
-      result.baseline_mean != 0 ? result.mean_difference / std::abs(result.baseline_mean) : detail::not_a_number;
+      result.baseline_mean != 0 ? result.mean_difference / std::abs(result.baseline_mean) : not_a_number;
   if (decided.empty()) return result;
 
   std::sort(decided.begin(), decided.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });

@@ -22,7 +22,7 @@ inline double slope_error(const std::vector<double>& target_sum, const std::vect
                           const std::vector<double>& angular_acceleration) {
   const double target = joint_moments(target_sum, angular_acceleration).covariance;
   const double predicted = joint_moments(predicted_sum, angular_acceleration).covariance;
-  return target == 0 ? detail::not_a_number : std::abs(predicted / target - 1);
+  return target == 0 ? not_a_number : std::abs(predicted / target - 1);
 }
 
 /// Share of consecutive pairs of rows in which the predicted sum moves against the angular acceleration:
@@ -45,7 +45,7 @@ inline double sign_violation_share(const std::vector<double>& predicted_sum,
     pairs += rises || falls ? 1 : 0;
     violations += (rises && sum_falls) || (falls && sum_rises) ? 1 : 0;
   }
-  return pairs == 0 ? detail::not_a_number : static_cast<double>(violations) / static_cast<double>(pairs);
+  return pairs == 0 ? not_a_number : static_cast<double>(violations) / static_cast<double>(pairs);
 }
 
 /// All measures of one axis of rotation (roll, pitch or yaw). Ellipses have x = angular acceleration, y = command sum.

@@ -11,9 +11,10 @@
 
 namespace pinnquad {
 
-namespace detail {
-
+/// A figure that is not defined: of a series that is empty, or that does not vary.
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+namespace detail {
 
 /// The mean, corrected by the mean residual; the value itself if there is only one value.
 inline double mean_of(const std::vector<double>& series) {
@@ -35,8 +36,8 @@ inline double mean_of(const std::vector<double>& series) {
 /// Mean and standard deviation of a series, in its unit.
 struct Summary {
   std::size_t count = 0;
-  double mean = detail::not_a_number;
-  double deviation = detail::not_a_number;
+  double mean = not_a_number;
+  double deviation = not_a_number;
 };
 
 /// mean = sum x / n, deviation = sqrt(sum (x - mean)^2 / (n - 1)).

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/loss/signed_command_sum.hpp"
-#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

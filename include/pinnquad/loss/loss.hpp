@@ -9,11 +9,11 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"
-#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

@@ -2,8 +2,8 @@
 // The same weight in every epoch.
 #pragma once
 
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/schedule/schedule.hpp"
-#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

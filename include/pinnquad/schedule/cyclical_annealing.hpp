@@ -4,8 +4,8 @@
 
 #include <limits>
 
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/schedule/schedule.hpp"
-#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "pinnquad/simulation/random_pilot.hpp"
+#include "pinnquad/simulation/fitted_style.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 
 namespace pinnquad {
@@ -33,47 +33,6 @@ struct RecordedFlight {
   Flight flight;
   FlightReport report;
 };
-
-/// The default style, fitted to what the vehicle can do at a place; found through its own inverse, drag included.
-/// No climb that takes more than 60 % of the thrust above hover, no descent with less than 35 % of the hover's or
-/// faster than 1.5 times the climb; turns, sticks and changes of velocity are calmed in proportion where hover leaves
-/// less than 35 % of the command.
-template <class... Effects>
-PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m,
-                       double max_speed_m_s = PilotStyle{}.max_speed_m_s) {
-  constexpr double climb_share = 0.6, descent_share = 0.35, fall_per_climb = 1.5, calm_reserve = 0.35;
-  constexpr int speeds = 80;
-  PilotStyle style;
-  style.max_speed_m_s = style.max_climb_m_s = style.max_descent_m_s = max_speed_m_s;
-  HoverTrim<double> hover;
-  if (hover_trim(quadrotor, place_m, hover) != Status::ok) return style;
-  const double hover_command = hover.commands[0];
-  const auto command_at = [&](double down_m_s) {
-    State<double> state;
-    state.position_m = place_m;
-    state.velocity_m_s[2] = down_m_s;
-    Commands<double> commands = hover.commands;
-    const Status status = inverse_commands(quadrotor, state, Accelerations<double>{}, 0.0, commands);
-    return status == Status::ok ? commands[0] : hover_command;
-  };
-  const double step_m_s = style.max_speed_m_s / speeds;
-  const double most = hover_command + climb_share * (1 - hover_command);
-  const double least = descent_share * hover_command;
-  while (style.max_climb_m_s > step_m_s && command_at(-style.max_climb_m_s) > most) style.max_climb_m_s -= step_m_s;
-  while (style.max_descent_m_s > step_m_s && command_at(style.max_descent_m_s) < least) {
-    style.max_descent_m_s -= step_m_s;
-  }
-  const double most_descent_m_s = fall_per_climb * style.max_climb_m_s;  // what falls must be caught again
-  if (style.max_descent_m_s > most_descent_m_s) style.max_descent_m_s = most_descent_m_s;
-  const double calm = (1 - hover_command) / calm_reserve;
-  if (calm < 1) {
-    style.max_yaw_rate_rad_s *= calm;
-    style.thumbs.yaw_spread_rad_s *= calm;
-    style.thumbs.roll_pitch_spread_rad_s *= calm;
-    style.velocity_lag_s /= calm;
-  }
-  return style;
-}
 
 /// What an observer is told after each row: how far the flight is, the true state, and the row as recorded.
 struct FlightRow {

@@ -5,8 +5,6 @@
 // `pilot(vehicle, engine, max_speed_m_s)`.
 #pragma once
 
-#include <limits>
-
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
@@ -18,17 +16,6 @@
 
 namespace pinnquad {
 
-/// Share of its thrust that an airframe needs to hover at a place; NaN if the inverse gives no answer. Above the share
-/// that the controller asks for at most (0.97, flight_limits) it cannot stay up.
-template <class AnyVehicle>
-double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) {
-  return with_quadrotor(vehicle, [&](const auto& quadrotor) {
-    HoverTrim<double> hover;
-    const Status status = hover_trim(quadrotor, place_m, hover);
-    return status == Status::ok ? hover.commands[0] : std::numeric_limits<double>::quiet_NaN();
-  });
-}
-
 /// The agile pilot, fitted to a vehicle at the place where a flight starts (pilot_style).
 template <class AnyVehicle, class Engine>
 RandomPilot<Engine> agile_pilot(const AnyVehicle& vehicle, const Engine& engine, const Vector3<double>& start_m,
@@ -36,31 +23,6 @@ RandomPilot<Engine> agile_pilot(const AnyVehicle& vehicle, const Engine& engine,
   return with_quadrotor(vehicle, [&](const auto& quadrotor) {
     return RandomPilot<Engine>(engine, pilot_style(quadrotor, start_m, max_speed_m_s), quadrotor.site().ground_z_m);
   });
-}
-
-/// The near-ground style, fitted to what the vehicle can do: no climb or descent, no stick and no turn beyond those of
-/// pilot_style, traverses calmed as its changes of velocity are, heights changed with a third of the acceleration that
-/// the thrust above hover gives.
-template <class... Effects>
-NearGroundStyle near_ground_style(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m,
-                                  double max_speed_m_s = NearGroundStyle{}.max_speed_m_s) {
-  const auto lower = [](double& value, double limit) {
-    if (limit < value) value = limit;
-  };
-  const PilotStyle agile = pilot_style(quadrotor, place_m);
-  NearGroundStyle style;
-  lower(style.max_speed_m_s, max_speed_m_s);
-  lower(style.hover_speed_m_s, max_speed_m_s);
-  lower(style.max_climb_m_s, agile.max_climb_m_s);
-  lower(style.max_descent_m_s, agile.max_descent_m_s);
-  lower(style.max_yaw_rate_rad_s, agile.max_yaw_rate_rad_s);
-  lower(style.thumbs.roll_pitch_spread_rad_s, agile.thumbs.roll_pitch_spread_rad_s);
-  lower(style.thumbs.yaw_spread_rad_s, agile.thumbs.yaw_spread_rad_s);
-  constexpr double reserve_share = 1.0 / 3;
-  const double hover = hover_command(quadrotor, place_m);
-  lower(style.max_vertical_acceleration_m_s2, reserve_share * (1 / hover - 1) * quadrotor.site().gravity_m_s2);
-  style.velocity_lag_s *= agile.velocity_lag_s / PilotStyle{}.velocity_lag_s;
-  return style;
 }
 
 /// D1: agile manoeuvres up to 8 m/s in all directions, drag and the standard atmosphere; 15,000 rows at 0.05 s.

@@ -39,17 +39,17 @@ inline const std::vector<std::string>& stick_columns() {
 inline StickRecording read_sticks_csv(const std::string& path) {
   constexpr std::size_t minimum_rows = 2;
   StickRecording recording;
-  detail::for_each_csv_row(
-      path, stick_columns(), minimum_rows,
-      [&](const std::vector<double>& v, std::size_t line, const std::vector<std::size_t>& fields) {
-        if (recording.empty() ? v[0] < 0 : !(v[0] > recording.back().time_s)) {
-          const std::string least =
-              recording.empty() ? "of 0 or more" : "above " + detail::number_text(recording.back().time_s);
-          throw InputError(path, line, fields[0] + 1, "a time " + least + " in column " + stick_columns()[0],
-                           detail::number_text(v[0]));
-        }
-        recording.push_back({v[0], {{v[1], v[2], v[3]}, v[4], {v[5], v[6], v[7]}}});
-      });
+  detail::for_each_csv_row(path, stick_columns(), minimum_rows,
+                           [&](const std::vector<double>& v, std::size_t line, const std::vector<std::size_t>& fields) {
+                             if (recording.empty() ? v[0] < 0 : !(v[0] > recording.back().time_s)) {
+                               const std::string least =
+                                   recording.empty() ? "of 0 or more" : "above " + number_text(recording.back().time_s);
+                               throw InputError(path, line, fields[0] + 1,
+                                                "a time " + least + " in column " + stick_columns()[0],
+                                                number_text(v[0]));
+                             }
+                             recording.push_back({v[0], {{v[1], v[2], v[3]}, v[4], {v[5], v[6], v[7]}}});
+                           });
   return recording;
 }
 

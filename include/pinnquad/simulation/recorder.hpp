@@ -6,13 +6,17 @@
 //   template <class... Effects> Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&,
 //                                                 const Commands<double>& commands);
 //     the row of the present instant; `commands` are those held up to it.
-// Optional: `Status status() const noexcept`, asked before the flight: whether its settings make sense.
+// Optional: `Status status() const noexcept`, asked before the flight: whether its settings make sense;
+//   std::vector<ColumnName> columns() const, and for each row, behind it, a value per column:
+//   template <class... Effects> void measure(const Quadrotor<double, Effects...>&, const VehicleState<double>&, double* values).
 #pragma once
 
+#include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
-#include "pinnquad/data/sample.hpp"
+#include "pinnquad/data/dataset.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad {
@@ -41,6 +45,24 @@ struct RecorderStatus {
 template <class Recorder>
 struct RecorderStatus<Recorder, std::void_t<decltype(std::declval<const Recorder&>().status())>> {
   static Status of(const Recorder& recorder) noexcept { return recorder.status(); }
+};
+/// A recorder of motion alone has no extra columns.
+template <class Recorder, class = void>
+struct RecorderColumns {
+  static constexpr bool has_columns = false;
+  static std::vector<ColumnName> of(const Recorder&) { return {}; }
+  template <class Quadrotor>
+  static void measure(Recorder&, const Quadrotor&, const VehicleState<double>&, double*) {}
+};
+template <class Recorder>
+struct RecorderColumns<Recorder, std::void_t<decltype(std::declval<const Recorder&>().columns())>> {
+  static constexpr bool has_columns = true;
+  static std::vector<ColumnName> of(const Recorder& recorder) { return recorder.columns(); }
+  template <class Quadrotor>
+  static void measure(Recorder& recorder, const Quadrotor& quadrotor, const VehicleState<double>& vehicle,
+                      double* values) {
+    recorder.measure(quadrotor, vehicle, values);
+  }
 };
 }  // namespace detail
 
@@ -76,6 +98,36 @@ struct ExactRecorder {
     for (std::size_t i = 0; i < commands.size(); ++i) sample.commands[i] = clip_command(commands[i]);
     return sample;
   }
+};
+
+/// Another recorder's rows, and extra columns beside them. A Column is what inference/extra_columns.hpp says, with a
+/// `double operator()(const Quadrotor&, const VehicleState<double>&)`: what its sensor shows at the present instant.
+template <class Recorder, class... Column>
+class ColumnRecorder {
+  static_assert(!detail::RecorderColumns<Recorder>::has_columns,
+                "pinnquad: this recorder has columns of its own already: name all in one ColumnRecorder");
+
+ public:
+  explicit ColumnRecorder(Recorder recorder = Recorder{}, Column... column)
+      : recorder_(std::move(recorder)), columns_(std::move(column)...) {}
+
+  void hold(const Commands<double>& commands, double time_s) { recorder_.hold(commands, time_s); }
+  template <class... Effects>
+  Sample operator()(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle,
+                    const Commands<double>& commands) {
+    return recorder_(quadrotor, vehicle, commands);
+  }
+  Status status() const noexcept { return detail::RecorderStatus<Recorder>::of(recorder_); }
+
+  std::vector<ColumnName> columns() const { return {ColumnName{Column::name, Column::unit}...}; }
+  template <class... Effects>
+  void measure(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle, double* values) {
+    std::apply([&](auto&... column) { ((*values++ = column(quadrotor, vehicle)), ...); }, columns_);
+  }
+
+ private:
+  Recorder recorder_;
+  std::tuple<Column...> columns_;
 };
 
 }  // namespace pinnquad

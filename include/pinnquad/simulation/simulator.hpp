@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
@@ -72,6 +73,7 @@ class Simulator {
                      Recorder recorder = Recorder{})
       : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
     vehicle_.body.position_m = settings.start_m;
+    begin_recording();
     const bool clocks_run =
         settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
     Status status = Status::out_of_range;
@@ -136,7 +138,11 @@ class Simulator {
 
   /// The rows so far, or since the last take_recording().
   const Flight& recording() const noexcept { return recording_; }
-  Flight take_recording() noexcept { return std::exchange(recording_, Flight{}); }
+  Flight take_recording() {
+    Flight taken = std::exchange(recording_, Flight{});
+    begin_recording();
+    return taken;
+  }
   void reserve(std::size_t rows) { recording_.reserve(rows); }
 
   /// From the next tick on the vehicle flies with this ground effect; its state, the pilot and the clocks go on. Of a
@@ -211,11 +217,19 @@ class Simulator {
       return;
     }
     const Sample sample = recorder_(quadrotor, vehicle_, commands_);
-    if (!all_finite(to_values(sample))) {
+    detail::RecorderColumns<Recorder>::measure(recorder_, quadrotor, vehicle_, extra_.data());
+    if (!all_finite(to_values(sample)) || !all_finite(extra_)) {
       decline(Status::output_not_finite);
       return;
     }
-    recording_.push_back(sample);
+    recording_.push_back(sample, extra_.data(), extra_.size());
+  }
+
+  void begin_recording() {
+    for (const ColumnName& column : detail::RecorderColumns<Recorder>::of(recorder_)) {
+      recording_.add_column({column, {}});
+    }
+    extra_.resize(recording_.columns().size());
   }
 
   template <class Actual>
@@ -237,6 +251,7 @@ class Simulator {
   Commands<double> commands_{};
   std::size_t ticks_{0};
   Flight recording_;
+  std::vector<double> extra_;  ///< of a row, before it is recorded
   FlightEnd end_{FlightEnd::completed};
   Status status_{Status::ok};
 };

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
 
 namespace pinnquad {
@@ -71,26 +72,36 @@ struct ColumnStatistics {
   }
 };
 
-/// Statistics of column `index` over rows of numbers, by two passes.
-template <class Rows>
-ColumnStatistics column_statistics(const Rows& rows, std::size_t index, std::string_view unit) {
-  ColumnStatistics column;
-  const double count = static_cast<double>(rows.size());
-  double sum = 0;
-  for (const auto& row : rows) sum += row[index];
-  column.mean = sum / count;
-  double squares = 0;
+/// Statistics of every column of a table that is made row by row and never held, by two passes: `each_row(visit)` calls
+/// `visit(row)` for every row, an array of Size numbers, the same ones in the same order each time. `unit_of(i)` is the unit of
+/// column i.
+template <std::size_t Size, class EachRow, class UnitOf>
+std::array<ColumnStatistics, Size> column_statistics(const EachRow& each_row, const UnitOf& unit_of) {
+  std::array<ColumnStatistics, Size> columns;
+  std::array<double, Size> sums{}, squares{};
+  std::size_t rows = 0;
+  each_row([&](const auto& row) {
+    for (std::size_t i = 0; i < Size; ++i) sums[i] += row[i];
+    ++rows;
+  });
+  const double count = static_cast<double>(rows);
+  for (std::size_t i = 0; i < Size; ++i) columns[i].mean = sums[i] / count;
   bool first = true;
-  for (const auto& row : rows) {
-    const double value = row[index];
-    squares += (value - column.mean) * (value - column.mean);
-    column.lowest = first || value < column.lowest ? value : column.lowest;
-    column.highest = first || value > column.highest ? value : column.highest;
+  each_row([&](const auto& row) {
+    for (std::size_t i = 0; i < Size; ++i) {
+      ColumnStatistics& column = columns[i];
+      const double value = row[i];
+      squares[i] += (value - column.mean) * (value - column.mean);
+      column.lowest = first || value < column.lowest ? value : column.lowest;
+      column.highest = first || value > column.highest ? value : column.highest;
+    }
     first = false;
+  });
+  for (std::size_t i = 0; i < Size; ++i) {
+    columns[i].spread = std::sqrt(squares[i] / count);
+    columns[i].resolution = resolution_of(unit_of(i), columns[i].mean);
   }
-  column.spread = std::sqrt(squares / count);
-  column.resolution = resolution_of(unit, column.mean);
-  return column;
+  return columns;
 }
 
 }  // namespace pinnquad

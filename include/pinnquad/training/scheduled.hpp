@@ -2,8 +2,8 @@
 // An optimiser whose learning rate follows a rate policy over the training: `Scheduled<AdamW, CosineDecay>`.
 #pragma once
 
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/schedule/rate.hpp"
-#include "pinnquad/schedule/settings.hpp"
 #include "pinnquad/training/optimizer.hpp"
 
 namespace pinnquad {

@@ -4,9 +4,7 @@
 
 #include <cmath>
 
-#include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
-#include "pinnquad/data/split.hpp"
+#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/training/folding.hpp"
@@ -58,8 +56,7 @@ inline constexpr double negligible_weight = 1e-20;
 /// ColumnStatistics::margin(). Batch norm is folded away: what is judged and exported is the network that flies.
 template <class NetworkType, class ContextType>
 TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
-                                                                  const ContextType& context, const Flight& flight,
-                                                                  const IndexRange& training) {
+                                                                  const ContextType& context, const RowSet& training) {
   using Model = TrainedModel<Folded<NetworkType>, ContextType>;
   using Scalar = typename Model::Scalar;
   Model model;
@@ -75,13 +72,19 @@ TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkT
   };
   cast(context.input, model.input);
   cast(context.output, model.output);
-  const auto rows = detail::feature_rows<typename Model::Features>(flight, training);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(Model::Features::size); ++i) {
-    const ColumnStatistics column = column_statistics(rows, i, Model::Features::units[i]);
+  const auto columns = detail::feature_statistics<typename Model::Features>(training);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const ColumnStatistics& column = columns[i];
     model.envelope_lower[i] = static_cast<Scalar>(column.lowest - column.margin());
     model.envelope_upper[i] = static_cast<Scalar>(column.highest + column.margin());
   }
   return model;
+}
+template <class NetworkType, class ContextType>
+TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
+                                                                  const ContextType& context, const Flight& flight,
+                                                                  const IndexRange& training) {
+  return make_trained_model(network, context, RowSet(flight, training));
 }
 
 }  // namespace pinnquad

@@ -62,7 +62,7 @@ class Trainer {
   using Data = TrainingData<Scalar, Network::inputs, Network::outputs>;
 
   /// Throws std::invalid_argument if a number of the loss, of its schedules, of the optimiser or of the context makes no sense
-  /// (schedule/settings.hpp).
+  /// (data/settings.hpp).
   Trainer(const Network& network, const LossType& loss, const OptimizerType& optimizer, const ContextType& context,
           const Order& order = {})
       : loss_(loss), optimizer_(optimizer), context_(context), order_policy_(order) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A flight as the trainer wants it: standardised features and outputs, and the context that knows what they mean.
+// Flights as the trainer wants them, one set of rows: standardised features and outputs, and the context that knows what they
+// mean. Each function takes a set of rows, or a flight and a range of its rows.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
-#include "pinnquad/data/split.hpp"
+#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/training/resolution.hpp"
 
@@ -20,6 +20,7 @@ template <class Scalar, int InputCount, int OutputCount>
 struct TrainingData {
   std::vector<Scalar> features;  ///< size() x InputCount
   std::vector<Scalar> outputs;   ///< size() x OutputCount
+  std::vector<double> weights;   ///< size(), the flights' (training/weighted_batches.hpp); empty where all are 1
 
   int size() const noexcept { return static_cast<int>(outputs.size()) / OutputCount; }
   const Scalar* features_of(int row) const noexcept { return features.data() + std::ptrdiff_t{row} * InputCount; }
@@ -27,31 +28,6 @@ struct TrainingData {
 };
 
 namespace detail {
-
-/// Mean and scale of every column; `unit_of(i)` is the unit of column i.
-template <std::size_t Size, class UnitOf>
-Scaler<double, static_cast<int>(Size)> column_scaler(const std::vector<std::array<double, Size>>& rows,
-                                                     const UnitOf& unit_of) {
-  Scaler<double, static_cast<int>(Size)> scaler;
-  for (std::size_t i = 0; i < Size; ++i) {
-    const ColumnStatistics column = column_statistics(rows, i, unit_of(i));
-    scaler.mean[i] = column.mean;
-    scaler.spread[i] = column.scale();
-  }
-  return scaler;
-}
-
-/// Feature vectors of a block of rows, physical units.
-template <class Features>
-std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> feature_rows(const Flight& flight,
-                                                                                       const IndexRange& range) {
-  std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> rows;
-  rows.reserve(range.size());
-  for (std::size_t row = range.begin; row < range.end; ++row) {
-    rows.push_back(sample_features<Features, double>(flight[row]));
-  }
-  return rows;
-}
 
 /// Outputs of a sample in the schema's physical units.
 template <class ContextType>
@@ -64,60 +40,103 @@ std::array<double, rotor_count> sample_outputs(const Sample& sample) {
   return outputs;
 }
 
+/// Statistics of every feature, physical units.
+template <class Features>
+std::array<ColumnStatistics, static_cast<std::size_t>(Features::size)> feature_statistics(const RowSet& rows) {
+  constexpr auto size = static_cast<std::size_t>(Features::size);
+  return column_statistics<size>(
+      [&](const auto& visit) {
+        each_features<Features, double>(rows, [&](const Flight&, std::size_t, const auto& x) { visit(x); });
+      },
+      [](std::size_t i) { return Features::units[i]; });
+}
+
 }  // namespace detail
 
 /// Names of the features that stand still in the training rows (training/resolution.hpp): the network can't learn what they
 /// do, and its model answers only where they stay.
 template <class Features>
-std::vector<std::string> still_features(const Flight& flight, const IndexRange& training) {
-  const auto rows = detail::feature_rows<Features>(flight, training);
+std::vector<std::string> still_features(const RowSet& training) {
+  const auto columns = detail::feature_statistics<Features>(training);
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(Features::size); ++i) {
-    if (column_statistics(rows, i, Features::units[i]).still()) names.emplace_back(Features::names[i]);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].still()) names.emplace_back(Features::names[i]);
   }
   return names;
 }
-
-/// The context of a training set: scalers and spreads of its rows. A column that stands still gets the spread 1.
-template <class ContextType>
-ContextType make_context(const Flight& flight, const IndexRange& range) {
-  using Features = typename ContextType::Features;
-  std::vector<std::array<double, rotor_count>> outputs;
-  std::vector<std::array<double, 3>> sums;
-  const std::array<std::array<double, rotor_count>, 3> signs = {
-      ContextType::template signs<Roll>(), ContextType::template signs<Pitch>(), ContextType::template signs<Yaw>()};
-  for (std::size_t row = range.begin; row < range.end; ++row) {
-    outputs.push_back(detail::sample_outputs<ContextType>(flight[row]));
-    std::array<double, 3> sum{};
-    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = signed_sum(signs[axis], flight[row].commands);
-    sums.push_back(sum);
-  }
-  ContextType context;
-  const auto feature_unit = [](std::size_t i) { return Features::units[i]; };
-  context.input = detail::column_scaler(detail::feature_rows<Features>(flight, range), feature_unit);
-  context.output = detail::column_scaler(outputs, [](std::size_t) { return ContextType::Outputs::unit; });
-  context.signed_sum_spread = detail::column_scaler(sums, [](std::size_t) { return CommandOutputs::unit; }).spread;
-  return context;
+template <class Features>
+std::vector<std::string> still_features(const Flight& flight, const IndexRange& training) {
+  return still_features<Features>(RowSet(flight, training));
 }
 
-/// Rows of a flight, standardised by a context (that of the training set, for every block).
+/// The context of a training set: scalers and spreads of its rows. A column that stands still gets the spread 1.
+/// Flights count by their rows, whatever their weights.
+template <class ContextType>
+ContextType make_context(const RowSet& rows) {
+  using Features = typename ContextType::Features;
+  constexpr auto inputs = static_cast<std::size_t>(Features::size);
+  constexpr std::size_t outputs = rotor_count, axes = 3;
+  const std::array<std::array<double, rotor_count>, axes> signs = {
+      ContextType::template signs<Roll>(), ContextType::template signs<Pitch>(), ContextType::template signs<Yaw>()};
+  // one table: features, outputs, signed sums of the commands
+  const auto each_row = [&](const auto& visit) {
+    each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
+      const Sample& sample = flight[row];
+      const auto y = detail::sample_outputs<ContextType>(sample);
+      std::array<double, inputs + outputs + axes> values{};
+      for (std::size_t i = 0; i < inputs; ++i) values[i] = x[i];
+      for (std::size_t i = 0; i < outputs; ++i) values[inputs + i] = y[i];
+      for (std::size_t i = 0; i < axes; ++i) values[inputs + outputs + i] = signed_sum(signs[i], sample.commands);
+      visit(values);
+    });
+  };
+  const auto unit_of = [](std::size_t i) {
+    if (i < inputs) return Features::units[i];
+    return i < inputs + outputs ? ContextType::Outputs::unit : CommandOutputs::unit;
+  };
+  const auto columns = column_statistics<inputs + outputs + axes>(each_row, unit_of);
+  ContextType context;
+  for (std::size_t i = 0; i < inputs; ++i) {
+    context.input.mean[i] = columns[i].mean;
+    context.input.spread[i] = columns[i].scale();
+  }
+  for (std::size_t i = 0; i < outputs; ++i) {
+    context.output.mean[i] = columns[inputs + i].mean;
+    context.output.spread[i] = columns[inputs + i].scale();
+  }
+  for (std::size_t i = 0; i < axes; ++i) context.signed_sum_spread[i] = columns[inputs + outputs + i].scale();
+  return context;
+}
+template <class ContextType>
+ContextType make_context(const Flight& flight, const IndexRange& range) {
+  return make_context<ContextType>(RowSet(flight, range));
+}
+
+/// Rows, standardised by a context (that of the training set, for every block), with the weights of their flights.
 template <class Scalar, class ContextType>
 TrainingData<Scalar, ContextType::Features::size, rotor_count> standardised(const ContextType& context,
-                                                                            const Flight& flight,
-                                                                            const IndexRange& range) {
+                                                                            const RowSet& rows) {
   using Features = typename ContextType::Features;
   TrainingData<Scalar, Features::size, rotor_count> data;
-  data.features.reserve(range.size() * static_cast<std::size_t>(Features::size));
-  data.outputs.reserve(range.size() * rotor_count);
-  for (std::size_t row = range.begin; row < range.end; ++row) {
-    auto x = sample_features<Features, double>(flight[row]);
+  data.features.reserve(rows.size() * static_cast<std::size_t>(Features::size));
+  data.outputs.reserve(rows.size() * rotor_count);
+  const bool weighted = std::any_of(rows.pieces().begin(), rows.pieces().end(),
+                                    [](const FlightRows& piece) { return piece.flight->weight != 1; });
+  each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, auto x) {
     auto y = detail::sample_outputs<ContextType>(flight[row]);
     context.input.standardise(x.data(), x.data());
     context.output.standardise(y.data(), y.data());
     for (const double v : x) data.features.push_back(static_cast<Scalar>(v));
     for (const double v : y) data.outputs.push_back(static_cast<Scalar>(v));
-  }
+    if (weighted) data.weights.push_back(flight.weight);
+  });
   return data;
+}
+template <class Scalar, class ContextType>
+TrainingData<Scalar, ContextType::Features::size, rotor_count> standardised(const ContextType& context,
+                                                                            const Flight& flight,
+                                                                            const IndexRange& range) {
+  return standardised<Scalar>(context, RowSet(flight, range));
 }
 
 }  // namespace pinnquad

@@ -54,7 +54,7 @@ inline double planted_value(int model, std::size_t measure, std::uint64_t flight
 
 inline void write_row(std::ostream& out, int model, const std::string& flight, std::uint64_t flight_seed,
                       std::uint64_t seed) {
-  using pinnquad::detail::number_text;
+  using pinnquad::number_text;
   out << model << ',' << flight << ',' << flight_seed << ',' << seed << ",300,final";
   for (const programs::Figure& figure : programs::figures()) {
     double value = 0.9;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Numbers of a policy that make no sense. A policy that can hold such numbers has `void check() const`, which throws
-// std::invalid_argument, its text one line; a policy made of others asks them. The Trainer asks before it begins.
+// Numbers of a training's policies (losses, schedules, optimisers) that make no sense. A policy that can hold such numbers has
+// `void check() const`, which throws std::invalid_argument, its text one line; a policy made of others asks them. The Trainer
+// asks before it begins.
 #pragma once
 
 #include <limits>
@@ -65,7 +66,7 @@ constexpr void check_settings(const Policy& policy) {
   static_assert(
       detail::has_whole_check<Policy>(),
       "pinnquad: a policy's check() must be `void check() const` without parameters; this one would be passed "
-      "over (schedule/settings.hpp)");
+      "over (data/settings.hpp)");
   if constexpr (detail::ChecksSettings<Policy>::value) policy.check();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Closed loop on trajectories: feed-forward policies under the same feedback, and the fallback's book-keeping.
-#include "pinnquad/control/tracking.hpp"
+#include "pinnquad/simulation/tracking.hpp"
 
 #include <doctest/doctest.h>
 
@@ -36,6 +36,7 @@ HoverTrim<double> trim() {
 /// Stands in for a trained network: the interface of InverseDynamics, the vehicle's formula in float, times `gain`.
 struct FakeInverseDynamics {
   using Scalar = float;
+  using Features = PaperFeatures;
   using Inputs = MotionInputs<float>;
   using Report = GuardReport<float, PaperFeatures::size>;
 

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Recorded rows as the inputs and the features of a feature set: what training, judgement and export ask of a dataset.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/data/sample_inputs.hpp"
+#include "pinnquad/inference/input_history.hpp"
+
+namespace pinnquad {
+
+/// Reads Inputs from consecutive rows of one flight. Contract of a specialisation: made of the rows, which may throw
+/// std::invalid_argument, one line, for what the flight has not measured; `bool read(row, inputs) const`, row an index of the
+/// flight within the rows: false where the rows do not hold what these inputs need, and then nothing is written. It never
+/// looks beyond its rows.
+/// This one, for every Inputs that has a SampleInputs, looks at the row alone.
+template <class Inputs>
+class FlightInputs {
+ public:
+  explicit FlightInputs(const FlightRows& rows) : flight_(rows.flight) {}
+
+  bool read(std::size_t row, Inputs& inputs) const {
+    inputs = SampleInputs<Inputs>::from((*flight_)[row]);
+    return true;
+  }
+
+ private:
+  const Flight* flight_;
+};
+
+/// Inputs with extra columns, each found in the flight by its name. Throws std::invalid_argument for a column that the flight
+/// has not, or has in another unit.
+template <class Base, class Scalar, class... Column>
+class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
+ public:
+  using Inputs = InputsWithColumns<Base, Scalar, Column...>;
+
+  explicit FlightInputs(const FlightRows& rows) : base_(rows), columns_{values_of<Column>(*rows.flight)...} {}
+
+  bool read(std::size_t row, Inputs& inputs) const {
+    Inputs read;
+    if (!base_.read(row, read)) return false;
+    for (std::size_t i = 0; i < columns_.size(); ++i) read.columns[i] = static_cast<Scalar>((*columns_[i])[row]);
+    inputs = read;
+    return true;
+  }
+
+ private:
+  template <class Wanted>
+  static const std::vector<double>* values_of(const Flight& flight) {
+    const ExtraColumn* column = flight.column(Wanted::name);
+    const std::string expected =
+        "flight '" + flight.name + "': expected a column " + Wanted::name + " in " + Wanted::unit + ", found ";
+    if (column == nullptr) throw std::invalid_argument(expected + "none of that name");
+    if (column->unit != Wanted::unit) throw std::invalid_argument(expected + "it in " + column->unit);
+    return &column->values;
+  }
+
+  FlightInputs<Base> base_;
+  std::array<const std::vector<double>*, sizeof...(Column)> columns_;
+};
+
+/// Windows about a row, which is their present instant; the taps are interpolated as in flight (inference/input_history.hpp).
+/// False where a tap lies beyond these rows or behind a gap: no window crosses a border.
+template <class Tap, class Scalar, class Window>
+class FlightInputs<WindowInputs<Tap, Scalar, Window>> {
+ public:
+  using Inputs = WindowInputs<Tap, Scalar, Window>;
+
+  explicit FlightInputs(const FlightRows& rows) : rows_(rows), taps_(rows) {}
+
+  bool read(std::size_t row, Inputs& inputs) const {
+    Inputs read;
+    if (!taps_.read(row, read)) return false;
+    const double present_s = time_of(row);
+    std::size_t first = row, last = row;
+    while (first > rows_.rows.begin && time_of(first) > present_s + Window::earliest_s + Window::tolerance_s &&
+           detail::follows<Window>(time_of(first - 1), time_of(first))) {
+      --first;
+    }
+    while (last + 1 < rows_.rows.end && time_of(last) < present_s + Window::latest_s - Window::tolerance_s &&
+           detail::follows<Window>(time_of(last), time_of(last + 1))) {
+      ++last;
+    }
+    detail::fill_window(
+        present_s, first, last, row, [this](std::size_t i) { return time_of(i); },
+        [this](std::size_t i, Tap& tap) { return taps_.read(i, tap); }, read);
+    if (!read.complete) return false;
+    inputs = read;
+    return true;
+  }
+
+ private:
+  double time_of(std::size_t row) const { return (*rows_.flight)[row].time_s; }
+
+  FlightRows rows_;
+  FlightInputs<Tap> taps_;
+};
+
+/// The extra columns that a feature set needs of a flight: what to ask of read_flight_csv().
+template <class Features>
+std::vector<ColumnName> wanted_columns() {
+  std::vector<ColumnName> wanted;
+  for (std::size_t i = 0; i < extra_column_names<Features>.size(); ++i) {
+    wanted.push_back({extra_column_names<Features>[i], extra_column_units<Features>[i]});
+  }
+  return wanted;
+}
+
+/// Calls `visit(flight, row, x)` for every row of a set that has features: X in physical units, an array of Scalar.
+template <class Features, class Scalar, class Visit>
+void each_features(const RowSet& rows, const Visit& visit) {
+  using Inputs = typename Features::template Inputs<Scalar>;
+  for (const FlightRows& piece : rows.pieces()) {
+    const FlightInputs<Inputs> recorded(piece);
+    for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+      Inputs inputs;
+      if (!recorded.read(row, inputs)) continue;
+      std::array<Scalar, static_cast<std::size_t>(Features::size)> x{};
+      Features::extract(inputs, x.data());
+      visit(*piece.flight, row, x);
+    }
+  }
+}
+
+}  // namespace pinnquad

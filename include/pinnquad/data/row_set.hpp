@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Rows out of one flight or of many, as one set: what is trained on, or judged by. A view: the flights must outlive it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/split.hpp"
+
+namespace pinnquad {
+
+/// Rows of one flight that follow each other in time.
+struct FlightRows {
+  const Flight* flight = nullptr;
+  IndexRange rows;
+};
+
+/// Pieces of flights in the order in which they were added. Where two meet there is a border: rows on its two sides are no
+/// neighbours in time, whatever their stamps say.
+class RowSet {
+ public:
+  RowSet() = default;
+  RowSet(const Flight& flight, const IndexRange& rows) { add(flight, rows); }
+  RowSet(const Flight&&, const IndexRange&) = delete;  // the flight would be gone
+
+  /// Rows of a flight, none of them a part of the set yet; no rows add nothing. Throws std::invalid_argument for rows that the
+  /// flight does not have.
+  void add(const Flight& flight, const IndexRange& rows) {
+    if (rows.begin > rows.end || rows.end > flight.size()) {
+      throw std::invalid_argument("row set: expected rows of a flight of " + std::to_string(flight.size()) +
+                                  ", found " + std::to_string(rows.begin) + " to " + std::to_string(rows.end));
+    }
+    if (rows.empty()) return;
+    pieces_.push_back({&flight, rows});
+    ends_.push_back(size() + rows.size());
+  }
+
+  const std::vector<FlightRows>& pieces() const noexcept { return pieces_; }
+  std::size_t size() const noexcept { return ends_.empty() ? 0 : ends_.back(); }
+  bool empty() const noexcept { return ends_.empty(); }
+
+  /// The row, counted through all pieces; a binary search over them.
+  const Sample& operator[](std::size_t row) const {
+    const auto piece = static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), row) - ends_.begin());
+    const FlightRows& of = pieces_[piece];
+    return (*of.flight)[of.rows.end - (ends_[piece] - row)];
+  }
+
+ private:
+  std::vector<FlightRows> pieces_;
+  std::vector<std::size_t> ends_;  ///< per piece: rows up to and including it
+};
+
+}  // namespace pinnquad

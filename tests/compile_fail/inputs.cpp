@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// CASE COLUMN_WITHOUT_UNIT: pinnquad: a column of WithColumns has no name or no unit
+// CASE COLUMN_TWICE: pinnquad: a column of WithColumns has a name that is taken
+// CASE NO_COLUMN: pinnquad: WithColumns needs a column
+// CASE COLUMN_OUTSIDE_A_WINDOW: pinnquad: columns belong inside a window
+// CASE WINDOW_OF_WINDOWS: pinnquad: a window of windows is one with more taps
+// CASE NO_SUCH_COLUMN: pinnquad: these inputs have no such column
+// CASE WINDOW_OF_NO_FEATURES: pinnquad: Windowed's first argument is not a feature set
+// CASE EVEN_CENTRED_WINDOW: pinnquad: a window has one tap or more, a centred one an odd number
+// CASE CENTRED_HISTORY: pinnquad: a centred window looks ahead, and no loop can
+// CASE UNMEASURED_INPUT: pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument
+// CASE MEASURING_MAY_THROW: pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be noexcept
+#include "pinnquad/control/feed_forward.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+struct Current {
+  static constexpr const char* name = "pack_current";
+#if !defined(COLUMN_WITHOUT_UNIT)
+  static constexpr const char* unit = "A";
+#endif
+};
+
+#if defined(COLUMN_TWICE)
+using Measured = WithColumns<WithColumns<PaperFeatures, Current>, Current>;
+#elif defined(COLUMN_OUTSIDE_A_WINDOW)
+using Measured = WithColumns<Windowed<PaperFeatures, 3, PeriodMicroseconds<20000>>, Current>;
+#elif defined(NO_COLUMN)
+using Measured = WithColumns<PaperFeatures>;
+#else
+using Measured = WithColumns<PaperFeatures, Current>;
+#endif
+
+#if defined(WINDOW_OF_NO_FEATURES)
+using Past = Windowed<int, 3, PeriodMicroseconds<20000>>;
+#elif defined(EVEN_CENTRED_WINDOW)
+using Past = Windowed<Measured, 4, PeriodMicroseconds<20000>, Centred>;
+#elif defined(WINDOW_OF_WINDOWS)
+using Past = Windowed<Windowed<Measured, 2, PeriodMicroseconds<20000>>, 3, PeriodMicroseconds<20000>>;
+#elif defined(CENTRED_HISTORY)
+using Past = Windowed<Measured, 3, PeriodMicroseconds<20000>, Centred>;
+#else
+using Past = Windowed<Measured, 3, PeriodMicroseconds<20000>>;
+#endif
+
+/// Stands in for a model: as much of InverseDynamics as NetworkInverse asks.
+struct Inverse {
+  using Scalar = float;
+  using Features = Past;
+  struct Report {
+    Status cause{Status::ok};
+  };
+  Status predict(const Past::Inputs<float>&, const PlaceAndTime<double>&, Commands<float>&, Report&) const noexcept {
+    return Status::ok;
+  }
+};
+
+struct Ammeter {
+  void operator()(const State<double>&, double, Measured::Inputs<float>& inputs) const
+#if !defined(MEASURING_MAY_THROW)
+      noexcept
+#endif
+  {
+#if defined(NO_SUCH_COLUMN)
+    inputs.column<BatteryVoltage>() = 3;
+#else
+    inputs.column<Current>() = 3;
+#endif
+  }
+};
+
+#if defined(UNMEASURED_INPUT)
+using FeedForward = NetworkInverse<Inverse>;
+#else
+using FeedForward = NetworkInverse<Inverse, Ammeter>;
+#endif
+
+}  // namespace
+
+int main() {
+  FeedForward feed_forward{Inverse{}};
+  Commands<double> commands{};
+  return feed_forward(State<double>{}, Accelerations<double>{}, 0.0, commands) == Status::ok ? 0 : 1;
+}

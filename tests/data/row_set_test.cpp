@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/data/row_set.hpp"
+
+#include <doctest/doctest.h>
+
+#include <stdexcept>
+
+#include "recorded_flight.hpp"
+
+using pinnquad::Flight;
+using pinnquad::RowSet;
+using pinnquad_test::random_flight;
+
+TEST_CASE("rows of several flights count through, in the order in which they were added") {
+  const Flight a = random_flight(7, 1), b = random_flight(5, 2);
+  RowSet rows;
+  CHECK(rows.empty());
+  CHECK(rows.size() == 0);
+  rows.add(b, {1, 4});
+  rows.add(a, {2, 2});  // nothing
+  rows.add(a, {0, 2});
+  rows.add(a, {6, 7});
+  REQUIRE(rows.size() == 6);
+  CHECK(rows.pieces().size() == 3);
+  const pinnquad::Sample* expected[] = {&b[1], &b[2], &b[3], &a[0], &a[1], &a[6]};
+  for (std::size_t i = 0; i < 6; ++i) CHECK(&rows[i] == expected[i]);
+}
+
+TEST_CASE("rows that a flight does not have are refused") {
+  const Flight flight = random_flight(7, 3);
+  CHECK_NOTHROW(RowSet(flight, {0, 7}));
+  CHECK_THROWS_AS(RowSet(flight, {0, 8}), std::invalid_argument);
+  CHECK_THROWS_AS(RowSet(flight, {5, 4}), std::invalid_argument);
+}
