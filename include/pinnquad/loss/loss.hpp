@@ -60,8 +60,10 @@ struct Context {
   using Vehicle = VehicleType;
   using Outputs = Schema;
 
+  static constexpr int output_count = OutputMap<Outputs>::size;
+
   Scaler<double, Features::size> input{};  ///< physical -> standardised, by the training set
-  Scaler<double, rotor_count> output{};
+  Scaler<double, output_count> output{};
   std::array<double, 3> signed_sum_spread{1.0, 1.0, 1.0};  ///< spread of the signed command sums, training set
   Progress progress{};
 

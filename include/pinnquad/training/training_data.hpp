@@ -55,12 +55,12 @@ std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> featur
 
 /// Outputs of a sample in the schema's physical units.
 template <class ContextType>
-std::array<double, rotor_count> sample_outputs(const Sample& sample) {
-  constexpr Airframe<double> airframe = airframe_value<typename ContextType::Vehicle, double>();
-  std::array<double, rotor_count> outputs{};
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    outputs[i] = ContextType::Outputs::from_command(sample.commands[i], airframe);
-  }
+std::array<double, static_cast<std::size_t>(ContextType::output_count)> sample_outputs(const Sample& sample) {
+  using Map = OutputMap<typename ContextType::Outputs>;
+  constexpr auto setting = Map::setting(airframe_value<typename ContextType::Vehicle, double>());
+  std::array<double, static_cast<std::size_t>(Map::size)> outputs{};
+  const auto x = sample_features<typename ContextType::Features, double>(sample);
+  Map::from_commands(x.data(), sample.commands.data(), setting, outputs.data());
   return outputs;
 }
 
@@ -82,7 +82,7 @@ std::vector<std::string> still_features(const Flight& flight, const IndexRange& 
 template <class ContextType>
 ContextType make_context(const Flight& flight, const IndexRange& range) {
   using Features = typename ContextType::Features;
-  std::vector<std::array<double, rotor_count>> outputs;
+  std::vector<std::array<double, static_cast<std::size_t>(ContextType::output_count)>> outputs;
   std::vector<std::array<double, 3>> sums;
   const std::array<std::array<double, rotor_count>, 3> signs = {
       ContextType::template signs<Roll>(), ContextType::template signs<Pitch>(), ContextType::template signs<Yaw>()};
@@ -94,21 +94,22 @@ ContextType make_context(const Flight& flight, const IndexRange& range) {
   }
   ContextType context;
   const auto feature_unit = [](std::size_t i) { return Features::units[i]; };
+  const auto output_unit = [](std::size_t i) { return OutputMap<typename ContextType::Outputs>::units[i]; };
   context.input = detail::column_scaler(detail::feature_rows<Features>(flight, range), feature_unit);
-  context.output = detail::column_scaler(outputs, [](std::size_t) { return ContextType::Outputs::unit; });
+  context.output = detail::column_scaler(outputs, output_unit);
   context.signed_sum_spread = detail::column_scaler(sums, [](std::size_t) { return CommandOutputs::unit; }).spread;
   return context;
 }
 
 /// Rows of a flight, standardised by a context (that of the training set, for every block).
 template <class Scalar, class ContextType>
-TrainingData<Scalar, ContextType::Features::size, rotor_count> standardised(const ContextType& context,
-                                                                            const Flight& flight,
-                                                                            const IndexRange& range) {
+TrainingData<Scalar, ContextType::Features::size, ContextType::output_count> standardised(const ContextType& context,
+                                                                                          const Flight& flight,
+                                                                                          const IndexRange& range) {
   using Features = typename ContextType::Features;
-  TrainingData<Scalar, Features::size, rotor_count> data;
+  TrainingData<Scalar, Features::size, ContextType::output_count> data;
   data.features.reserve(range.size() * static_cast<std::size_t>(Features::size));
-  data.outputs.reserve(range.size() * rotor_count);
+  data.outputs.reserve(range.size() * static_cast<std::size_t>(ContextType::output_count));
   for (std::size_t row = range.begin; row < range.end; ++row) {
     auto x = sample_features<Features, double>(flight[row]);
     auto y = detail::sample_outputs<ContextType>(flight[row]);
