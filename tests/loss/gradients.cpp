@@ -127,6 +127,8 @@ TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>,
   }
   SUBCASE("a residual on another inverse") {
     using Residual = ResidualOutputs<LinearizedInverse>;
-    check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, Residual>>());
+    auto context = flight_context<Context<PaperFeatures, PaperQuadrotor, Residual>>();
+    context.input.spread.fill(0.05);  // motions whose commands by the base leave the steps a slope
+    check_gradient(Loss{}, context);
   }
 }
