@@ -32,7 +32,7 @@ void train(const Flight& flight, const std::string& folder, const std::string& f
   std::apply([](auto&... term) { ((term.schedule.value = 1e-3), ...); }, loss.terms);
   auto trainer =
       std::make_unique<Trainer<Net, Loss, Adam, Surroundings>>(initialised<Net>(engine), loss, Adam{}, context);
-  constexpr int epochs = 40;
+  constexpr int epochs = 240;
   for (int epoch = 0; epoch < epochs; ++epoch) trainer->epoch(data, {epoch, epochs}, engine);
   const auto model = make_trained_model(trainer->network(), context, flight, rows);
   std::vector<typename decltype(model)::FeatureVector> golden;
