@@ -21,6 +21,7 @@
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
+#include "pinnquad/inference/composition.hpp"
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/inference/loaded_model.hpp"

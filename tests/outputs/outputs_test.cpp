@@ -5,8 +5,12 @@
 
 #include <accelerations.hpp>
 #include <cmath>
+#include <direct.hpp>
+#include <ensemble.hpp>
 #include <memory>
 #include <residual.hpp>
+#include <ridge.hpp>
+#include <sum.hpp>
 #include <wrench.hpp>
 
 #include "outputs/setting.hpp"
@@ -212,7 +216,7 @@ TEST_CASE_TEMPLATE("a model of other outputs", Model, AccelerationsModel, Wrench
     REQUIRE(hover_trim(vehicle, course.center_m, trim) == Status::ok);
     const double hover = track(vehicle, course, FlightController<double>{}, trim).rmse_m;
     const double flown = flown_error_m(Model{});
-    MESSAGE(Model::name, ": ", 100 * flown, " cm; the hover's commands: ", 100 * hover, " cm");
+    MESSAGE(std::string(Model::name), ": ", 100 * flown, " cm; the hover's commands: ", 100 * hover, " cm");
     CHECK(flown < 0.7 * hover);
   }
 }
@@ -221,4 +225,82 @@ TEST_CASE("a block of one meaning is none of another: six accelerations, a wrenc
   const test::BlockBytes bytes(model_block<WrenchModel>());
   ModelView<ResidualModel> view;
   CHECK(ModelView<ResidualModel>::open(bytes.data(), bytes.size(), view) == Status::block_incompatible);
+}
+
+TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumModel, EnsembleModel) {
+  const test::BlockBytes bytes(model_block<Model>());
+  ModelView<Model> view;
+  REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
+  const auto loaded = std::make_unique<LoadedModel<Model>>();
+  REQUIRE(loaded->load(view) == Status::ok);
+  CHECK(self_test(InverseDynamics<Model>{}) == Status::ok);
+  CHECK(self_test(InverseDynamics<ModelView<Model>>(view)) == Status::ok);
+  CHECK(self_test(InverseDynamics<LoadedModel<Model>>(*loaded)) == Status::ok);
+  check_jacobian(Model{});
+  check_jacobian(view);
+  check_batch(Model{});
+  check_batch(*loaded);
+  MESSAGE(std::string(Model::name), ": ", 100 * flown_error_m(Model{}), " cm");
+}
+
+TEST_CASE("a formula and a network as a sum are that network's outputs on that formula; an ensemble is the mean") {
+  const InverseDynamics<SumModel> sum;
+  const InverseDynamics<ResidualModel> residual;
+  const InverseDynamics<DirectModel> direct;
+  const InverseDynamics<EnsembleModel> ensemble;
+  for (const auto& x : SumModel::golden_features) {
+    Commands<float> u{}, expected{}, other{}, mean{};
+    REQUIRE(sum.predict_features(x.data(), u) == Status::ok);
+    REQUIRE(residual.predict_features(x.data(), expected) == Status::ok);
+    REQUIRE(direct.predict_features(x.data(), other) == Status::ok);
+    REQUIRE(ensemble.predict_features(x.data(), mean) == Status::ok);
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK(std::abs(u[i] - expected[i]) <= rounding);
+      CHECK(std::abs(mean[i] - (expected[i] + other[i]) / 2) <= rounding);
+    }
+  }
+}
+
+TEST_CASE("an affine map is told from its header alone") {
+  const InverseDynamics<RidgeModel> ridge;
+  for (const auto& x : RidgeModel::golden_features) {
+    Commands<float> u{};
+    REQUIRE(ridge.predict_features(x.data(), u) == Status::ok);
+    for (std::size_t i = 0; i < 4; ++i) {
+      double expected = double(RidgeModel::parameters[64 + i]);
+      for (std::size_t k = 0; k < 16; ++k) expected += double(RidgeModel::parameters[16 * i + k]) * double(x[k]);
+      CHECK(std::abs(double(u[i]) - expected) <= double(rounding));
+    }
+  }
+}
+
+namespace {
+
+struct Written {
+  std::string text;
+  void add(std::string_view piece) { text += piece; }
+  void add(int number) { text += std::to_string(number); }
+};
+template <class T>
+std::string written() {
+  Written sink;
+  Description<T>::add(sink);
+  return sink.text;
+}
+
+/// A layer of one's own that names itself, and one that does not.
+struct Named : Relu {
+  static constexpr const char* description = "mine/leaky 0.1";
+};
+
+}  // namespace
+
+TEST_CASE("what a model is made of is written, whichever compiler reads it") {
+  CHECK(written<Network<float, Inputs<16>, Dense<25>, Named, Dense<4>>>() ==
+        "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, mine/leaky 0.1, pinnquad::Dense<4>>");
+  CHECK(
+      written<EnsembleModel::Network>() ==
+      "pinnquad::Ensemble<2><pinnquad::Sum<pinnquad::Analytic<16><float, pinnquad::LinearizedInverse>paper_quadrotor, "
+      "pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<20>, pinnquad::Tanh, "
+      "pinnquad::Dense<20>, pinnquad::Tanh, pinnquad::Dense<4>>>>>");
 }

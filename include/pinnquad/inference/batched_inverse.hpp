@@ -6,6 +6,32 @@
 #include "pinnquad/nn/batched_network.hpp"
 
 namespace pinnquad {
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// A network over all lanes at once; any other answer, one sample after the other.
+template <class Answer, bool IsNetwork = is_network<Answer>>
+struct BatchedAnswer : BatchedNetwork<Answer> {};
+
+template <class Answer>
+struct BatchedAnswer<Answer, false> {
+  using Scalar = typename Answer::Scalar;
+  static constexpr int lanes = 8;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y, int samples) noexcept {
+    for (int s = 0; s < samples; ++s) {
+      Scalar in[Answer::inputs], out[Answer::outputs];
+      for (int i = 0; i < Answer::inputs; ++i) in[i] = x[i * samples + s];
+      Answer::forward(parameters, static_cast<const Scalar*>(in), static_cast<Scalar*>(out));
+      for (int i = 0; i < Answer::outputs; ++i) y[i * samples + s] = out[i];
+    }
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// For each sample s what InverseDynamics::predict_features() gives, to rounding: x[k * samples + s] is its feature k in
@@ -20,7 +46,7 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   static_assert(!GuardType::compares,
                 "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
-  using Batched = BatchedNetwork<typename Model::Network>;
+  using Batched = detail::BatchedAnswer<typename Model::Network>;
   using Numbers = detail::ModelNumbers<Model>;
   using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;
   constexpr int size = Model::Features::size;

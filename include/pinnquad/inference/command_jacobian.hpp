@@ -24,7 +24,6 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
                 "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Network = typename Model::Network;
-  using Pass = JacobianPass<Network>;
   using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;
   constexpr int size = Model::Features::size;
   if (!inverse.inside_envelope(x)) return Status::outside_envelope;
@@ -33,14 +32,16 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
   Scalar outputs[Network::outputs] = {}, slopes[Network::outputs * size];
   Scalar result[rotor_count], by_features[rotor_count * size];
   const Scalar* weights = detail::row_major_weights(inverse.model());
-  Pipeline::template run<1>(scales, x, outputs, result,
-                            [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
-                              if constexpr (detail::is_packed<Model>) {
-                                Pass::run(detail::packed_weights(inverse.model()), weights, standardised, made, slopes);
-                              } else {
-                                Pass::run(weights, standardised, made, slopes);
-                              }
-                            });
+  Pipeline::template run<1>(
+      scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
+        if constexpr (!is_network<Network>) {
+          Network::jacobian(weights, standardised, made, slopes);
+        } else if constexpr (detail::is_packed<Model>) {
+          JacobianPass<Network>::run(detail::packed_weights(inverse.model()), weights, standardised, made, slopes);
+        } else {
+          JacobianPass<Network>::run(weights, standardised, made, slopes);
+        }
+      });
   Pipeline::chain(scales, x, outputs, slopes, by_features);
   if (!all_finite(by_features, rotor_count * size)) return Status::output_not_finite;
   const Status status = GuardType::check_commands(result);

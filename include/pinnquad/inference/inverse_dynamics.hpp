@@ -25,7 +25,7 @@ struct HasOwnPacking<Model, std::void_t<decltype(std::declval<const Model&>().pa
 
 /// True where the vector unit's kernel predicts, from packed_weights(): the model's own, or the compiler's.
 template <class Model>
-inline constexpr bool is_packed = has_vector_unit<typename Model::Scalar> &&
+inline constexpr bool is_packed = has_vector_unit<typename Model::Scalar>&& is_network<typename Model::Network> &&
                                   (HasOwnPacking<Model>::value ||
                                    (HasConstantParameters<Model>::value && !HasOwnForward<Model>::value));
 template <class Model>
@@ -148,7 +148,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   PINNQUAD_NOINLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
     if constexpr (detail::HasOwnForward<Model>::value) {
       model().forward(standardised, outputs);
-    } else if constexpr (has_vector_unit<Scalar>) {
+    } else if constexpr (has_vector_unit<Scalar> && is_network<Network>) {
       detail::packed_model<Model>.forward(standardised, outputs);
     } else {
       constexpr const Scalar* weights = Model::parameters.data();

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/inference/answer.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/network.hpp"
@@ -211,7 +212,9 @@ constexpr bool require_shape() noexcept {
   static_assert(detail::HasShape<S>::value,
                 "pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle (inference/model.hpp)");
   if constexpr (detail::HasShape<S>::value) {
-    static_assert(is_network<typename S::Network>, "pinnquad: the model's Network is not a pinnquad::Network");
+    static_assert(
+        is_answer<typename S::Network>,
+        "pinnquad: the model's Network is neither a pinnquad::Network nor another answer (inference/answer.hpp)");
     static_assert(is_feature_set<typename S::Features>, "pinnquad: the model's Features are not a feature set");
     static_assert(is_output_schema<typename S::Outputs>, "pinnquad: the model's Outputs are not an output schema");
     if constexpr (is_feature_set<typename S::Features>) {

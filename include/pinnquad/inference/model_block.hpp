@@ -9,8 +9,8 @@
 
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/fnv1a.hpp"
-#include "pinnquad/core/type_text.hpp"
 #include "pinnquad/inference/checksum.hpp"
+#include "pinnquad/inference/description.hpp"
 #include "pinnquad/inference/model.hpp"
 
 namespace pinnquad {
@@ -74,7 +74,7 @@ namespace detail {
 template <class Shape>
 constexpr std::uint64_t hash_of_shape() noexcept {
   Fnv1a fnv;
-  fnv.absorb_text(type_text<typename Shape::Network>());
+  absorb_description<typename Shape::Network>(fnv);
   fnv.absorb_text(model_frame);
   for (const char* name : Shape::Features::names) fnv.absorb_text(name);
   for (const char* unit : Shape::Features::units) fnv.absorb_text(unit);
@@ -90,9 +90,8 @@ constexpr std::uint64_t hash_of_shape() noexcept {
 }
 }  // namespace detail
 
-/// Names what a block's weights are for: network type, frame, feature names and units, output names and units, vehicle
-/// name and motor order. The same from gcc and clang as long as the network's types have names that another translation
-/// unit could use and no template arguments that compilers print differently (unsigned or character constants).
+/// Names what a block's weights are for: the answer's description (inference/description.hpp), frame, feature names and units,
+/// output names and units, vehicle name and motor order.
 template <class Shape>
 inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
 

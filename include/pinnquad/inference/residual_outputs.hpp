@@ -13,6 +13,8 @@ namespace pinnquad {
 /// Eq. (3) inverted ("Model 1" of Table 2), of PaperFeatures and what begins as they do, in air of the rated density: thrust
 /// from v_dot_z, torques from omega_dot, nothing else.
 struct LinearizedInverse {
+  static constexpr const char* description = "pinnquad::LinearizedInverse";
+
   template <class Scalar>
   struct Body {
     Rotors<Scalar> rotors;
