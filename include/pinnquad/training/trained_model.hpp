@@ -8,8 +8,8 @@
 #include "pinnquad/data/sample_inputs.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/inference/pipeline.hpp"
-#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/network.hpp"
+#include "pinnquad/training/context.hpp"
 #include "pinnquad/training/folding.hpp"
 #include "pinnquad/training/training_data.hpp"
 

@@ -10,7 +10,7 @@
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/sample_inputs.hpp"
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/loss/loss.hpp"
+#include "pinnquad/training/context.hpp"
 #include "pinnquad/training/resolution.hpp"
 
 namespace pinnquad {
