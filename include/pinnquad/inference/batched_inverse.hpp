@@ -68,13 +68,16 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
     int outside[lanes] = {};
     for (int k = 0; k < size; ++k) {
       const Scalar* feature = x + k * samples + first;
-      for (int s = 0; s < count; ++s) {
-        block[k * lanes + s] = feature[s];
-        const bool inside = is_finite(feature[s]) & (feature[s] >= lower[k]) & (feature[s] <= upper[k]);
+      if (count == lanes) {
+        for (int s = 0; s < lanes; ++s) block[k * lanes + s] = feature[s];
+      } else {  // padding repeats the last sample, as in BatchedNetwork
+        for (int s = 0; s < lanes; ++s) block[k * lanes + s] = feature[s < count ? s : count - 1];
+      }
+      for (int s = 0; s < lanes; ++s) {
+        const Scalar value = block[k * lanes + s];
+        const bool inside = is_finite(value) & (value >= lower[k]) & (value <= upper[k]);
         outside[s] |= inside ? 0 : 1;
       }
-      // padding repeats the last sample, as in BatchedNetwork
-      for (int s = count; s < lanes; ++s) block[k * lanes + s] = feature[count - 1];
     }
     Pipeline::template run<lanes>(scales, block, outputs, made,
                                   [weights](const Scalar* standardised, Scalar* restored) PINNQUAD_INLINE_LAMBDA {

@@ -24,7 +24,8 @@ template <int Size, int Lanes, class Scalar>
 PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread, const Scalar* values,
                                         Scalar* standardised) noexcept {
   for (int i = 0; i < Size; ++i) {
-    for (int s = 0; s < Lanes; ++s) standardised[i * Lanes + s] = (values[i * Lanes + s] - mean[i]) / spread[i];
+    const Scalar middle = mean[i], scale = spread[i];
+    for (int s = 0; s < Lanes; ++s) standardised[i * Lanes + s] = (values[i * Lanes + s] - middle) / scale;
   }
 }
 
@@ -32,7 +33,8 @@ template <int Size, int Lanes, class Scalar>
 PINNQUAD_ALWAYS_INLINE void restore(const Scalar* mean, const Scalar* spread, const Scalar* standardised,
                                     Scalar* values) noexcept {
   for (int i = 0; i < Size; ++i) {
-    for (int s = 0; s < Lanes; ++s) values[i * Lanes + s] = standardised[i * Lanes + s] * spread[i] + mean[i];
+    const Scalar middle = mean[i], scale = spread[i];
+    for (int s = 0; s < Lanes; ++s) values[i * Lanes + s] = standardised[i * Lanes + s] * scale + middle;
   }
 }
 
@@ -58,6 +60,10 @@ struct Pipeline {
     constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());
     if constexpr (Lanes == 1) {
       Map::commands(x, outputs, setting, commands);
+    } else if constexpr (Map::slope_count == Map::size) {  // each command is of one output
+      for (int i = 0; i < rotor_count; ++i) {
+        for (int s = 0; s < Lanes; ++s) commands[i * Lanes + s] = Map::command(outputs[i * Lanes + s], setting);
+      }
     } else {
       for (int s = 0; s < Lanes; ++s) {
         Scalar features[Features::size], sample[Map::size], made[rotor_count];
