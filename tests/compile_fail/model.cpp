@@ -25,7 +25,7 @@
 // CASE NO_GOLDEN_VECTORS: pinnquad: the model has no golden vectors
 // CASE GOLDEN_LENGTH: pinnquad: a golden vector does not have the length
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
-// CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
+// CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the output schema's size
 // CASE FEATURES_MAY_THROW: pinnquad: a feature set's check.. and extract.. must be noexcept
 // CASE OUTPUTS_MAY_THROW: pinnquad: an output schema's functions must be noexcept
 // CASE SCALAR_DIFFERS: pinnquad: the model's Scalar is not that of its Network

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CASE SIX_OUTPUTS: pinnquad: a trained model's network has one output per rotor
+// CASE SIX_OUTPUTS: pinnquad: a trained model's network has one output per output of its context's schema
 // CASE FIFTEEN_INPUTS: pinnquad: a trained model's network has one input per feature of its context
 #include "pinnquad/training/trained_model.hpp"
 

@@ -2,7 +2,7 @@
 // CASE NOT_A_LOSS: pinnquad: Trainer's second argument is not a loss
 // CASE NOT_A_NETWORK: pinnquad: Trainer's first argument is not a Network
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
-// CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the rotor count
+// CASE OUTPUTS_DIFFER: pinnquad: the network's output count differs from the output schema's size
 // CASE NO_BACKWARD_RULE: pinnquad: this layer cannot be trained; specialise BackwardRule
 // CASE BACKWARD_RULE_MAY_THROW: pinnquad: a BackwardRule's backward.. must be noexcept
 // CASE NO_SLOPE: pinnquad: this layer cannot be trained; an element-wise layer needs slope

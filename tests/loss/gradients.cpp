@@ -5,16 +5,20 @@
 #include <random>
 #include <vector>
 
+#include "pinnquad/inference/residual_outputs.hpp"
+#include "pinnquad/inference/wrench_outputs.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/schedule/constant.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "support/central_difference.hpp"
 #include "support/loss_batches.hpp"
 
+using pinnquad::AccelerationOutputs;
 using pinnquad::CommandOutputs;
 using pinnquad::Constant;
 using pinnquad::Context;
 using pinnquad::CyclicalAnnealing;
+using pinnquad::LinearizedInverse;
 using pinnquad::Literal;
 using pinnquad::LocalMonotonicity;
 using pinnquad::Match;
@@ -24,6 +28,7 @@ using pinnquad::PaperLoss;
 using pinnquad::PaperQuadrotor;
 using pinnquad::PhysicsInformed;
 using pinnquad::Pitch;
+using pinnquad::ResidualOutputs;
 using pinnquad::Roll;
 using pinnquad::RotorSpeedOutputs;
 using pinnquad::TanhStep;
@@ -69,33 +74,35 @@ struct Wide : PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnn
 template <class Loss, class ContextType>
 void check_gradient(const Loss& loss, ContextType context) {
   static_assert(pinnquad::is_loss<Loss>);
+  constexpr int outputs = ContextType::output_count;
+  using Batch = PaperBatch<double, outputs>;
   context.progress = {13, 20};
   std::mt19937_64 engine(71);
   for (const int size : {1, 2, 3, 5, 40, 63, 64}) {
     for (const double weight : {1.0, -0.25}) {
       CAPTURE(size);
       CAPTURE(weight);
-      auto batch = random_batch<double>(size, engine);
+      auto batch = random_batch<double, outputs>(size, engine);
       batch.prediction *= 0.3;  // steps that are not saturated: a slope to see
       batch.features *= 0.3;
-      PaperBatch<double>::Gradient before, gradient;
-      before.setZero(4, size);
+      typename Batch::Gradient before, gradient;
+      before.setZero(outputs, size);
       for (Eigen::Index i = 0; i < before.size(); ++i) before.data()[i] = pinnquad::standard_normal(engine);
       gradient = before;
       const double value = loss.evaluate(context, batch, weight, gradient);
-      const PaperBatch<double>::Gradient added = gradient - before;  // a loss adds to the gradient
+      const typename Batch::Gradient added = gradient - before;  // a loss adds to the gradient
       const auto count = static_cast<std::size_t>(batch.prediction.size());
       auto numerical = central_differences(
           [&] {
-            PaperBatch<double>::Gradient unused;
-            unused.setZero(4, size);
+            typename Batch::Gradient unused;
+            unused.setZero(outputs, size);
             return loss.evaluate(context, batch, weight, unused);
           },
           batch.prediction.data(), count);
       for (double& v : numerical) v *= weight;  // the value is the loss itself, the gradient is weighted
       CHECK(gradient_error(added.data(), numerical.data(), count) <= gradient_tolerance);
-      PaperBatch<double>::Gradient unused;
-      unused.setZero(4, size);
+      typename Batch::Gradient unused;
+      unused.setZero(outputs, size);
       CHECK(loss.evaluate(context, batch, 0.0, unused) == value);
       CHECK(unused.cwiseAbs().maxCoeff() == 0.0);
     }
@@ -114,5 +121,14 @@ TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>,
   }
   SUBCASE("rotor speeds") {
     check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>>());
+  }
+  SUBCASE("six accelerations") {
+    check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, AccelerationOutputs>>());
+  }
+  SUBCASE("a residual on another inverse") {
+    using Residual = ResidualOutputs<LinearizedInverse>;
+    auto context = flight_context<Context<PaperFeatures, PaperQuadrotor, Residual>>();
+    context.input.spread.fill(0.05);  // motions whose commands by the base leave the steps a slope
+    check_gradient(Loss{}, context);
   }
 }

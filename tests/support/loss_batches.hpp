@@ -3,17 +3,19 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <random>
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/loss/loss.hpp"
+#include "pinnquad/training/context.hpp"
+#include "pinnquad/training/loss_batch.hpp"
 
 namespace pinnquad::test {
 
-template <class Scalar>
-using PaperBatch = LossBatch<Scalar, PaperFeatures::size, rotor_count, 64>;
+template <class Scalar, int OutputCount = rotor_count>
+using PaperBatch = LossBatch<Scalar, PaperFeatures::size, OutputCount, 64>;
 
 /// A series with these values.
 inline Eigen::ArrayXd array(std::initializer_list<double> values) {
@@ -23,9 +25,9 @@ inline Eigen::ArrayXd array(std::initializer_list<double> values) {
 }
 
 /// Normal features, targets and predictions.
-template <class Scalar>
-PaperBatch<Scalar> random_batch(int size, std::mt19937_64& engine) {
-  PaperBatch<Scalar> batch;
+template <class Scalar, int OutputCount = rotor_count>
+PaperBatch<Scalar, OutputCount> random_batch(int size, std::mt19937_64& engine) {
+  PaperBatch<Scalar, OutputCount> batch;
   batch.resize(size);
   const auto fill = [&engine](auto& matrix) {
     for (Eigen::Index i = 0; i < matrix.size(); ++i) matrix.data()[i] = static_cast<Scalar>(standard_normal(engine));
@@ -41,12 +43,20 @@ PaperBatch<Scalar> random_batch(int size, std::mt19937_64& engine) {
 template <class ContextType>
 ContextType flight_context() {
   ContextType context;
-  constexpr Airframe<double> airframe = airframe_value<typename ContextType::Vehicle, double>();
+  using Map = OutputMap<typename ContextType::Outputs>;
+  const auto setting = Map::setting(airframe_value<typename ContextType::Vehicle, double>());
+  const std::array<double, ContextType::Features::size> level{};
+  Commands<double> middle{}, above{};
   for (std::size_t i = 0; i < rotor_count; ++i) {
-    const double mean = 0.5 + 0.02 * static_cast<double>(i), spread = 0.03 + 0.01 * static_cast<double>(i);
-    const double above = ContextType::Outputs::from_command(mean + spread, airframe);
-    context.output.mean[i] = ContextType::Outputs::from_command(mean, airframe);
-    context.output.spread[i] = above - context.output.mean[i];
+    middle[i] = 0.5 + 0.02 * static_cast<double>(i);
+    above[i] = middle[i] + (0.03 + 0.01 * static_cast<double>(i));
+  }
+  std::array<double, Map::size> outputs_above{};
+  Map::from_commands(level.data(), middle.data(), setting, context.output.mean.data());
+  Map::from_commands(level.data(), above.data(), setting, outputs_above.data());
+  for (std::size_t i = 0; i < outputs_above.size(); ++i) {
+    const double spread = std::abs(outputs_above[i] - context.output.mean[i]);
+    context.output.spread[i] = spread > 1e-9 ? spread : 1.0;  // what does not move but by rounding
   }
   context.signed_sum_spread = {0.11, 0.07, 0.05};
   return context;

@@ -216,8 +216,13 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   text("frame", model_frame);
   array("const char*", "feature_names", Model::Features::names);
   array("const char*", "feature_units", Model::Features::units);
-  array("const char*", "output_names", Model::Outputs::names);
-  text("output_unit", Model::Outputs::unit);
+  array("const char*", "output_names", OutputMap<typename Model::Outputs>::names);
+  const auto& output_units = OutputMap<typename Model::Outputs>::units;
+  if (detail::one_unit(output_units)) {
+    text("output_unit", output_units[0]);
+  } else {
+    array("const char*", "output_units", output_units);
+  }
   text("vehicle_name", Model::Vehicle::name);
   out << "  // rotor by rotor: signs of its torque about x, y, z\n";
   table("int", "motor_torque_signs", motor_torque_signs<typename Model::Vehicle>());

@@ -36,7 +36,7 @@ class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
   Status operator()(const MotionInputs<Number>& inputs, Commands<Number>& commands) const noexcept {
     static_assert(varies_with == VariesWith::motion,
                   "pinnquad: an effect of this vehicle depends on height, place or time, which these inputs don't say: "
-                  "call predict(inputs, place, commands) (PlaceAndTime in inference/guard.hpp)");
+                  "call predict(inputs, place, commands) (inference/place_and_time.hpp)");
     return solve(inputs, Vector3<Scalar>::Zero(), Scalar(0), commands);
   }
   /// The altitude is that above the ground of the vehicle's site.
@@ -44,7 +44,7 @@ class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
   Status operator()(const MotionInputsWithAltitude<Number>& inputs, Commands<Number>& commands) const noexcept {
     static_assert(varies_with != VariesWith::place_and_time,
                   "pinnquad: an effect of this vehicle depends on place or time, which these inputs don't say: call "
-                  "predict(inputs, place, commands) (PlaceAndTime in inference/guard.hpp)");
+                  "predict(inputs, place, commands) (inference/place_and_time.hpp)");
     return solve(inputs, at_altitude(Vector3<Scalar>::Zero(), inputs.altitude_m), Scalar(0), commands);
   }
   template <class Number, class Real>

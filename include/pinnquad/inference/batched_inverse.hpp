@@ -6,6 +6,32 @@
 #include "pinnquad/nn/batched_network.hpp"
 
 namespace pinnquad {
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// A network over all lanes at once; any other answer, one sample after the other.
+template <class Answer, bool IsNetwork = is_network<Answer>>
+struct BatchedAnswer : BatchedNetwork<Answer> {};
+
+template <class Answer>
+struct BatchedAnswer<Answer, false> {
+  using Scalar = typename Answer::Scalar;
+  static constexpr int lanes = 8;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y, int samples) noexcept {
+    for (int s = 0; s < samples; ++s) {
+      Scalar in[Answer::inputs], out[Answer::outputs];
+      for (int i = 0; i < Answer::inputs; ++i) in[i] = x[i * samples + s];
+      Answer::forward(parameters, static_cast<const Scalar*>(in), static_cast<Scalar*>(out));
+      for (int i = 0; i < Answer::outputs; ++i) y[i * samples + s] = out[i];
+    }
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// For each sample s what InverseDynamics::predict_features() gives, to rounding: x[k * samples + s] is its feature k in
@@ -20,16 +46,13 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   static_assert(!GuardType::compares,
                 "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
-  using Batched = BatchedNetwork<typename Model::Network>;
+  using Batched = detail::BatchedAnswer<typename Model::Network>;
   using Numbers = detail::ModelNumbers<Model>;
+  using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;
   constexpr int size = Model::Features::size;
   constexpr int lanes = Batched::lanes;
   const Scalar* weights = detail::row_major_weights(inverse.model());
-  constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();
-  const Scalar* input_mean = Numbers::input_mean(inverse.model());
-  const Scalar* input_spread = Numbers::input_spread(inverse.model());
-  const Scalar* output_mean = Numbers::output_mean(inverse.model());
-  const Scalar* output_spread = Numbers::output_spread(inverse.model());
+  const detail::Scales<Scalar> scales = Numbers::scales(inverse.model());
   const Scalar* lower = Numbers::lower(inverse.model());
   const Scalar* upper = Numbers::upper(inverse.model());
 
@@ -39,25 +62,30 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   }
   for (int first = 0; first < samples; first += lanes) {
     const int count = samples - first < lanes ? samples - first : lanes;
-    alignas(64) Scalar standardised[size * lanes];
-    alignas(64) Scalar outputs[rotor_count * lanes];
+    alignas(64) Scalar block[size * lanes];
+    alignas(64) Scalar outputs[Model::Network::outputs * lanes];
+    alignas(64) Scalar made[rotor_count * lanes];
     int outside[lanes] = {};
     for (int k = 0; k < size; ++k) {
       const Scalar* feature = x + k * samples + first;
-      for (int s = 0; s < count; ++s) {
-        standardised[k * lanes + s] = (feature[s] - input_mean[k]) / input_spread[k];
-        const bool inside = is_finite(feature[s]) & (feature[s] >= lower[k]) & (feature[s] <= upper[k]);
+      if (count == lanes) {
+        for (int s = 0; s < lanes; ++s) block[k * lanes + s] = feature[s];
+      } else {  // padding repeats the last sample, as in BatchedNetwork
+        for (int s = 0; s < lanes; ++s) block[k * lanes + s] = feature[s < count ? s : count - 1];
+      }
+      for (int s = 0; s < lanes; ++s) {
+        const Scalar value = block[k * lanes + s];
+        const bool inside = is_finite(value) & (value >= lower[k]) & (value <= upper[k]);
         outside[s] |= inside ? 0 : 1;
       }
-      // padding repeats the last sample, as in BatchedNetwork
-      for (int s = count; s < lanes; ++s) standardised[k * lanes + s] = standardised[k * lanes + count - 1];
     }
-    Batched::forward(weights, standardised, outputs, lanes);
+    Pipeline::template run<lanes>(scales, block, outputs, made,
+                                  [weights](const Scalar* standardised, Scalar* restored) PINNQUAD_INLINE_LAMBDA {
+                                    Batched::forward(weights, standardised, restored, lanes);
+                                  });
     for (int s = 0; s < count; ++s) {
       Scalar sample[rotor_count];
-      for (int i = 0; i < rotor_count; ++i) {
-        sample[i] = Model::Outputs::command(outputs[i * lanes + s] * output_spread[i] + output_mean[i], airframe);
-      }
+      for (int i = 0; i < rotor_count; ++i) sample[i] = made[i * lanes + s];
       const Status checked = GuardType::check_commands(sample);
       const Status status = outside[s] != 0 ? Status::outside_envelope : checked;
       statuses[first + s] = status;

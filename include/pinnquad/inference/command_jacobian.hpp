@@ -11,7 +11,7 @@ namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// commands = u(x) and jacobian[i * Features::size + k] = du_i / dx_k, 4 x Features::size, row-major, in physical units
-/// (for the angular accelerations: per rad/s^2). Exact derivatives of the network.
+/// (for the angular accelerations: per rad/s^2). Exact derivatives of network and output schema.
 /// Of the guard, the envelope and the checks of the commands apply; a fallback has no derivatives here and is not asked. Where
 /// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a
 /// header's, a ModelView, a LoadedModel. Both outputs are untouched unless has_output(status).
@@ -24,39 +24,30 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
                 "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Network = typename Model::Network;
-  using Pass = JacobianPass<Network>;
-  using Numbers = detail::ModelNumbers<Model>;
+  using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;
   constexpr int size = Model::Features::size;
   if (!inverse.inside_envelope(x)) return Status::outside_envelope;
 
-  const Scalar* input_mean = Numbers::input_mean(inverse.model());
-  const Scalar* input_spread = Numbers::input_spread(inverse.model());
-  const Scalar* output_mean = Numbers::output_mean(inverse.model());
-  const Scalar* output_spread = Numbers::output_spread(inverse.model());
-  Scalar standardised[size];
-  for (int i = 0; i < size; ++i) standardised[i] = (x[i] - input_mean[i]) / input_spread[i];
-  Scalar outputs[rotor_count] = {};
-  Scalar slopes[rotor_count * size];
+  const detail::Scales<Scalar> scales = detail::ModelNumbers<Model>::scales(inverse.model());
+  Scalar outputs[Network::outputs] = {}, slopes[Network::outputs * size];
+  Scalar result[rotor_count], by_features[rotor_count * size];
   const Scalar* weights = detail::row_major_weights(inverse.model());
-  if constexpr (detail::is_packed<Model>) {
-    Pass::run(detail::packed_weights(inverse.model()), weights, standardised, outputs, slopes);
-  } else {
-    Pass::run(weights, standardised, outputs, slopes);
-  }
-
-  constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();
-  Scalar result[rotor_count];
-  for (int i = 0; i < rotor_count; ++i) {
-    const Scalar output = outputs[i] * output_spread[i] + output_mean[i];
-    result[i] = Model::Outputs::command(output, airframe);
-    const Scalar slope = Model::Outputs::command_slope(output, airframe) * output_spread[i];
-    for (int k = 0; k < size; ++k) slopes[i * size + k] *= slope / input_spread[k];
-  }
-  if (!all_finite(slopes, rotor_count * size)) return Status::output_not_finite;
+  Pipeline::template run<1>(
+      scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
+        if constexpr (!is_network<Network>) {
+          Network::jacobian(weights, standardised, made, slopes);
+        } else if constexpr (detail::is_packed<Model>) {
+          JacobianPass<Network>::run(detail::packed_weights(inverse.model()), weights, standardised, made, slopes);
+        } else {
+          JacobianPass<Network>::run(weights, standardised, made, slopes);
+        }
+      });
+  Pipeline::chain(scales, x, outputs, slopes, by_features);
+  if (!all_finite(by_features, rotor_count * size)) return Status::output_not_finite;
   const Status status = GuardType::check_commands(result);
   if (!has_output(status)) return status;
   for (int i = 0; i < rotor_count; ++i) commands[i] = result[i];
-  for (int i = 0; i < rotor_count * size; ++i) jacobian[i] = slopes[i];
+  for (int i = 0; i < rotor_count * size; ++i) jacobian[i] = by_features[i];
   return status;
 }
 

@@ -13,6 +13,7 @@
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
 #include "pinnquad/inference/held.hpp"
+#include "pinnquad/inference/place_and_time.hpp"
 
 namespace pinnquad {
 
@@ -74,13 +75,6 @@ struct Agreement {};
 /// The inverse that Agreement compares with in a guard without Fallback: never flown. Contract: as a Fallback's.
 template <class Inverse>
 struct Reference {};
-
-/// Where and when a motion is wanted, for a fallback that needs to know (ground effect, density, wind).
-template <class Real>
-struct PlaceAndTime {
-  Vector3<Real> position_m = Vector3<Real>::Zero();  ///< NED, of the vehicle's site
-  Real time_s{0};
-};
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 

@@ -3,10 +3,10 @@
 // No heap, bounded time; weights stay where the exported header put them, and the object is empty then.
 #pragma once
 
-#include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/model.hpp"
 #include "pinnquad/inference/model_numbers.hpp"
+#include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 
 namespace pinnquad {
@@ -25,7 +25,7 @@ struct HasOwnPacking<Model, std::void_t<decltype(std::declval<const Model&>().pa
 
 /// True where the vector unit's kernel predicts, from packed_weights(): the model's own, or the compiler's.
 template <class Model>
-inline constexpr bool is_packed = has_vector_unit<typename Model::Scalar> &&
+inline constexpr bool is_packed = has_vector_unit<typename Model::Scalar>&& is_network<typename Model::Network> &&
                                   (HasOwnPacking<Model>::value ||
                                    (HasConstantParameters<Model>::value && !HasOwnForward<Model>::value));
 template <class Model>
@@ -118,28 +118,20 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     static_assert(!Guard::compares,
                   "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
     detail::NoReport none;
-    Scalar outputs[rotor_count] = {};
-    const Status status = ask_network(x, outputs, none);
+    Scalar asked[rotor_count] = {};
+    const Status status = ask_network(x, asked, none);
     if (has_output(status)) {
-      for (int i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
+      for (int i = 0; i < rotor_count; ++i) commands[i] = asked[i];
     }
     return status;
   }
 
   /// The network alone, without any check: features X -> commands. For self_test(), not for motors.
   PINNQUAD_ALWAYS_INLINE void evaluate(const Scalar* x, Scalar* commands) const noexcept {
-    Scalar standardised[Features::size];
-    Scalar outputs[rotor_count] = {};
-    const Scalar* input_mean = Numbers::input_mean(model());
-    const Scalar* input_spread = Numbers::input_spread(model());
-    for (int i = 0; i < Features::size; ++i) standardised[i] = (x[i] - input_mean[i]) / input_spread[i];
-    forward(standardised, outputs);
-    const Scalar* output_mean = Numbers::output_mean(model());
-    const Scalar* output_spread = Numbers::output_spread(model());
-    constexpr Airframe<Scalar> airframe = airframe_value<typename Model::Vehicle, Scalar>();
-    for (int i = 0; i < rotor_count; ++i) {
-      commands[i] = Model::Outputs::command(outputs[i] * output_spread[i] + output_mean[i], airframe);
-    }
+    Scalar outputs[Network::outputs] = {};
+    Pipeline::template run<1>(Numbers::scales(model()), x, outputs, commands,
+                              [this](const Scalar* standardised, Scalar* made)
+                                  PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }
 
   /// True if every feature lies in what the model was trained on, margin included; false for NaN, under -ffast-math too.
@@ -156,7 +148,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   PINNQUAD_NOINLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
     if constexpr (detail::HasOwnForward<Model>::value) {
       model().forward(standardised, outputs);
-    } else if constexpr (has_vector_unit<Scalar>) {
+    } else if constexpr (has_vector_unit<Scalar> && is_network<Network>) {
       detail::packed_model<Model>.forward(standardised, outputs);
     } else {
       constexpr const Scalar* weights = Model::parameters.data();
@@ -166,20 +158,21 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
 
  private:
   using Numbers = detail::ModelNumbers<Model>;
+  using Pipeline = detail::Pipeline<Features, typename Model::Outputs, typename Model::Vehicle>;
   template <class ReportType>
   static constexpr bool reports = !std::is_same_v<ReportType, detail::NoReport>;
 
   template <class ReportType, class... Place>
   PINNQUAD_ALWAYS_INLINE Status guarded(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
                                         const Place&... place) const noexcept {
-    Scalar outputs[rotor_count] = {};
-    const Status status = ask_network(inputs, outputs, report);
+    Scalar asked[rotor_count] = {};
+    const Status status = ask_network(inputs, asked, report);
     if constexpr (Guard::compares) {
-      return compare(inputs, outputs, status, commands, report, place...);
+      return compare(inputs, asked, status, commands, report, place...);
     } else {
       if constexpr (reports<ReportType>) report.cause = status;
       if (has_output(status)) {
-        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
+        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
         return status;
       }
       if constexpr (Guard::falls_back) {
@@ -246,18 +239,17 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
 
   /// The network's commands where the other inverse agrees, else the fallback's or none. Asked whatever the network came to.
   template <class ReportType, class... Place>
-  PINNQUAD_NOINLINE Status compare(const Inputs& inputs, const Scalar* outputs, Status status,
-                                   Commands<Scalar>& commands, ReportType& report,
-                                   const Place&... place) const noexcept {
+  PINNQUAD_NOINLINE Status compare(const Inputs& inputs, const Scalar* asked, Status status, Commands<Scalar>& commands,
+                                   ReportType& report, const Place&... place) const noexcept {
     Commands<Scalar> others{};
     const Status answered = ask_and_check(inputs, others, report, place...);
     if (has_output(status)) {
       Scalar largest(0);
-      const bool agreed = has_output(answered) && Guard::agree(outputs, others.data(), largest);
+      const bool agreed = has_output(answered) && Guard::agree(asked, others.data(), largest);
       if constexpr (reports<ReportType>) report.disagreement = largest;
       if (agreed) {
         if constexpr (reports<ReportType>) report.cause = status;
-        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = outputs[i];
+        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
         return status;
       }
       status = Status::disagreement;

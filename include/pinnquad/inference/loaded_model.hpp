@@ -57,13 +57,13 @@ class LoadedModel : public ModelScales<ShapeType> {
     golden_features.copy(view.golden_features);
     golden_commands.copy(view.golden_commands);
     std::memcpy(&network_.parameters, view.parameters(), sizeof network_.parameters);
-    if constexpr (has_vector_unit<Scalar>) packed_.assign(view.parameters());
+    if constexpr (packs) packed_.assign(view.parameters());
     return Status::ok;
   }
 
   /// The bare network, standardised in and out: the vector unit's kernel where there is one, else the portable one.
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
-    if constexpr (has_vector_unit<Scalar>) {
+    if constexpr (packs) {
       packed_.forward(standardised, outputs);
     } else {
       network_.forward(standardised, outputs);
@@ -77,10 +77,20 @@ class LoadedModel : public ModelScales<ShapeType> {
   const auto& packed() const noexcept { return packed_; }
 
  private:
+  static constexpr bool packs = has_vector_unit<Scalar> && is_network<Network>;
   struct NotPacked {};
 
+  template <class Answer, bool Packs>
+  struct PackedFor {
+    using type = NotPacked;
+  };
+  template <class Answer>
+  struct PackedFor<Answer, true> {
+    using type = PackedNetwork<Answer>;
+  };
+
   Network network_{};
-  std::conditional_t<has_vector_unit<Scalar>, PackedNetwork<Network>, NotPacked> packed_{};
+  typename PackedFor<Network, packs>::type packed_{};
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

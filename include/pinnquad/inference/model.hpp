@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/inference/answer.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/network.hpp"
@@ -20,6 +21,7 @@ namespace pinnquad {
 ///   2  besides: frame, feature_names, feature_units, output_names, output_unit, vehicle_name, motor_torque_signs,
 ///      training_data_hash; optional, of a model that was judged: test_r_squared, linear_regression_r_squared (finite),
 ///      worse_than_mean, beats_linear_regression (evaluation/verdict.hpp)
+///      Where the outputs have several units, output_units, one per output, in place of output_unit.
 inline constexpr int model_format_version = 2;
 
 /// The oldest format that still flies.
@@ -72,9 +74,18 @@ template <class M, class = void>
 struct DescribesItself : std::false_type {};
 template <class M>
 struct DescribesItself<M, std::void_t<decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
-                                      decltype(M::output_names), decltype(M::output_unit), decltype(M::vehicle_name),
+                                      decltype(M::output_names), decltype(M::vehicle_name),
                                       decltype(M::motor_torque_signs), decltype(std::uint64_t{M::training_data_hash})>>
     : std::true_type {};
+
+template <class M, class = void>
+struct HasOutputUnit : std::false_type {};
+template <class M>
+struct HasOutputUnit<M, std::void_t<decltype(M::output_unit)>> : std::true_type {};
+template <class M, class = void>
+struct HasOutputUnits : std::false_type {};
+template <class M>
+struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
 
 constexpr bool same_text(const char* a, const char* b) noexcept { return std::string_view(a) == std::string_view(b); }
 
@@ -85,6 +96,26 @@ constexpr bool same_texts(const Texts& texts, const Others& others) noexcept {
     if (!same_text(texts[i], others[i])) return false;
   }
   return true;
+}
+
+/// All texts are one.
+template <class Texts>
+constexpr bool one_unit(const Texts& texts) noexcept {
+  for (const char* text : texts) {
+    if (!same_text(text, texts[0])) return false;
+  }
+  return true;
+}
+
+/// The units that a header states are its schema's.
+template <class M>
+constexpr bool same_output_units() noexcept {
+  using Map = OutputMap<typename M::Outputs>;
+  if constexpr (HasOutputUnits<M>::value) {
+    return same_texts(M::output_units, Map::units);
+  } else {
+    return one_unit(Map::units) && same_text(M::output_unit, Map::units[0]);
+  }
 }
 
 template <class Signs>
@@ -135,11 +166,12 @@ constexpr bool all_positive(const Array& values) noexcept {
 /// What a header of format 2 says of itself, against what its types say.
 template <class M>
 constexpr void require_description() noexcept {
+  constexpr bool described = DescribesItself<M>::value && (HasOutputUnits<M>::value || HasOutputUnit<M>::value);
   static_assert(
-      DescribesItself<M>::value,
+      described,
       "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of the "
       "training data (inference/model.hpp)");
-  if constexpr (DescribesItself<M>::value) {
+  if constexpr (described) {
     using Features = typename M::Features;
     using Outputs = typename M::Outputs;
     static_assert(same_text(M::frame, model_frame), "pinnquad: the model was trained in other frames (frame)");
@@ -147,10 +179,10 @@ constexpr void require_description() noexcept {
                   "pinnquad: the model was trained on other features than its feature set now has (feature_names)");
     static_assert(same_texts(M::feature_units, Features::units),
                   "pinnquad: the model was trained in other units than its feature set now has (feature_units)");
-    static_assert(same_texts(M::output_names, Outputs::names),
+    static_assert(same_texts(M::output_names, OutputMap<Outputs>::names),
                   "pinnquad: the model has other outputs than its output schema now has (output_names)");
-    static_assert(same_text(M::output_unit, Outputs::unit),
-                  "pinnquad: the model's outputs have another unit than its output schema (output_unit)");
+    static_assert(same_output_units<M>(),
+                  "pinnquad: the model's outputs have another unit than its output schema (output_unit, output_units)");
     static_assert(same_text(M::vehicle_name, M::Vehicle::name),
                   "pinnquad: the model was trained for another airframe than its Vehicle (vehicle_name)");
     static_assert(
@@ -180,7 +212,9 @@ constexpr bool require_shape() noexcept {
   static_assert(detail::HasShape<S>::value,
                 "pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle (inference/model.hpp)");
   if constexpr (detail::HasShape<S>::value) {
-    static_assert(is_network<typename S::Network>, "pinnquad: the model's Network is not a pinnquad::Network");
+    static_assert(
+        is_answer<typename S::Network>,
+        "pinnquad: the model's Network is neither a pinnquad::Network nor another answer (inference/answer.hpp)");
     static_assert(is_feature_set<typename S::Features>, "pinnquad: the model's Features are not a feature set");
     static_assert(is_output_schema<typename S::Outputs>, "pinnquad: the model's Outputs are not an output schema");
     if constexpr (is_feature_set<typename S::Features>) {
@@ -197,8 +231,10 @@ constexpr bool require_shape() noexcept {
                   "pinnquad: the model's Scalar is not that of its Network");
     static_assert(S::Network::inputs == S::Features::size,
                   "pinnquad: the network's input count differs from the feature set's size");
-    static_assert(S::Network::outputs == rotor_count,
-                  "pinnquad: the network's output count differs from the rotor count");
+    if constexpr (is_output_schema<typename S::Outputs>) {
+      static_assert(S::Network::outputs == OutputMap<typename S::Outputs>::size,
+                    "pinnquad: the network's output count differs from the output schema's size");
+    }
   }
   return detail::HasShape<S>::value;
 }
@@ -219,7 +255,7 @@ constexpr bool require_model() noexcept {
     static_assert(require_shape<M>());
     static_assert(M::parameters.size() == static_cast<std::size_t>(M::Network::parameter_count),
                   "pinnquad: the exported parameters do not have the network's length");
-    static_assert(M::input.size == M::Features::size && M::output.size == rotor_count,
+    static_assert(M::input.size == M::Features::size && M::output.size == OutputMap<typename M::Outputs>::size,
                   "pinnquad: a scaler does not have the length of what it scales");
     static_assert(M::envelope_lower.size() == static_cast<std::size_t>(M::Features::size) &&
                       M::envelope_upper.size() == static_cast<std::size_t>(M::Features::size),

@@ -9,8 +9,8 @@
 
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/fnv1a.hpp"
-#include "pinnquad/core/type_text.hpp"
 #include "pinnquad/inference/checksum.hpp"
+#include "pinnquad/inference/description.hpp"
 #include "pinnquad/inference/model.hpp"
 
 namespace pinnquad {
@@ -48,6 +48,7 @@ struct ModelBlockLayout {
   static constexpr std::size_t inputs = Shape::Network::inputs;
   static constexpr std::size_t outputs = Shape::Network::outputs;
   static constexpr std::size_t parameter_count = Shape::Network::parameter_count;
+  static constexpr std::size_t commands = rotor_count;
 
   static constexpr std::size_t input_mean = 0;
   static constexpr std::size_t input_spread = inputs;
@@ -60,11 +61,11 @@ struct ModelBlockLayout {
     return golden_features + golden * inputs;
   }
   static PINNQUAD_ALWAYS_INLINE constexpr std::size_t parameters(std::size_t golden) noexcept {
-    return golden_commands(golden) + golden * outputs;
+    return golden_commands(golden) + golden * commands;
   }
   /// Bytes of the whole block. In 64 bits: a golden count from a broken header must not wrap around.
   static PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t length(std::uint64_t golden) noexcept {
-    const std::uint64_t scalars = golden_features + golden * (inputs + outputs) + parameter_count;
+    const std::uint64_t scalars = golden_features + golden * (inputs + commands) + parameter_count;
     return ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) + ModelBlockHeader::checksum_size;
   }
 };
@@ -73,12 +74,14 @@ namespace detail {
 template <class Shape>
 constexpr std::uint64_t hash_of_shape() noexcept {
   Fnv1a fnv;
-  fnv.absorb_text(type_text<typename Shape::Network>());
+  absorb_description<typename Shape::Network>(fnv);
   fnv.absorb_text(model_frame);
   for (const char* name : Shape::Features::names) fnv.absorb_text(name);
   for (const char* unit : Shape::Features::units) fnv.absorb_text(unit);
-  for (const char* name : Shape::Outputs::names) fnv.absorb_text(name);
-  fnv.absorb_text(Shape::Outputs::unit);
+  using Map = OutputMap<typename Shape::Outputs>;
+  for (const char* name : Map::names) fnv.absorb_text(name);
+  // one unit for all is said once
+  for (std::size_t i = 0; i < (one_unit(Map::units) ? 1 : Map::units.size()); ++i) fnv.absorb_text(Map::units[i]);
   fnv.absorb_text(Shape::Vehicle::name);
   for (const TorqueSigns& rotor : motor_torque_signs<typename Shape::Vehicle>()) {
     for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
@@ -87,9 +90,8 @@ constexpr std::uint64_t hash_of_shape() noexcept {
 }
 }  // namespace detail
 
-/// Names what a block's weights are for: network type, frame, feature names and units, output names and unit, vehicle
-/// name and motor order. The same from gcc and clang as long as the network's types have names that another translation
-/// unit could use and no template arguments that compilers print differently (unsigned or character constants).
+/// Names what a block's weights are for: the answer's description (inference/description.hpp), frame, feature names and units,
+/// output names and units, vehicle name and motor order.
 template <class Shape>
 inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
 

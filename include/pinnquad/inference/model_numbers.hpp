@@ -9,6 +9,7 @@
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/inference/pipeline.hpp"
 
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
@@ -76,17 +77,9 @@ struct ModelNumbers {
   static PINNQUAD_ALWAYS_INLINE Pointer upper(const Model& model) noexcept {
     return first_of<Scalar>(model.envelope_upper);
   }
-  static PINNQUAD_ALWAYS_INLINE Pointer input_mean(const Model& model) noexcept {
-    return first_of<Scalar>(model.input.mean);
-  }
-  static PINNQUAD_ALWAYS_INLINE Pointer input_spread(const Model& model) noexcept {
-    return first_of<Scalar>(model.input.spread);
-  }
-  static PINNQUAD_ALWAYS_INLINE Pointer output_mean(const Model& model) noexcept {
-    return first_of<Scalar>(model.output.mean);
-  }
-  static PINNQUAD_ALWAYS_INLINE Pointer output_spread(const Model& model) noexcept {
-    return first_of<Scalar>(model.output.spread);
+  static PINNQUAD_ALWAYS_INLINE Scales<Scalar> scales(const Model& model) noexcept {
+    return {first_of<Scalar>(model.input.mean), first_of<Scalar>(model.input.spread),
+            first_of<Scalar>(model.output.mean), first_of<Scalar>(model.output.spread)};
   }
 };
 
@@ -102,21 +95,10 @@ struct ModelNumbers<Model, true> {
     constexpr Pointer first = Model::envelope_upper.data();
     return first;
   }
-  static PINNQUAD_ALWAYS_INLINE Pointer input_mean(const Model&) noexcept {
-    constexpr Pointer first = Model::input.mean.data();
-    return first;
-  }
-  static PINNQUAD_ALWAYS_INLINE Pointer input_spread(const Model&) noexcept {
-    constexpr Pointer first = Model::input.spread.data();
-    return first;
-  }
-  static PINNQUAD_ALWAYS_INLINE Pointer output_mean(const Model&) noexcept {
-    constexpr Pointer first = Model::output.mean.data();
-    return first;
-  }
-  static PINNQUAD_ALWAYS_INLINE Pointer output_spread(const Model&) noexcept {
-    constexpr Pointer first = Model::output.spread.data();
-    return first;
+  static PINNQUAD_ALWAYS_INLINE Scales<typename Model::Scalar> scales(const Model&) noexcept {
+    constexpr Pointer input_mean = Model::input.mean.data(), input_spread = Model::input.spread.data();
+    constexpr Pointer output_mean = Model::output.mean.data(), output_spread = Model::output.spread.data();
+    return {input_mean, input_spread, output_mean, output_spread};
   }
 };
 

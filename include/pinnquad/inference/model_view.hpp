@@ -35,7 +35,7 @@ struct ModelScales {
   using FeatureVector = std::array<Scalar, static_cast<std::size_t>(Features::size)>;
 
   Scaler<Scalar, Features::size> input{};
-  Scaler<Scalar, rotor_count> output{};
+  Scaler<Scalar, OutputMap<Outputs>::size> output{};
   FeatureVector envelope_lower = detail::ones<Scalar, Features::size>;
   FeatureVector envelope_upper{};
   std::uint64_t training_data_hash = 0;
@@ -119,7 +119,7 @@ class ModelView : public ModelScales<ShapeType> {
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
     if (parameters_ == nullptr) {
       constexpr Scalar nothing = std::numeric_limits<Scalar>::quiet_NaN();
-      for (int i = 0; i < rotor_count; ++i) outputs[i] = nothing;
+      for (int i = 0; i < Network::outputs; ++i) outputs[i] = nothing;
       return;
     }
     Network::forward(parameters_, standardised, outputs);

@@ -70,10 +70,10 @@ bool numbers_finite(const Model& model) noexcept {
   constexpr int size = Model::Features::size;
   bool finite = all_finite(Numbers::lower(model), size);
   finite &= all_finite(Numbers::upper(model), size);
-  finite &= all_finite(Numbers::input_mean(model), size);
-  finite &= all_finite(Numbers::input_spread(model), size);
-  finite &= all_finite(Numbers::output_mean(model), rotor_count);
-  finite &= all_finite(Numbers::output_spread(model), rotor_count);
+  const Scales<typename Model::Scalar> scales = Numbers::scales(model);
+  finite &= all_finite(scales.input_mean, size) && all_finite(scales.input_spread, size);
+  finite &= all_finite(scales.output_mean, Model::Network::outputs);
+  finite &= all_finite(scales.output_spread, Model::Network::outputs);
   if constexpr (is_packed<Model>) finite &= packed_weights(model).finite();
   return finite;
 }

@@ -15,25 +15,39 @@ struct SignedCommandSum {
       "pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations");
   using Scalar = typename Batch::Scalar;
   using Array = Eigen::Array<Scalar, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), Batch::max_size>;
-  using Slope = Eigen::Array<Scalar, rotor_count, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign),
-                             rotor_count, Batch::max_size>;
+  using Map = OutputMap<typename Context::Outputs>;
+  using Slope = Eigen::Array<Scalar, Map::size, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), Map::size,
+                             Batch::max_size>;
 
   Array commands;              ///< m: sum of sign_i u_i with the allocation's signs, divided by `spread`
   Slope slope;                 ///< d m / d standardised prediction
   Array angular_acceleration;  ///< n: standardised, as the network is given it
 
   SignedCommandSum(const Context& context, const Batch& batch, Scalar spread)
-      : commands(Array::Zero(batch.prediction.cols())), slope(rotor_count, batch.prediction.cols()) {
+      : commands(Array::Zero(batch.prediction.cols())), slope(Slope::Zero(Map::size, batch.prediction.cols())) {
     constexpr Airframe<Scalar> airframe = airframe_value<typename Context::Vehicle, Scalar>();
     constexpr std::array<Scalar, rotor_count> signs = allocation_signs(airframe, Axis::axis);
+    constexpr auto setting = Map::setting(airframe);
     for (Eigen::Index sample = 0; sample < commands.size(); ++sample) {
-      for (std::size_t i = 0; i < rotor_count; ++i) {
-        const Scalar scale = Scalar(context.output.spread[i]);
-        const Scalar output =
-            batch.prediction(static_cast<Eigen::Index>(i), sample) * scale + Scalar(context.output.mean[i]);
-        const Scalar sign = signs[i] / spread;
-        commands[sample] += sign * Context::Outputs::command(output, airframe);
-        slope(static_cast<Eigen::Index>(i), sample) = sign * scale * Context::Outputs::command_slope(output, airframe);
+      Scalar x[Context::Features::size], outputs[Map::size], u[rotor_count], by_outputs[Map::slope_count];
+      if constexpr (Map::takes_features) {
+        for (int k = 0; k < Context::Features::size; ++k) {
+          const auto feature = static_cast<std::size_t>(k);
+          x[k] =
+              batch.features(k, sample) * Scalar(context.input.spread[feature]) + Scalar(context.input.mean[feature]);
+        }
+      }
+      for (int k = 0; k < Map::size; ++k)
+        outputs[k] = batch.prediction(k, sample) * scale(context, k) + mean(context, k);
+      const Scalar* features = Map::takes_features ? static_cast<const Scalar*>(x) : nullptr;
+      Map::commands(features, static_cast<const Scalar*>(outputs), setting, u);
+      Map::slopes(features, static_cast<const Scalar*>(outputs), setting, by_outputs);
+      for (int i = 0; i < rotor_count; ++i) {
+        const Scalar sign = signs[static_cast<std::size_t>(i)] / spread;
+        commands[sample] += sign * u[i];
+        for (int k = Map::first_output(i); k < Map::last_output(i); ++k) {
+          slope(k, sample) += sign * scale(context, k) * by_outputs[Map::slope_index(i, k)];
+        }
       }
     }
     angular_acceleration = batch.features.row(Context::Features::angular_acceleration + Axis::axis).transpose().array();
@@ -43,6 +57,14 @@ struct SignedCommandSum {
   template <class Gradient>
   void add_gradient(const Array& by_commands, Gradient& gradient) const {
     gradient.array() += slope.rowwise() * by_commands.transpose();
+  }
+
+ private:
+  static Scalar scale(const Context& context, int output) {
+    return Scalar(context.output.spread[static_cast<std::size_t>(output)]);
+  }
+  static Scalar mean(const Context& context, int output) {
+    return Scalar(context.output.mean[static_cast<std::size_t>(output)]);
   }
 };
 

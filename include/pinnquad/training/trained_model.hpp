@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/loss/loss.hpp"
+#include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/network.hpp"
+#include "pinnquad/training/context.hpp"
 #include "pinnquad/training/folding.hpp"
 #include "pinnquad/training/training_data.hpp"
 
@@ -15,8 +16,8 @@ namespace pinnquad {
 /// Values of the network's own scalar type, as the exported header holds them.
 template <class NetworkType, class ContextType>
 struct TrainedModel {
-  static_assert(NetworkType::outputs == rotor_count,
-                "pinnquad: a trained model's network has one output per rotor: its answer is four commands");
+  static_assert(NetworkType::outputs == ContextType::output_count,
+                "pinnquad: a trained model's network has one output per output of its context's schema");
   static_assert(NetworkType::inputs == ContextType::Features::size,
                 "pinnquad: a trained model's network has one input per feature of its context");
   using Network = NetworkType;
@@ -28,20 +29,20 @@ struct TrainedModel {
 
   Network network{};
   Scaler<Scalar, Features::size> input{};
-  Scaler<Scalar, rotor_count> output{};
+  Scaler<Scalar, Network::outputs> output{};
   FeatureVector envelope_lower{};
   FeatureVector envelope_upper{};
 
   /// Commands for a feature vector in physical units, by the portable kernel; the envelope is not checked.
   Commands<Scalar> predict(const FeatureVector& x) const noexcept {
-    FeatureVector z{};
-    Commands<Scalar> y{};
-    input.standardise(x.data(), z.data());
-    network.forward(z.data(), y.data());
-    output.restore(y.data(), y.data());
-    constexpr Airframe<Scalar> airframe = airframe_value<Vehicle, Scalar>();
-    for (Scalar& v : y) v = Outputs::command(v, airframe);
-    return y;
+    Scalar outputs[Network::outputs] = {};
+    Commands<Scalar> commands{};
+    const detail::Scales<Scalar> scales{input.mean.data(), input.spread.data(), output.mean.data(),
+                                        output.spread.data()};
+    detail::Pipeline<Features, Outputs, Vehicle>::template run<1>(
+        scales, x.data(), outputs, commands.data(),
+        [this](const Scalar* standardised, Scalar* made) { network.forward(standardised, made); });
+    return commands;
   }
   Commands<Scalar> predict(const Sample& sample) const noexcept {
     return predict(sample_features<Features, Scalar>(sample));

@@ -12,7 +12,9 @@
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/training/adam.hpp"
+#include "pinnquad/training/context.hpp"
 #include "pinnquad/training/flush_denormals.hpp"
+#include "pinnquad/training/loss_batch.hpp"
 #include "pinnquad/training/network_gradient.hpp"
 #include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/training_data.hpp"
@@ -36,7 +38,7 @@ struct TimeOrderedBatches {
 /// Errors of a network on rows that it is not trained on; batch norm by its running statistics.
 struct ValidationErrors {
   double mean_squared = 0;   ///< over rows and outputs, standardised: what Mse is on these rows
-  double mean_absolute = 0;  ///< over rows and outputs, in the unit of the output schema
+  double mean_absolute = 0;  ///< over rows and outputs, in the units of the output schema
 };
 
 /// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.5 MB for the paper's network:
@@ -52,8 +54,8 @@ class Trainer {
                 "(training/optimizer.hpp)");
   static_assert(NetworkType::inputs == ContextType::Features::size,
                 "pinnquad: the network's input count differs from the feature set's size");
-  static_assert(NetworkType::outputs == rotor_count,
-                "pinnquad: the network's output count differs from the rotor count");
+  static_assert(NetworkType::outputs == ContextType::output_count,
+                "pinnquad: the network's output count differs from the output schema's size");
   static_assert(BatchSize > 0, "pinnquad: Trainer's batch size must be 1 or more");
 
  public:
@@ -182,14 +184,14 @@ class Trainer {
       for (int i = 0; i < size; ++i) {
         const Scalar* output = gradient_.output(i);
         const Scalar* y = data.outputs_of(first + i);
-        for (std::size_t k = 0; k < rotor_count; ++k) {
+        for (std::size_t k = 0; k < std::size_t(Network::outputs); ++k) {
           const double difference = static_cast<double>(output[k]) - static_cast<double>(y[k]);
           squared += difference * difference;
           absolute += std::abs(difference) * context_.output.spread[k];
         }
       }
     }
-    const double count = static_cast<double>(data.size()) * rotor_count;
+    const double count = static_cast<double>(data.size()) * Network::outputs;
     return {squared / count, absolute / count};
   }
 

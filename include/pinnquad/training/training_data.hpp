@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/loss/loss.hpp"
+#include "pinnquad/training/context.hpp"
 #include "pinnquad/training/resolution.hpp"
 
 namespace pinnquad {
@@ -29,14 +29,14 @@ struct TrainingData {
 
 namespace detail {
 
-/// Outputs of a sample in the schema's physical units.
-template <class ContextType>
-std::array<double, rotor_count> sample_outputs(const Sample& sample) {
-  constexpr Airframe<double> airframe = airframe_value<typename ContextType::Vehicle, double>();
-  std::array<double, rotor_count> outputs{};
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    outputs[i] = ContextType::Outputs::from_command(sample.commands[i], airframe);
-  }
+/// Outputs of a sample with these features in the schema's physical units.
+template <class ContextType, class FeatureVector>
+std::array<double, static_cast<std::size_t>(ContextType::output_count)> sample_outputs(const FeatureVector& x,
+                                                                                       const Sample& sample) {
+  using Map = OutputMap<typename ContextType::Outputs>;
+  constexpr auto setting = Map::setting(airframe_value<typename ContextType::Vehicle, double>());
+  std::array<double, static_cast<std::size_t>(Map::size)> outputs{};
+  Map::from_commands(x.data(), sample.commands.data(), setting, outputs.data());
   return outputs;
 }
 
@@ -75,14 +75,14 @@ template <class ContextType>
 ContextType make_context(const RowSet& rows) {
   using Features = typename ContextType::Features;
   constexpr auto inputs = static_cast<std::size_t>(Features::size);
-  constexpr std::size_t outputs = rotor_count, axes = 3;
+  constexpr std::size_t outputs = std::size_t(ContextType::output_count), axes = 3;
   const std::array<std::array<double, rotor_count>, axes> signs = {
       ContextType::template signs<Roll>(), ContextType::template signs<Pitch>(), ContextType::template signs<Yaw>()};
   // one table: features, outputs, signed sums of the commands
   const auto each_row = [&](const auto& visit) {
     each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
       const Sample& sample = flight[row];
-      const auto y = detail::sample_outputs<ContextType>(sample);
+      const auto y = detail::sample_outputs<ContextType>(x, sample);
       std::array<double, inputs + outputs + axes> values{};
       for (std::size_t i = 0; i < inputs; ++i) values[i] = x[i];
       for (std::size_t i = 0; i < outputs; ++i) values[inputs + i] = y[i];
@@ -92,7 +92,7 @@ ContextType make_context(const RowSet& rows) {
   };
   const auto unit_of = [](std::size_t i) {
     if (i < inputs) return Features::units[i];
-    return i < inputs + outputs ? ContextType::Outputs::unit : CommandOutputs::unit;
+    return i < inputs + outputs ? OutputMap<typename ContextType::Outputs>::units[i - inputs] : CommandOutputs::unit;
   };
   const auto columns = column_statistics<inputs + outputs + axes>(each_row, unit_of);
   ContextType context;
@@ -114,16 +114,16 @@ ContextType make_context(const Flight& flight, const IndexRange& range) {
 
 /// Rows, standardised by a context (that of the training set, for every block), with the weights of their flights.
 template <class Scalar, class ContextType>
-TrainingData<Scalar, ContextType::Features::size, rotor_count> standardised(const ContextType& context,
-                                                                            const RowSet& rows) {
+TrainingData<Scalar, ContextType::Features::size, ContextType::output_count> standardised(const ContextType& context,
+                                                                                          const RowSet& rows) {
   using Features = typename ContextType::Features;
-  TrainingData<Scalar, Features::size, rotor_count> data;
+  TrainingData<Scalar, Features::size, ContextType::output_count> data;
   data.features.reserve(rows.size() * static_cast<std::size_t>(Features::size));
-  data.outputs.reserve(rows.size() * rotor_count);
+  data.outputs.reserve(rows.size() * static_cast<std::size_t>(ContextType::output_count));
   const bool weighted = std::any_of(rows.pieces().begin(), rows.pieces().end(),
                                     [](const FlightRows& piece) { return piece.flight->weight != 1; });
   each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, auto x) {
-    auto y = detail::sample_outputs<ContextType>(flight[row]);
+    auto y = detail::sample_outputs<ContextType>(x, flight[row]);
     context.input.standardise(x.data(), x.data());
     context.output.standardise(y.data(), y.data());
     for (const double v : x) data.features.push_back(static_cast<Scalar>(v));
@@ -133,9 +133,9 @@ TrainingData<Scalar, ContextType::Features::size, rotor_count> standardised(cons
   return data;
 }
 template <class Scalar, class ContextType>
-TrainingData<Scalar, ContextType::Features::size, rotor_count> standardised(const ContextType& context,
-                                                                            const Flight& flight,
-                                                                            const IndexRange& range) {
+TrainingData<Scalar, ContextType::Features::size, ContextType::output_count> standardised(const ContextType& context,
+                                                                                          const Flight& flight,
+                                                                                          const IndexRange& range) {
   return standardised<Scalar>(context, RowSet(flight, range));
 }
 

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// Answers made of answers (inference/answer.hpp): a model that is not one network exports, flies and tests itself as one that is.
+// A ridge or any other affine map is Network<Scalar, Inputs<n>, Dense<m>>. Parameters of the parts stand one after the other.
+#pragma once
+
+#include "pinnquad/core/first_of.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/inference/answer.hpp"
+#include "pinnquad/inference/description.hpp"
+#include "pinnquad/nn/jacobian.hpp"
+
+namespace pinnquad {
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// y = answer(x) and dy/dx.
+template <class Answer>
+PINNQUAD_ALWAYS_INLINE void answer_jacobian(const typename Answer::Scalar* parameters, const typename Answer::Scalar* x,
+                                            typename Answer::Scalar* y, typename Answer::Scalar* by_x) noexcept {
+  if constexpr (is_network<Answer>) {
+    JacobianPass<Answer>::run(parameters, x, y, by_x);
+  } else {
+    Answer::jacobian(parameters, x, y, by_x);
+  }
+}
+
+/// What the compositions have in common: sizes, and parameters of their own.
+template <class Derived, class ScalarType, int InputCount, int OutputCount, int ParameterCount>
+struct AnswerBase {
+  using Scalar = ScalarType;
+  static constexpr int inputs = InputCount;
+  static constexpr int outputs = OutputCount;
+  static constexpr int parameter_count = ParameterCount;
+  using Parameters = std::array<Scalar, static_cast<std::size_t>(ParameterCount)>;
+
+  Parameters parameters{};
+
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    Derived::forward(detail::first_of<Scalar>(parameters), x, y);
+  }
+};
+
+/// The sum of two answers: an affine map and a network, a formula and its residual.
+template <class First, class Second>
+struct Sum : AnswerBase<Sum<First, Second>, typename First::Scalar, First::inputs, First::outputs,
+                        First::parameter_count + Second::parameter_count> {
+  static_assert(is_answer<First> && is_answer<Second>, "pinnquad: a Sum is of two answers (inference/answer.hpp)");
+  static_assert(First::inputs == Second::inputs && First::outputs == Second::outputs &&
+                    std::is_same_v<typename First::Scalar, typename Second::Scalar>,
+                "pinnquad: the two answers of a Sum differ in inputs, outputs or Scalar");
+  using Scalar = typename First::Scalar;
+  using AnswerBase<Sum, Scalar, First::inputs, First::outputs,
+                   First::parameter_count + Second::parameter_count>::forward;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Scalar other[Second::outputs];
+    First::forward(parameters, x, y);
+    Second::forward(parameters + First::parameter_count, x, static_cast<Scalar*>(other));
+    for (int i = 0; i < Second::outputs; ++i) y[i] += other[i];
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    Scalar other[Second::outputs], slopes[Second::outputs * Second::inputs];
+    answer_jacobian<First>(parameters, x, y, by_x);
+    answer_jacobian<Second>(parameters + First::parameter_count, x, static_cast<Scalar*>(other),
+                            static_cast<Scalar*>(slopes));
+    for (int i = 0; i < Second::outputs; ++i) y[i] += other[i];
+    for (int i = 0; i < Second::outputs * Second::inputs; ++i) by_x[i] += slopes[i];
+  }
+};
+
+/// The mean of `Count` answers of one kind.
+template <class Member, int Count>
+struct Ensemble : AnswerBase<Ensemble<Member, Count>, typename Member::Scalar, Member::inputs, Member::outputs,
+                             Count * Member::parameter_count> {
+  static_assert(is_answer<Member> && Count > 0,
+                "pinnquad: an Ensemble is of one answer or more (inference/answer.hpp)");
+  using Scalar = typename Member::Scalar;
+  using AnswerBase<Ensemble, Scalar, Member::inputs, Member::outputs, Count * Member::parameter_count>::forward;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    for (int i = 0; i < Member::outputs; ++i) y[i] = Scalar(0);
+    for (int member = 0; member < Count; ++member) {
+      Scalar one[Member::outputs];
+      Member::forward(parameters + member * Member::parameter_count, x, static_cast<Scalar*>(one));
+      for (int i = 0; i < Member::outputs; ++i) y[i] += one[i] / Scalar(Count);
+    }
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    constexpr int size = Member::outputs * Member::inputs;
+    for (int i = 0; i < Member::outputs; ++i) y[i] = Scalar(0);
+    for (int i = 0; i < size; ++i) by_x[i] = Scalar(0);
+    for (int member = 0; member < Count; ++member) {
+      Scalar one[Member::outputs], slopes[size];
+      answer_jacobian<Member>(parameters + member * Member::parameter_count, x, static_cast<Scalar*>(one),
+                              static_cast<Scalar*>(slopes));
+      for (int i = 0; i < Member::outputs; ++i) y[i] += one[i] / Scalar(Count);
+      for (int i = 0; i < size; ++i) by_x[i] += slopes[i] / Scalar(Count);
+    }
+  }
+};
+
+/// An answer that takes and gives physical units as a part of one: its scalers are parameters before its own, as means and
+/// spreads of inputs, then of outputs.
+template <class Inner>
+struct Scaled : AnswerBase<Scaled<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
+                           2 * (Inner::inputs + Inner::outputs) + Inner::parameter_count> {
+  static_assert(is_answer<Inner>, "pinnquad: Scaled is of an answer (inference/answer.hpp)");
+  using Scalar = typename Inner::Scalar;
+  using AnswerBase<Scaled, Scalar, Inner::inputs, Inner::outputs,
+                   2 * (Inner::inputs + Inner::outputs) + Inner::parameter_count>::forward;
+  static constexpr int input_mean = 0;  ///< where they stand among the parameters
+  static constexpr int input_spread = Inner::inputs;
+  static constexpr int output_mean = 2 * Inner::inputs;
+  static constexpr int output_spread = output_mean + Inner::outputs;
+  static constexpr int own = output_spread + Inner::outputs;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Scalar z[Inner::inputs];
+    for (int i = 0; i < Inner::inputs; ++i) z[i] = (x[i] - parameters[i]) / parameters[input_spread + i];
+    Inner::forward(parameters + own, static_cast<const Scalar*>(z), y);
+    for (int i = 0; i < Inner::outputs; ++i) y[i] = y[i] * parameters[output_spread + i] + parameters[output_mean + i];
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    Scalar z[Inner::inputs];
+    for (int i = 0; i < Inner::inputs; ++i) z[i] = (x[i] - parameters[i]) / parameters[input_spread + i];
+    answer_jacobian<Inner>(parameters + own, static_cast<const Scalar*>(z), y, by_x);
+    for (int i = 0; i < Inner::outputs; ++i) {
+      y[i] = y[i] * parameters[output_spread + i] + parameters[output_mean + i];
+      for (int k = 0; k < Inner::inputs; ++k) {
+        by_x[i * Inner::inputs + k] *= parameters[output_spread + i] / parameters[input_spread + k];
+      }
+    }
+  }
+};
+
+/// A formula that gives commands of `InputCount` features in physical units, for a vehicle: a Base of
+/// inference/residual_outputs.hpp with a `description`. One parameter: the share of it that counts.
+template <class ScalarType, int InputCount, class Formula, class Vehicle>
+struct Analytic
+    : AnswerBase<Analytic<ScalarType, InputCount, Formula, Vehicle>, ScalarType, InputCount, rotor_count, 1> {
+  using Scalar = ScalarType;
+  using AnswerBase<Analytic, Scalar, InputCount, rotor_count, 1>::forward;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    constexpr auto prepared = Formula::prepare(airframe_value<Vehicle, Scalar>());
+    Formula::commands(x, prepared, y);
+    for (int i = 0; i < rotor_count; ++i) y[i] *= parameters[0];
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    constexpr auto prepared = Formula::prepare(airframe_value<Vehicle, Scalar>());
+    forward(parameters, x, y);
+    for (int i = 0; i < rotor_count * InputCount; ++i) by_x[i] = Scalar(0);
+    Formula::slopes(x, prepared, by_x);
+    for (int i = 0; i < rotor_count * InputCount; ++i) by_x[i] *= parameters[0];
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+template <class First, class Second>
+struct Description<Sum<First, Second>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<First, Second>(sink, "pinnquad::Sum");
+  }
+};
+template <class Inner>
+struct Description<Scaled<Inner>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<Inner>(sink, "pinnquad::Scaled");
+  }
+};
+template <class Member, int Count>
+struct Description<Ensemble<Member, Count>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_sized(sink, "pinnquad::Ensemble", Count);
+    detail::describe_list<Member>(sink, "");
+  }
+};
+template <class Scalar, int InputCount, class Formula, class Vehicle>
+struct Description<Analytic<Scalar, InputCount, Formula, Vehicle>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_sized(sink, "pinnquad::Analytic", InputCount);
+    detail::describe_list<Scalar, Formula>(sink, "");
+    sink.add(std::string_view(Vehicle::name));
+  }
+};
+
+}  // namespace pinnquad

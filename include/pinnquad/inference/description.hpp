@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// What a model is made of, written down: the identity of its weights on flash. No compiler's word: layers and compositions of the
+// library are named here, a layer of one's own names itself (`static constexpr const char* description`). One that does not is
+// called what the compiler calls it (core/type_text.hpp), which must then be the same from every compiler that is used.
+#pragma once
+
+#include <string_view>
+
+#include "pinnquad/core/fnv1a.hpp"
+#include "pinnquad/core/type_text.hpp"
+#include "pinnquad/nn/batch_norm.hpp"
+#include "pinnquad/nn/network.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/tanh.hpp"
+
+namespace pinnquad {
+
+/// `add(sink)` gives the sink the description's pieces: `sink.add(std::string_view)`, `sink.add(int)`. Specialise it for a
+/// template of your own.
+template <class T, class = void>
+struct Description {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    sink.add(detail::type_text<T>());
+  }
+};
+template <class T>
+struct Description<T, std::void_t<decltype(std::string_view(T::description))>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    sink.add(std::string_view(T::description));
+  }
+};
+
+namespace detail {
+
+/// A type that is named by a text alone.
+#define PINNQUAD_DESCRIBED(Type, text)      \
+  template <>                               \
+  struct Description<Type> {                \
+    template <class Sink>                   \
+    static constexpr void add(Sink& sink) { \
+      sink.add(std::string_view(text));     \
+    }                                       \
+  }
+
+/// "name<number>".
+template <class Sink>
+constexpr void describe_sized(Sink& sink, std::string_view name, int size) {
+  sink.add(name);
+  sink.add(std::string_view("<"));
+  sink.add(size);
+  sink.add(std::string_view(">"));
+}
+/// "name<first, second, ...>".
+template <class First, class... More, class Sink>
+constexpr void describe_list(Sink& sink, std::string_view name) {
+  sink.add(name);
+  sink.add(std::string_view("<"));
+  Description<First>::add(sink);
+  ((sink.add(std::string_view(", ")), Description<More>::add(sink)), ...);
+  sink.add(std::string_view(">"));
+}
+
+/// The letters of a description, without spaces, as Fnv1a::absorb_text() takes a text.
+struct DescriptionHash {
+  Fnv1a& fnv;
+
+  constexpr void add(std::string_view text) noexcept {
+    for (const char c : text) {
+      if (c != ' ') fnv.absorb(static_cast<unsigned char>(c));
+    }
+  }
+  constexpr void add(int number) noexcept {
+    if (number >= 10) add(number / 10);
+    fnv.absorb(static_cast<unsigned char>('0' + number % 10));
+  }
+};
+
+template <class T>
+constexpr void absorb_description(Fnv1a& fnv) noexcept {
+  DescriptionHash sink{fnv};
+  Description<T>::add(sink);
+  fnv.absorb(0);
+}
+
+}  // namespace detail
+
+PINNQUAD_DESCRIBED(float, "float");
+PINNQUAD_DESCRIBED(double, "double");
+PINNQUAD_DESCRIBED(Relu, "pinnquad::Relu");
+PINNQUAD_DESCRIBED(Tanh, "pinnquad::Tanh");
+PINNQUAD_DESCRIBED(BatchNorm, "pinnquad::BatchNorm");
+#undef PINNQUAD_DESCRIBED
+
+template <int Size>
+struct Description<Inputs<Size>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_sized(sink, "pinnquad::Inputs", Size);
+  }
+};
+template <int Size>
+struct Description<Dense<Size>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_sized(sink, "pinnquad::Dense", Size);
+  }
+};
+template <int Size>
+struct Description<DenseWithoutBias<Size>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_sized(sink, "pinnquad::DenseWithoutBias", Size);
+  }
+};
+template <class Scalar, class InputSize, class... Specs>
+struct Description<Network<Scalar, InputSize, Specs...>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<Scalar, InputSize, Specs...>(sink, "pinnquad::Network");
+  }
+};
+
+}  // namespace pinnquad

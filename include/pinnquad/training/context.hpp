@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// What the trainer tells a loss beside the batch: which features, airframe and outputs, how they were standardised, where training
+// stands.
+#pragma once
+
+#include <array>
+
+#include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/inference/features.hpp"
+#include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/schedule/progress.hpp"
+#include "pinnquad/schedule/settings.hpp"
+
+namespace pinnquad {
+
+template <class FeatureSet, class VehicleType, class Schema = CommandOutputs>
+struct Context {
+  static_assert(is_feature_set<FeatureSet>,
+                "pinnquad: Context's first argument is not a feature set (inference/features.hpp)");
+  static_assert(is_airframe<VehicleType>,
+                "pinnquad: Context's second argument is not an airframe (dynamics/airframe.hpp)");
+  static_assert(is_output_schema<Schema>,
+                "pinnquad: Context's third argument is not an output schema (inference/output_schema.hpp)");
+  using Features = FeatureSet;
+  using Vehicle = VehicleType;
+  using Outputs = Schema;
+
+  static constexpr int output_count = OutputMap<Outputs>::size;
+
+  Scaler<double, Features::size> input{};  ///< physical -> standardised, by the training set
+  Scaler<double, output_count> output{};
+  std::array<double, 3> signed_sum_spread{1.0, 1.0, 1.0};  ///< spread of the signed command sums, training set
+  Progress progress{};
+
+  /// Throws std::invalid_argument unless every mean is finite and every spread a finite number above 0. What a flight with a NaN
+  /// leaves here would make every weight NaN.
+  constexpr void check() const {
+    check_scaler("Context::input", input.mean, input.spread);
+    check_scaler("Context::output", output.mean, output.spread);
+    check_scaler("Context::signed_sum_spread", std::array<double, 3>{}, signed_sum_spread);
+  }
+
+  /// Signs of the commands in the torque about an axis: a row of Eq. (2) for this airframe.
+  template <class Axis>
+  static constexpr std::array<double, rotor_count> signs() noexcept {
+    return allocation_signs(airframe_value<Vehicle, double>(), Axis::axis);
+  }
+
+ private:
+  template <class Values>
+  static constexpr void check_scaler(const char* setting, const Values& mean, const Values& spread) {
+    for (std::size_t i = 0; i < spread.size(); ++i) {
+      detail::expect_finite(setting, mean[i]);
+      if (!(spread[i] > 0.0)) detail::refuse_setting(setting, "a spread above 0", spread[i]);
+      detail::expect_finite(setting, spread[i]);
+    }
+  }
+};
+
+}  // namespace pinnquad
