@@ -14,13 +14,13 @@
 #include <wrench.hpp>
 
 #include "outputs/setting.hpp"
-#include "pinnquad/control/tracking.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "pinnquad/inference/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
+#include "pinnquad/simulation/tracking.hpp"
 #include "support/block_bytes.hpp"
 
 using namespace pinnquad;

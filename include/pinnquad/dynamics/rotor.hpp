@@ -264,6 +264,17 @@ class Rotors {
     return commands_of(fractions_for(wrench, scale));
   }
 
+  /// du/dw of commands() about the commands u: w = (thrust along -z, tau_x, tau_y, tau_z), rows in the order of the commands.
+  /// Infinite for a rotor with the curve k = 1 at u = 0, as the square root's slope is.
+  constexpr AllocationMatrix<Scalar> command_slopes(const Commands<Scalar>& u, Scalar scale) const noexcept {
+    AllocationMatrix<Scalar> result{};
+    for (std::size_t i = 0; i < rotor_count; ++i) {
+      const Scalar divisor = scale * thrust_fraction_slope(curve_[i], u[i]);
+      for (std::size_t k = 0; k < 4; ++k) result[i][k] = inverse_[i][k] / divisor;
+    }
+    return result;
+  }
+
   /// Thrust fractions that make one newton along -z and no torque.
   constexpr ThrustFractions<Scalar> fractions_of_pure_thrust_1_N() const noexcept {
     return {inverse_[0][0], inverse_[1][0], inverse_[2][0], inverse_[3][0]};

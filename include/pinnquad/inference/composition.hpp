@@ -150,7 +150,7 @@ struct Analytic
     constexpr auto prepared = Formula::prepare(airframe_value<Vehicle, Scalar>());
     forward(parameters, x, y);
     for (int i = 0; i < rotor_count * InputCount; ++i) by_x[i] = Scalar(0);
-    Formula::slopes(x, prepared, by_x);
+    Formula::template slopes<InputCount>(x, prepared, by_x);
     for (int i = 0; i < rotor_count * InputCount; ++i) by_x[i] *= parameters[0];
   }
 };

@@ -6,7 +6,8 @@
 //   from_commands(x, u, setting, y)         outputs with g(x, y) = u: what a network is trained towards
 //   slopes(x, y, setting, by_outputs)       du/dy, rotor_count x size, row-major; not asked of a schema that says
 //                                           `linear = true`: g is affine in y, and its values give the slopes
-//   feature_slopes(x, y, setting, by_x)     du/dx at fixed y, rotor_count x features, row-major; only where g uses x
+//   feature_slopes<FeatureCount>(x, y, setting, by_x)
+//                                           du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
 //   prepare(airframe)                       optional, constexpr: worked out by the compiler
 // A schema of one output per rotor and one unit says `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)`,
 // `command_slope(y, airframe)` instead.
@@ -106,7 +107,7 @@ struct SchemaCall {
   template <class T>
   using Slopes = decltype(T::slopes(In{}, In{}, std::declval<Setting>(), Out{}));
   template <class T>
-  using FeatureSlopes = decltype(T::feature_slopes(In{}, In{}, std::declval<Setting>(), Out{}));
+  using FeatureSlopes = decltype(T::template feature_slopes<16>(In{}, In{}, std::declval<Setting>(), Out{}));
 };
 
 template <class T, class = void>
@@ -142,7 +143,7 @@ constexpr bool output_schema_is_noexcept() noexcept {
         T::from_commands(in, in, std::declval<Setting>(), out));
     if constexpr (HasSlopes<T>::value) all = all&& noexcept(T::slopes(in, in, std::declval<Setting>(), out));
     if constexpr (HasFeatureSlopes<T>::value) {
-      all = all&& noexcept(T::feature_slopes(in, in, std::declval<Setting>(), out));
+      all = all&& noexcept(T::template feature_slopes<16>(in, in, std::declval<Setting>(), out));
     }
     return all;
   } else {
@@ -243,10 +244,10 @@ struct OutputMap<Schema, false> {
       }
     }
   }
-  template <class Scalar, class Setting>
+  template <int FeatureCount, class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void feature_slopes(const Scalar* x, const Scalar* outputs, const Setting& setting,
                                                     Scalar* by_features) noexcept {
-    Schema::feature_slopes(x, outputs, setting, by_features);
+    Schema::template feature_slopes<FeatureCount>(x, outputs, setting, by_features);
   }
   template <class Scalar, class Setting>
   static void from_commands(const Scalar* x, const Scalar* commands, const Setting& setting, Scalar* outputs) noexcept {

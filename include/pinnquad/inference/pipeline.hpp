@@ -88,7 +88,7 @@ struct Pipeline {
     Scalar by_outputs[Map::slope_count];
     Map::slopes(x, outputs, setting, by_outputs);
     for (int i = 0; i < rotor_count * size; ++i) jacobian[i] = Scalar(0);
-    if constexpr (Map::has_feature_slopes) Map::feature_slopes(x, outputs, setting, jacobian);
+    if constexpr (Map::has_feature_slopes) Map::template feature_slopes<size>(x, outputs, setting, jacobian);
     for (int i = 0; i < rotor_count; ++i) {
       for (int j = Map::first_output(i); j < Map::last_output(i); ++j) {
         const Scalar slope = by_outputs[Map::slope_index(i, j)] * scales.output_spread[j];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Outputs that are added to what another inverse says: the network learns what that one leaves.
 // Contract of a Base, static and noexcept, Scalar deduced: `prepare(airframe)`, constexpr; commands(x, prepared, u) of features
-// in physical units; `slopes(x, prepared, by_x)` = du/dx, rotor_count x features, row-major, into zeros.
+// in physical units; `slopes<FeatureCount>(x, prepared, by_x)` = du/dx, rotor_count x FeatureCount, row-major, into zeros.
 #pragma once
 
 #include "pinnquad/dynamics/linearized.hpp"
@@ -31,16 +31,25 @@ struct LinearizedInverse {
         linearized_commands(body.airframe, body.rotors, motion, standard_gravity_m_s2<Scalar>, Scalar(1));
     for (std::size_t i = 0; i < rotor_count; ++i) u[i] = made[i];
   }
-  /// It is linear: by differences of what it says.
-  template <class Scalar>
-  static void slopes(const Scalar*, const Body<Scalar>& body, Scalar* by_x) noexcept {
-    Scalar x[6] = {}, origin[rotor_count], moved[rotor_count];
-    commands(static_cast<const Scalar*>(x), body, static_cast<Scalar*>(origin));
-    for (int k = 0; k < 6; ++k) {
-      x[k] = Scalar(1);
-      commands(static_cast<const Scalar*>(x), body, static_cast<Scalar*>(moved));
-      x[k] = Scalar(0);
-      for (int i = 0; i < rotor_count; ++i) by_x[i * PaperFeatures::size + k] = moved[i] - origin[i];
+  template <int FeatureCount, class Scalar>
+  static void slopes(const Scalar* x, const Body<Scalar>& body, Scalar* by_x) noexcept {
+    static_assert(FeatureCount >= 6, "pinnquad: LinearizedInverse needs the accelerations as the first six features");
+    const Accelerations<Scalar> motion{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+    const AllocationMatrix<Scalar> by_wrench = body.rotors.command_slopes(
+        linearized_commands(body.airframe, body.rotors, motion, standard_gravity_m_s2<Scalar>, Scalar(1)), Scalar(1));
+    for (int k = 2; k < 6; ++k) {
+      Accelerations<Scalar> unit{};
+      if (k == 2) {
+        unit.linear_m_s2[2] = Scalar(1);
+      } else {
+        unit.angular_rad_s2[k - 3] = Scalar(1);
+      }
+      const Wrench<Scalar> column = linearized_wrench(body.airframe, unit, Scalar(0));  // it is linear without gravity
+      for (std::size_t i = 0; i < rotor_count; ++i) {
+        by_x[static_cast<int>(i) * FeatureCount + k] =
+            -by_wrench[i][0] * column.force_N[2] + by_wrench[i][1] * column.torque_N_m[0] +
+            by_wrench[i][2] * column.torque_N_m[1] + by_wrench[i][3] * column.torque_N_m[2];
+      }
     }
   }
 };
@@ -68,9 +77,9 @@ struct ResidualOutputs {
     Base::commands(x, setting, static_cast<Scalar*>(base));
     for (int i = 0; i < size; ++i) y[i] = u[i] - base[i];
   }
-  template <class Scalar, class Setting>
+  template <int FeatureCount, class Scalar, class Setting>
   static void feature_slopes(const Scalar* x, const Scalar*, const Setting& setting, Scalar* by_x) noexcept {
-    Base::slopes(x, setting, by_x);
+    Base::template slopes<FeatureCount>(x, setting, by_x);
   }
 };
 

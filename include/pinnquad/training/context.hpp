@@ -5,12 +5,12 @@
 
 #include <array>
 
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/schedule/progress.hpp"
-#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 
