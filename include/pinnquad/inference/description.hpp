@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What a model is made of, written down: the identity of its weights on flash. No compiler's word: layers and compositions of the
-// library are named here, a layer of one's own names itself (`static constexpr const char* description`). One that does not is
-// called what the compiler calls it (core/type_text.hpp), which must then be the same from every compiler that is used.
+// What a model is made of, written down: the identity of its weights on flash. No compiler's word: a layer names itself
+// (`static constexpr const char* description`), the library's templates are described here. One that does neither is called
+// what the compiler calls it (core/type_text.hpp), which must then be the same from every compiler that is used.
 #pragma once
 
 #include <string_view>
 
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/core/type_text.hpp"
-#include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/network.hpp"
-#include "pinnquad/nn/relu.hpp"
-#include "pinnquad/nn/tanh.hpp"
 
 namespace pinnquad {
 
@@ -33,16 +30,6 @@ struct Description<T, std::void_t<decltype(std::string_view(T::description))>> {
 };
 
 namespace detail {
-
-/// A type that is named by a text alone.
-#define PINNQUAD_DESCRIBED(Type, text)      \
-  template <>                               \
-  struct Description<Type> {                \
-    template <class Sink>                   \
-    static constexpr void add(Sink& sink) { \
-      sink.add(std::string_view(text));     \
-    }                                       \
-  }
 
 /// "name<number>".
 template <class Sink>
@@ -86,13 +73,20 @@ constexpr void absorb_description(Fnv1a& fnv) noexcept {
 
 }  // namespace detail
 
-PINNQUAD_DESCRIBED(float, "float");
-PINNQUAD_DESCRIBED(double, "double");
-PINNQUAD_DESCRIBED(Relu, "pinnquad::Relu");
-PINNQUAD_DESCRIBED(Tanh, "pinnquad::Tanh");
-PINNQUAD_DESCRIBED(BatchNorm, "pinnquad::BatchNorm");
-#undef PINNQUAD_DESCRIBED
-
+template <>
+struct Description<float> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    sink.add(std::string_view("float"));
+  }
+};
+template <>
+struct Description<double> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    sink.add(std::string_view("double"));
+  }
+};
 template <int Size>
 struct Description<Inputs<Size>> {
   template <class Sink>

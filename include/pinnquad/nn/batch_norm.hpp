@@ -44,6 +44,8 @@ struct BatchNormLayer {
 };
 
 struct BatchNorm {
+  static constexpr const char* description = "pinnquad::BatchNorm";
+
   template <class Scalar, int In>
   using Bind = BatchNormLayer<Scalar, In>;
 };

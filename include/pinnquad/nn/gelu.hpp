@@ -37,6 +37,8 @@ struct GeluLayer : ElementwiseLayer<GeluLayer<ScalarType, Size>, ScalarType, Siz
 };
 
 struct Gelu {
+  static constexpr const char* description = "pinnquad::Gelu";
+
   template <class Scalar, int In>
   using Bind = GeluLayer<Scalar, In>;
 };

@@ -25,6 +25,8 @@ struct ReluLayer : ElementwiseLayer<ReluLayer<ScalarType, Size>, ScalarType, Siz
 };
 
 struct Relu {
+  static constexpr const char* description = "pinnquad::Relu";
+
   template <class Scalar, int In>
   using Bind = ReluLayer<Scalar, In>;
 };

@@ -31,6 +31,8 @@ struct SiluLayer : ElementwiseLayer<SiluLayer<ScalarType, Size>, ScalarType, Siz
 };
 
 struct Silu {
+  static constexpr const char* description = "pinnquad::Silu";
+
   template <class Scalar, int In>
   using Bind = SiluLayer<Scalar, In>;
 };

@@ -27,6 +27,8 @@ struct SineLayer : ElementwiseLayer<SineLayer<ScalarType, Size>, ScalarType, Siz
 };
 
 struct Sine {
+  static constexpr const char* description = "pinnquad::Sine";
+
   template <class Scalar, int In>
   using Bind = SineLayer<Scalar, In>;
 };

@@ -30,6 +30,8 @@ struct SoftplusLayer : ElementwiseLayer<SoftplusLayer<ScalarType, Size>, ScalarT
 };
 
 struct Softplus {
+  static constexpr const char* description = "pinnquad::Softplus";
+
   template <class Scalar, int In>
   using Bind = SoftplusLayer<Scalar, In>;
 };

@@ -26,6 +26,8 @@ struct TanhLayer : ElementwiseLayer<TanhLayer<ScalarType, Size>, ScalarType, Siz
 };
 
 struct Tanh {
+  static constexpr const char* description = "pinnquad::Tanh";
+
   template <class Scalar, int In>
   using Bind = TanhLayer<Scalar, In>;
 };
