@@ -3,8 +3,9 @@
 //   template <class Scalar> void surroundings(Surroundings<Scalar>&) const noexcept;      wind, density, battery
 //   template <class Scalar> Wrench<Scalar> wrench(const AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
 // All `surroundings` run first, then the rotors, then each `wrench` in the order of the vehicle's effects.
-// An effect whose wrench depends on the rotors takes a RotorCondition instead, see also `has_thrust_branches`; one that is
-// the same at every place and time may say so, see `varies_with`.
+// What an effect reads beyond an AeroCondition it declares by what its wrench() takes: a RotorCondition for the rotors, see also
+// `has_thrust_branches`; a PlaceCondition for position and ground velocity; a PlaceAndRotorCondition for both. One that is the
+// same at every place and time may say so, see `varies_with`.
 // Optional: `template <class Scalar> auto bound(const Airframe<Scalar>&) const noexcept;` returns the effect that a vehicle
 // keeps in its place, with what follows from the airframe worked out once; and
 // `template <class Scalar> constexpr Status status(const Airframe<Scalar>&) const noexcept;` says whether the effect's
@@ -50,6 +51,13 @@ struct RotorsNotDeclared {
       "pinnquad: this effect reads the rotors' wrench or thrusts without declaring it: let its wrench() take a "
       "RotorCondition<Scalar> instead of an AeroCondition<Scalar> (aero/effect.hpp)");
 };
+template <class Scalar>
+struct PlaceNotDeclared {
+  static_assert(
+      sizeof(Scalar) == 0,
+      "pinnquad: this effect reads the position or the ground velocity without declaring it: let its wrench() "
+      "take a PlaceCondition<Scalar> or a PlaceAndRotorCondition<Scalar> (aero/effect.hpp)");
+};
 }  // namespace detail
 
 /// What a force effect is given.
@@ -65,6 +73,8 @@ struct AeroCondition {
 
   static const detail::RotorsNotDeclared<Scalar>& rotors;  ///< never defined: a compile error for who reads them
   static const detail::RotorsNotDeclared<Scalar>& rotor_thrust_N;
+  static const detail::PlaceNotDeclared<Scalar>& position_m;
+  static const detail::PlaceNotDeclared<Scalar>& ground_velocity_m_s;
 };
 
 /// What a force effect is given whose `wrench` takes it: the rotors too, without effects.
@@ -72,6 +82,20 @@ template <class Scalar>
 struct RotorCondition : AeroCondition<Scalar> {
   Wrench<Scalar> rotors;                             ///< body wrench of all four
   std::array<Scalar, rotor_count> rotor_thrust_N{};  ///< of each, along its axis (body -z unless tilted)
+};
+
+/// What a force effect is given that depends on where the vehicle is: obstacles, other vehicles.
+template <class Scalar>
+struct PlaceCondition : AeroCondition<Scalar> {
+  Vector3<Scalar> position_m = Vector3<Scalar>::Zero();           ///< NED
+  Vector3<Scalar> ground_velocity_m_s = Vector3<Scalar>::Zero();  ///< NED
+};
+
+/// Both.
+template <class Scalar>
+struct PlaceAndRotorCondition : RotorCondition<Scalar> {
+  Vector3<Scalar> position_m = Vector3<Scalar>::Zero();           ///< NED
+  Vector3<Scalar> ground_velocity_m_s = Vector3<Scalar>::Zero();  ///< NED
 };
 
 /// Where an effect takes the absolute value of a force that the thrust can turn round, its wrench has two branches.
@@ -200,7 +224,9 @@ struct HasBranches<Effect, std::void_t<decltype(std::declval<const Effect&>().wr
 template <class Effect>
 inline constexpr bool changes_surroundings = detail::HasSurroundings<Effect>::value;
 template <class Effect>
-inline constexpr bool makes_wrench = detail::HasWrench<Effect, RotorCondition<double>>::value;
+inline constexpr bool makes_wrench = detail::HasWrench<Effect, RotorCondition<double>>::value ||
+                                     detail::HasWrench<Effect, PlaceCondition<double>>::value ||
+                                     detail::HasWrench<Effect, PlaceAndRotorCondition<double>>::value;
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
@@ -230,8 +256,9 @@ constexpr bool is_whole_effect() noexcept {
 
 /// True if each of the effect's functions is noexcept: it runs in flight.
 template <class Effect, class Scalar = double>
-inline constexpr bool is_noexcept_effect = detail::HasSurroundings<Effect>::is_noexcept&&
-    detail::HasWrench<Effect, RotorCondition<double>>::is_noexcept&& detail::HasBranches<Effect>::is_noexcept&&
+inline constexpr bool is_noexcept_effect = detail::HasSurroundings<Effect>::is_noexcept&& detail::HasWrench<
+    Effect, RotorCondition<double>>::is_noexcept&& detail::HasWrench<Effect, PlaceCondition<double>>::is_noexcept&&
+    detail::HasWrench<Effect, PlaceAndRotorCondition<double>>::is_noexcept&& detail::HasBranches<Effect>::is_noexcept&&
         detail::IsBindable<Effect, Scalar>::is_noexcept&& detail::HasStatus<Effect, Scalar>::is_noexcept;
 
 /// True for what has `bound(airframe)`, see the head of this file.
@@ -264,11 +291,15 @@ constexpr Status effect_status(const Effect& effect, const Airframe<Scalar>& air
   }
 }
 
-/// True for an effect whose `wrench` takes a RotorCondition: it depends on the rotors. It should be affine in the rotors'
-/// thrusts, as most are: then the inverse (vehicle/rotor_equation.hpp) is exact in one round.
+/// True for an effect whose `wrench` takes a RotorCondition or a PlaceAndRotorCondition: it depends on the rotors. It should be
+/// affine in the rotors' thrusts, as most are: then the inverse (vehicle/rotor_equation.hpp) is exact in one round.
 template <class Effect>
 inline constexpr bool uses_rotor_wrench =
-    makes_wrench<Effect> && !detail::HasWrench<Effect, AeroCondition<double>>::value;
+    makes_wrench<Effect> && !detail::HasWrench<Effect, PlaceCondition<double>>::value;
+
+/// True for an effect whose `wrench` takes a PlaceCondition or a PlaceAndRotorCondition.
+template <class Effect>
+inline constexpr bool uses_place = makes_wrench<Effect> && !detail::HasWrench<Effect, RotorCondition<double>>::value;
 
 /// `static constexpr VariesWith varies_with = VariesWith::motion;` lets an inverse go without place and time. An effect that
 /// says nothing is taken to depend on both.

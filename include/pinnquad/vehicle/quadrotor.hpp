@@ -62,6 +62,10 @@ class Quadrotor {
         is_noexcept_effect<BoundEffect<Effects, Scalar>, Scalar>)&&...),
       "pinnquad: what an effect's bound() returns flies in its place: it must be an effect whose functions are "
       "as the contract says and noexcept (aero/effect.hpp)");
+  static_assert(((!uses_place<BoundEffect<Effects, Scalar>> || varies_with<Effects> == VariesWith::place_and_time) &&
+                 ...),
+                "pinnquad: an effect that takes a PlaceCondition depends on the place: its varies_with can't say less "
+                "(aero/effect.hpp)");
 
  public:
   /// The vehicle of an airframe known when compiled, `Quadrotor<double, QuadraticDrag>::of<Crazyflie>(site)`: what
@@ -273,7 +277,12 @@ class Quadrotor {
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                        const ThrustFractions<Scalar>& thrusts,
                                                        const WrenchOf& wrench_of) const noexcept {
-    RotorCondition<Scalar> condition;
+    constexpr bool at_a_place = (uses_place<BoundEffect<Effects, Scalar>> || ...);
+    std::conditional_t<at_a_place, PlaceAndRotorCondition<Scalar>, RotorCondition<Scalar>> condition;
+    if constexpr (at_a_place) {
+      condition.position_m = state.position_m;
+      condition.ground_velocity_m_s = state.velocity_m_s;
+    }
     condition.air_relative_velocity_m_s =
         Axes(state.attitude)
             .to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
@@ -289,6 +298,9 @@ class Quadrotor {
         condition.rotors = rotors_.template wrench_of<build>(thrusts, rotor_scale(air));
         condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
+      } else if constexpr (uses_place<Effect>) {
+        const PlaceCondition<Scalar> at_place{condition, condition.position_m, condition.ground_velocity_m_s};
+        condition.aerodynamic = condition.aerodynamic + wrench_of(effect, at_place);
       } else if constexpr (makes_wrench<Effect>) {
         const AeroCondition<Scalar>& without_rotors = condition;
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, without_rotors);
