@@ -83,8 +83,8 @@ inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& grou
 }  // namespace detail
 
 /// Whole flights, in the dataset's order: the first ones train, then come those that validate, and the last ones test. Each block
-/// takes as many flights as come closest to its share of the rows, and one at least; a flight without rows is in none. Throws std::invalid_argument, one line:
-/// shares that are no shares; fewer flights than blocks.
+/// takes as many flights as come closest to its share of the rows, and one at least; a flight without rows is in none.
+/// Throws std::invalid_argument, one line: shares that are no shares; fewer flights than blocks.
 inline RowSplit split_by_flight(const Dataset& dataset, const SplitShares& shares = {}) {
   std::vector<std::vector<const Flight*>> groups;
   for (const Flight& flight : dataset.flights()) {

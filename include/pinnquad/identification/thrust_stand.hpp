@@ -50,8 +50,8 @@ inline double squared_thrust_error(const std::vector<ThrustStandRow>& rows, doub
 
 /// Fits thrust as a u + b u^2 by its normal equations, T_1 = a + b and k = b / (a + b); where k leaves 0..1, the better of the
 /// two ends. Torque is proportional to thrust, through the origin. All rows should be taken at one density and voltage.
-/// `not_finite`; `out_of_range` for a command out of 0..1 and a thrust or torque below 0 or above 1e9; `no_solution` for rows at fewer than
-/// two commands above 0, or without thrust. `fit` is untouched unless ok.
+/// `not_finite`; `out_of_range` for a command out of 0..1 and a thrust or torque below 0 or above 1e9; `no_solution` for
+/// rows at fewer than two commands above 0, or without thrust. `fit` is untouched unless ok.
 inline Status fit_thrust_stand(const std::vector<ThrustStandRow>& rows, ThrustStandFit& fit) {
   double u2 = 0, u3 = 0, u4 = 0, ut = 0, u2t = 0, tt = 0, tq = 0;
   for (const ThrustStandRow& row : rows) {
