@@ -300,7 +300,7 @@ class Quadrotor {
         condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
       } else if constexpr (uses_place<Effect>) {
-        const PlaceCondition<Scalar> at_place{condition, condition.position_m, condition.ground_velocity_m_s};
+        const PlaceCondition<Scalar> at_place{condition, state.position_m, state.velocity_m_s};
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, at_place);
       } else if constexpr (makes_wrench<Effect>) {
         const AeroCondition<Scalar>& without_rotors = condition;
