@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,19 @@ std::string names(const RowSet& rows) {
 std::string names(const Dataset& dataset, RowSet RowSplit::*block, const pinnquad::SplitShares& shares = {}) {
   return names(split_by_flight(dataset, shares).*block);
 }
+
+/// Whether the rows of such a dataset, or such a flight, may be looked at.
+template <class Looked, class = void>
+struct SplitsFlights : std::false_type {};
+template <class Looked>
+struct SplitsFlights<Looked, std::void_t<decltype(split_each_flight(std::declval<Looked>()))>> : std::true_type {};
+template <class Looked, class = void>
+struct TakesRows : std::false_type {};
+template <class Looked>
+struct TakesRows<Looked, std::void_t<decltype(std::declval<RowSet&>().add(std::declval<Looked>(), {}))>>
+    : std::true_type {};
+static_assert(SplitsFlights<const Dataset&>::value && !SplitsFlights<Dataset>::value, "a view of a temporary");
+static_assert(TakesRows<const Flight&>::value && !TakesRows<Flight>::value, "a view of a temporary");
 
 /// Every row of the dataset is in one block, once.
 void check_covers(const Dataset& dataset, const RowSplit& split) {
