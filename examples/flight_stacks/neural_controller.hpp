@@ -227,7 +227,7 @@ class NeuralController {
   }
 
   pinnquad::Commands<float> within_limits(const pinnquad::Commands<float>& commands) const noexcept {
-    pinnquad::Commands<float> result = pinnquad::keep_torque(commands);
+    pinnquad::Commands<float> result = pinnquad::keep_torque(vehicle_.rotors(), commands);
     for (float& u : result) u = u < outputs_.lower ? outputs_.lower : (u > outputs_.upper ? outputs_.upper : u);
     return result;
   }

@@ -3,16 +3,22 @@
 // examples/airframes/ has one file for each airframe of the library.
 #pragma once
 
+// the parser answers broken text with an error of its own behind these: a debug build must not end there
+#define TOML_ASSERT(expr) static_cast<void>(0)
 #include <toml++/toml.h>
 
 #include <array>
 #include <cstddef>
-#include <fstream>
-#include <iterator>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <set>
 #include <string>
+#include <system_error>
 
+#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/text_file.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace programs {
@@ -31,20 +37,36 @@ inline bool is_airframe_file(const std::string& name) {
 
 namespace detail {
 
+/// What a number of the file may be.
+struct NumberRange {
+  double least;
+  double most;
+  const char* words;
+};
+/// No quadrotor has a number beyond it.
+inline constexpr double largest_number = 1e9;
+inline constexpr NumberRange above_zero = {std::numeric_limits<double>::denorm_min(), largest_number,
+                                           "a value above 0, at most 1e9"};
+inline constexpr NumberRange from_zero = {0, largest_number, "a value of 0 or more, at most 1e9"};
+inline constexpr NumberRange of_either_sign = {-largest_number, largest_number, "a value from -1e9 to 1e9"};
+inline constexpr NumberRange zero_to_one = {0, 1, "a value from 0 to 1"};
+
 /// A table of the file: asks for its keys one by one, and in the end for those that nobody asked for.
 class AirframeTable {
  public:
   AirframeTable(const std::string& path, const toml::table& table) : path_(path), table_(table) {}
 
-  double number(const char* key) { return as_number(required(key, "a number"), "a number"); }
-  double number(const char* key, double otherwise) {
+  double number(const char* key, const NumberRange& range) { return as_number(required(key, "a number"), range); }
+  double number(const char* key, const NumberRange& range, double otherwise) {
     const toml::node* node = optional(key);
-    return node ? as_number(*node, "a number") : otherwise;
+    return node ? as_number(*node, range) : otherwise;
   }
-  std::array<double, 3> triple(const char* key) { return as_triple(required(key, three_numbers)); }
-  std::array<double, 3> triple(const char* key, const std::array<double, 3>& otherwise) {
+  std::array<double, 3> triple(const char* key, const NumberRange& range) {
+    return as_triple(required(key, three_numbers), range);
+  }
+  std::array<double, 3> triple(const char* key, const NumberRange& range, const std::array<double, 3>& otherwise) {
     const toml::node* node = optional(key);
-    return node ? as_triple(*node) : otherwise;
+    return node ? as_triple(*node, range) : otherwise;
   }
   std::string text(const char* key, const char* expected) {
     const toml::node& node = required(key, expected);
@@ -59,7 +81,7 @@ class AirframeTable {
   void require_no_more() const {
     for (const auto& [key, node] : table_) {
       if (known_.count(std::string(key.str())) == 0) {
-        refuse(key.source(), "a key of an airframe", "`" + std::string(key.str()) + "`");
+        refuse(key.source(), "a key of an airframe", "`" + pinnquad::printable(key.str()) + "`");
       }
     }
   }
@@ -69,8 +91,8 @@ class AirframeTable {
 
   /// A node as the one-line messages name it: its value, or its kind.
   static std::string described(const toml::node& node) {
-    if (const auto* text = node.as_string()) return "\"" + text->get() + "\"";
-    if (node.is_number()) return std::to_string(*node.value<double>());
+    if (const auto* text = node.as_string()) return "\"" + pinnquad::printable(text->get()) + "\"";
+    if (node.is_number()) return pinnquad::number_text(value_of(node));
     if (node.is_array()) return "an array of " + std::to_string(node.as_array()->size());
     return node.is_table() ? "a table" : node.is_boolean() ? "a truth value" : "a date or time";
   }
@@ -82,14 +104,20 @@ class AirframeTable {
     known_.insert(key);
     return table_.get(key);
   }
-  double as_number(const toml::node& node, const char* expected) const {
-    if (!node.is_number()) refuse(node, expected, described(node));
-    return *node.value<double>();
+  /// Of a number: an integer, however large, or a floating-point one.
+  static double value_of(const toml::node& node) {
+    return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   }
-  std::array<double, 3> as_triple(const toml::node& node) const {
+  double as_number(const toml::node& node, const NumberRange& range) const {
+    if (!node.is_number()) refuse(node, "a number", described(node));
+    const double value = value_of(node);
+    if (!(value >= range.least && value <= range.most)) refuse(node, range.words, described(node));
+    return value;
+  }
+  std::array<double, 3> as_triple(const toml::node& node, const NumberRange& range) const {
     const toml::array* array = node.as_array();
     if (!array || array->size() != 3) refuse(node, three_numbers, described(node));
-    return {as_number((*array)[0], "a number"), as_number((*array)[1], "a number"), as_number((*array)[2], "a number")};
+    return {as_number((*array)[0], range), as_number((*array)[1], range), as_number((*array)[2], range)};
   }
   [[noreturn]] void refuse(const toml::source_region& where, const std::string& expected,
                            const std::string& found) const {
@@ -104,28 +132,45 @@ class AirframeTable {
 inline pinnquad::RotorMount<double> rotor_of(const std::string& path, const toml::table& table) {
   AirframeTable rotor(path, table);
   pinnquad::RotorMount<double> r;
-  r.x_m = rotor.number("x_m");
-  r.y_m = rotor.number("y_m");
+  r.x_m = rotor.number("x_m", of_either_sign);
+  r.y_m = rotor.number("y_m", of_either_sign);
   const char* spins = "\"clockwise\" or \"counter_clockwise\", seen from above";
   const std::string spin = rotor.text("spin", spins);
   if (spin != "clockwise" && spin != "counter_clockwise") {
-    rotor.refuse(rotor.required("spin", spins), spins, "\"" + spin + "\"");
+    const toml::node& node = rotor.required("spin", spins);
+    rotor.refuse(node, spins, AirframeTable::described(node));
   }
   r.spin = spin == "clockwise" ? pinnquad::Spin::clockwise : pinnquad::Spin::counter_clockwise;
-  r.z_m = rotor.number("z_m", r.z_m);
-  r.axis = rotor.triple("axis", r.axis);
-  r.thrust_scale = rotor.number("thrust_scale", r.thrust_scale);
-  r.thrust_curve = rotor.number("thrust_curve", r.thrust_curve);
-  r.rise_time_constant_s = rotor.number("rise_time_constant_s", r.rise_time_constant_s);
-  r.fall_time_constant_s = rotor.number("fall_time_constant_s", r.fall_time_constant_s);
-  rotor.require_no_more();
-  if (!pinnquad::detail::plausible_rotor(r)) {
-    rotor.refuse(table,
-                 "a rotor that can be built: an axis of length 1, a thrust scale above 0, a thrust curve in 0..1, no "
-                 "negative time constant",
-                 "one that can't");
+  r.z_m = rotor.number("z_m", of_either_sign, r.z_m);
+  r.axis = rotor.triple("axis", of_either_sign, r.axis);
+  if (!pinnquad::has_unit_axis(r)) {
+    rotor.refuse(rotor.required("axis", ""), "a vector of length 1",
+                 "[" + pinnquad::number_text(r.axis[0]) + ", " + pinnquad::number_text(r.axis[1]) + ", " +
+                     pinnquad::number_text(r.axis[2]) + "]");
   }
+  r.thrust_scale = rotor.number("thrust_scale", above_zero, r.thrust_scale);
+  r.thrust_curve = rotor.number("thrust_curve", zero_to_one, r.thrust_curve);
+  r.rise_time_constant_s = rotor.number("rise_time_constant_s", from_zero, r.rise_time_constant_s);
+  r.fall_time_constant_s = rotor.number("fall_time_constant_s", from_zero, r.fall_time_constant_s);
+  rotor.require_no_more();
   return r;
+}
+
+/// The tables of a file. Throws InputError: it can't be read, is larger than any airframe, or is no TOML.
+inline toml::table airframe_tables(const std::string& path) {
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 20;
+  pinnquad::require_regular_file(path);
+  std::error_code absent;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, absent);
+  if (!absent && bytes > most_bytes)
+    throw pinnquad::InputError(path, 0, 0, "an airframe of at most 1 MiB", "a larger file");
+  const std::string content = pinnquad::file_text(path);
+  try {
+    return toml::parse(content, path);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw pinnquad::InputError(path, at.line, at.column, "TOML", pinnquad::printable(error.description()));
+  }
 }
 
 }  // namespace detail
@@ -133,59 +178,50 @@ inline pinnquad::RotorMount<double> rotor_of(const std::string& path, const toml
 /// The airframe of a file. Throws InputError, one line, for a file that can't be read, is no TOML, has a key that is unknown,
 /// missing or of another type, and for values that no quadrotor has.
 inline NamedAirframe read_airframe_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw pinnquad::InputError(path, 0, 0, "an airframe file", "none that can be read");
-  const std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  toml::table root;
-  try {
-    root = toml::parse(content, path);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw pinnquad::InputError(path, at.line, at.column, "TOML", std::string(error.description()));
-  }
+  using detail::above_zero;
+  using detail::from_zero;
+  using detail::of_either_sign;
+  const toml::table root = detail::airframe_tables(path);
   detail::AirframeTable table(path, root);
   NamedAirframe result;
   pinnquad::Airframe<double>& a = result.value;
-  result.name = table.text("name", "a text");
-  a.mass_kg = table.number("mass_kg");
-  a.inertia_kg_m2 = table.triple("inertia_kg_m2");
-  a.inertia_products_kg_m2 = table.triple("inertia_products_kg_m2", a.inertia_products_kg_m2);
-  a.thrust_coefficient = table.number("thrust_coefficient");
-  a.power_coefficient = table.number("power_coefficient");
-  a.propeller_diameter_m = table.number("propeller_diameter_m");
-  a.max_rotor_speed_rev_s = table.number("max_rotor_speed_rev_s");
-  a.rotor_time_constant_s = table.number("rotor_time_constant_s");
-  a.drag_area_m2 = table.triple("drag_area_m2", a.drag_area_m2);
-  a.drag_deadband_m_s = table.number("drag_deadband_m_s", a.drag_deadband_m_s);
+  const char* one_line = "a text on one line";
+  result.name = table.text("name", one_line);
+  if (result.name.empty() || result.name != pinnquad::printable(result.name)) {
+    const toml::node& node = table.required("name", one_line);
+    table.refuse(node, one_line, detail::AirframeTable::described(node));
+  }
+  a.mass_kg = table.number("mass_kg", above_zero);
+  a.inertia_kg_m2 = table.triple("inertia_kg_m2", above_zero);
+  a.inertia_products_kg_m2 = table.triple("inertia_products_kg_m2", of_either_sign, a.inertia_products_kg_m2);
+  a.thrust_coefficient = table.number("thrust_coefficient", above_zero);
+  a.power_coefficient = table.number("power_coefficient", above_zero);
+  a.propeller_diameter_m = table.number("propeller_diameter_m", above_zero);
+  a.max_rotor_speed_rev_s = table.number("max_rotor_speed_rev_s", above_zero);
+  a.rotor_time_constant_s = table.number("rotor_time_constant_s", from_zero);
+  a.drag_area_m2 = table.triple("drag_area_m2", from_zero, a.drag_area_m2);
+  a.drag_deadband_m_s = table.number("drag_deadband_m_s", from_zero, a.drag_deadband_m_s);
   const std::string four = "four tables [[rotor]], in the order of the commands";
   const toml::node& rotors = table.required("rotor", four);
   const toml::array* list = rotors.as_array();
   if (!list || list->size() != a.rotors.size() || !list->is_homogeneous<toml::table>()) {
-    table.refuse(rotors, four, list ? std::to_string(list->size()) : detail::AirframeTable::described(rotors));
+    table.refuse(rotors, four,
+                 list && list->is_homogeneous<toml::table>() ? std::to_string(list->size())
+                                                             : detail::AirframeTable::described(rotors));
   }
   for (std::size_t i = 0; i < a.rotors.size(); ++i) a.rotors[i] = detail::rotor_of(path, *(*list)[i].as_table());
   table.require_no_more();
-  const auto positive = [&](const char* key, double value) {
-    if (!pinnquad::detail::plausible(value)) {
-      const toml::node& node = *root.get(key);
-      table.refuse(node, "a value above 0", detail::AirframeTable::described(node));
-    }
-  };
-  positive("mass_kg", a.mass_kg);
-  positive("thrust_coefficient", a.thrust_coefficient);
-  positive("power_coefficient", a.power_coefficient);
-  positive("propeller_diameter_m", a.propeller_diameter_m);
-  positive("max_rotor_speed_rev_s", a.max_rotor_speed_rev_s);
   if (!(a.thrust_to_weight() > 1)) {
-    table.refuse(*root.get("mass_kg"), "an airframe that can hover",
-                 "a thrust-to-weight ratio of " + std::to_string(a.thrust_to_weight()));
+    table.refuse(table.required("mass_kg", ""), "an airframe that can hover",
+                 "a thrust-to-weight ratio of " + pinnquad::number_text(a.thrust_to_weight()));
   }
   if (pinnquad::check_airframe(a) != pinnquad::Status::ok) {
-    table.refuse(
-        *root.get("inertia_kg_m2"),
-        "an inertia that a body can have (no principal moment above the sum of the other two), a lag and a drag "
-        "of 0 or more",
-        "values that no quadrotor has");
+    pinnquad::Airframe<double> without = a;
+    without.inertia_products_kg_m2 = {};
+    const bool diagonal = pinnquad::check_airframe(without) != pinnquad::Status::ok;
+    table.refuse(table.required(diagonal ? "inertia_kg_m2" : "inertia_products_kg_m2", ""),
+                 "an inertia that a body can have (no principal moment above the sum of the other two)",
+                 "one that none has");
   }
   if (pinnquad::Rotors<double>(a).status() != pinnquad::Status::ok) {
     table.refuse(rotors, "rotors that make thrust and three torques independently", "an allocation without inverse");

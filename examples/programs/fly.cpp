@@ -93,12 +93,13 @@ void make_folder(const std::string& path) {
 template <class PaperFlight>
 class Campaign {
  public:
-  Campaign(const Options& options, const Airframe<double>& airframe, GroundEffectModel ground_effect)
+  Campaign(const Options& options, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect)
       : options_(options),
+        name_(airframe.name),
         ground_effect_(ground_effect),
-        vehicle_(flight_vehicle<PaperFlight>(airframe, ground_effect)),
-        without_(flight_vehicle<PaperFlight>(airframe, GroundEffectModel::none)),
-        airframe_(airframe),
+        vehicle_(flight_vehicle<PaperFlight>(airframe.value, ground_effect)),
+        without_(flight_vehicle<PaperFlight>(airframe.value, GroundEffectModel::none)),
+        airframe_(airframe.value),
         plan_(PaperFlight::plan()) {
     if (!options.sticks.empty()) {
       sticks_ = RecordedSticks(read_sticks_csv(options.sticks));
@@ -153,9 +154,9 @@ class Campaign {
     if (hover < most) return;
     char text[200];
     std::snprintf(text, sizeof text,
-                  "%s cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
-                  options_.airframe.c_str(), PaperFlight::name, 100 * hover, 100 * most);
-    throw std::invalid_argument(text);
+                  " cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
+                  PaperFlight::name, 100 * hover, 100 * most);
+    throw std::invalid_argument(name_ + text);
   }
 
   programs::AnyPilot pilot_of(std::uint64_t seed) const {
@@ -168,7 +169,7 @@ class Campaign {
   /// "paper_quadrotor, d1, seed 1"
   std::string title() const {
     const std::string flown = sticks_ ? "sticks " + options_.sticks : "seed " + std::to_string(options_.seed);
-    return options_.airframe + ", " + PaperFlight::name + ", " + flown;
+    return name_ + ", " + PaperFlight::name + ", " + flown;
   }
 
   bool exact() const { return options_.gyro_noise_rad_s == 0 && options_.latency_ms == 0 && options_.jitter_ms == 0; }
@@ -220,9 +221,8 @@ class Campaign {
 
   void print_summary(const RecordedFlight& recorded) const {
     const FlightReport& report = recorded.report;
-    std::printf("airframe    %s: %.3f kg, rotor speed limit %.0f rpm, thrust-to-weight %.3f\n",
-                options_.airframe.c_str(), airframe_.mass_kg, 60 * airframe_.max_rotor_speed_rev_s,
-                airframe_.thrust_to_weight());
+    std::printf("airframe    %s: %.3f kg, rotor speed limit %.0f rpm, thrust-to-weight %.3f\n", name_.c_str(),
+                airframe_.mass_kg, 60 * airframe_.max_rotor_speed_rev_s, airframe_.thrust_to_weight());
     std::printf("flight      %s, ground effect %s, ", PaperFlight::name, programs::name_of(ground_effect_));
     if (sticks_) {
       std::printf("sticks %s", options_.sticks.c_str());
@@ -248,6 +248,7 @@ class Campaign {
   }
 
   const Options& options_;
+  std::string name_;  ///< the airframe's
   GroundEffectModel ground_effect_;
   typename PaperFlight::SwitchableVehicle vehicle_;
   typename PaperFlight::SwitchableVehicle without_;
@@ -273,12 +274,14 @@ void with_all_choices(const Options& options, const Function& function) {
     throw std::invalid_argument("no ground effect named '" + options.ground_effect +
                                 "'; known: none, cheeseman-bennett, conyers");
   }
-  std::optional<Airframe<double>> airframe;
+  std::optional<programs::NamedAirframe> airframe;
   if (programs::is_airframe_file(options.airframe)) {
-    airframe = programs::read_airframe_file(options.airframe).value;
+    airframe = programs::read_airframe_file(options.airframe);
   } else {
-    programs::with_airframe(
-        options.airframe, [&airframe](auto tag) { airframe = airframe_value<typename decltype(tag)::type, double>(); });
+    programs::with_airframe(options.airframe, [&airframe](auto tag) {
+      using Vehicle = typename decltype(tag)::type;
+      airframe = programs::NamedAirframe{Vehicle::name, airframe_value<Vehicle, double>()};
+    });
   }
   if (!airframe) {
     throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names() +
@@ -299,7 +302,7 @@ int fly_chosen(const Options& options) {
   if (!fault.empty()) throw std::invalid_argument(fault);
   require_separate_files(options);
   int code = programs::exit_bad_input;
-  with_all_choices(options, [&](auto tag, const Airframe<double>& airframe, GroundEffectModel ground_effect) {
+  with_all_choices(options, [&](auto tag, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect) {
     Campaign<typename decltype(tag)::type> campaign(options, airframe, ground_effect);
     for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_writable(file);
     if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
@@ -23,14 +24,18 @@ namespace programs {
 inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows) {
   const bool one = paths.size() == 1;
   pinnquad::Dataset dataset;
+  std::vector<std::uint64_t> hashes;
   for (const std::string& path : paths) {
     pinnquad::Flight flight = pinnquad::read_flight_csv(path, one ? minimum_rows : pinnquad::minimum_flight_rows);
     pinnquad::require_plausible(path, flight);
-    for (std::size_t other = 0; other < dataset.size(); ++other) {
-      if (pinnquad::content_hash(dataset[other]) != pinnquad::content_hash(flight)) continue;
-      throw std::invalid_argument("--flight " + paths[other] + " and " + path +
+    const std::uint64_t hash = pinnquad::content_hash(flight);
+    const auto same = std::find(hashes.begin(), hashes.end(), hash);
+    if (same != hashes.end()) {
+      const std::string& other = paths[static_cast<std::size_t>(same - hashes.begin())];
+      throw std::invalid_argument("--flight " + pinnquad::printable(other) + " and " + pinnquad::printable(path) +
                                   " hold the same flight: it would be judged on rows that it was trained on");
     }
+    hashes.push_back(hash);
     const std::string file = pinnquad::printable(std::filesystem::path(path).filename().string());
     flight.name = file;
     const auto taken = [&](const pinnquad::Flight& other) { return other.name == flight.name; };

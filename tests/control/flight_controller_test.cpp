@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -13,6 +15,7 @@
 #include "pinnquad/control/torque_priority.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/uneven_airframe.hpp"
 
 namespace {
 
@@ -37,7 +40,7 @@ Status fly_set_point(const Vehicle<Scalar>& quadrotor, const SetPoint<Scalar>& w
     Accelerations<Scalar> demand;
     Status status = controller(state.body, wanted, demand);
     if (status == Status::ok) status = inverse_commands(quadrotor, state.body, demand, Scalar(state.time_s), commands);
-    if (status == Status::ok) status = quadrotor.step(state, keep_torque(commands), step_s);
+    if (status == Status::ok) status = quadrotor.step(state, keep_torque(quadrotor.rotors(), commands), step_s);
     if (status != Status::ok) return status;
   }
   return Status::ok;
@@ -156,6 +159,51 @@ TEST_CASE("an airframe with little thrust gets narrower limits") {
   CHECK(limits.max_specific_force_m_s2 < heavy.thrust_to_weight() * standard_gravity_m_s2<double>);
   CHECK(limits.max_roll_pitch_acceleration_rad_s2 < 0.4 * light_limits.max_roll_pitch_acceleration_rad_s2);
   CHECK(limits.max_yaw_acceleration_rad_s2 < light_limits.max_yaw_acceleration_rad_s2);
+}
+
+TEST_CASE(
+    "limits of uneven rotors: at 1 / 0.97 of the thrust, 1 / 0.6 or 1 / 0.4 of the turning, the first rotor is at its "
+    "end") {
+  Airframe<double> a = test::uneven_airframe<double>();
+  a.mass_kg *= 1.5;  // little is left
+  for (const double scale : {1.0, 0.9}) {
+    const FlightLimits<double> limits = flight_limits(a, scale);
+    const Rotors<double> rotors(a);
+    const auto reach = [&](double specific_force_m_s2, int axis, double acceleration_rad_s2) {
+      Vector3<double> turning = Vector3<double>::Zero();
+      turning[axis] = acceleration_rad_s2;
+      Wrench<double> wanted;
+      wanted.force_N[2] = -a.mass_kg * specific_force_m_s2;
+      wanted.torque_N_m = inertia_times(a, turning);
+      double distance = 1;  // to the nearest end, negative beyond
+      for (const double s : rotors.fractions_for(wanted, scale)) distance = std::min({distance, s, 1 - s});
+      return distance;
+    };
+    CHECK(std::abs(reach(limits.max_specific_force_m_s2 / 0.97, 0, 0)) < 1e-12);
+    const double hover = standard_gravity_m_s2<double>;
+    const double roll = limits.max_roll_pitch_acceleration_rad_s2 / 0.6, yaw = limits.max_yaw_acceleration_rad_s2 / 0.4;
+    const double first = std::min(std::min(reach(hover, 0, roll), reach(hover, 0, -roll)),
+                                  std::min(reach(hover, 1, roll), reach(hover, 1, -roll)));
+    CHECK(std::abs(first) < 1e-12);
+    CHECK(std::abs(std::min(reach(hover, 2, yaw), reach(hover, 2, -yaw))) < 1e-12);
+  }
+}
+
+TEST_CASE("limits of rotors that are uneven by next to nothing are those of even ones") {
+  Airframe<double> even = airframe_value<PaperQuadrotor, double>();
+  even.mass_kg *= 1.75;
+  Airframe<double> uneven = even;
+  uneven.rotors[2].thrust_scale = 1 - 1e-9;
+  REQUIRE(Rotors<double>(even).balanced());
+  REQUIRE(!Rotors<double>(uneven).balanced());
+  const FlightLimits<double> a = flight_limits(even, 0.95), b = flight_limits(uneven, 0.95);
+  for (const auto limit :
+       {&FlightLimits<double>::max_specific_force_m_s2, &FlightLimits<double>::max_horizontal_acceleration_m_s2,
+        &FlightLimits<double>::max_roll_pitch_acceleration_rad_s2,
+        &FlightLimits<double>::max_yaw_acceleration_rad_s2}) {
+    CHECK(a.*limit == doctest::Approx(b.*limit).epsilon(1e-7));
+    CHECK(a.*limit < FlightLimits<double>{}.*limit);
+  }
 }
 
 TEST_CASE("bad input: a Status, and the demand is left alone") {

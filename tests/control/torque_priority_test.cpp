@@ -6,6 +6,7 @@
 
 #include "support/uneven_airframe.hpp"
 
+#include <cmath>
 #include <limits>
 
 using pinnquad::Commands;
@@ -60,6 +61,17 @@ TEST_CASE("uneven rotors keep their torque when a command leaves 0..1, and thrus
     CHECK(smallest >= -1e-12);
     CHECK((largest >= 1 - 1e-12 || smallest <= 1e-7));  // a quadratic curve at nothing: the root of the rounding
   }
+}
+
+TEST_CASE("a rotor that has no part in pure thrust does not drive the others to their ends") {
+  pinnquad::Airframe<double> a = pinnquad::PaperQuadrotor::value<double>();
+  // centre of gravity half way to rotor 1: pure thrust is (1/2, 0, 1/4, 1/4)
+  const double half = a.rotors[0].x_m * (0.5 - 1e-6);
+  for (auto& r : a.rotors) r.x_m -= half, r.y_m -= half;
+  const pinnquad::Rotors<double> rotors(a);
+  REQUIRE(std::abs(rotors.fractions_of_pure_thrust_1_N()[1]) < 1e-6);
+  const Commands<double> u{0.5, -0.01, 0.3, 0.3};
+  CHECK(same(keep_torque(rotors, u), u));
 }
 
 TEST_CASE("equal rotors: the shift of all commands together, to the last bit") {

@@ -219,6 +219,9 @@ TEST_CASE("extra columns: written behind the others as name and unit, read where
   };
   CHECK(refused({{"battery_voltage", "mV"}}) ==
         ":1: expected a column named battery_voltage [mV], found none of that name among 23 columns");
+  CHECK(refused({{"battery_voltage", "V"}, {"battery_voltage", "mV"}}) ==
+        ":1: expected extra columns that differ in name, found flight: it has a column battery_voltage already");
+  CHECK(refused({{"altitude", "ft"}}).find(":1: expected extra columns that differ in name") == 0);
   CHECK(pinnquad::extra_columns_in(folder.write("none.csv", "")).empty());
   CHECK(pinnquad::extra_columns_in(folder.write("odd.csv", "a[V],[V],b [V] x, [V],c []\n")).size() == 1);
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,23 @@ std::string names(const RowSet& rows) {
   for (const auto& piece : rows.pieces()) result += piece.flight->name;
   return result;
 }
+
+std::string names(const Dataset& dataset, RowSet RowSplit::*block, const pinnquad::SplitShares& shares = {}) {
+  return names(split_by_flight(dataset, shares).*block);
+}
+
+/// Whether the rows of such a dataset, or such a flight, may be looked at.
+template <class Looked, class = void>
+struct SplitsFlights : std::false_type {};
+template <class Looked>
+struct SplitsFlights<Looked, std::void_t<decltype(split_each_flight(std::declval<Looked>()))>> : std::true_type {};
+template <class Looked, class = void>
+struct TakesRows : std::false_type {};
+template <class Looked>
+struct TakesRows<Looked, std::void_t<decltype(std::declval<RowSet&>().add(std::declval<Looked>(), {}))>>
+    : std::true_type {};
+static_assert(SplitsFlights<const Dataset&>::value && !SplitsFlights<Dataset>::value, "a view of a temporary");
+static_assert(TakesRows<const Flight&>::value && !TakesRows<Flight>::value, "a view of a temporary");
 
 /// Every row of the dataset is in one block, once.
 void check_covers(const Dataset& dataset, const RowSplit& split) {
@@ -79,17 +97,17 @@ TEST_CASE("each flight by itself: three blocks of each") {
 }
 
 TEST_CASE("by flight: whole flights in order, borders where the shares are met best") {
-  CHECK(names(split_by_flight(dataset_of({10, 10, 10, 10, 10})).train) == "012");
-  CHECK(names(split_by_flight(dataset_of({10, 10, 10, 10, 10})).validation) == "3");
-  CHECK(names(split_by_flight(dataset_of({10, 10, 10, 10, 10})).test) == "4");
-  CHECK(names(split_by_flight(dataset_of({80, 10, 10})).train) == "0");
-  CHECK(names(split_by_flight(dataset_of({10, 10, 80})).test) == "2");
-  CHECK(names(split_by_flight(dataset_of({10, 10, 80})).train) == "0");
-  CHECK(names(split_by_flight(dataset_of({30, 10, 30, 10, 20})).validation) == "3");
-  CHECK(names(split_by_flight(dataset_of({10, 20}), {0.5, 0, 0.5}).test) == "1");
-  CHECK(names(split_by_flight(dataset_of({10, 20, 10}), {1, 0, 0}).train) == "012");
-  CHECK(names(split_by_flight(dataset_of({10, 20, 10}), {0, 0, 1}).test) == "012");
-  CHECK(split_by_flight(dataset_of({10, 20}), {0.5, 0, 0.5}).validation.empty());
+  CHECK(names(dataset_of({10, 10, 10, 10, 10}), &RowSplit::train) == "012");
+  CHECK(names(dataset_of({10, 10, 10, 10, 10}), &RowSplit::validation) == "3");
+  CHECK(names(dataset_of({10, 10, 10, 10, 10}), &RowSplit::test) == "4");
+  CHECK(names(dataset_of({80, 10, 10}), &RowSplit::train) == "0");
+  CHECK(names(dataset_of({10, 10, 80}), &RowSplit::test) == "2");
+  CHECK(names(dataset_of({10, 10, 80}), &RowSplit::train) == "0");
+  CHECK(names(dataset_of({30, 10, 30, 10, 20}), &RowSplit::validation) == "3");
+  CHECK(names(dataset_of({10, 20}), &RowSplit::test, {0.5, 0, 0.5}) == "1");
+  CHECK(names(dataset_of({10, 20, 10}), &RowSplit::train, {1, 0, 0}) == "012");
+  CHECK(names(dataset_of({10, 20, 10}), &RowSplit::test, {0, 0, 1}) == "012");
+  CHECK(names(dataset_of({10, 20}), &RowSplit::validation, {0.5, 0, 0.5}).empty());
   // any sizes: nothing is lost, nothing is parted, no block is empty
   std::mt19937_64 engine(4);
   for (int draw = 0; draw < 50; ++draw) {
@@ -122,12 +140,21 @@ TEST_CASE("by trajectory: what is tested was never flown in training") {
   CHECK(names(split.test) == "6");
 }
 
+TEST_CASE("a flight without rows fills no block") {
+  CHECK(names(dataset_of({10, 10, 10, 0}), &RowSplit::test) == "2");
+  CHECK(names(dataset_of({0, 10, 10, 10}), &RowSplit::train) == "1");
+  const Dataset dataset = dataset_of({10, 10, 10, 0}, {"a", "b", "c", "d"});
+  CHECK(names(split_by_trajectory(dataset).test) == "2");
+  const Dataset two = dataset_of({10, 10, 0});
+  CHECK_THROWS_AS(split_by_flight(two), std::invalid_argument);
+}
+
 TEST_CASE("too few flights for three blocks are refused in one line") {
-  CHECK_THROWS_WITH_AS(split_by_flight(dataset_of({10, 10})),
-                       "split: expected at least 3 flights, one for each block of rows, found 2",
+  const Dataset two = dataset_of({10, 10}), three = dataset_of({10, 10, 10}, {"a", "a", "b"});
+  CHECK_THROWS_WITH_AS(split_by_flight(two), "split: expected at least 3 flights, one for each block of rows, found 2",
                        std::invalid_argument);
-  CHECK_THROWS_WITH_AS(split_by_trajectory(dataset_of({10, 10, 10}, {"a", "a", "b"})),
+  CHECK_THROWS_WITH_AS(split_by_trajectory(three),
                        "split: expected at least 3 trajectories, one for each block of rows, found 2",
                        std::invalid_argument);
-  CHECK_THROWS_AS(split_by_flight(dataset_of({10, 10, 10}), {0.6, 0.6, 0.2}), std::invalid_argument);
+  CHECK_THROWS_AS(split_by_flight(three, {0.6, 0.6, 0.2}), std::invalid_argument);
 }

@@ -95,6 +95,7 @@ TEST_CASE("rows that say nothing or nonsense are refused and the fit is untouche
   CHECK(fit_thrust_stand({{0.2, 0, 0}, {0.5, 0, 0}}, fit) == Status::no_solution);
   CHECK(fit_thrust_stand({{0.2, std::nan(""), 0}, {0.5, 1, 0}}, fit) == Status::not_finite);
   CHECK(fit_thrust_stand({{0.2, -1, 0}, {0.5, 1, 0}}, fit) == Status::out_of_range);
-  CHECK(fit_thrust_stand({{20, 1, 0}, {50, 2, 0}}, fit) == Status::out_of_range);  // per cent
+  CHECK(fit_thrust_stand({{20, 1, 0}, {50, 2, 0}}, fit) == Status::out_of_range);            // per cent
+  CHECK(fit_thrust_stand({{0.2, 1e200, 0}, {0.5, 3e200, 1}}, fit) == Status::out_of_range);  // squares overflow
   CHECK(fit.max_thrust_N == 42);
 }

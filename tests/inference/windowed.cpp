@@ -219,6 +219,29 @@ TEST_CASE("a fast loop is thinned and never waits for ever, however small the hi
   CHECK(complete > 3000);
 }
 
+TEST_CASE(
+    "a late tick of a fast loop: what came just before it is not thinned away, nothing is interpolated over a gap") {
+  InputHistory<Past, double> history;
+  double time_s = 0;
+  MotionInputs<double> inputs = line<double>(0);
+  Status status = Status::ok;
+  for (int tick = 0; tick < 200; ++tick) {
+    time_s += 0.001;
+    inputs.velocity_m_s[0] = tick % 2;  // a thinned sample has another value than its neighbour
+    status = history.take(inputs, time_s);
+  }
+  REQUIRE(status == Status::ok);
+  for (int tick = 0; tick < 6; ++tick) {  // at some of these the newest would give way
+    InputHistory<Past, double> late = history;
+    inputs.velocity_m_s[0] = 7;
+    REQUIRE(late.take(inputs, time_s + 0.03) == Status::ok);
+    const double newest = (199 + tick) % 2, share = (0.03 - 0.02) / 0.03;
+    CHECK(late.inputs().others[0].velocity_m_s[0] == doctest::Approx(newest + share * (7 - newest)));
+    inputs.velocity_m_s[0] = (200 + tick) % 2;
+    status = history.take(inputs, time_s += 0.001);
+  }
+}
+
 TEST_CASE("altitude and columns are interpolated too, attitudes the shorter way") {
   using Set = WithColumns<PaperFeaturesWithAltitude, BatteryVoltage>;
   Set::Inputs<double> a, b;

@@ -12,8 +12,7 @@ namespace battery {
 
 using namespace pinnquad;
 
-/// A pack that loses its voltage evenly. A rotor's greatest thrust goes with its square; to a rotor in air without any other
-/// effect that is the same as thinner air.
+/// A pack that loses its voltage evenly. A rotor's greatest thrust goes with its square.
 struct Pack {
   static constexpr double full_V = 16.8;
   double start_V = full_V;
@@ -24,7 +23,7 @@ struct Pack {
   template <class Scalar>
   void surroundings(Surroundings<Scalar>& air) const noexcept {
     const Scalar share = Scalar(voltage_V(double(air.time_s)) / full_V);
-    air.air_density_kg_m3 *= share * share;
+    air.thrust_scale *= share * share;
   }
 };
 

@@ -31,8 +31,8 @@ TrackingResult<double> flown(const FeedForward& feed_forward) {
   const Vehicle quadrotor = vehicle(start_V);
   FigureEight<double> eight;
   eight.center_m = Vector3<double>(0, 0, -30);
-  const double density = quadrotor.density_ratio(quadrotor.surroundings({}, 0));
-  return track(quadrotor, eight, FlightController<double>({}, flight_limits(quadrotor.airframe(), density)),
+  const double scale = quadrotor.rotor_scale(quadrotor.surroundings({}, 0));
+  return track(quadrotor, eight, FlightController<double>({}, flight_limits(quadrotor.airframe(), scale)),
                feed_forward);
 }
 

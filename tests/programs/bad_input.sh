@@ -37,7 +37,9 @@ expect_line 2 'a_file/out' "$train" --flight good.csv --out a_file/out --epochs 
 expect_line 2 'a_file/flight\.csv' "$fly" --samples 10 --out a_file/flight.csv
 expect_line 2 "no airframe named 'zeppelin'; known: " "$train" --flight good.csv --airframe zeppelin --out out
 expect_line 2 "no airframe named 'zeppelin'; known: " "$fly" --airframe zeppelin --out out/f.csv
-expect_line 2 "expected an airframe file, found none that can be read" "$fly" --airframe no.toml --out out/f.csv
+expect_line 2 "no.toml: expected a readable file, found none" "$fly" --airframe no.toml --out out/f.csv
+mkdir folder.toml
+expect_line 2 "folder.toml: expected a readable file, found a folder" "$fly" --airframe folder.toml --out out/f.csv
 sed 's/mass_kg = .*/mass_kg = true/' "$source_dir/examples/airframes/racer_5_inch.toml" >heavy.toml
 expect_line 2 "heavy.toml:4:11: expected a number, found a truth value" "$fly" --airframe heavy.toml --out out/f.csv
 expect_line 2 'a_file/model\.block' "$train" --flight good.csv --out out --epochs 1 --seeds 1 --block a_file/model.block

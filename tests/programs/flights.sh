@@ -47,7 +47,8 @@ cmp conyers.csv default.csv || fail "d2 flies with Conyers' ground effect"
 ! cmp -s none.csv default.csv || fail "without ground effect d2 is the same"
 
 "$fly" d1 --samples 20 --airframe racer_5_inch --out by_name.csv >/dev/null
-"$fly" d1 --samples 20 --airframe "$source_dir/examples/airframes/racer_5_inch.toml" --out by_file.csv >/dev/null
+"$fly" d1 --samples 20 --airframe "$source_dir/examples/airframes/racer_5_inch.toml" --out by_file.csv >by_file.txt
+grep -q '^airframe    racer_5_inch: ' by_file.txt || fail "fly does not call the airframe by the name in its file: $(cat by_file.txt)"
 cmp by_name.csv by_file.csv || fail "an airframe flies otherwise from its file"
 
 "$fly" --list-airframes >airframes.txt

@@ -81,6 +81,19 @@ TEST_CASE("a battery scales what rotors make, as thin air does, and nothing else
   CHECK(untouched == before);
 }
 
+TEST_CASE("a step on an empty battery falls; one on less than nothing is refused") {
+  const Quadrotor<double, Sag> quadrotor(PaperQuadrotor::value<double>(), {}, Sag{0.01});
+  VehicleState<double> state;
+  state.rotors = {0.5, 0.5, 0.5, 0.5};
+  state.time_s = 100;
+  CHECK(quadrotor.step(state, state.rotors, 0.0) == Status::ok);
+  state.time_s = 100.5;
+  const VehicleState<double> before = state;
+  CHECK(quadrotor.step(state, state.rotors, 0.001) == Status::out_of_range);
+  CHECK(state.time_s == before.time_s);
+  CHECK(state.body.velocity_m_s == before.body.velocity_m_s);
+}
+
 TEST_CASE("what a command means does not change a flight: the same vehicle told in thrust and in speed") {
   const Airframe<double> thrust = PaperQuadrotor::value<double>();
   Airframe<double> speed = thrust;

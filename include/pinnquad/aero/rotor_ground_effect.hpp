@@ -7,9 +7,10 @@
 namespace pinnquad {
 
 /// dT_i = (r(Z_i / R) - 1) |R_zz| T_i along the axis of rotor i (body -z unless tilted), at its hub, with Z_i the height of the
-/// hub above ground and |R_zz| the vertical share of its thrust: an alternative to GroundEffect, which applies one ratio at the vehicle's centre and makes
-/// no torque. Level and without drag both give the same force. `ThrustRatio` as in GroundEffect: a hub below its range, as
-/// one that a tilt brings under the ground, has ratio 1, and next to a pole the ratio is finite.
+/// hub above ground and |R_zz| the vertical share of its thrust: an alternative to GroundEffect, which applies one ratio at
+/// the vehicle's centre and makes no torque. Level and without drag both give the same force. `ThrustRatio` as in
+/// GroundEffect: a hub below its range, as one that a tilt brings under the ground, has ratio 1, and next to a pole the ratio
+/// is finite.
 template <class ThrustRatio>
 struct RotorGroundEffect {
   static constexpr VariesWith varies_with = VariesWith::height;

@@ -3,9 +3,12 @@
 // It says which accelerations it wants; an inverse of the dynamics, any, turns them into commands.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "pinnquad/control/flatness.hpp"
+#include "pinnquad/dynamics/inertia.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/dynamics/state.hpp"
 
@@ -35,9 +38,62 @@ struct FlightLimits {
   Scalar max_yaw_acceleration_rad_s2 = Scalar(4);
 };
 
-/// The default limits, lowered to what the airframe can do where its thrust has this scale (Quadrotor::rotor_scale): 97 % of its thrust, and 55 %
-/// of the horizontal acceleration that this leaves in level flight; angular accelerations that move a rotor by 60 % (roll,
-/// pitch) and 40 % (yaw) of what hover leaves it; body rates that can be stopped as fast as the attitude loop wants to.
+namespace detail {
+
+/// What an airframe can do: thrust without torque over weight, and by how much all rotors together turn it about an axis, each
+/// moved by no more than hover leaves it.
+template <class Scalar>
+struct Authority {
+  Scalar thrust_to_weight{0};
+  std::array<Scalar, 3> angular_acceleration_rad_s2{};
+};
+
+template <class Scalar>
+Authority<Scalar> authority(const Airframe<Scalar>& airframe, Scalar rotor_scale) noexcept {
+  Authority<Scalar> result;
+  const auto left = [](Scalar hover) noexcept { return hover < Scalar(1) - hover ? hover : Scalar(1) - hover; };
+  const Rotors<Scalar> rotors(airframe);
+  if (rotors.balanced() && has_diagonal_inertia(airframe)) {  // all rotors reach their ends together
+    result.thrust_to_weight = airframe.thrust_to_weight() * rotor_scale;
+    const Scalar each = left(Scalar(1) / result.thrust_to_weight);
+    const AllocationMatrix<Scalar> matrix = allocation(airframe);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Scalar& most = result.angular_acceleration_rad_s2[axis];
+      for (const Scalar entry : matrix[axis + 1]) most += entry < Scalar(0) ? -entry : entry;
+      most *= each * rotor_scale / airframe.inertia_kg_m2[axis];
+    }
+    return result;
+  }
+  const Scalar weight_N = airframe.mass_kg * standard_gravity_m_s2<Scalar>;
+  ThrustFractions<Scalar> hover = rotors.fractions_of_pure_thrust_1_N();
+  Scalar greatest(0);
+  for (Scalar& fraction : hover) {
+    fraction *= weight_N / rotor_scale;
+    if (fraction > greatest) greatest = fraction;
+  }
+  result.thrust_to_weight = Scalar(1) / greatest;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Vector3<Scalar> acceleration = Vector3<Scalar>::Zero();
+    acceleration[static_cast<int>(axis)] = Scalar(1);
+    Wrench<Scalar> turning;
+    turning.torque_N_m = inertia_times(airframe, acceleration);
+    const ThrustFractions<Scalar> moved = rotors.fractions_for(turning, rotor_scale);
+    Scalar most = std::numeric_limits<Scalar>::max();
+    for (std::size_t i = 0; i < rotor_count; ++i) {
+      const Scalar by = moved[i] < Scalar(0) ? -moved[i] : moved[i];
+      if (left(hover[i]) < most * by) most = left(hover[i]) / by;
+    }
+    result.angular_acceleration_rad_s2[axis] = most;
+  }
+  return result;
+}
+
+}  // namespace detail
+
+/// The default limits, lowered to what the airframe can do where its thrust has this scale (Quadrotor::rotor_scale): 97 % of
+/// the thrust at which the first rotor is at its end, and 55 % of the horizontal acceleration that this leaves in level flight;
+/// angular accelerations that move a rotor by 60 % (roll, pitch) and 40 % (yaw) of what hover leaves it; body rates that can be
+/// stopped as fast as the attitude loop wants to.
 template <class Scalar>
 FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar rotor_scale,
                                    const FlightGains<Scalar>& gains = {}) noexcept {
@@ -46,19 +102,11 @@ FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar roto
     if (value < limit) limit = value;
   };
   FlightLimits<Scalar> limits{};
-  const Scalar thrust_to_weight = airframe.thrust_to_weight() * rotor_scale;
+  const auto [thrust_to_weight, most] = detail::authority(airframe, rotor_scale);
   lower(limits.max_specific_force_m_s2, Scalar(0.97) * thrust_to_weight * standard_gravity_m_s2<Scalar>);
   const Scalar spare = thrust_to_weight * thrust_to_weight - Scalar(1);
   lower(limits.max_horizontal_acceleration_m_s2,
         Scalar(0.55) * standard_gravity_m_s2<Scalar> * sqrt(spare > Scalar(0) ? spare : Scalar(0)));
-  const Scalar hover = Scalar(1) / thrust_to_weight;
-  const Scalar left = hover < Scalar(1) - hover ? hover : Scalar(1) - hover;
-  const AllocationMatrix<Scalar> matrix = allocation(airframe);
-  Scalar most[3] = {};  // angular acceleration of all rotors together, each moved by what hover leaves
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const Scalar entry : matrix[axis + 1]) most[axis] += entry < Scalar(0) ? -entry : entry;
-    most[axis] *= left * rotor_scale / airframe.inertia_kg_m2[axis];
-  }
   lower(limits.max_roll_pitch_acceleration_rad_s2, Scalar(0.6) * (most[0] < most[1] ? most[0] : most[1]));
   lower(limits.max_yaw_acceleration_rad_s2, Scalar(0.4) * most[2]);
   lower(limits.max_roll_pitch_rate_rad_s, limits.max_roll_pitch_acceleration_rad_s2 / gains.tilt_1_s);

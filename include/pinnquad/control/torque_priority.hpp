@@ -35,19 +35,16 @@ constexpr Commands<Scalar> keep_torque(const Commands<Scalar>& commands) noexcep
 /// and no torque. Where these are alike and commands are thrust fractions it is the shift above.
 template <class Scalar>
 Commands<Scalar> keep_torque(const Rotors<Scalar>& rotors, const Commands<Scalar>& commands) noexcept {
-  const ThrustFractions<Scalar> along = rotors.fractions_of_pure_thrust_1_N();
-  constexpr Scalar rounding = Scalar(5000) * std::numeric_limits<Scalar>::epsilon();
-  bool alike = true;
-  for (const Scalar step : along) {
-    const Scalar difference = step - along[0];
-    alike = alike && (difference < Scalar(0) ? -difference : difference) <= rounding * along[0];
-  }
   ThrustFractions<Scalar> fractions = rotors.fractions(commands);
-  if (alike) return rotors.commands_of(keep_torque<Scalar>(fractions));
+  if (rotors.balanced()) return rotors.commands_of(keep_torque<Scalar>(fractions));
+  const ThrustFractions<Scalar> along = rotors.fractions_of_pure_thrust_1_N();
+  Scalar greatest(0);
+  for (const Scalar step : along) greatest = step > greatest ? step : greatest;
+  const Scalar nothing = greatest * Scalar(1e-3);
   // shifts at which the first rotor reaches its limit, and at which the last one leaves zero
   Scalar most = std::numeric_limits<Scalar>::max(), least = -most;
   for (std::size_t i = 0; i < rotor_count; ++i) {
-    if (along[i] == Scalar(0)) continue;
+    if (along[i] <= nothing && -along[i] <= nothing) continue;  // no shift of the others would bring this rotor back
     const Scalar to_zero = -fractions[i] / along[i], to_limit = (Scalar(1) - fractions[i]) / along[i];
     const Scalar upper = along[i] > Scalar(0) ? to_limit : to_zero, lower = along[i] > Scalar(0) ? to_zero : to_limit;
     if (upper < most) most = upper;

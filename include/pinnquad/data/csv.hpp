@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,12 +34,17 @@ std::vector<std::string> flight_columns(const Columns& extra) {
 
 /// Reads a flight, and the extra columns asked for. Columns are found by name, in any order; others are ignored. Units and
 /// frames: see `Sample`; an extra column is found by its name with its unit, `battery_voltage [V]`.
-/// Throws InputError (all of `read_csv`, and time that does not increase from row to row), its text one line:
+/// Throws InputError (all of `read_csv`, time that does not increase from row to row, and extra columns of one name or of a
+/// name that every flight has), its text one line:
 ///   flight.csv:17:5: expected a finite number in column wdot_x, found "abc"
 inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows,
                               const std::vector<ColumnName>& extra = {}) {
   Flight flight;
-  for (const ColumnName& column : extra) flight.add_column({column, {}});
+  try {
+    for (const ColumnName& column : extra) flight.add_column({column, {}});
+  } catch (const std::invalid_argument& refused) {
+    throw InputError(path, 1, 0, "extra columns that differ in name", refused.what());
+  }
   detail::for_each_csv_row(
       path, detail::flight_columns(extra), minimum_rows,
       [&](const std::vector<double>& values, std::size_t line, const std::vector<std::size_t>& fields) {

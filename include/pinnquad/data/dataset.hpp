@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "pinnquad/core/fnv1a.hpp"
+#include "pinnquad/data/printable.hpp"
 #include "pinnquad/data/sample.hpp"
 
 namespace pinnquad {
@@ -85,14 +86,15 @@ class Flight {
   void add_column(ExtraColumn column) {
     if (column.name.empty()) throw std::invalid_argument("flight: an extra column needs a name");
     for (const std::string_view taken : sample_field_names) {
-      if (column.name == taken) throw std::invalid_argument("flight: " + column.name + " is a column of every flight");
+      if (column.name == taken)
+        throw std::invalid_argument("flight: " + printable(column.name) + " is a column of every flight");
     }
     if (this->column(column.name) != nullptr) {
-      throw std::invalid_argument("flight: it has a column " + column.name + " already");
+      throw std::invalid_argument("flight: it has a column " + printable(column.name) + " already");
     }
     if (column.values.size() != size()) {
-      throw std::invalid_argument("flight: expected " + std::to_string(size()) + " values of column " + column.name +
-                                  ", found " + std::to_string(column.values.size()));
+      throw std::invalid_argument("flight: expected " + std::to_string(size()) + " values of column " +
+                                  printable(column.name) + ", found " + std::to_string(column.values.size()));
     }
     columns_.push_back(std::move(column));
   }

@@ -39,6 +39,8 @@ class RowSet {
     ends_.push_back(size() + rows.size());
   }
 
+  void add(const Flight&&, const IndexRange&) = delete;
+
   const std::vector<FlightRows>& pieces() const noexcept { return pieces_; }
   std::size_t size() const noexcept { return ends_.empty() ? 0 : ends_.back(); }
   bool empty() const noexcept { return ends_.empty(); }

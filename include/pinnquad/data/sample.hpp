@@ -24,7 +24,8 @@ struct Sample {
   double pitch_rad = 0;
   double yaw_rad = 0;
   double altitude_m = 0;  ///< of the vehicle's centre above the ground below it, positive up
-  /// u_i = (n_i / n_max)^2, 0..1: thrust over the greatest thrust, as told to the motor at this instant, before its lag.
+  /// u_i, 0..1, as told to the motor at this instant, before its lag: (n_i / n_max)^2, which is thrust over the greatest thrust,
+  /// unless the airframe's rotors have a curve (dynamics/actuator.hpp).
   /// Front right, rear left, front left, rear right: the order of Eq. (2).
   Commands<double> commands{};
 };

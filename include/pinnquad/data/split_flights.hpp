@@ -32,6 +32,7 @@ inline RowSplit split_each_flight(const Dataset& dataset, const SplitShares& sha
   }
   return split;
 }
+RowSplit split_each_flight(const Dataset&&, const SplitShares& = {}) = delete;  // its rows would be gone
 
 namespace detail {
 
@@ -82,19 +83,23 @@ inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& grou
 }  // namespace detail
 
 /// Whole flights, in the dataset's order: the first ones train, then come those that validate, and the last ones test. Each block
-/// takes as many flights as come closest to its share of the rows, and one at least. Throws std::invalid_argument, one line:
-/// shares that are no shares; fewer flights than blocks.
+/// takes as many flights as come closest to its share of the rows, and one at least; a flight without rows is in none.
+/// Throws std::invalid_argument, one line: shares that are no shares; fewer flights than blocks.
 inline RowSplit split_by_flight(const Dataset& dataset, const SplitShares& shares = {}) {
   std::vector<std::vector<const Flight*>> groups;
-  for (const Flight& flight : dataset.flights()) groups.push_back({&flight});
+  for (const Flight& flight : dataset.flights()) {
+    if (!flight.empty()) groups.push_back({&flight});
+  }
   return detail::split_groups(groups, shares, "flights");
 }
+RowSplit split_by_flight(const Dataset&&, const SplitShares& = {}) = delete;
 
 /// The same with whole trajectories, in the order in which the dataset names them first: what is tested was never flown in
 /// training. A flight that names no trajectory is one of its own.
 inline RowSplit split_by_trajectory(const Dataset& dataset, const SplitShares& shares = {}) {
   std::vector<std::vector<const Flight*>> groups;
   for (const Flight& flight : dataset.flights()) {
+    if (flight.empty()) continue;
     std::vector<const Flight*>* group = nullptr;
     for (auto& other : groups) {
       if (!flight.trajectory.empty() && other.front()->trajectory == flight.trajectory) group = &other;
@@ -107,5 +112,6 @@ inline RowSplit split_by_trajectory(const Dataset& dataset, const SplitShares& s
   }
   return detail::split_groups(groups, shares, "trajectories");
 }
+RowSplit split_by_trajectory(const Dataset&&, const SplitShares& = {}) = delete;
 
 }  // namespace pinnquad

@@ -40,6 +40,13 @@ constexpr bool is_upright(const RotorMount<Scalar>& rotor) noexcept {
   return rotor.axis[0] == Scalar(0) && rotor.axis[1] == Scalar(0) && rotor.axis[2] == Scalar(-1);
 }
 
+/// True for an axis of length 1, to 0.001.
+template <class Scalar>
+constexpr bool has_unit_axis(const RotorMount<Scalar>& rotor) noexcept {
+  const Scalar square = rotor.axis[0] * rotor.axis[0] + rotor.axis[1] * rotor.axis[1] + rotor.axis[2] * rotor.axis[2];
+  return square >= Scalar(0.998) && square <= Scalar(1.002);
+}
+
 /// Thrust over that at command 1: s(u) = u ((1 - k) + k |u|), rising for k in 0..1, odd, so that an error keeps its direction.
 /// The model of PX4's THR_MDL_FAC; k = 0 is a command that is (n / n_max)^2, k = 1 one that is a speed fraction n / n_max, and
 /// a throttle of an electronic speed controller lies between.

@@ -149,8 +149,7 @@ constexpr bool plausible_products(const Airframe<Scalar>& a) noexcept {
 template <class Scalar>
 constexpr bool plausible_rotor(const RotorMount<Scalar>& r) noexcept {
   const auto time_constant = [](Scalar own) { return own == as_airframe<Scalar> || plausible_or_zero(own); };
-  const Scalar square = r.axis[0] * r.axis[0] + r.axis[1] * r.axis[1] + r.axis[2] * r.axis[2];
-  return bounded(r.x_m) && bounded(r.y_m) && bounded(r.z_m) && square >= Scalar(0.998) && square <= Scalar(1.002) &&
+  return bounded(r.x_m) && bounded(r.y_m) && bounded(r.z_m) && has_unit_axis(r) &&
          (r.spin == Spin::clockwise || r.spin == Spin::counter_clockwise) && plausible(r.thrust_scale) &&
          r.thrust_curve >= Scalar(0) && r.thrust_curve <= Scalar(1) && time_constant(r.rise_time_constant_s) &&
          time_constant(r.fall_time_constant_s);

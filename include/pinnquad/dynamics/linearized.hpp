@@ -35,12 +35,12 @@ Wrench<Scalar> linearized_wrench(const Airframe<Scalar>& airframe, const Acceler
   return result;
 }
 
-/// Model 1: accelerations -> commands, at a density ratio rho / rho_0.
+/// Model 1: accelerations -> commands, where the rotors' thrust has this scale (Quadrotor::rotor_scale).
 template <class Scalar>
 Commands<Scalar> linearized_commands(const Airframe<Scalar>& airframe, const Rotors<Scalar>& rotors,
                                      const Accelerations<Scalar>& motion, Scalar gravity_m_s2,
-                                     Scalar density_ratio) noexcept {
-  return rotors.commands(linearized_wrench(airframe, motion, gravity_m_s2), density_ratio);
+                                     Scalar rotor_scale) noexcept {
+  return rotors.commands(linearized_wrench(airframe, motion, gravity_m_s2), rotor_scale);
 }
 
 }  // namespace pinnquad

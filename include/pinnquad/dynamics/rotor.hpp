@@ -280,6 +280,18 @@ class Rotors {
     return {inverse_[0][0], inverse_[1][0], inverse_[2][0], inverse_[3][0]};
   }
 
+  /// True where equal thrust fractions make thrust and no torque, to rounding: rotors of equal strength that lie symmetric about
+  /// the centre of gravity.
+  constexpr bool balanced() const noexcept {
+    constexpr Scalar rounding = Scalar(5000) * std::numeric_limits<Scalar>::epsilon();
+    const ThrustFractions<Scalar> along = fractions_of_pure_thrust_1_N();
+    for (const Scalar fraction : along) {
+      const Scalar difference = fraction - along[0];
+      if (!((difference < Scalar(0) ? -difference : difference) <= rounding * along[0])) return false;
+    }
+    return true;
+  }
+
   /// True where a command is its thrust fraction: no rotor has a curve.
   constexpr bool straight() const noexcept { return straight_; }
 

@@ -13,7 +13,7 @@ namespace pinnquad {
 
 /// One settled point of a stand: what the motor was told, and what was measured.
 struct ThrustStandRow {
-  double command = 0;     ///< above 0, up to 1
+  double command = 0;     ///< 0..1
   double thrust_N = 0;    ///< along the axis
   double torque_N_m = 0;  ///< reaction torque, its magnitude
 };
@@ -50,14 +50,15 @@ inline double squared_thrust_error(const std::vector<ThrustStandRow>& rows, doub
 
 /// Fits thrust as a u + b u^2 by its normal equations, T_1 = a + b and k = b / (a + b); where k leaves 0..1, the better of the
 /// two ends. Torque is proportional to thrust, through the origin. All rows should be taken at one density and voltage.
-/// `not_finite`; `out_of_range` for a command out of 0..1 and a thrust or torque below 0; `no_solution` for rows at fewer than
-/// two commands above 0, or without thrust. `fit` is untouched unless ok.
+/// `not_finite`; `out_of_range` for a command out of 0..1 and a thrust or torque below 0 or above 1e9; `no_solution` for
+/// rows at fewer than two commands above 0, or without thrust. `fit` is untouched unless ok.
 inline Status fit_thrust_stand(const std::vector<ThrustStandRow>& rows, ThrustStandFit& fit) {
   double u2 = 0, u3 = 0, u4 = 0, ut = 0, u2t = 0, tt = 0, tq = 0;
   for (const ThrustStandRow& row : rows) {
     const double u = row.command, t = row.thrust_N, q = row.torque_N_m;
     if (!(is_finite(u) && is_finite(t) && is_finite(q))) return Status::not_finite;
-    if (!(u >= 0 && u <= 1 && t >= 0 && q >= 0)) return Status::out_of_range;
+    if (!(u >= 0 && u <= 1 && detail::plausible_or_zero(t) && detail::plausible_or_zero(q)))
+      return Status::out_of_range;
     u2 += u * u;
     u3 += u * u * u;
     u4 += u * u * u * u;

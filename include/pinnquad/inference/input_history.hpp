@@ -155,7 +155,8 @@ class InputHistory<Windowed<FeatureSet, Taps, Period, Reach>, Scalar, MostSample
         --count_;
       } else if (!detail::follows<Window>(newest_s, time_s)) {
         count_ = 0;
-      } else if (count_ > 1 && newest_s - sample(count_ - 2).time_s < thinned_s) {
+      } else if (count_ > 1 && newest_s - sample(count_ - 2).time_s < thinned_s &&
+                 (!keeps_neighbours || detail::follows<Window>(sample(count_ - 2).time_s, time_s))) {
         --count_;  // the present one takes the place of one that was kept as the newest alone
       }
     }
@@ -193,6 +194,9 @@ class InputHistory<Windowed<FeatureSet, Taps, Period, Reach>, Scalar, MostSample
   /// Samples closer than this do not all stay. So many fit into the window's length that the one before it and the newest
   /// have room too.
   static constexpr double thinned_s = -Window::earliest_s / (MostSamples - 3);
+  /// Thinning leaves no two samples further apart than a gap: one more that stays before a late tick takes no more room, as the
+  /// two steps together are as long as two that thinning leaves. A shorter history has no room for that.
+  static constexpr bool keeps_neighbours = 2 * thinned_s <= Window::largest_gap_s;
 
   /// Counted from the oldest.
   Sample& sample(int i) noexcept { return samples_[std::size_t((oldest_ + i) % MostSamples)]; }

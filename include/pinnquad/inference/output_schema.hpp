@@ -41,7 +41,8 @@ struct CommandOutputs {
   }
 };
 
-/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2.
+/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2: of
+/// airframes whose rotors have no curve (RotorMount::thrust_curve).
 struct RotorSpeedOutputs {
   static constexpr std::array<const char*, rotor_count> names = {"n1", "n2", "n3", "n4"};
   static constexpr const char* unit = "rev/s";

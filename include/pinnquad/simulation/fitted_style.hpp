@@ -12,14 +12,28 @@
 
 namespace pinnquad {
 
-/// Share of its thrust that an airframe needs to hover at a place; NaN if the inverse gives no answer. Above the share
-/// that the controller asks for at most (0.97, flight_limits) it cannot stay up.
+namespace detail {
+/// Thrust fraction of the rotor that gives most; of rotors that differ by rounding, the first one's.
+inline double largest_fraction(const Rotors<double>& rotors, const Commands<double>& commands) noexcept {
+  constexpr double rounding = 1e-9;
+  const ThrustFractions<double> fractions = rotors.fractions(commands);
+  double largest = fractions[0];
+  for (const double fraction : fractions) {
+    if (fraction > largest * (1 + rounding)) largest = fraction;
+  }
+  return largest;
+}
+}  // namespace detail
+
+/// Share of its thrust that the rotor with most to do gives in hover at a place; NaN if the inverse gives no answer. Above the
+/// share that the controller asks for at most (0.97, flight_limits) the airframe cannot stay up.
 template <class AnyVehicle>
 double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) {
   return with_quadrotor(vehicle, [&](const auto& quadrotor) {
     HoverTrim<double> hover;
     const Status status = hover_trim(quadrotor, place_m, hover);
-    return status == Status::ok ? hover.commands[0] : std::numeric_limits<double>::quiet_NaN();
+    return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), hover.commands)
+                                : std::numeric_limits<double>::quiet_NaN();
   });
 }
 
@@ -36,14 +50,14 @@ PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vec
   style.max_speed_m_s = style.max_climb_m_s = style.max_descent_m_s = max_speed_m_s;
   HoverTrim<double> hover;
   if (hover_trim(quadrotor, place_m, hover) != Status::ok) return style;
-  const double hover_command = hover.commands[0];
+  const double hover_command = detail::largest_fraction(quadrotor.rotors(), hover.commands);
   const auto command_at = [&](double down_m_s) {
     State<double> state;
     state.position_m = place_m;
     state.velocity_m_s[2] = down_m_s;
     Commands<double> commands = hover.commands;
     const Status status = inverse_commands(quadrotor, state, Accelerations<double>{}, 0.0, commands);
-    return status == Status::ok ? commands[0] : hover_command;
+    return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), commands) : hover_command;
   };
   const double step_m_s = style.max_speed_m_s / speeds;
   const double most = hover_command + climb_share * (1 - hover_command);

@@ -159,8 +159,9 @@ class Quadrotor {
 
   /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly.
   /// What status() says; `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of
-  /// the body in one step, a clock so late that the step doesn't move it, or air that has no answer (Surroundings);
-  /// `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the Status is ok.
+  /// the body in one step, a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a
+  /// battery that is less than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is
+  /// untouched unless the Status is ok.
   Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
     const Status input = check_input(state, commands, step_s);
     if (input != Status::ok) return input;
@@ -299,7 +300,7 @@ class Quadrotor {
         condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
       } else if constexpr (uses_place<Effect>) {
-        const PlaceCondition<Scalar> at_place{condition, condition.position_m, condition.ground_velocity_m_s};
+        const PlaceCondition<Scalar> at_place{condition, state.position_m, state.velocity_m_s};
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, at_place);
       } else if constexpr (makes_wrench<Effect>) {
         const AeroCondition<Scalar>& without_rotors = condition;
@@ -338,6 +339,7 @@ class Quadrotor {
                                                                 Status& air) const noexcept {
     const Evaluation<Scalar> e = loads<build>(state, thrusts, time_s);
     if (e.surroundings.status != Status::ok) air = e.surroundings.status;
+    if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery pulls nobody down
     const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;

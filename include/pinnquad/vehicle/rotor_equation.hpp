@@ -101,7 +101,8 @@ class RotorEquation {
 /// Beyond (Cheeseman-Bennett below Z/R = 0.354, next to its pole) a wanted force has two solutions, of which the upper
 /// branch's, with the greater thrust, is returned, or none (`no_solution`).
 /// An effect that is only nearly affine is iterated, at most 40 rounds; `no_solution` if they don't settle.
-/// The air's own status, `out_of_range` where there is none (density 0 or less) or no power (thrust scale 0 or less). `commands` is untouched unless ok.
+/// The air's own status, `out_of_range` where there is none (density 0 or less) or no power (thrust scale 0 or less).
+/// `commands` is untouched unless ok.
 template <class Scalar, class... Effects>
 Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
                            const Surroundings<Scalar>& air, const Wrench<Scalar>& required,

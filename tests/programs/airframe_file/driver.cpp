@@ -129,11 +129,28 @@ TEST_CASE("one line with line and column for what is wrong") {
   CHECK(said_of("\"counter_clockwise\"", "\"left\"").find(":17:8: expected \"clockwise\" or \"counter_clockwise\"") ==
         0);
   CHECK(said_of("y_m = 0.243952\n", "y_m = 0.243952\nz_cm = 2\n").find(":17:1: expected a key") == 0);
-  CHECK(said_of("y_m = 0.243952\n", "y_m = 0.243952\naxis = [0, 0, 1e-3]\n").find("expected a rotor that can be") !=
-        std::string::npos);
+  const std::string place = "y_m = 0.243952\n";
+  CHECK(said_of(place, place + "axis = [0, 0, 1e-3]\n") == ":17:8: expected a vector of length 1, found [0, 0, 0.001]");
+  CHECK(said_of(place, place + "rise_time_constant_s = -1\n").find(":17:24: expected a value of 0 or more") == 0);
+  CHECK(said_of(place, place + "thrust_scale = 0\n").find(":17:16: expected a value above 0") == 0);
+  CHECK(said_of(place, place + "thrust_curve = 1.5\n") == ":17:16: expected a value from 0 to 1, found 1.5");
+  CHECK(said_of("0.00538309", "nan").find(":11:17: expected a value of 0 or more, at most 1e9, found nan") == 0);
+  CHECK(said_of("mass_kg = 1.5", "mass_kg = 9007199254740993").find(":4:11: expected a value above 0") == 0);
+  CHECK(said_of("mass_kg = 1.5", "inertia_products_kg_m2 = [1, 0, 0]\nmass_kg = 1.5")
+            .find(":4:26: expected an inertia") == 0);
   CHECK(said_of("[[rotor]]\nx_m = 0.243952\ny_m = 0.243952\nspin = \"counter_clockwise\"\n", "")
             .find("expected four tables [[rotor]]") != std::string::npos);
   CHECK(said_of("x_m = -0.243952\ny_m = -0.243952", "x_m = 0.243952\ny_m = 0.243952")
             .find("expected rotors that make thrust and three torques") != std::string::npos);
   CHECK_THROWS_AS(programs::read_airframe_file("no such file.toml"), pinnquad::InputError);
+  CHECK_THROWS_AS(programs::read_airframe_file("."), pinnquad::InputError);
+}
+
+TEST_CASE("what a file holds is shown on one line, whatever it is; broken TOML ends no program") {
+  CHECK(said_of("mass_kg = 1.5", "mass_kg = \"a\\nb\"") == ":4:11: expected a number, found \"a?b\"");
+  CHECK(said_of("mass_kg = 1.5", "\"a\\nb\" = 1\nmass_kg = 1.5") == ":4:1: expected a key of an airframe, found `a?b`");
+  CHECK(said_of("\"paper_quadrotor\"", "\"a\\nb\"") == ":3:8: expected a text on one line, found \"a?b\"");
+  CHECK(said_of("\"paper_quadrotor\"", "\"\"") == ":3:8: expected a text on one line, found \"\"");
+  CHECK(said_of("mass_kg = 1.5", "[[[[").find(":4:3: expected TOML") == 0);
+  CHECK(said_of("mass_kg = 1.5", "mass_kg = \xff").find(": expected TOML") != std::string::npos);
 }
