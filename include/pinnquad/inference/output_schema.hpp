@@ -183,13 +183,9 @@ struct OutputMap {
     return airframe;
   }
   template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe) noexcept {
-    return Schema::command(output, airframe);
-  }
-  template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* outputs, const Airframe<Scalar>& airframe,
                                               Scalar* commands) noexcept {
-    for (int i = 0; i < size; ++i) commands[i] = command(outputs[i], airframe);
+    for (int i = 0; i < size; ++i) commands[i] = Schema::command(outputs[i], airframe);
   }
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* outputs, const Airframe<Scalar>& airframe,
