@@ -33,13 +33,6 @@ PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread
   }
 }
 
-/// One sample.
-template <int Size, class Scalar>
-PINNQUAD_ALWAYS_INLINE void restore(const Scalar* mean, const Scalar* spread, const Scalar* standardised, int stride,
-                                    Scalar* values) noexcept {
-  for (int i = 0; i < Size; ++i) values[i] = standardised[i * stride] * spread[i] + mean[i];
-}
-
 /// The line above for models with these features, outputs and airframe. `forward(standardised, outputs)` is the network.
 template <class Features, class Outputs, class Vehicle>
 struct Pipeline {
@@ -68,16 +61,21 @@ struct Pipeline {
                                              const Scalar* answers, int stride, Scalar* outputs,
                                              Scalar* commands) noexcept {
     constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());
-    restore<Map::size>(scales.output_mean, scales.output_spread, answers, stride, outputs);
-    if constexpr (Map::takes_features) {
-      if (x_stride != 1) {
-        Scalar features[Features::size];
-        for (int k = 0; k < Features::size; ++k) features[k] = x[k * x_stride];
-        Map::commands(static_cast<const Scalar*>(features), static_cast<const Scalar*>(outputs), setting, commands);
-        return;
+    if constexpr (Map::rotor_by_rotor) {  // one loop for both is less code in flash
+      for (int i = 0; i < rotor_count; ++i) {
+        outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
+        commands[i] = Map::command(outputs[i], setting, i);
       }
+    } else {
+      for (int i = 0; i < Map::size; ++i)
+        outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
+      Scalar features[Features::size];
+      if (x_stride != 1) {
+        for (int k = 0; k < Features::size; ++k) features[k] = x[k * x_stride];
+      }
+      Map::commands(x_stride != 1 ? static_cast<const Scalar*>(features) : x, static_cast<const Scalar*>(outputs),
+                    setting, commands);
     }
-    Map::commands(x, static_cast<const Scalar*>(outputs), setting, commands);
   }
 
   /// jacobian = du/dx in physical units from `slopes`, the network's derivatives between standardised values (Map::size x
