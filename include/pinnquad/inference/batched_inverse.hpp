@@ -17,15 +17,10 @@ struct BatchedAnswer : BatchedNetwork<Answer> {};
 template <class Answer>
 struct BatchedAnswer<Answer, false> {
   using Scalar = typename Answer::Scalar;
-  static constexpr int lanes = 8;
+  static constexpr int lanes = 1;
 
-  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y, int samples) noexcept {
-    for (int s = 0; s < samples; ++s) {
-      Scalar in[Answer::inputs], out[Answer::outputs];
-      for (int i = 0; i < Answer::inputs; ++i) in[i] = x[i * samples + s];
-      Answer::forward(parameters, static_cast<const Scalar*>(in), static_cast<Scalar*>(out));
-      for (int i = 0; i < Answer::outputs; ++i) y[i * samples + s] = out[i];
-    }
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y, int) noexcept {
+    Answer::forward(parameters, x, y);
   }
 };
 

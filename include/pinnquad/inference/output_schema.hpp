@@ -11,6 +11,8 @@
 //   prepare(airframe)                       optional, constexpr: worked out by the compiler
 // A schema of one output per rotor and one unit says `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)`,
 // `command_slope(y, airframe)` instead, or these three with the rotor's index behind, for rotors that differ.
+// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets, and plain
+// arrays then, no Eigen (docs/guide.md, Reproducibility).
 #pragma once
 
 #include <array>
