@@ -17,6 +17,7 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/inference/composition.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
@@ -101,6 +102,11 @@ TEST_CASE("type names are those that another translation unit can write") {
       "pinnquad::Softplus, pinnquad::Sine>");
   CHECK(type_name<Net>().find("pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<5>, pinnquad::Relu, "
                               "pinnquad::Dense<4>>") == 0);  // with every compiler
+  // nor of its flags: a type of an inline namespace that names an instruction set, in another such
+  using Small = Network<float, Inputs<2>, Dense<1>>;
+  CHECK(type_name<pinnquad::Sum<pinnquad::Scaled<Small>, Small>>() ==
+        "pinnquad::Sum<pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<2>, pinnquad::Dense<1>>>, "
+        "pinnquad::Network<float, pinnquad::Inputs<2>, pinnquad::Dense<1>>>");
 }
 
 TEST_CASE("weights, scalers, envelope and golden vectors are in the header, bit for bit") {

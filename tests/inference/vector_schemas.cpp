@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/inference/residual_outputs.hpp"
 #include "pinnquad/inference/wrench_outputs.hpp"
 
@@ -56,6 +57,36 @@ TEST_CASE_TEMPLATE("a vector schema on a crooked airframe: there and back, slope
       CHECK(slopes[i * Schema::size + k] == doctest::Approx((above[i] - below[i]) / (2 * step)).epsilon(1e-6));
     }
   }
+}
+
+TEST_CASE("a wrench and accelerations on a crooked airframe are what its rotors and its inertia make of commands") {
+  const Airframe<double> airframe = crooked();
+  const Wrench<double> made =
+      Rotors<double>(airframe).wrench({some_commands[0], some_commands[1], some_commands[2], some_commands[3]}, 1.0);
+  double wrench[4], motion[6];
+  const double* const nothing = nullptr;
+  WrenchOutputs::from_commands(nothing, some_commands.data(), WrenchOutputs::prepare(airframe), wrench);
+  AccelerationOutputs::from_commands(nothing, some_commands.data(), AccelerationOutputs::prepare(airframe), motion);
+  CHECK(wrench[0] == doctest::Approx(-made.force_N[2]).epsilon(1e-12));
+  REQUIRE(std::abs(made.force_N[0]) > 0.1);  // a rotor leans
+  const Vector3<double> torque = inertia_times(airframe, Vector3<double>(motion[3], motion[4], motion[5]));
+  for (int axis = 0; axis < 3; ++axis) {
+    CAPTURE(axis);
+    CHECK(wrench[1 + axis] == doctest::Approx(made.torque_N_m[axis]).epsilon(1e-12));
+    CHECK(motion[axis] * airframe.mass_kg == doctest::Approx(made.force_N[axis]).epsilon(1e-12));
+    CHECK(torque[axis] == doctest::Approx(made.torque_N_m[axis]).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("the linearised inverse of features is Eq. (3) inverted") {
+  const Airframe<double> airframe = crooked();
+  const double x[6] = {0.3, -0.2, -1.1, 4.0, -3.0, 0.5};
+  double u[rotor_count];
+  LinearizedInverse::commands(static_cast<const double*>(x), LinearizedInverse::prepare(airframe), u);
+  const Commands<double> expected = linearized_commands(airframe, Rotors<double>(airframe),
+                                                        Accelerations<double>{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}},
+                                                        standard_gravity_m_s2<double>, 1.0);
+  for (std::size_t i = 0; i < rotor_count; ++i) CHECK(u[i] == doctest::Approx(expected[i]).epsilon(1e-12));
 }
 
 TEST_CASE("the linearised inverse on a crooked airframe, of more features than it reads: slopes") {

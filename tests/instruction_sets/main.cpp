@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "pinnquad/dynamics/linearized.hpp"
 #include "prediction.hpp"
 
 extern "C" {
@@ -86,6 +87,29 @@ bool golden_speeds(const float* commands) {
     const double n = static_cast<double>(instruction_sets::Model::golden_commands[0][i]);
     if (!(std::fabs(static_cast<double>(commands[i]) - n * std::fabs(n) / (n_max * n_max)) <= 1e-9)) {
       std::printf("command %zu of speeds is %.9g\n", i, static_cast<double>(commands[i]));
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The golden commands taken for a wrench, and for what is added to Eq. (3) inverted, by the dynamics in double.
+bool golden_outputs(const float* of_wrench, const float* of_residual) {
+  using namespace pinnquad;
+  const auto airframe = PaperQuadrotor::value<double>();
+  const Rotors<double> rotors(airframe);
+  double y[4], x[6];
+  for (std::size_t i = 0; i < 4; ++i) y[i] = static_cast<double>(instruction_sets::Model::golden_commands[0][i]);
+  for (std::size_t i = 0; i < 6; ++i) x[i] = static_cast<double>(instruction_sets::Model::golden_features[0][i]);
+  const Commands<double> wrench = rotors.commands({{0.0, 0.0, -y[0]}, {y[1], y[2], y[3]}}, 1.0);
+  const Commands<double> base = linearized_commands(airframe, rotors, {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}},
+                                                    standard_gravity_m_s2<double>, 1.0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double first = static_cast<double>(of_wrench[i]) - wrench[i];
+    const double second = static_cast<double>(of_residual[i]) - base[i] - y[i];
+    if (!(std::fabs(first) <= 1e-4 * (1.0 + std::fabs(wrench[i])) &&
+          std::fabs(second) <= 1e-4 * (1.0 + std::fabs(base[i])))) {
+      std::printf("command %zu of a wrench is off by %.3g, of a residual by %.3g\n", i, first, second);
       return false;
     }
   }
@@ -198,7 +222,7 @@ int main(int argc, char** argv) {
                   agrees({16, 70, 4}, some_parameters<WideNet>(), x, y + 4, tanh) &&
                   agrees({16, 25, 25, 25, 4}, some_parameters<Net>(), x, y + 8, relu) && golden_commands(y + 12) &&
                   golden_speeds(y + 16) && golden_commands(y + 20) && golden_commands(y + 24) &&
-                  agrees_with_norm(x, y + 28) && agrees_smoothly(x, y + 32);
+                  agrees_with_norm(x, y + 28) && agrees_smoothly(x, y + 32) && golden_outputs(y + 49, y + 53);
   std::puts(ok ? "predicts" : "predicts something else");
   return ok ? 0 : 1;
 }

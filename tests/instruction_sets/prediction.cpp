@@ -13,10 +13,11 @@ constexpr NormNet::Parameters norm_parameters = some_variances<NormNet>();
 constexpr const float* norm_parameters_begin = norm_parameters.data();
 using instruction_sets::Model;
 
-/// Derivatives too, of a network with batch norm, and all that is made of rotor speeds.
-void predict_speeds(const float* golden, float* y) {
+/// All that is made of outputs that are no commands, derivatives too.
+template <class OtherModel>
+void predict_outputs(const float* golden, float* y) {
   float jacobian[4 * Model::Features::size];
-  const pinnquad::InverseDynamics<SpeedModel> inverse;
+  const pinnquad::InverseDynamics<OtherModel> inverse;
   pinnquad::Status status = pinnquad::Status::ok;
   pinnquad::predict_batch(inverse, golden, y, &status, 1);
   if (status != pinnquad::Status::ok) y[0] = -1.0f;
@@ -78,8 +79,10 @@ extern "C" void PREDICT(const float* x, float* y) {
   constexpr const float* golden = Model::golden_features[0].data();
   const pinnquad::InverseDynamics<Model> inverse;
   if (inverse.predict_features(golden, y + 12) != pinnquad::Status::ok) y[12] = -1.0f;
-  predict_speeds(golden, y + 16);
+  predict_outputs<SpeedModel>(golden, y + 16);
   predict_from_block(y + 20);
   differentiate(x, y + 28);
   predict_smoothly(x, y + 32);
+  predict_outputs<WrenchModel>(golden, y + 49);
+  predict_outputs<ResidualModel>(golden, y + 53);
 }

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
@@ -66,10 +66,10 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction_slope(Scalar curve, Scal
 /// The command of a thrust fraction: u = 2 s / (1 - k + sqrt((1 - k)^2 + 4 k |s|)), which subtracts nothing and is s for k = 0.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_of_fraction(Scalar curve, Scalar fraction) noexcept {
-  using std::sqrt;
+  if (curve == Scalar(0)) return fraction;
   const Scalar linear = Scalar(1) - curve;
   const Scalar magnitude = fraction < Scalar(0) ? -fraction : fraction;
-  const Scalar divisor = linear + sqrt(linear * linear + Scalar(4) * curve * magnitude);
+  const Scalar divisor = linear + detail::square_root(linear * linear + Scalar(4) * curve * magnitude);
   return divisor > Scalar(0) ? Scalar(2) * fraction / divisor : fraction;  // 0 / 0 at k = 1, s = 0; NaN stays NaN
 }
 

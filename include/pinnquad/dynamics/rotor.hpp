@@ -4,10 +4,11 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/first_of.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/dynamics/state.hpp"
@@ -147,6 +148,14 @@ constexpr Status invert_allocation(AllocationMatrix<Scalar> matrix, AllocationMa
   return Status::ok;
 }
 
+namespace detail {
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE const RotorMount<Scalar>& rotor_of(const Airframe<Scalar>& airframe,
+                                                          std::size_t rotor) noexcept {
+  return first_of<RotorMount<Scalar>>(airframe.rotors)[rotor];
+}
+}  // namespace detail
+
 /// Command of a rotor speed where thrust is proportional to the command, u = (n / n_max)^2 (docs/paper.md, deviation 6): the
 /// thrust fraction of a speed, of any rotor.
 template <class Scalar>
@@ -158,21 +167,38 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar command_from_speed(const Airframe<Scalar
 
 /// Rotor speed of a command in 0..1 where thrust is proportional to it, rev/s.
 template <class Scalar>
-Scalar speed_from_command(const Airframe<Scalar>& airframe, Scalar command) noexcept {
-  using std::sqrt;
-  return airframe.max_rotor_speed_rev_s * sqrt(command);
+PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airframe, Scalar command) noexcept {
+  return airframe.max_rotor_speed_rev_s * detail::square_root(command);
 }
 
-/// The same of one rotor by its own curve: the command of a speed ...
+/// The same of one rotor by its own curve: the command of a speed, which has the speed's sign ...
 template <class Scalar>
-Scalar command_from_speed(const Airframe<Scalar>& airframe, std::size_t rotor, Scalar speed_rev_s) noexcept {
-  return command_of_fraction(airframe.rotors[rotor].thrust_curve, command_from_speed(airframe, speed_rev_s));
+PINNQUAD_ALWAYS_INLINE Scalar command_from_speed(const Airframe<Scalar>& airframe, std::size_t rotor,
+                                                 Scalar speed_rev_s) noexcept {
+  const Scalar fraction = command_from_speed(airframe, speed_rev_s);
+  return command_of_fraction(detail::rotor_of(airframe, rotor).thrust_curve,
+                             speed_rev_s < Scalar(0) ? -fraction : fraction);
+}
+
+/// ... its slope: du/dn = 2 r / (n_max sqrt((1 - k)^2 + 4 k r^2)) with r = |n| / n_max; 1 / n_max everywhere for k = 1 ...
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar command_slope_of_speed(const Airframe<Scalar>& airframe, std::size_t rotor,
+                                                     Scalar speed_rev_s) noexcept {
+  const Scalar curve = detail::rotor_of(airframe, rotor).thrust_curve;
+  const Scalar n_max = airframe.max_rotor_speed_rev_s;
+  const Scalar magnitude = speed_rev_s < Scalar(0) ? -speed_rev_s : speed_rev_s;
+  const Scalar straight = Scalar(2) * magnitude / (n_max * n_max);
+  if (curve == Scalar(0)) return straight;
+  const Scalar ratio = magnitude / n_max, linear = Scalar(1) - curve;
+  const Scalar bend = detail::square_root(linear * linear + Scalar(4) * curve * (ratio * ratio));
+  return bend == Scalar(0) ? Scalar(1) / n_max : straight / bend;  // 0 / 0 at k = 1, n = 0; NaN stays NaN
 }
 
 /// ... and the speed of a command in 0..1, rev/s.
 template <class Scalar>
-Scalar speed_from_command(const Airframe<Scalar>& airframe, std::size_t rotor, Scalar command) noexcept {
-  return speed_from_command(airframe, thrust_fraction(airframe.rotors[rotor].thrust_curve, command));
+PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airframe, std::size_t rotor,
+                                                 Scalar command) noexcept {
+  return speed_from_command(airframe, thrust_fraction(detail::rotor_of(airframe, rotor).thrust_curve, command));
 }
 
 /// A rotor gives no less than nothing and no more than its limit. NaN stays NaN.

@@ -17,15 +17,10 @@ struct BatchedAnswer : BatchedNetwork<Answer> {};
 template <class Answer>
 struct BatchedAnswer<Answer, false> {
   using Scalar = typename Answer::Scalar;
-  static constexpr int lanes = 8;
+  static constexpr int lanes = 1;
 
-  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y, int samples) noexcept {
-    for (int s = 0; s < samples; ++s) {
-      Scalar in[Answer::inputs], out[Answer::outputs];
-      for (int i = 0; i < Answer::inputs; ++i) in[i] = x[i * samples + s];
-      Answer::forward(parameters, static_cast<const Scalar*>(in), static_cast<Scalar*>(out));
-      for (int i = 0; i < Answer::outputs; ++i) y[i * samples + s] = out[i];
-    }
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y, int) noexcept {
+    Answer::forward(parameters, x, y);
   }
 };
 
@@ -62,30 +57,21 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   }
   for (int first = 0; first < samples; first += lanes) {
     const int count = samples - first < lanes ? samples - first : lanes;
-    alignas(64) Scalar block[size * lanes];
-    alignas(64) Scalar outputs[Model::Network::outputs * lanes];
-    alignas(64) Scalar made[rotor_count * lanes];
+    alignas(64) Scalar answers[Model::Network::outputs * lanes];
     int outside[lanes] = {};
     for (int k = 0; k < size; ++k) {
       const Scalar* feature = x + k * samples + first;
-      if (count == lanes) {
-        for (int s = 0; s < lanes; ++s) block[k * lanes + s] = feature[s];
-      } else {  // padding repeats the last sample, as in BatchedNetwork
-        for (int s = 0; s < lanes; ++s) block[k * lanes + s] = feature[s < count ? s : count - 1];
-      }
-      for (int s = 0; s < lanes; ++s) {
-        const Scalar value = block[k * lanes + s];
-        const bool inside = is_finite(value) & (value >= lower[k]) & (value <= upper[k]);
+      for (int s = 0; s < count; ++s) {
+        const bool inside = is_finite(feature[s]) & (feature[s] >= lower[k]) & (feature[s] <= upper[k]);
         outside[s] |= inside ? 0 : 1;
       }
     }
-    Pipeline::template run<lanes>(scales, block, outputs, made,
-                                  [weights](const Scalar* standardised, Scalar* restored) PINNQUAD_INLINE_LAMBDA {
-                                    Batched::forward(weights, standardised, restored, lanes);
-                                  });
+    Pipeline::template ask<lanes>(scales, x + first, samples, count, answers,
+                                  [weights](const Scalar* standardised, Scalar* made)
+                                      PINNQUAD_INLINE_LAMBDA { Batched::forward(weights, standardised, made, lanes); });
     for (int s = 0; s < count; ++s) {
-      Scalar sample[rotor_count];
-      for (int i = 0; i < rotor_count; ++i) sample[i] = made[i * lanes + s];
+      Scalar outputs[Model::Network::outputs], sample[rotor_count];
+      Pipeline::command(scales, x + first + s, samples, answers + s, lanes, outputs, sample);
       const Status checked = GuardType::check_commands(sample);
       const Status status = outside[s] != 0 ? Status::outside_envelope : checked;
       statuses[first + s] = status;

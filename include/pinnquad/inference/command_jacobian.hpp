@@ -32,16 +32,15 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
   Scalar outputs[Network::outputs] = {}, slopes[Network::outputs * size];
   Scalar result[rotor_count], by_features[rotor_count * size];
   const Scalar* weights = detail::row_major_weights(inverse.model());
-  Pipeline::template run<1>(
-      scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
-        if constexpr (!is_network<Network>) {
-          Network::jacobian(weights, standardised, made, slopes);
-        } else if constexpr (detail::is_packed<Model>) {
-          JacobianPass<Network>::run(detail::packed_weights(inverse.model()), weights, standardised, made, slopes);
-        } else {
-          JacobianPass<Network>::run(weights, standardised, made, slopes);
-        }
-      });
+  Pipeline::run(scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
+    if constexpr (!is_network<Network>) {
+      Network::jacobian(weights, standardised, made, slopes);
+    } else if constexpr (detail::is_packed<Model>) {
+      JacobianPass<Network>::run(detail::packed_weights(inverse.model()), weights, standardised, made, slopes);
+    } else {
+      JacobianPass<Network>::run(weights, standardised, made, slopes);
+    }
+  });
   Pipeline::chain(scales, x, outputs, slopes, by_features);
   if (!all_finite(by_features, rotor_count * size)) return Status::output_not_finite;
   const Status status = GuardType::check_commands(result);

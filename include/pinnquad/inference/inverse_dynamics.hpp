@@ -129,9 +129,9 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// The network alone, without any check: features X -> commands. For self_test(), not for motors.
   PINNQUAD_ALWAYS_INLINE void evaluate(const Scalar* x, Scalar* commands) const noexcept {
     Scalar outputs[Network::outputs] = {};
-    Pipeline::template run<1>(Numbers::scales(model()), x, outputs, commands,
-                              [this](const Scalar* standardised, Scalar* made)
-                                  PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
+    Pipeline::run(Numbers::scales(model()), x, outputs, commands,
+                  [this](const Scalar* standardised, Scalar* made)
+                      PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }
 
   /// True if every feature lies in what the model was trained on, margin included; false for NaN, under -ffast-math too.

@@ -10,11 +10,12 @@
 //                                           du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
 //   prepare(airframe)                       optional, constexpr: worked out by the compiler
 // A schema of one output per rotor and one unit says `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)`,
-// `command_slope(y, airframe)` instead.
+// `command_slope(y, airframe)` instead, or these three with the rotor's index behind, for rotors that differ.
+// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets, and plain
+// arrays then, no Eigen (docs/guide.md, Reproducibility).
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
@@ -41,42 +42,52 @@ struct CommandOutputs {
   }
 };
 
-/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2: of
-/// airframes whose rotors have no curve (RotorMount::thrust_curve).
+/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2, or the command at
+/// which the rotor's thrust_curve gives that speed. `rotor`: which one, where the curves differ.
 struct RotorSpeedOutputs {
   static constexpr std::array<const char*, rotor_count> names = {"n1", "n2", "n3", "n4"};
   static constexpr const char* unit = "rev/s";
 
   /// A command below 0 has no speed and counts as 0.
   template <class Scalar>
-  static Scalar from_command(Scalar command, const Airframe<Scalar>& airframe) noexcept {
-    return command < Scalar(0) ? Scalar(0) : speed_from_command(airframe, command);
+  static Scalar from_command(Scalar command, const Airframe<Scalar>& airframe, std::size_t rotor = 0) noexcept {
+    return command < Scalar(0) ? Scalar(0) : speed_from_command(airframe, rotor, command);
   }
   /// A negative speed gives a negative command: monotone, so that a network's error keeps its direction.
   template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command(Scalar output, const Airframe<Scalar>& airframe) noexcept {
-    const Scalar u = command_from_speed(airframe, output);
-    return output < Scalar(0) ? -u : u;
+  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe,
+                                               std::size_t rotor = 0) noexcept {
+    return command_from_speed(airframe, rotor, output);
   }
   template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command_slope(Scalar output,
-                                                               const Airframe<Scalar>& airframe) noexcept {
-    const Scalar n_max = airframe.max_rotor_speed_rev_s;
-    const Scalar magnitude = output < Scalar(0) ? -output : output;
-    return Scalar(2) * magnitude / (n_max * n_max);
+  static PINNQUAD_ALWAYS_INLINE Scalar command_slope(Scalar output, const Airframe<Scalar>& airframe,
+                                                     std::size_t rotor = 0) noexcept {
+    return command_slope_of_speed(airframe, rotor, output);
   }
 };
 
 namespace detail {
 
-template <class T, class = void>
-struct MapsRotorByRotor : std::false_type {};
+/// The form rotor by rotor, its functions called with `Rotor` behind: nothing, or the rotor's index.
+template <class T, class Enable, class... Rotor>
+struct MapsEachRotor : std::false_type {};
+template <class T, class... Rotor>
+struct MapsEachRotor<T,
+                     std::void_t<decltype(T::names), decltype(T::unit),
+                                 decltype(T::from_command(0.0, std::declval<const Airframe<double>&>(), Rotor{}...)),
+                                 decltype(T::command(0.0, std::declval<const Airframe<double>&>(), Rotor{}...)),
+                                 decltype(T::command_slope(0.0, std::declval<const Airframe<double>&>(), Rotor{}...))>,
+                     Rotor...> : std::bool_constant<T::names.size() == std::size_t(rotor_count)> {
+  using Body = const Airframe<double>&;
+  static constexpr bool forth = noexcept(T::from_command(0.0, std::declval<Body>(), Rotor{}...));
+  static constexpr bool back = noexcept(T::command(0.0, std::declval<Body>(), Rotor{}...));
+  static constexpr bool slope = noexcept(T::command_slope(0.0, std::declval<Body>(), Rotor{}...));
+  static constexpr bool is_noexcept = forth && back && slope;
+};
 template <class T>
-struct MapsRotorByRotor<T, std::void_t<decltype(T::names), decltype(T::unit),
-                                       decltype(T::from_command(0.0, std::declval<const Airframe<double>&>())),
-                                       decltype(T::command(0.0, std::declval<const Airframe<double>&>())),
-                                       decltype(T::command_slope(0.0, std::declval<const Airframe<double>&>()))>>
-    : std::bool_constant<T::names.size() == std::size_t(rotor_count)> {};
+using MapsRotorByIndex = MapsEachRotor<T, void, std::size_t>;
+template <class T>
+using MapsRotorByRotor = std::conditional_t<MapsRotorByIndex<T>::value, MapsRotorByIndex<T>, MapsEachRotor<T, void>>;
 
 template <class T, class = void>
 struct Prepares : std::false_type {};
@@ -148,9 +159,7 @@ constexpr bool output_schema_is_noexcept() noexcept {
     }
     return all;
   } else {
-    using Body = const Airframe<double>&;
-    return noexcept(T::command(0.0, std::declval<Body>()))&& noexcept(
-        T::command_slope(0.0, std::declval<Body>()))&& noexcept(T::from_command(0.0, std::declval<Body>()));
+    return MapsRotorByRotor<T>::is_noexcept;
   }
 }
 template <class T>
@@ -170,6 +179,7 @@ struct OutputMap {
   static constexpr int size = rotor_count;
   static constexpr const auto& names = Schema::names;
   static constexpr std::array<const char*, size> units = {Schema::unit, Schema::unit, Schema::unit, Schema::unit};
+  static constexpr bool rotor_by_rotor = true;
   static constexpr bool takes_features = false;  ///< x may be null where it is false
   static constexpr bool has_feature_slopes = false;
   static constexpr int slope_count = size;  ///< numbers that slopes() writes
@@ -184,23 +194,39 @@ struct OutputMap {
     return airframe;
   }
   template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe) noexcept {
-    return Schema::command(output, airframe);
+  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe, int rotor) noexcept {
+    if constexpr (detail::MapsRotorByIndex<Schema>::value) {
+      return Schema::command(output, airframe, static_cast<std::size_t>(rotor));
+    } else {
+      return Schema::command(output, airframe);
+    }
   }
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* outputs, const Airframe<Scalar>& airframe,
                                               Scalar* commands) noexcept {
-    for (int i = 0; i < size; ++i) commands[i] = command(outputs[i], airframe);
+    for (int i = 0; i < size; ++i) commands[i] = command(outputs[i], airframe, i);
   }
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* outputs, const Airframe<Scalar>& airframe,
                                             Scalar* slopes) noexcept {
-    for (int i = 0; i < size; ++i) slopes[i] = Schema::command_slope(outputs[i], airframe);
+    for (int i = 0; i < size; ++i) {
+      if constexpr (detail::MapsRotorByIndex<Schema>::value) {
+        slopes[i] = Schema::command_slope(outputs[i], airframe, static_cast<std::size_t>(i));
+      } else {
+        slopes[i] = Schema::command_slope(outputs[i], airframe);
+      }
+    }
   }
   template <class Scalar>
   static void from_commands(const Scalar*, const Scalar* commands, const Airframe<Scalar>& airframe,
                             Scalar* outputs) noexcept {
-    for (int i = 0; i < size; ++i) outputs[i] = Schema::from_command(commands[i], airframe);
+    for (int i = 0; i < size; ++i) {
+      if constexpr (detail::MapsRotorByIndex<Schema>::value) {
+        outputs[i] = Schema::from_command(commands[i], airframe, static_cast<std::size_t>(i));
+      } else {
+        outputs[i] = Schema::from_command(commands[i], airframe);
+      }
+    }
   }
 };
 
@@ -210,6 +236,7 @@ struct OutputMap<Schema, false> {
   static constexpr int size = Schema::size;
   static constexpr const auto& names = Schema::names;
   static constexpr const auto& units = Schema::units;
+  static constexpr bool rotor_by_rotor = false;
   static constexpr bool takes_features = true;
   static constexpr bool has_feature_slopes = detail::HasFeatureSlopes<Schema>::value;
   static constexpr int slope_count = rotor_count * size;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // From features to commands, written once for whoever asks: a prediction, a batch, the Jacobian, the trainer's model.
 //   features x -> (x - mean) / spread -> network -> y = spread z + mean -> the schema's g(x, y) = commands
-// Physical units outside, standardised ones around the network. `Lanes` samples side by side: entry k of sample s at
-// [k * Lanes + s].
+// Physical units outside, standardised ones around the network. Of several samples, entry k of sample s stands at
+// [k * stride + s]; the network takes `Lanes` of them side by side.
 #pragma once
 
 #include "pinnquad/dynamics/airframe_value.hpp"
@@ -20,21 +20,16 @@ struct Scales {
   const Scalar* output_spread;
 };
 
+/// `count` samples, 1 to `Lanes`; padding repeats the last one.
 template <int Size, int Lanes, class Scalar>
-PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread, const Scalar* values,
-                                        Scalar* standardised) noexcept {
+PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread, const Scalar* values, int stride,
+                                        int count, Scalar* standardised) noexcept {
   for (int i = 0; i < Size; ++i) {
     const Scalar middle = mean[i], scale = spread[i];
-    for (int s = 0; s < Lanes; ++s) standardised[i * Lanes + s] = (values[i * Lanes + s] - middle) / scale;
-  }
-}
-
-template <int Size, int Lanes, class Scalar>
-PINNQUAD_ALWAYS_INLINE void restore(const Scalar* mean, const Scalar* spread, const Scalar* standardised,
-                                    Scalar* values) noexcept {
-  for (int i = 0; i < Size; ++i) {
-    const Scalar middle = mean[i], scale = spread[i];
-    for (int s = 0; s < Lanes; ++s) values[i * Lanes + s] = standardised[i * Lanes + s] * scale + middle;
+    const Scalar* from = values + i * stride;
+    Scalar* to = standardised + i * Lanes;
+    for (int s = 0; s < count; ++s) to[s] = (from[s] - middle) / scale;
+    for (int s = count; s < Lanes; ++s) to[s] = to[count - 1];
   }
 }
 
@@ -43,38 +38,43 @@ template <class Features, class Outputs, class Vehicle>
 struct Pipeline {
   using Map = OutputMap<Outputs>;
 
-  /// Outputs in physical units, and the commands that they mean.
-  template <int Lanes, class Scalar, class Forward>
+  /// Of one sample: outputs in physical units, and the commands that they mean.
+  template <class Scalar, class Forward>
   static PINNQUAD_ALWAYS_INLINE void run(const Scales<Scalar>& scales, const Scalar* x, Scalar* outputs,
                                          Scalar* commands, const Forward& forward) noexcept {
-    alignas(Lanes > 1 ? 64 : alignof(Scalar)) Scalar standardised[Features::size * Lanes];
-    standardise<Features::size, Lanes>(scales.input_mean, scales.input_spread, x, standardised);
-    forward(static_cast<const Scalar*>(standardised), outputs);
-    restore<Map::size, Lanes>(scales.output_mean, scales.output_spread, outputs, outputs);
-    command<Lanes>(x, outputs, commands);
+    ask<1>(scales, x, 1, 1, outputs, forward);
+    command(scales, x, 1, static_cast<const Scalar*>(outputs), 1, outputs, commands);
   }
 
-  /// The schema's share.
-  template <int Lanes, class Scalar>
-  static PINNQUAD_ALWAYS_INLINE void command(const Scalar* x, const Scalar* outputs, Scalar* commands) noexcept {
+  /// The network's share: `Lanes` samples' outputs, standardised, of `count` samples' features.
+  template <int Lanes, class Scalar, class Forward>
+  static PINNQUAD_ALWAYS_INLINE void ask(const Scales<Scalar>& scales, const Scalar* x, int x_stride, int count,
+                                         Scalar* answers, const Forward& forward) noexcept {
+    alignas(Lanes > 1 ? 64 : alignof(Scalar)) Scalar standardised[Features::size * Lanes];
+    standardise<Features::size, Lanes>(scales.input_mean, scales.input_spread, x, x_stride, count, standardised);
+    forward(static_cast<const Scalar*>(standardised), answers);
+  }
+
+  /// The schema's share, of one sample: its outputs in physical units, which may overwrite its answers, and its commands.
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void command(const Scales<Scalar>& scales, const Scalar* x, int x_stride,
+                                             const Scalar* answers, int stride, Scalar* outputs,
+                                             Scalar* commands) noexcept {
     constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());
-    if constexpr (Lanes == 1) {
-      Map::commands(x, outputs, setting, commands);
-    } else if constexpr (Map::slope_count == Map::size) {  // each command is of one output
+    if constexpr (Map::rotor_by_rotor) {  // one loop for both is less code in flash
       for (int i = 0; i < rotor_count; ++i) {
-        for (int s = 0; s < Lanes; ++s) commands[i * Lanes + s] = Map::command(outputs[i * Lanes + s], setting);
+        outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
+        commands[i] = Map::command(outputs[i], setting, i);
       }
     } else {
-      for (int s = 0; s < Lanes; ++s) {
-        Scalar features[Features::size], sample[Map::size], made[rotor_count];
-        if constexpr (Map::takes_features) {
-          for (int k = 0; k < Features::size; ++k) features[k] = x[k * Lanes + s];
-        }
-        for (int k = 0; k < Map::size; ++k) sample[k] = outputs[k * Lanes + s];
-        Map::commands(Map::takes_features ? static_cast<const Scalar*>(features) : nullptr,
-                      static_cast<const Scalar*>(sample), setting, made);
-        for (int i = 0; i < rotor_count; ++i) commands[i * Lanes + s] = made[i];
+      for (int i = 0; i < Map::size; ++i)
+        outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
+      Scalar features[Features::size];
+      if (x_stride != 1) {
+        for (int k = 0; k < Features::size; ++k) features[k] = x[k * x_stride];
       }
+      Map::commands(x_stride != 1 ? static_cast<const Scalar*>(features) : x, static_cast<const Scalar*>(outputs),
+                    setting, commands);
     }
   }
 

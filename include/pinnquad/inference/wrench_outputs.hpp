@@ -3,8 +3,8 @@
 // airframe's allocation turns both into commands. Air of the rated density, as everywhere where it is not said.
 #pragma once
 
-#include "pinnquad/dynamics/inertia.hpp"
 #include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/inference/rotor_map.hpp"
 
 namespace pinnquad {
 
@@ -15,32 +15,30 @@ struct WrenchOutputs {
   static constexpr std::array<const char*, size> units = {"N", "N m", "N m", "N m"};
 
   template <class Scalar>
-  static constexpr Rotors<Scalar> prepare(const Airframe<Scalar>& airframe) noexcept {
-    return Rotors<Scalar>(airframe);
+  struct Body {
+    detail::RotorMap<Scalar> map;
+    AllocationMatrix<Scalar> by_fractions;
+  };
+  template <class Scalar>
+  static constexpr Body<Scalar> prepare(const Airframe<Scalar>& airframe) noexcept {
+    return {detail::wrench_map(airframe), allocation(airframe)};
   }
   template <class Scalar>
-  static void commands(const Scalar*, const Scalar* y, const Rotors<Scalar>& rotors, Scalar* u) noexcept {
-    const Commands<Scalar> made = wanted(y, rotors);
-    for (std::size_t i = 0; i < rotor_count; ++i) u[i] = made[i];
+  static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* y, const Body<Scalar>& body,
+                                              Scalar* u) noexcept {
+    body.map.commands(y, u);
   }
   template <class Scalar>
-  static void slopes(const Scalar*, const Scalar* y, const Rotors<Scalar>& rotors, Scalar* by_outputs) noexcept {
-    const AllocationMatrix<Scalar> by_wrench = rotors.command_slopes(wanted(y, rotors), Scalar(1));
-    for (std::size_t i = 0; i < rotor_count; ++i) {
-      for (std::size_t k = 0; k < 4; ++k) by_outputs[i * 4 + k] = by_wrench[i][k];
-    }
+  static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* y, const Body<Scalar>& body,
+                                            Scalar* by_outputs) noexcept {
+    body.map.slopes(y, by_outputs, size);
   }
   template <class Scalar>
-  static void from_commands(const Scalar*, const Scalar* u, const Rotors<Scalar>& rotors, Scalar* y) noexcept {
-    const Wrench<Scalar> made = rotors.wrench({u[0], u[1], u[2], u[3]}, Scalar(1));
-    y[0] = -made.force_N[2];
-    for (int axis = 0; axis < 3; ++axis) y[1 + axis] = made.torque_N_m[axis];
-  }
-
- private:
-  template <class Scalar>
-  static Commands<Scalar> wanted(const Scalar* y, const Rotors<Scalar>& rotors) noexcept {
-    return rotors.commands({{Scalar(0), Scalar(0), -y[0]}, {y[1], y[2], y[3]}}, Scalar(1));
+  static void from_commands(const Scalar*, const Scalar* u, const Body<Scalar>& body, Scalar* y) noexcept {
+    ThrustFractions<Scalar> fractions{};
+    body.map.fractions(u, fractions.data());
+    const std::array<Scalar, 4> made = product(body.by_fractions, fractions);
+    for (std::size_t k = 0; k < 4; ++k) y[k] = made[k];
   }
 };
 
@@ -53,48 +51,49 @@ struct AccelerationOutputs {
 
   template <class Scalar>
   struct Body {
-    Rotors<Scalar> rotors;
-    Airframe<Scalar> airframe;
+    detail::RotorMap<Scalar> map;                            ///< of the outputs from f_z on
+    std::array<std::array<Scalar, rotor_count>, 2> lateral;  ///< f_x, f_y of a thrust fraction 1
+    AllocationMatrix<Scalar> by_fractions;                   ///< rows f along -z, a_x, a_y, a_z
   };
   template <class Scalar>
   static constexpr Body<Scalar> prepare(const Airframe<Scalar>& airframe) noexcept {
-    return {Rotors<Scalar>(airframe), airframe};
-  }
-  template <class Scalar>
-  static void commands(const Scalar*, const Scalar* y, const Body<Scalar>& body, Scalar* u) noexcept {
-    const Commands<Scalar> made = body.rotors.commands(wrench(y, body), Scalar(1));
-    for (std::size_t i = 0; i < rotor_count; ++i) u[i] = made[i];
-  }
-  template <class Scalar>
-  static void slopes(const Scalar*, const Scalar* y, const Body<Scalar>& body, Scalar* by_outputs) noexcept {
-    const AllocationMatrix<Scalar> by_wrench =
-        body.rotors.command_slopes(body.rotors.commands(wrench(y, body), Scalar(1)), Scalar(1));
-    for (int k = 0; k < size; ++k) {
-      Scalar unit[size] = {};
-      unit[k] = Scalar(1);
-      const Wrench<Scalar> column = wrench(static_cast<const Scalar*>(unit), body);  // it is linear in y
-      for (std::size_t i = 0; i < rotor_count; ++i) {
-        by_outputs[static_cast<int>(i) * size + k] =
-            -by_wrench[i][0] * column.force_N[2] + by_wrench[i][1] * column.torque_N_m[0] +
-            by_wrench[i][2] * column.torque_N_m[1] + by_wrench[i][3] * column.torque_N_m[2];
+    Body<Scalar> body{detail::acceleration_map(airframe, Scalar(0)), {}, {}};
+    const AllocationMatrix<Scalar> wrench = allocation(airframe);
+    AllocationMatrix<Scalar> inverse{};
+    static_cast<void>(
+        invert_allocation(detail::mass_matrix(airframe), inverse));  // check_airframe() asks for a sound J
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      const RotorMount<Scalar>& mount = airframe.rotors[rotor];
+      const Scalar specific_thrust = mount.thrust_scale * airframe.max_rotor_thrust_N() / airframe.mass_kg;
+      for (std::size_t axis = 0; axis < 2; ++axis) body.lateral[axis][rotor] = mount.axis[axis] * specific_thrust;
+      for (std::size_t row = 0; row < 4; ++row) {
+        for (std::size_t k = 0; k < 4; ++k) body.by_fractions[row][rotor] += inverse[row][k] * wrench[k][rotor];
       }
     }
+    return body;
+  }
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* y, const Body<Scalar>& body,
+                                              Scalar* u) noexcept {
+    body.map.commands(y + 2, u);
+  }
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* y, const Body<Scalar>& body,
+                                            Scalar* by_outputs) noexcept {
+    for (int i = 0; i < rotor_count; ++i) by_outputs[i * size] = by_outputs[i * size + 1] = Scalar(0);
+    body.map.slopes(y + 2, by_outputs + 2, size);
   }
   template <class Scalar>
   static void from_commands(const Scalar*, const Scalar* u, const Body<Scalar>& body, Scalar* y) noexcept {
-    const Wrench<Scalar> made = body.rotors.wrench({u[0], u[1], u[2], u[3]}, Scalar(1));
-    const Vector3<Scalar> angular = inertia_solved(body.airframe, made.torque_N_m);
-    for (int axis = 0; axis < 3; ++axis) {
-      y[axis] = made.force_N[axis] / body.airframe.mass_kg;
-      y[3 + axis] = angular[axis];
+    ThrustFractions<Scalar> fractions{};
+    body.map.fractions(u, fractions.data());
+    const std::array<Scalar, 4> made = product(body.by_fractions, fractions);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      y[axis] = Scalar(0);
+      for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) y[axis] += body.lateral[axis][rotor] * fractions[rotor];
     }
-  }
-
- private:
-  template <class Scalar>
-  static Wrench<Scalar> wrench(const Scalar* y, const Body<Scalar>& body) noexcept {
-    return {{Scalar(0), Scalar(0), body.airframe.mass_kg * y[2]},
-            inertia_times(body.airframe, Vector3<Scalar>(y[3], y[4], y[5]))};
+    y[2] = -made[0];
+    for (std::size_t axis = 0; axis < 3; ++axis) y[3 + axis] = made[1 + axis];
   }
 };
 

@@ -3,7 +3,7 @@
 // Training by batch statistics: training/batch_norm.hpp. An exported network has none left: training/folding.hpp.
 #pragma once
 
-#include "pinnquad/nn/kernel/scalar_math.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/network.hpp"
 
 namespace pinnquad {

@@ -3,8 +3,8 @@
 // PyTorch's GELU(approximate='none'). Calls the C library once per neuron. NaN for -infinity, as there.
 #pragma once
 
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/kernel/each_lane.hpp"
-#include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {

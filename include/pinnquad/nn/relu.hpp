@@ -2,7 +2,7 @@
 // Rectified linear unit: y = v < 0 ? 0 : v. NaN goes through (fmax would swallow it).
 #pragma once
 
-#include "pinnquad/nn/kernel/scalar_math.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {

@@ -2,8 +2,8 @@
 // Sigmoid linear unit (swish): y = v / (1 + exp(-v)). Calls the C library once per neuron. NaN for -infinity, as PyTorch's SiLU.
 #pragma once
 
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/kernel/each_lane.hpp"
-#include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {

@@ -3,8 +3,8 @@
 // once per neuron. NaN for an infinity.
 #pragma once
 
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/kernel/each_lane.hpp"
-#include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {

@@ -2,8 +2,8 @@
 // Hyperbolic tangent activation: y = tanh(v). Calls the C library once per neuron.
 #pragma once
 
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/kernel/each_lane.hpp"
-#include "pinnquad/nn/kernel/scalar_math.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {

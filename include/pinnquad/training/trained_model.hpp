@@ -39,7 +39,7 @@ struct TrainedModel {
     Commands<Scalar> commands{};
     const detail::Scales<Scalar> scales{input.mean.data(), input.spread.data(), output.mean.data(),
                                         output.spread.data()};
-    detail::Pipeline<Features, Outputs, Vehicle>::template run<1>(
+    detail::Pipeline<Features, Outputs, Vehicle>::run(
         scales, x.data(), outputs, commands.data(),
         [this](const Scalar* standardised, Scalar* made) { network.forward(standardised, made); });
     return commands;

@@ -5,7 +5,7 @@
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
-#include "pinnquad/nn/kernel/scalar_math.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What activations need of one scalar: the C library's functions, absolute value, positive part. The standard library's float overloads are functions of their own in
-// unoptimised code, compiled for the instruction set of whoever comes first; the compiler's builtins are not.
+// Functions of one scalar: the C library's, absolute value, positive part. The standard library's float overloads are
+// functions of their own in unoptimised code, compiled for the instruction set of whoever comes first; the compiler's builtins
+// are not.
 #pragma once
 
 #include <cmath>
