@@ -14,6 +14,7 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/decimal.hpp"
+#include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/identifier.hpp"
 #include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/deploy/provenance.hpp"
@@ -63,7 +64,8 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
 
 /// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
 /// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp; no locale plays
-/// a part. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
+/// a part. A GivenAirframe stands before the
+/// model as a struct of its own. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
 /// name that no struct may have, for no golden vector, for one outside the envelope, for a number that is not finite, and for terms that no model has (deploy/provenance.hpp).
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& stream, const std::string& struct_name,
@@ -75,7 +77,9 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
   const auto golden_commands = detail::golden_commands(model, golden);
   const auto terms = detail::exported_terms<typename Model::Features, typename Model::Outputs>(
-      provenance, airframe_value<typename Model::Vehicle, double>());
+      provenance, model.template airframe<double>());
+  constexpr bool own_airframe = std::is_same_v<typename Model::Vehicle, GivenAirframe>;
+  const std::string vehicle_name = model.airframe_name();
   std::ostringstream out;
   out.imbue(std::locale::classic());  // a global locale may group digits
 
@@ -112,13 +116,21 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   if (provenance.verdict && provenance.verdict->worse_than_mean()) {
     out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
-  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n"
-      << "struct " << struct_name << " {\n"
+  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n";
+  std::string vehicle;
+  if constexpr (own_airframe) {
+    vehicle = struct_name + "Airframe";
+    write_airframe(out, vehicle, vehicle_name, model.template airframe<double>());
+    out << '\n';
+  } else {
+    vehicle = type_name<typename Model::Vehicle>();
+  }
+  out << "struct " << struct_name << " {\n"
       << "  using Scalar = " << scalar << ";\n"
       << "  using Network = " << type_name<NetworkType>() << ";\n"
       << "  using Features = " << type_name<typename Model::Features>() << ";\n"
       << "  using Outputs = " << type_name<typename Model::Outputs>() << ";\n"
-      << "  using Vehicle = " << type_name<typename Model::Vehicle>() << ";\n"
+      << "  using Vehicle = " << vehicle << ";\n"
       << "  using Inputs = Features::Inputs<Scalar>;\n\n"
       << "  static constexpr int format_version = " << model_format_version << ";\n";
   text("name", struct_name);
@@ -151,9 +163,9 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   array("const char*", "feature_units", Model::Features::units);
   array("const char*", "output_names", OutputMap<typename Model::Outputs>::names);
   array("const char*", "output_units", OutputMap<typename Model::Outputs>::units);
-  text("vehicle_name", Model::Vehicle::name);
+  text("vehicle_name", vehicle_name);
   out << "  // rotor by rotor: signs of its torque about x, y, z\n";
-  table("int", "motor_torque_signs", motor_torque_signs<typename Model::Vehicle>());
+  table("int", "motor_torque_signs", motor_torque_signs(model.template airframe<double>()));
   detail::write_header_records<NetworkType, typename Model::Features, typename Model::Outputs>(out, terms);
   out << "\n  // standardisation: (value - mean) / spread\n";
   scaler("input", model.input);

@@ -146,7 +146,8 @@ std::vector<unsigned char> block_records(const ExportedTerms& terms) {
 template <class Shape, class Model, class GoldenFeatures, class GoldenCommands, class Parameters>
 std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& golden_features,
                                     const GoldenCommands& golden_commands, const Parameters& parameters,
-                                    const std::vector<unsigned char>& records, std::uint64_t training_data_hash,
+                                    const std::vector<unsigned char>& records, std::uint64_t shape,
+                                    std::uint64_t training_data_hash,
                                     std::uint64_t training_rows) {
   using Layout = ModelBlockLayout<Shape>;
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
@@ -163,7 +164,7 @@ std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& go
         std::uint64_t{Layout::outputs}, std::uint64_t{Layout::parameter_count}, golden, training_rows}) {
     out.add_unsigned(static_cast<std::uint32_t>(count));
   }
-  out.add_unsigned(shape_hash<Shape>);
+  out.add_unsigned(shape);
   out.add_unsigned(training_data_hash);
   out.bytes.insert(out.bytes.end(), records.begin(), records.end());
   out.add(model.input.mean);
@@ -192,8 +193,10 @@ std::vector<unsigned char> model_block(
   const auto golden_commands = detail::golden_commands(model, golden);
   const auto records = detail::block_records<Model>(detail::exported_terms<typename Model::Features,
                                                                            typename Model::Outputs>(
-      provenance, airframe_value<typename Model::Vehicle, double>()));
-  return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, records,
+      provenance, model.template airframe<double>()));
+  const std::uint64_t shape = detail::hash_of_shape<Model>(
+      printable(model.airframe_name()), motor_torque_signs(model.template airframe<double>()));
+  return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, records, shape,
                                  provenance.training_data_hash, provenance.training_rows);
 }
 
@@ -204,7 +207,7 @@ std::vector<unsigned char> model_block() {
   static_assert(Model::format_version >= 2,
                 "pinnquad: a header of format 1 does not check its own names; export it again");
   return detail::block_of<Model>(Model{}, Model::golden_features, Model::golden_commands, Model::parameters,
-                                 detail::block_records<Model>(detail::header_records<Model>()),
+                                 detail::block_records<Model>(detail::header_records<Model>()), shape_hash<Model>,
                                  Model::training_data_hash, static_cast<std::uint64_t>(Model::training_rows));
 }
 

@@ -41,14 +41,17 @@ inline constexpr double golden_tolerance = 1e-5;
 using TorqueSigns = std::array<int, 3>;
 
 /// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
-template <class Vehicle>
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe<double>& airframe) noexcept {
   std::array<TorqueSigns, rotor_count> result{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto signs = allocation_signs(Vehicle::template value<double>(), static_cast<int>(axis));
+    const auto signs = allocation_signs(airframe, static_cast<int>(axis));
     for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
   }
   return result;
+}
+template <class Vehicle>
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+  return motor_torque_signs(Vehicle::template value<double>());
 }
 
 namespace detail {

@@ -58,7 +58,6 @@ struct DescriptionLength {
 /// Where the scalars of a block for this shape stand, counted in scalars from the end of the header and the records.
 template <class Shape>
 struct ModelBlockLayout {
-  static_assert(require_shape<Shape>());
   static constexpr std::size_t inputs = Shape::Network::inputs;
   static constexpr std::size_t outputs = Shape::Network::outputs;
   static constexpr std::size_t parameter_count = Shape::Network::parameter_count;
@@ -105,8 +104,10 @@ struct ModelBlockLayout {
 };
 
 namespace detail {
+/// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
 template <class Shape>
-constexpr std::uint64_t hash_of_shape() noexcept {
+constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
+                                      const std::array<TorqueSigns, rotor_count>& signs) noexcept {
   Fnv1a fnv;
   absorb_description<typename Shape::Network>(fnv);
   fnv.absorb_text(model_frame);
@@ -116,8 +117,8 @@ constexpr std::uint64_t hash_of_shape() noexcept {
   for (const char* name : Map::names) fnv.absorb_text(name);
   // one unit for all is said once
   for (std::size_t i = 0; i < (one_unit(Map::units) ? 1 : Map::units.size()); ++i) fnv.absorb_text(Map::units[i]);
-  fnv.absorb_text(Shape::Vehicle::name);
-  for (const TorqueSigns& rotor : motor_torque_signs<typename Shape::Vehicle>()) {
+  fnv.absorb_text(vehicle_name);
+  for (const TorqueSigns& rotor : signs) {
     for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
   }
   return fnv.hash;
@@ -127,7 +128,8 @@ constexpr std::uint64_t hash_of_shape() noexcept {
 /// Names what a block's weights are for: the answer's description (inference/description.hpp), frame, feature names and units,
 /// output names and units, vehicle name and motor order.
 template <class Shape>
-inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
+inline constexpr std::uint64_t shape_hash =
+    detail::hash_of_shape<Shape>(Shape::Vehicle::name, motor_torque_signs<typename Shape::Vehicle>());
 
 namespace detail {
 

@@ -43,14 +43,21 @@ template <class Features, class Outputs, class Vehicle>
 struct Pipeline {
   using Map = OutputMap<Outputs>;
 
-  /// Outputs in physical units, and the commands that they mean.
+  /// Outputs in physical units.
   template <int Lanes, class Scalar, class Forward>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scales<Scalar>& scales, const Scalar* x, Scalar* outputs,
-                                         Scalar* commands, const Forward& forward) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void answer(const Scales<Scalar>& scales, const Scalar* x, Scalar* outputs,
+                                            const Forward& forward) noexcept {
     alignas(Lanes > 1 ? 64 : alignof(Scalar)) Scalar standardised[Features::size * Lanes];
     standardise<Features::size, Lanes>(scales.input_mean, scales.input_spread, x, standardised);
     forward(static_cast<const Scalar*>(standardised), outputs);
     restore<Map::size, Lanes>(scales.output_mean, scales.output_spread, outputs, outputs);
+  }
+
+  /// The same, and the commands that they mean.
+  template <int Lanes, class Scalar, class Forward>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scales<Scalar>& scales, const Scalar* x, Scalar* outputs,
+                                         Scalar* commands, const Forward& forward) noexcept {
+    answer<Lanes>(scales, x, outputs, forward);
     command<Lanes>(x, outputs, commands);
   }
 
