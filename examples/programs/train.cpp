@@ -127,9 +127,9 @@ std::vector<programs::Result> judge_all(const ContextAirframe<Vehicle>& airframe
 
 /// The pictures of the networks `shown` (indices of results), the best of each kind.
 template <class Vehicle>
-void draw(const ContextAirframe<Vehicle>& airframe, const std::string& folder, const RowSet& test, const std::vector<programs::Result>& results,
-          const std::vector<programs::Predictions>& predictions, const std::vector<std::size_t>& shown,
-          const std::vector<std::string>& kinds) {
+void draw(const ContextAirframe<Vehicle>& airframe, const std::string& folder, const RowSet& test,
+          const std::vector<programs::Result>& results, const std::vector<programs::Predictions>& predictions,
+          const std::vector<std::size_t>& shown, const std::vector<std::string>& kinds) {
   std::vector<std::string> shown_names;
   std::vector<std::array<programs::AxisSeries, 3>> series;
   std::vector<programs::Judgement> judged;
@@ -379,7 +379,8 @@ int run(int argument_count, char** arguments) {
       "recorded flight, CSV as `fly` writes it: its first part trains, its last tests. Of three or more, "
       "whole flights, in this order: the first train, the last test")
       ->required();
-  app.add_option("--airframe", options.airframe, "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
+  app.add_option("--airframe", options.airframe,
+                 "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
       ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, pictures and the exported header")
       ->default_str(options.out);

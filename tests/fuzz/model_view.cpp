@@ -139,7 +139,8 @@ void load(const std::uint8_t* data, std::size_t size) {
     return;
   }
   const std::size_t length = detail::read_u32(memory.block() + Header::length);
-  expect(length <= size && length == ModelBlockLayout<Shape>::length(view.golden_features.size()) + record_bytes(memory.block()),
+  expect(length <= size &&
+             length == ModelBlockLayout<Shape>::length(view.golden_features.size()) + record_bytes(memory.block()),
          "the length is right");
   expect(plain_crc32(memory.block(), length - 4) == detail::read_u32(memory.block() + length - 4),
          "the checksum is right");
@@ -214,7 +215,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   std::minstd_rand engine(seed);
   size = LLVMFuzzerMutate(data, size, most);
   const bool is_double = size > 20 && data[Header::scalar_bytes] == sizeof(double);
-  if (engine() % 4 != 0) size = is_double ? whole_rows<DoubleModel>(data, size) : whole_rows<DescribedModel>(data, size);
+  if (engine() % 4 != 0)
+    size = is_double ? whole_rows<DoubleModel>(data, size) : whole_rows<DescribedModel>(data, size);
   if (size < Header::size + Header::checksum_size) return size;
   if (engine() % 4 != 0) {
     if (is_double) {

@@ -26,7 +26,8 @@ namespace {
 using namespace pinnquad;
 
 using Net = Network<double, Inputs<16>, Dense<6>, Relu, Dense<4>>;
-using Loss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, Constant>, Weighted<LocalMonotonicity<Yaw>, Constant>>;
+using Loss =
+    PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, Constant>, Weighted<LocalMonotonicity<Yaw>, Constant>>;
 
 /// Motions and commands drawn at random, 10 ms apart but for one gap.
 Flight some_flight() {
@@ -47,9 +48,7 @@ Flight some_flight() {
   return flight;
 }
 
-ContextAirframe<GivenAirframe> given_crazyflie() {
-  return {Crazyflie::name, Crazyflie::value<double>()};
-}
+ContextAirframe<GivenAirframe> given_crazyflie() { return {Crazyflie::name, Crazyflie::value<double>()}; }
 
 template <class ContextType>
 auto trained(const Flight& flight, const ContextAirframe<typename ContextType::Vehicle>& airframe) {

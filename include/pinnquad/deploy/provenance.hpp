@@ -40,7 +40,7 @@ struct Provenance {
 
   /// What a recorded command meant; none: what the airframe's curves say (command_meaning_of()).
   std::optional<CommandMeaning> command_meaning = std::nullopt;
-  double command_lower = 0;    ///< the range that commands were given in
+  double command_lower = 0;  ///< the range that commands were given in
   double command_upper = 1;
   double sample_period_s = 0;  ///< of the flights; 0: not said, or that of the features' window
   double lag_removed_s = 0;    ///< of the rotors, taken out of the commands before the training

@@ -173,7 +173,8 @@ void write_header_records(std::ostream& out, const ExportedTerms& terms) {
     out << "}};\n";
   };
   using Window = WindowOf<Features>;
-  out << "\n  // records: a reader that does not know one of them must not fly the model (inference/model_records.hpp)\n";
+  out << "\n  // records: a reader that does not know one of them must not fly the model "
+         "(inference/model_records.hpp)\n";
   std::vector<std::string> names;
   for (const std::string_view record : known_records) names.emplace_back(record);
   std::vector<const char*> records;

@@ -147,8 +147,7 @@ template <class Shape, class Model, class GoldenFeatures, class GoldenCommands, 
 std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& golden_features,
                                     const GoldenCommands& golden_commands, const Parameters& parameters,
                                     const std::vector<unsigned char>& records, std::uint64_t shape,
-                                    std::uint64_t training_data_hash,
-                                    std::uint64_t training_rows) {
+                                    std::uint64_t training_data_hash, std::uint64_t training_rows) {
   using Layout = ModelBlockLayout<Shape>;
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   const std::uint64_t golden = golden_features.size();
@@ -191,11 +190,11 @@ std::vector<unsigned char> model_block(
     const Provenance& provenance) {
   using Model = TrainedModel<NetworkType, ContextType>;
   const auto golden_commands = detail::golden_commands(model, golden);
-  const auto records = detail::block_records<Model>(detail::exported_terms<typename Model::Features,
-                                                                           typename Model::Outputs>(
-      provenance, model.template airframe<double>()));
-  const std::uint64_t shape = detail::hash_of_shape<Model>(
-      printable(model.airframe_name()), motor_torque_signs(model.template airframe<double>()));
+  const auto records =
+      detail::block_records<Model>(detail::exported_terms<typename Model::Features, typename Model::Outputs>(
+          provenance, model.template airframe<double>()));
+  const std::uint64_t shape = detail::hash_of_shape<Model>(printable(model.airframe_name()),
+                                                           motor_torque_signs(model.template airframe<double>()));
   return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, records, shape,
                                  provenance.training_data_hash, provenance.training_rows);
 }

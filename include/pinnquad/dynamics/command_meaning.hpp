@@ -33,12 +33,9 @@ constexpr CommandMeaning command_meaning_of(const Airframe<Scalar>& airframe) no
 /// The enumerator as C++ text.
 constexpr const char* to_string(CommandMeaning meaning) noexcept {
   switch (meaning) {
-    case CommandMeaning::thrust:
-      return "thrust";
-    case CommandMeaning::pulse_width:
-      return "pulse_width";
-    case CommandMeaning::speed:
-      return "speed";
+    case CommandMeaning::thrust: return "thrust";
+    case CommandMeaning::pulse_width: return "pulse_width";
+    case CommandMeaning::speed: return "speed";
   }
   return "unknown";
 }

@@ -24,7 +24,7 @@ enum class BlockRecord : std::uint16_t {
   verdict = 7,         ///< u32 bits of Judged, u32 0; optional
   slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z, 0 unproven; optional
   residual_range = 9,  ///< scalars: lower bounds of all outputs, then upper ones; optional
-  distance = 10,       ///< scalars: means of all features, lower triangle of L^-1 row by row, limit of the norm; optional
+  distance = 10,  ///< scalars: means of all features, lower triangle of L^-1 row by row, limit of the norm; optional
 };
 
 inline constexpr std::uint16_t mandatory_record = 0x8000;

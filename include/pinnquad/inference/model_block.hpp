@@ -128,8 +128,8 @@ constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
 /// Names what a block's weights are for: the answer's description (inference/description.hpp), frame, feature names and units,
 /// output names and units, vehicle name and motor order.
 template <class Shape>
-inline constexpr std::uint64_t shape_hash =
-    detail::hash_of_shape<Shape>(Shape::Vehicle::name, motor_torque_signs<typename Shape::Vehicle>());
+inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>(Shape::Vehicle::name,
+                                                                         motor_torque_signs<typename Shape::Vehicle>());
 
 namespace detail {
 

@@ -154,12 +154,11 @@ struct NamesRecords<M, std::void_t<decltype(M::records)>> : std::true_type {};
 template <class M, class = void>
 struct HasRecords : std::false_type {};
 template <class M>
-struct HasRecords<M,
-                  std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}),
-                              decltype(M::command_lower), decltype(M::command_upper), decltype(M::sample_period_s),
-                              decltype(M::lag_removed_s), decltype(M::window_taps), decltype(M::causal),
-                              decltype(M::column_names), decltype(M::column_units), decltype(M::allocation),
-                              decltype(M::base)>> : std::true_type {};
+struct HasRecords<
+    M, std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower),
+                   decltype(M::command_upper), decltype(M::sample_period_s), decltype(M::lag_removed_s),
+                   decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
+                   decltype(M::allocation), decltype(M::base)>> : std::true_type {};
 
 /// Optional constants, for whoever has a use for them:
 ///   slope_signs                        of du_i/d(angular acceleration), rotor by rotor about x, y, z, where proven, else 0
@@ -177,8 +176,9 @@ struct HasResidualRange<M, std::void_t<decltype(M::residual_lower), decltype(M::
 template <class M, class = void>
 struct HasDistance : std::false_type {};
 template <class M>
-struct HasDistance<M, std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky),
-                                  decltype(M::distance_limit)>> : std::true_type {};
+struct HasDistance<
+    M, std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky), decltype(M::distance_limit)>>
+    : std::true_type {};
 
 /// Numbers in the lower triangle of a Size x Size matrix.
 constexpr std::size_t triangle(std::size_t size) noexcept { return size * (size + 1) / 2; }
@@ -203,11 +203,12 @@ constexpr void require_optional_records() noexcept {
   }
   if constexpr (HasDistance<M>::value) {
     constexpr auto size = static_cast<std::size_t>(M::Features::size);
-    static_assert(M::distance_mean.size() == size && M::distance_inverse_cholesky.size() == triangle(size) &&
-                      all_finite_constants(M::distance_mean) && all_finite_constants(M::distance_inverse_cholesky) &&
-                      M::distance_limit > 0 && is_finite_constant(M::distance_limit),
-                  "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
-                  "is no number (distance_mean)");
+    static_assert(
+        M::distance_mean.size() == size && M::distance_inverse_cholesky.size() == triangle(size) &&
+            all_finite_constants(M::distance_mean) && all_finite_constants(M::distance_inverse_cholesky) &&
+            M::distance_limit > 0 && is_finite_constant(M::distance_limit),
+        "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
+        "is no number (distance_mean)");
   }
 }
 
@@ -227,16 +228,17 @@ constexpr void require_records() noexcept {
     static_assert(M::command_lower <= M::command_upper && is_finite_constant(M::command_lower) &&
                       is_finite_constant(M::command_upper),
                   "pinnquad: the range of the model's commands is none (command_lower, command_upper)");
-    static_assert(M::sample_period_s >= 0.0 && M::sample_period_s <= 4.0 && M::lag_removed_s >= 0.0 &&
-                      M::lag_removed_s <= 4.0,
-                  "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
+    static_assert(
+        M::sample_period_s >= 0.0 && M::sample_period_s <= 4.0 && M::lag_removed_s >= 0.0 && M::lag_removed_s <= 4.0,
+        "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
     static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
                   "pinnquad: the model has another window than its feature set now has (window_taps, causal)");
     static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),
                   "pinnquad: the model's sample period is another than its window's (sample_period_s)");
-    static_assert(same_texts(M::column_names, extra_column_names<typename M::Features>) &&
-                      same_texts(M::column_units, extra_column_units<typename M::Features>),
-                  "pinnquad: the model has other extra columns than its feature set now has (column_names, column_units)");
+    static_assert(
+        same_texts(M::column_names, extra_column_names<typename M::Features>) &&
+            same_texts(M::column_units, extra_column_units<typename M::Features>),
+        "pinnquad: the model has other extra columns than its feature set now has (column_names, column_units)");
     static_assert(same_header_allocation<M>(),
                   "pinnquad: the model was trained for another allocation than its Vehicle now has (allocation)");
     static_assert(describes<typename BaseOf<typename M::Outputs>::type>(M::base),
