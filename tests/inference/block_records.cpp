@@ -244,6 +244,15 @@ TEST_CASE("a record of another length is corrupt, and so are counts that do not 
   for (const std::uint32_t value : {0u, 1u, 15u, 17u, 100000u, 0x7ffffff8u, 0xfffffff8u, 0xffffffffu}) {
     CHECK(changed(counts + 12, value) == Status::block_corrupt);  // length of the first record
   }
+  // a record that is skipped, whose length leaves the records or the block
+  auto records = records_of(block);
+  records.insert(records.begin(), Record{77, Bytes(8, 0)});
+  for (const std::uint32_t value : {bytes + 8, bytes + 16, 100000u, 0x7ffffff8u, 0xfffffff0u, 0xffffffffu}) {
+    BlockBytes other = with_records(block, records);
+    other.set_u32(counts + 12, value);
+    other.seal();
+    CHECK(opened<RecordedModel>(other) == Status::block_corrupt);
+  }
   CHECK(changed(counts + 8, 0x18001u) == Status::block_corrupt);  // the word behind a type is 0
 }
 
