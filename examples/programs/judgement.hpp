@@ -18,6 +18,7 @@
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {
 
@@ -39,12 +40,13 @@ struct AxisSeries {
   std::vector<double> predicted;
 };
 
-template <class Context>
-std::array<AxisSeries, 3> axis_series(const pinnquad::RowSet& rows, const Predictions& predictions) {
+template <class Vehicle>
+std::array<AxisSeries, 3> axis_series(const pinnquad::ContextAirframe<Vehicle>& airframe, const pinnquad::RowSet& rows,
+                                      const Predictions& predictions) {
   using pinnquad::signed_sum;
-  const std::array<std::array<double, pinnquad::rotor_count>, 3> signs = {Context::template signs<pinnquad::Roll>(),
-                                                                          Context::template signs<pinnquad::Pitch>(),
-                                                                          Context::template signs<pinnquad::Yaw>()};
+  const std::array<std::array<double, pinnquad::rotor_count>, 3> signs = {airframe.template signs<pinnquad::Roll>(),
+                                                                          airframe.template signs<pinnquad::Pitch>(),
+                                                                          airframe.template signs<pinnquad::Yaw>()};
   std::array<AxisSeries, 3> series;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -57,13 +59,14 @@ std::array<AxisSeries, 3> axis_series(const pinnquad::RowSet& rows, const Predic
   return series;
 }
 
-template <class Context>
-Judgement judge(const pinnquad::RowSet& rows, const Predictions& predictions) {
+template <class Vehicle>
+Judgement judge(const pinnquad::ContextAirframe<Vehicle>& airframe, const pinnquad::RowSet& rows,
+                const Predictions& predictions) {
   Predictions targets;
   for (std::size_t i = 0; i < rows.size(); ++i) targets.push_back(rows[i].commands);
   Judgement result;
   result.errors = pinnquad::prediction_errors(predictions, targets);
-  const std::array<AxisSeries, 3> series = axis_series<Context>(rows, predictions);
+  const std::array<AxisSeries, 3> series = axis_series(airframe, rows, predictions);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     result.axes[axis] =
         pinnquad::physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);

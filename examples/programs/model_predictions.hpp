@@ -5,7 +5,6 @@
 #include "judgement.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/dynamics/site.hpp"
 #include "pinnquad/evaluation/linear_regression.hpp"
@@ -13,10 +12,8 @@
 namespace programs {
 
 /// Model 1 on a set of rows. The air's density is that of the paper's site at the row's altitude.
-template <class Vehicle>
-Predictions linear_predictions(const pinnquad::RowSet& rows) {
+inline Predictions linear_predictions(const pinnquad::Airframe<double>& airframe, const pinnquad::RowSet& rows) {
   using namespace pinnquad;
-  const Airframe<double> airframe = airframe_value<Vehicle, double>();
   const Rotors<double> rotors(airframe);
   const Site<double> site = paper_site<double>();
   Predictions result;

@@ -142,14 +142,14 @@ Contender contender(std::string id, nlohmann::json description) {
 /// `predictions_of(range)` judged on the test rows, and on the validation rows if there are any.
 template <class DataSet, class PredictionsOf>
 void judge(const Material<DataSet>& material, const PredictionsOf& predictions_of, Outcome& outcome) {
-  using Context = typename Material<DataSet>::Context;
+  const pinnquad::ContextAirframe<Airframe> airframe;
   const auto& split = material.split;
   outcome.test_rows = split.test;
   outcome.predictions = predictions_of(split.test);
-  outcome.test = programs::judge<Context>({material.flight, split.test}, outcome.predictions);
+  outcome.test = programs::judge(airframe, {material.flight, split.test}, outcome.predictions);
   if (split.validation.empty()) return;
   outcome.validation_mae =
-      programs::judge<Context>({material.flight, split.validation}, predictions_of(split.validation))
+      programs::judge(airframe, {material.flight, split.validation}, predictions_of(split.validation))
           .errors.mean.mean_absolute;
 }
 
@@ -163,7 +163,7 @@ Contender linear_contender(const std::string& id, nlohmann::json description) {
     judge(
         material,
         [&](const pinnquad::IndexRange& range) {
-          return programs::linear_predictions<Airframe>({material.flight, range});
+          return programs::linear_predictions(pinnquad::airframe_value<Airframe, double>(), {material.flight, range});
         },
         outcome);
     return true;

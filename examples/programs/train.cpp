@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "airframe_file.hpp"
 #include "airframes.hpp"
 #include "campaign.hpp"
 #include "command_line.hpp"
@@ -23,6 +24,7 @@
 #include "judgement.hpp"
 #include "model_predictions.hpp"
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "plots.hpp"
 #include "training_flights.hpp"
@@ -98,21 +100,22 @@ void warn_of_still_features(const RowSet& training) {
 }
 
 /// The linearized model and every network on the test rows; predictions in the order of the results.
-template <class Context, class Model>
-std::vector<programs::Result> judge_all(const RowSplit& split, const std::vector<programs::Training>& trainings,
+template <class Vehicle, class Model>
+std::vector<programs::Result> judge_all(const ContextAirframe<Vehicle>& airframe, const RowSplit& split,
+                                        const std::vector<programs::Training>& trainings,
                                         const std::vector<Model>& models,
                                         std::vector<programs::Predictions>& predictions) {
   const auto judged = [&](const std::string& name, std::uint64_t seed, double training_s, const auto& predict) {
     predictions.push_back(predict(split.test));
     programs::Result result{name, seed, {}, 0, training_s};
-    result.test = programs::judge<Context>(split.test, predictions.back());
+    result.test = programs::judge(airframe, split.test, predictions.back());
     result.validation_error =
-        programs::judge<Context>(split.validation, predict(split.validation)).errors.mean.mean_absolute;
+        programs::judge(airframe, split.validation, predict(split.validation)).errors.mean.mean_absolute;
     return result;
   };
   std::vector<programs::Result> results;
-  results.push_back(judged(linear_name, 0, 0, [](const RowSet& rows) {
-    return programs::linear_predictions<typename Context::Vehicle>(rows);
+  results.push_back(judged(linear_name, 0, 0, [&](const RowSet& rows) {
+    return programs::linear_predictions(airframe.template airframe<double>(), rows);
   }));
   for (std::size_t i = 0; i < trainings.size(); ++i) {
     const programs::Training& training = trainings[i];
@@ -123,10 +126,10 @@ std::vector<programs::Result> judge_all(const RowSplit& split, const std::vector
 }
 
 /// The pictures of the networks `shown` (indices of results), the best of each kind.
-template <class Context>
-void draw(const std::string& folder, const RowSet& test, const std::vector<programs::Result>& results,
-          const std::vector<programs::Predictions>& predictions, const std::vector<std::size_t>& shown,
-          const std::vector<std::string>& kinds) {
+template <class Vehicle>
+void draw(const ContextAirframe<Vehicle>& airframe, const std::string& folder, const RowSet& test,
+          const std::vector<programs::Result>& results, const std::vector<programs::Predictions>& predictions,
+          const std::vector<std::size_t>& shown, const std::vector<std::string>& kinds) {
   std::vector<std::string> shown_names;
   std::vector<std::array<programs::AxisSeries, 3>> series;
   std::vector<programs::Judgement> judged;
@@ -140,7 +143,7 @@ void draw(const std::string& folder, const RowSet& test, const std::vector<progr
   }
   for (std::size_t s = 0; s < shown.size(); ++s) {
     shown_names.push_back(results[shown[s]].model);
-    series.push_back(programs::axis_series<Context>(test, predictions[shown[s]]));
+    series.push_back(programs::axis_series(airframe, test, predictions[shown[s]]));
     judged.push_back(results[shown[s]].test);
     for (std::size_t i = 0; i < excerpt; ++i) command[s].push_back(predictions[shown[s]][i][0]);
   }
@@ -210,7 +213,7 @@ void export_model(const Options& options, const Model& model, const RowSplit& sp
 }
 
 template <class Vehicle>
-int train_judge_export(const Options& options, const Dataset& dataset) {
+int train_judge_export(const Options& options, const ContextAirframe<Vehicle>& airframe, const Dataset& dataset) {
   using Context = Context<PaperFeatures, Vehicle>;
   using Model = TrainedModel<programs::PaperNetwork, Context>;
   const RowSplit split = dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
@@ -218,7 +221,7 @@ int train_judge_export(const Options& options, const Dataset& dataset) {
   programs::require_varied_commands(options.flights, dataset, split.validation, "validation");
   programs::require_varied_commands(options.flights, dataset, split.test, "test");
   warn_of_still_features<PaperFeatures>(split.train);
-  const Context context = make_context<Context>(split.train);
+  const Context context = make_context<Context>(split.train, airframe);
   const auto data = standardised<float>(context, split.train);
   programs::print_split(dataset, split);
   std::printf("      network %d -> 10 x 25 ReLU -> %d, %d parameters; Adam, batch 64, %d epochs, %d seeds\n",
@@ -237,9 +240,9 @@ int train_judge_export(const Options& options, const Dataset& dataset) {
     models.push_back(make_trained_model(training.network, context, split.train));
   }
   std::vector<programs::Predictions> predictions;
-  const auto results = judge_all<Context>(split, trainings, models, predictions);
+  const auto results = judge_all(airframe, split, trainings, models, predictions);
   const auto regression = programs::regression_predictions<PaperFeatures>(split.train, split.test);
-  const double regression_r_squared = programs::judge<Context>(split.test, regression).errors.mean.r_squared;
+  const double regression_r_squared = programs::judge(airframe, split.test, regression).errors.mean.r_squared;
 
   const std::string vanilla = programs::kind_name(programs::Kind::vanilla);
   const std::string informed = programs::kind_name(programs::Kind::physics_informed);
@@ -261,7 +264,7 @@ int train_judge_export(const Options& options, const Dataset& dataset) {
   const std::string folder = options.out + "/";
   programs::write_results(folder + "results.csv", results);
   nlohmann::json settings = {{"version", PINNQUAD_VERSION},
-                             {"airframe", Vehicle::name},
+                             {"airframe", airframe.airframe_name()},
                              {"epochs", options.epochs},
                              {"first_seed", options.seed},
                              {"seeds", options.seeds},
@@ -294,15 +297,21 @@ int train_judge_export(const Options& options, const Dataset& dataset) {
   const bool exported = fit_for_export(options, verdict);
   if (exported) {
     std::printf("[4/5] export\n");
-    export_model(options, models[*best - 1], split,  // results[0] is the linearized model
-                 {programs::flight_names(dataset), content_hash(dataset), split.train.size(), results[*best].seed,
-                  options.epochs, "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing", verdict});
+    Provenance from{programs::flight_names(dataset),
+                    content_hash(dataset),
+                    split.train.size(),
+                    results[*best].seed,
+                    options.epochs,
+                    "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing",
+                    verdict};
+    from.sample_period_s = sample_period_s(split.train);
+    export_model(options, models[*best - 1], split, from);  // results[0] is the linearized model
   }
   // last: a picture that cannot be drawn costs nothing else
   std::vector<std::size_t> shown;
   if (best_vanilla) shown.push_back(*best_vanilla);
   shown.push_back(*best);
-  draw<Context>(folder, split.test, results, predictions, shown, {linear_name, vanilla, informed});
+  draw(airframe, folder, split.test, results, predictions, shown, {linear_name, vanilla, informed});
   if (programs::interrupted()) {
     std::fprintf(stderr, "train: interrupted; %zu of %d trainings were finished and kept\n", trainings.size(),
                  2 * options.seeds);
@@ -319,6 +328,7 @@ constexpr std::array<const char*, 7> output_names = {"results.csv",    "report.j
 void require_separate_files(const Options& options) {
   programs::FileRoles roles;
   for (const std::string& path : options.flights) roles.reads("--flight", path);
+  if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   for (const char* name : output_names) roles.writes("--out", options.out + "/" + name);
   roles.writes("--block", options.block);
@@ -330,8 +340,12 @@ int train_chosen(const Options& options) {
     throw std::invalid_argument("--name " + options.model_name +
                                 ": a C++ identifier was expected, no keyword and no name that C++ reserves");
   }
-  if (!programs::with_airframe(options.airframe, [](auto) {})) {
-    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names());
+  std::optional<programs::NamedAirframe> given;
+  if (programs::is_airframe_file(options.airframe)) {
+    given = programs::read_airframe_file(options.airframe);
+  } else if (!programs::with_airframe(options.airframe, [](auto) {})) {
+    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names() +
+                                ", or a file whose name ends in .toml");
   }
   require_separate_files(options);
   const Dataset dataset = programs::read_flights(options.flights, minimum_rows);
@@ -339,9 +353,13 @@ int train_chosen(const Options& options) {
   // what cannot be written is found before the training
   for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
   if (!options.block.empty()) AtomicFile probe(options.block);
+  if (given) {
+    return train_judge_export(options, ContextAirframe<GivenAirframe>(given->name, given->value), dataset);
+  }
   int code = programs::exit_bad_input;
-  programs::with_airframe(options.airframe,
-                          [&](auto tag) { code = train_judge_export<typename decltype(tag)::type>(options, dataset); });
+  programs::with_airframe(options.airframe, [&](auto tag) {
+    code = train_judge_export(options, ContextAirframe<typename decltype(tag)::type>{}, dataset);
+  });
   return code;
 }
 
@@ -361,7 +379,8 @@ int run(int argument_count, char** arguments) {
       "recorded flight, CSV as `fly` writes it: its first part trains, its last tests. Of three or more, "
       "whole flights, in this order: the first train, the last test")
       ->required();
-  app.add_option("--airframe", options.airframe, "what flew; one of: " + programs::airframe_names())
+  app.add_option("--airframe", options.airframe,
+                 "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
       ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, pictures and the exported header")
       ->default_str(options.out);

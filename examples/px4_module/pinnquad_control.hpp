@@ -48,7 +48,8 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
   using Core = pinnquad_px4::NeuralControl<Model>;
 
   /// Room for one block of this model, golden vectors included.
-  static constexpr size_t block_bytes = pinnquad::ModelBlockLayout<Model>::length(pinnquad::loaded_golden_vectors);
+  static constexpr size_t block_bytes = pinnquad::ModelBlockLayout<Model>::length(pinnquad::loaded_golden_vectors) +
+                                        pinnquad::ModelBlockLayout<Model>::most_record_bytes();
 
   void Run() override;
   /// Reads, opens and tests a model; the one that flies stays where it is. Of the shell's thread.

@@ -14,6 +14,8 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/training/context.hpp"
+#include "pinnquad/training/loss_batch.hpp"
 
 namespace {
 

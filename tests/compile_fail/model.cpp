@@ -29,15 +29,29 @@
 // CASE FEATURES_MAY_THROW: pinnquad: a feature set's check.. and extract.. must be noexcept
 // CASE OUTPUTS_MAY_THROW: pinnquad: an output schema's functions must be noexcept
 // CASE SCALAR_DIFFERS: pinnquad: the model's Scalar is not that of its Network
+// CASE UNRECORDED: pinnquad: the model lacks what format 3 demands
+// CASE UNKNOWN_RECORD: pinnquad: the model has a record that must be understood and that this pinnquad does not know
+// CASE OTHER_ANSWER: pinnquad: the model's parameters are of another answer than its Network now is
+// CASE NO_COMMAND_RANGE: pinnquad: the range of the model's commands is none
+// CASE PERIOD_NEGATIVE: pinnquad: the model's sample period or removed lag is no time of 0 to 4 s
+// CASE OTHER_WINDOW: pinnquad: the model has another window than its feature set now has
+// CASE NOT_CAUSAL: pinnquad: the model has another window than its feature set now has
+// CASE OTHER_COLUMNS: pinnquad: the model has other extra columns than its feature set now has
+// CASE OTHER_ALLOCATION: pinnquad: the model was trained for another allocation than its Vehicle now has
+// CASE OTHER_BASE: pinnquad: the model's outputs add to another base than its output schema's
+// CASE SLOPE_SIGNS_MISSING: pinnquad: the model's slope signs are not three per rotor
+// CASE RESIDUAL_LENGTH: pinnquad: the model's range of a residual is not one of numbers per output
+// CASE DISTANCE_LENGTH: pinnquad: the model's statistics of a distance don't have the length of the feature set
 #include <array>
 #include <limits>
 
-#include "../support/described_model.hpp"
+#include "../support/recorded_model.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 
 namespace {
 
 using pinnquad::test::DescribedModel;
+using pinnquad::test::RecordedModel;
 
 template <class Texts>
 constexpr Texts with_first(Texts texts, const char* first) {
@@ -149,6 +163,57 @@ struct Changed : DescribedModel {
 #endif
 };
 
+/// The small model of format 3 with one member changed by the case, and optional records that are sound.
+struct Recorded : RecordedModel {
+#if defined(UNKNOWN_RECORD)
+  static constexpr std::array<const char*, 2> records = {"answer", "phase_of_the_moon"};
+#elif defined(OTHER_ANSWER)
+  static constexpr const char* answer =
+      "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>, pinnquad::Tanh, pinnquad::Dense<4>>";
+#elif defined(NO_COMMAND_RANGE)
+  static constexpr double command_lower = 1.5;
+#elif defined(PERIOD_NEGATIVE)
+  static constexpr double sample_period_s = -0.004;
+#elif defined(OTHER_WINDOW)
+  static constexpr int window_taps = 2;
+#elif defined(NOT_CAUSAL)
+  static constexpr bool causal = false;
+#elif defined(OTHER_COLUMNS)
+  static constexpr std::array<const char*, 1> column_names = {"battery_voltage"};
+#elif defined(OTHER_ALLOCATION)
+  static constexpr auto allocation = [] {
+    auto changed = RecordedModel::allocation;
+    changed[3][2] *= 1.001;
+    return changed;
+  }();
+#elif defined(OTHER_BASE)
+  static constexpr const char* base = "pinnquad::LinearizedInverse";
+#endif
+#if defined(SLOPE_SIGNS_MISSING)
+  static constexpr std::array<std::array<int, 3>, 3> slope_signs{};
+#else
+  static constexpr std::array<std::array<int, 3>, 4> slope_signs{};
+#endif
+#if defined(RESIDUAL_LENGTH)
+  static constexpr std::array<float, 3> residual_lower{};
+#else
+  static constexpr std::array<float, 4> residual_lower{};
+#endif
+  static constexpr std::array<float, 4> residual_upper{};
+  static constexpr std::array<float, 16> distance_mean{};
+#if defined(DISTANCE_LENGTH)
+  static constexpr std::array<float, 16> distance_inverse_cholesky{};
+#else
+  static constexpr std::array<float, 136> distance_inverse_cholesky{};
+#endif
+  static constexpr float distance_limit = 3;
+};
+
+/// A header that claims format 3 and has the members of format 2.
+struct Unrecorded : DescribedModel {
+  static constexpr int format_version = 3;
+};
+
 /// A header that claims format 2 and has the members of format 1.
 struct Undescribed : pinnquad::test::SmallModel {
   static constexpr int format_version = 2;
@@ -169,8 +234,15 @@ using Model = Nothing;
 using Model = Truncated;
 #elif defined(UNDESCRIBED)
 using Model = Undescribed;
+#elif defined(UNRECORDED)
+using Model = Unrecorded;
+#elif defined(UNKNOWN_RECORD) || defined(OTHER_ANSWER) || defined(NO_COMMAND_RANGE) || defined(PERIOD_NEGATIVE) || \
+    defined(OTHER_WINDOW) || defined(NOT_CAUSAL) || defined(OTHER_COLUMNS) || defined(OTHER_ALLOCATION) ||         \
+    defined(OTHER_BASE) || defined(SLOPE_SIGNS_MISSING) || defined(RESIDUAL_LENGTH) || defined(DISTANCE_LENGTH)
+using Model = Recorded;
 #else
 using Model = Changed;
+static_assert(pinnquad::require_model<Recorded>());
 #endif
 
 }  // namespace

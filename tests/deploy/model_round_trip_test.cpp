@@ -11,10 +11,12 @@
 #include <string>
 #include <type_traits>
 
-#include "../examples/models/demo_quadrotor.hpp"
 #include "models/v2/crazyflie_tanh.hpp"
+#include "models/v3/demo_quadrotor.hpp"
+#include "models/v3/own_racer.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "support/block_bytes.hpp"
 
 namespace {
 
@@ -29,9 +31,14 @@ template <class Header>
 using Trained = TrainedModel<typename Header::Network,
                              Context<typename Header::Features, typename Header::Vehicle, typename Header::Outputs>>;
 
+/// The header's airframe as its trainer was given it.
 template <class Header>
-Trained<Header> trained() {
-  Trained<Header> model;
+struct WithGivenAirframe : Header {
+  using Vehicle = GivenAirframe;
+};
+
+template <class Header>
+Trained<Header> trained(Trained<Header> model = {}) {
   model.network.parameters = Header::parameters;
   model.input = Header::input;
   model.output = Header::output;
@@ -52,13 +59,28 @@ Provenance provenance() {
     const double worst_motor = Header::worse_than_mean ? -1.0 : 0.0;  // what the header says of it
     verdict = Verdict{Header::test_r_squared, Header::linear_regression_r_squared, worst_motor};
   }
-  return {Header::training_data,
-          Header::training_data_hash,
-          static_cast<std::size_t>(Header::training_rows),
-          Header::seed,
-          Header::epochs,
-          Header::loss,
-          verdict};
+  Provenance from{Header::training_data,
+                  Header::training_data_hash,
+                  static_cast<std::size_t>(Header::training_rows),
+                  Header::seed,
+                  Header::epochs,
+                  Header::loss,
+                  verdict};
+  if constexpr (Header::format_version >= 3) {
+    from.command_meaning = Header::command_meaning;
+    from.command_lower = Header::command_lower;
+    from.command_upper = Header::command_upper;
+    from.sample_period_s = Header::sample_period_s;
+    from.lag_removed_s = Header::lag_removed_s;
+  }
+  if constexpr (detail::HasDistance<Header>::value) {
+    const auto numbers = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
+    from.slope_signs = Header::slope_signs;
+    from.residual_range = ResidualRange{numbers(Header::residual_lower), numbers(Header::residual_upper)};
+    from.distance = DistanceStatistics{numbers(Header::distance_mean), numbers(Header::distance_inverse_cholesky),
+                                       Header::distance_limit};
+  }
+  return from;
 }
 
 template <class Header>
@@ -67,9 +89,9 @@ std::vector<typename Trained<Header>::FeatureVector> golden() {
 }
 
 template <class Header>
-std::string written() {
+std::string written(const Trained<Header>& model) {
   std::ostringstream out;
-  write_model(out, Header::name, trained<Header>(), golden<Header>(), provenance<Header>());
+  write_model(out, Header::name, model, golden<Header>(), provenance<Header>());
   return out.str();
 }
 
@@ -101,23 +123,33 @@ double largest_golden_difference() {
 }  // namespace
 
 TEST_CASE("the demonstration's header is what the writer writes") {
-  CHECK(comparable(written<DemoQuadModel>()) == comparable(text_of("../examples/models/demo_quadrotor.hpp")));
-  CHECK(largest_golden_difference<DemoQuadModel>() <= golden_tolerance);
+  CHECK(comparable(written<DemoQuadrotorV3>(trained<DemoQuadrotorV3>())) ==
+        comparable(text_of("models/v3/demo_quadrotor.hpp")));
+  CHECK(largest_golden_difference<DemoQuadrotorV3>() <= golden_tolerance);
 }
 
-TEST_CASE("so is one in double, with another feature set, output and vehicle") {
-  std::string archived = text_of("models/v2/crazyflie_tanh.hpp");
-  CHECK(comparable(written<CrazyflieTanhV2>()) == comparable(archived));
+TEST_CASE("so is one in double, with a window, optional records and an airframe that its trainer was given") {
+  using Given = WithGivenAirframe<OwnRacerV3>;
+  const ContextAirframe<GivenAirframe> airframe(OwnRacerV3::vehicle_name, OwnRacerV3Airframe::value<double>());
+  CHECK(comparable(written<Given>(trained<Given>({airframe}))) == comparable(text_of("models/v3/own_racer.hpp")));
+  CHECK(largest_golden_difference<OwnRacerV3>() <= 1e-12);
+}
+
+TEST_CASE("a header of an earlier format, written again, flies as it did") {
   CHECK(largest_golden_difference<CrazyflieTanhV2>() <= 1e-12);
+  const std::string header = written<CrazyflieTanhV2>(trained<CrazyflieTanhV2>());
+  CHECK(header.find("int format_version = 3;") != std::string::npos);
 }
 
-TEST_CASE("a header's block is the block of its training") {
-  const auto from_header = model_block<CrazyflieTanhV2>();
-  const auto from_training =
-      model_block(trained<CrazyflieTanhV2>(), golden<CrazyflieTanhV2>(), provenance<CrazyflieTanhV2>());
+TEST_CASE_TEMPLATE("a header's block is the block of its training", Header, CrazyflieTanhV2, DemoQuadrotorV3,
+                   OwnRacerV3) {
+  const auto from_header = model_block<Header>();
+  const auto from_training = model_block(trained<Header>(), golden<Header>(), provenance<Header>());
   REQUIRE(from_header.size() == from_training.size());
   // up to the golden commands, which are computed anew
-  const auto same = ModelBlockHeader::size + ModelBlockLayout<CrazyflieTanhV2>::golden_commands(4) * sizeof(double);
+  const auto same =
+      test::BlockBytes(from_header).scalars() +
+      ModelBlockLayout<Header>::golden_commands(Header::golden_features.size()) * sizeof(typename Header::Scalar);
   CHECK(
       std::equal(from_header.begin(), from_header.begin() + static_cast<std::ptrdiff_t>(same), from_training.begin()));
 }

@@ -126,9 +126,9 @@ void try_block() {
   const std::size_t first_weight = Layout::parameters(golden);
   const std::size_t count = first_weight + Layout::parameter_count;
   // the CRC over what stands before a number, so that sealing a block costs half of it
-  std::uint32_t before = crc32(block.data(), ModelBlockHeader::size);
+  std::uint32_t before = crc32(block.data(), block.scalars());
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = ModelBlockHeader::size + i * sizeof(float);
+    const std::size_t at = block.scalars() + i * sizeof(float);
     const float sound = block.scalar<float>(i);
     // NaN for every number, and an infinity of either sign for every other one
     for (const std::uint32_t bits : {not_a_number, infinity | (i % 2 == 0 ? negative : 0u)}) {

@@ -81,6 +81,11 @@ std::uint32_t plain_crc32(const unsigned char* bytes, std::size_t length) {
   return ~remainder;
 }
 
+/// What stands between header and scalars, by the counts that the block states.
+std::size_t record_bytes(const unsigned char* block) {
+  return block[Header::version] < 2 ? 0 : BlockRecordLayout::counts + detail::read_u32(block + Header::size + 4);
+}
+
 /// What was accepted, looked at again and flown.
 template <class Shape, class Model>
 void fly(const Model& model) {
@@ -134,11 +139,14 @@ void load(const std::uint8_t* data, std::size_t size) {
     return;
   }
   const std::size_t length = detail::read_u32(memory.block() + Header::length);
-  expect(length <= size && length == ModelBlockLayout<Shape>::length(view.golden_features.size()),
+  expect(length <= size &&
+             length == ModelBlockLayout<Shape>::length(view.golden_features.size()) + record_bytes(memory.block()),
          "the length is right");
   expect(plain_crc32(memory.block(), length - 4) == detail::read_u32(memory.block() + length - 4),
          "the checksum is right");
-  expect(std::memcmp(memory.block(), "PINNQUAD\1\0\0\0", 12) == 0, "it is a block of version 1");
+  expect(std::memcmp(memory.block(), "PINNQUAD\1\0\0\0", 12) == 0 ||
+             std::memcmp(memory.block(), "PINNQUAD\2\0\0\0", 12) == 0,
+         "it is a block of version 1 or 2");
   const auto* begin = reinterpret_cast<const unsigned char*>(view.parameters());
   expect(begin >= memory.block() &&
              begin + sizeof(Scalar) * Shape::Network::parameter_count + Header::checksum_size <= memory.block() + size,
@@ -175,7 +183,8 @@ template <class Shape>
 void repair_header(std::uint8_t* data, std::size_t size) {
   using Layout = ModelBlockLayout<Shape>;
   std::copy(model_block_magic.begin(), model_block_magic.end(), data);
-  write_u32(data + Header::version, model_block_version);
+  const bool first_version = data[Header::version] == oldest_model_block_version;
+  write_u32(data + Header::version, first_version ? oldest_model_block_version : model_block_version);
   write_u32(data + Header::scalar_bytes, sizeof(typename Shape::Scalar));
   write_u32(data + Header::inputs, Layout::inputs);
   write_u32(data + Header::outputs, Layout::outputs);
@@ -183,15 +192,18 @@ void repair_header(std::uint8_t* data, std::size_t size) {
   write_u32(data + Header::shape_hash, shape_hash<Shape> & 0xffffffffu);
   write_u32(data + Header::shape_hash + 4, shape_hash<Shape> >> 32);
   const std::size_t row = sizeof(typename Shape::Scalar) * (Layout::inputs + Layout::outputs);
-  if (size > Layout::length(0)) write_u32(data + Header::golden_vectors, (size - Layout::length(0)) / row);
+  const std::size_t records = size > Layout::length(0) ? record_bytes(data) : 0;
+  const std::size_t others = Layout::length(0) + records;
+  if (records < size && size > others) write_u32(data + Header::golden_vectors, (size - others) / row);
 }
 
-/// The greatest size not above `size` that a block of this shape can have.
+/// The greatest size not above `size` that a block of this shape with the records of these bytes can have.
 template <class Shape>
-std::size_t whole_rows(std::size_t size) {
+std::size_t whole_rows(const std::uint8_t* data, std::size_t size) {
   using Layout = ModelBlockLayout<Shape>;
   const std::size_t row = Layout::length(1) - Layout::length(0);
-  return size < Layout::length(1) ? size : size - (size - Layout::length(0)) % row;
+  if (size < Layout::length(1) || record_bytes(data) > size - Layout::length(1)) return size;
+  return size - (size - Layout::length(0) - record_bytes(data)) % row;
 }
 
 }  // namespace
@@ -203,7 +215,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   std::minstd_rand engine(seed);
   size = LLVMFuzzerMutate(data, size, most);
   const bool is_double = size > 20 && data[Header::scalar_bytes] == sizeof(double);
-  if (engine() % 4 != 0) size = is_double ? whole_rows<DoubleModel>(size) : whole_rows<DescribedModel>(size);
+  if (engine() % 4 != 0)
+    size = is_double ? whole_rows<DoubleModel>(data, size) : whole_rows<DescribedModel>(data, size);
   if (size < Header::size + Header::checksum_size) return size;
   if (engine() % 4 != 0) {
     if (is_double) {

@@ -13,6 +13,8 @@
 #include "models/v1/demo_quadrotor.hpp"
 #include "models/v2/crazyflie_tanh.hpp"
 #include "models/v2/demo_quadrotor.hpp"
+#include "models/v3/demo_quadrotor.hpp"
+#include "models/v3/own_racer.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
 namespace {
@@ -20,7 +22,8 @@ namespace {
 using namespace pinnquad;
 
 /// Headers included above, by path below tests/models.
-const std::vector<std::string> archived = {"v1/demo_quadrotor.hpp", "v2/crazyflie_tanh.hpp", "v2/demo_quadrotor.hpp"};
+const std::vector<std::string> archived = {"v1/demo_quadrotor.hpp", "v2/crazyflie_tanh.hpp", "v2/demo_quadrotor.hpp",
+                                           "v3/demo_quadrotor.hpp", "v3/own_racer.hpp"};
 
 template <class Model, class Known>
 void replay() {
@@ -53,7 +56,18 @@ TEST_CASE("format 2: the demonstration's quadrotor; another vehicle, feature set
   replay<CrazyflieTanhV2, test::KnownCrazyflieTanhV2>();
 }
 
+TEST_CASE(
+    "format 3: the demonstration's quadrotor; a vehicle of the header's own, a window, a column, optional records") {
+  static_assert(DemoQuadrotorV3::format_version == 3 && OwnRacerV3::format_version == 3);
+  replay<DemoQuadrotorV3, test::KnownDemoQuadrotorV3>();
+  replay<OwnRacerV3, test::KnownOwnRacerV3>();
+  using Mine = Caller<CommandMeaning::pulse_width, OwnRacerV3Airframe, PeriodMicroseconds<10000>>;
+  CHECK(self_test(InverseDynamics<OwnRacerV3, TrainingGuard, Mine>{}) == Status::ok);
+}
+
 TEST_CASE("the weights of a header are those it had in the format before") {
+  CHECK(DemoQuadrotorV3::parameters == DemoQuadrotorV2::parameters);
+  CHECK(DemoQuadrotorV3::golden_features == DemoQuadrotorV2::golden_features);
   CHECK(DemoQuadrotorV2::parameters == DemoQuadrotorV1::parameters);
   CHECK(DemoQuadrotorV2::golden_commands == DemoQuadrotorV1::golden_commands);
   CHECK(DemoQuadrotorV2::training_data_hash == DemoQuadrotorV1::training_data_hash);

@@ -265,7 +265,8 @@ TEST_CASE("lengths and counts that do not agree are corrupt, however large") {
   block.seal();
   CHECK(opened(block) == Status::block_truncated);
   // no golden vector, and a count of them whose length is 0 modulo 2^32
-  BlockBytes wrapped(model_block<DescribedModel>(), ModelBlockLayout<DescribedModel>::length(0));
+  const std::size_t records = BlockBytes(model_block<DescribedModel>()).scalars() - Header::size;
+  BlockBytes wrapped(model_block<DescribedModel>(), ModelBlockLayout<DescribedModel>::length(0) + records);
   wrapped.set_u32(Header::length, static_cast<std::uint32_t>(wrapped.size()));
   for (const std::uint32_t golden : {0u, 0x80000000u}) {
     wrapped.set_u32(Header::golden_vectors, golden);
@@ -279,7 +280,8 @@ TEST_CASE("lengths and counts that do not agree are corrupt, however large") {
 
 TEST_CASE("a value that is not finite is corrupt, wherever it stands") {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-  const std::size_t scalars = (model_block<DescribedModel>().size() - ModelBlockHeader::size - 4) / 4;
+  const BlockBytes sound(model_block<DescribedModel>());
+  const std::size_t scalars = (sound.size() - sound.scalars() - 4) / 4;
   for (std::size_t i = 0; i < scalars; ++i) {
     const float value = i % 3 == 0 ? nan : (i % 3 == 1 ? infinity : -infinity);
     CHECK(changed([&](BlockBytes& block) { block.set_scalar(i, value); }) == Status::block_corrupt);

@@ -162,7 +162,7 @@ std::size_t block_bytes = 0;
 
 namespace {
 
-/// What deploy/weight_file.hpp writes, without the rooms that do not fly.
+/// A block of version 1, which has no records, written without the rooms that do not fly.
 void write_block() {
   using namespace pinnquad;
   using instruction_sets::block;
@@ -178,7 +178,7 @@ void write_block() {
     std::memcpy(block + Header::size + at * sizeof(float), &values, sizeof values);
   };
   std::memcpy(block, &model_block_magic, sizeof model_block_magic);
-  number(Header::version, model_block_version, 4);
+  number(Header::version, oldest_model_block_version, 4);
   number(Header::length, length, 4);
   number(Header::scalar_bytes, sizeof(float), 4);
   number(Header::inputs, Layout::inputs, 4);

@@ -32,15 +32,23 @@ class BlockBytes {
     }
   }
 
+  /// Where the scalars begin: behind the header and, in version 2, the records.
+  std::size_t scalars() const {
+    const auto u32 = [this](std::size_t offset) { return detail::read_u32(bytes_.get() + offset); };
+    const std::size_t records =
+        u32(ModelBlockHeader::version) < 2 ? 0 : BlockRecordLayout::counts + u32(ModelBlockHeader::size + 4);
+    return ModelBlockHeader::size + records;
+  }
+
   template <class Scalar>
   Scalar scalar(std::size_t index) const {
     Scalar value{};
-    std::memcpy(&value, bytes_.get() + ModelBlockHeader::size + index * sizeof value, sizeof value);
+    std::memcpy(&value, bytes_.get() + scalars() + index * sizeof value, sizeof value);
     return value;
   }
   template <class Scalar>
   void set_scalar(std::size_t index, Scalar value) {
-    std::memcpy(bytes_.get() + ModelBlockHeader::size + index * sizeof value, &value, sizeof value);
+    std::memcpy(bytes_.get() + scalars() + index * sizeof value, &value, sizeof value);
   }
 
   /// Makes the checksum right again.

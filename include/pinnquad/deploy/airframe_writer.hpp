@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/identifier.hpp"
+#include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {

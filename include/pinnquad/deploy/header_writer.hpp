@@ -3,11 +3,8 @@
 // envelope, golden vectors, provenance. Every number reads back bit for bit.
 #pragma once
 
-#include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <locale>
-#include <optional>
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
@@ -17,84 +14,19 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/decimal.hpp"
-#include "pinnquad/data/printable.hpp"
+#include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/identifier.hpp"
+#include "pinnquad/deploy/literal.hpp"
+#include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/deploy/record_writer.hpp"
 #include "pinnquad/deploy/type_name.hpp"
-#include "pinnquad/evaluation/verdict.hpp"
 #include "pinnquad/inference/model.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/version.hpp"
 
 namespace pinnquad {
 
-/// Where a model comes from; printed into the header as strings.
-struct Provenance {
-  std::string training_data;             ///< name of the flight, not a path of the machine
-  std::uint64_t training_data_hash = 0;  ///< content_hash() of the flight
-  std::size_t training_rows = 0;
-  std::uint64_t seed = 0;
-  int epochs = 0;
-  std::string loss;                               ///< in words
-  std::optional<Verdict> verdict = std::nullopt;  ///< how the model was judged; none: the header says nothing of it
-};
-
 namespace detail {
-
-/// Shortest text that reads back as the same value, marked as a literal of its type.
-inline std::string literal(float value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  std::string result(text, end);
-  if (result.find_first_of(".en") == std::string::npos) result += ".0";
-  return result + "f";
-}
-inline std::string literal(double value) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  std::string result(text, end);
-  if (result.find_first_of(".en") == std::string::npos) result += ".0";
-  return result;
-}
-
-/// A C++ string literal of printable(text). A second '?' in a row is escaped: no trigraph.
-inline std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : printable(text)) {
-    if (c == '"' || c == '\\' || (c == '?' && result.back() == '?')) result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-inline std::string literal(const char* text) { return quoted(text); }
-inline std::string literal(int value) { return std::to_string(value); }
-
-/// Values in braces, several to a line.
-template <class Range>
-void write_braced(std::ostream& out, const Range& values, const std::string& indent) {
-  constexpr int per_line = 8;
-  out << '{';
-  int column = 0;
-  bool first = true;
-  for (const auto& value : values) {
-    if (!first) out << ',';
-    if (column == 0 && values.size() > per_line) out << '\n' << indent << "    ";
-    if (column != 0 || (values.size() <= per_line && !first)) out << ' ';
-    out << literal(value);
-    first = false;
-    column = (column + 1) % per_line;
-  }
-  out << '}';
-}
-
-/// Throws std::invalid_argument, one line, for a number that is not finite: it has no literal and must not fly.
-template <class Numbers>
-void require_finite(const Numbers& numbers, const std::string& name) {
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (!is_finite(numbers[i])) {
-      throw std::invalid_argument("export: number " + std::to_string(i + 1) + " of " + name + " is not finite");
-    }
-  }
-}
 
 /// All numbers of a model but its golden vectors.
 template <class Model>
@@ -132,8 +64,9 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
 
 /// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
 /// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp; no locale plays
-/// a part. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
-/// name that no struct may have, for no golden vector, for one outside the envelope, and for a number that is not finite.
+/// a part. A GivenAirframe stands before the
+/// model as a struct of its own. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
+/// name that no struct may have, for no golden vector, for one outside the envelope, for a number that is not finite, and for terms that no model has (deploy/provenance.hpp).
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& stream, const std::string& struct_name,
                  const TrainedModel<NetworkType, ContextType>& model,
@@ -143,6 +76,10 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   using Scalar = typename Model::Scalar;
   if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
   const auto golden_commands = detail::golden_commands(model, golden);
+  const auto terms = detail::exported_terms<typename Model::Features, typename Model::Outputs>(
+      provenance, model.template airframe<double>());
+  constexpr bool own_airframe = std::is_same_v<typename Model::Vehicle, GivenAirframe>;
+  const std::string vehicle_name = model.airframe_name();
   std::ostringstream out;
   out.imbue(std::locale::classic());  // a global locale may group digits
 
@@ -179,13 +116,21 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   if (provenance.verdict && provenance.verdict->worse_than_mean()) {
     out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
-  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n"
-      << "struct " << struct_name << " {\n"
+  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n";
+  std::string vehicle;
+  if constexpr (own_airframe) {
+    vehicle = struct_name + "Airframe";
+    write_airframe(out, vehicle, vehicle_name, model.template airframe<double>());
+    out << '\n';
+  } else {
+    vehicle = type_name<typename Model::Vehicle>();
+  }
+  out << "struct " << struct_name << " {\n"
       << "  using Scalar = " << scalar << ";\n"
       << "  using Network = " << type_name<NetworkType>() << ";\n"
       << "  using Features = " << type_name<typename Model::Features>() << ";\n"
       << "  using Outputs = " << type_name<typename Model::Outputs>() << ";\n"
-      << "  using Vehicle = " << type_name<typename Model::Vehicle>() << ";\n"
+      << "  using Vehicle = " << vehicle << ";\n"
       << "  using Inputs = Features::Inputs<Scalar>;\n\n"
       << "  static constexpr int format_version = " << model_format_version << ";\n";
   text("name", struct_name);
@@ -217,15 +162,11 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   array("const char*", "feature_names", Model::Features::names);
   array("const char*", "feature_units", Model::Features::units);
   array("const char*", "output_names", OutputMap<typename Model::Outputs>::names);
-  const auto& output_units = OutputMap<typename Model::Outputs>::units;
-  if (detail::one_unit(output_units)) {
-    text("output_unit", output_units[0]);
-  } else {
-    array("const char*", "output_units", output_units);
-  }
-  text("vehicle_name", Model::Vehicle::name);
+  array("const char*", "output_units", OutputMap<typename Model::Outputs>::units);
+  text("vehicle_name", vehicle_name);
   out << "  // rotor by rotor: signs of its torque about x, y, z\n";
-  table("int", "motor_torque_signs", motor_torque_signs<typename Model::Vehicle>());
+  table("int", "motor_torque_signs", motor_torque_signs(model.template airframe<double>()));
+  detail::write_header_records<NetworkType, typename Model::Features, typename Model::Outputs>(out, terms);
   out << "\n  // standardisation: (value - mean) / spread\n";
   scaler("input", model.input);
   scaler("output", model.output);

@@ -26,4 +26,36 @@ constexpr Airframe<Scalar> airframe_value() noexcept {
   }
 }
 
+/// The same airframe, every number rounded to `To`: what a struct written by deploy/airframe_writer.hpp has.
+template <class To>
+constexpr Airframe<To> airframe_in(const Airframe<double>& from) noexcept {
+  const auto triple = [](const std::array<double, 3>& v) {
+    return std::array<To, 3>{static_cast<To>(v[0]), static_cast<To>(v[1]), static_cast<To>(v[2])};
+  };
+  Airframe<To> a{};
+  a.mass_kg = static_cast<To>(from.mass_kg);
+  a.inertia_kg_m2 = triple(from.inertia_kg_m2);
+  a.inertia_products_kg_m2 = triple(from.inertia_products_kg_m2);
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    const RotorMount<double>& r = from.rotors[i];
+    a.rotors[i] = {static_cast<To>(r.x_m),
+                   static_cast<To>(r.y_m),
+                   r.spin,
+                   static_cast<To>(r.z_m),
+                   triple(r.axis),
+                   static_cast<To>(r.thrust_scale),
+                   static_cast<To>(r.thrust_curve),
+                   static_cast<To>(r.rise_time_constant_s),
+                   static_cast<To>(r.fall_time_constant_s)};
+  }
+  a.thrust_coefficient = static_cast<To>(from.thrust_coefficient);
+  a.power_coefficient = static_cast<To>(from.power_coefficient);
+  a.propeller_diameter_m = static_cast<To>(from.propeller_diameter_m);
+  a.max_rotor_speed_rev_s = static_cast<To>(from.max_rotor_speed_rev_s);
+  a.rotor_time_constant_s = static_cast<To>(from.rotor_time_constant_s);
+  a.drag_area_m2 = triple(from.drag_area_m2);
+  a.drag_deadband_m_s = static_cast<To>(from.drag_deadband_m_s);
+  return a;
+}
+
 }  // namespace pinnquad

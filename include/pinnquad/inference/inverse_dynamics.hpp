@@ -3,6 +3,7 @@
 // No heap, bounded time; weights stay where the exported header put them, and the object is empty then.
 #pragma once
 
+#include "pinnquad/inference/caller.hpp"
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/model.hpp"
 #include "pinnquad/inference/model_numbers.hpp"
@@ -55,17 +56,19 @@ constexpr bool check_model() noexcept {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// An exported network as an inverse-dynamics model: motion wanted -> commands.
-/// Every function leaves the commands untouched unless has_output(status).
-template <class ModelType, class GuardType = TrainingGuard>
+/// An exported network as an inverse-dynamics model: motion wanted -> commands, in the terms of a caller
+/// (inference/caller.hpp). Every function leaves the commands untouched unless has_output(status).
+template <class ModelType, class GuardType = TrainingGuard, class CallerType = AnyCaller>
 class InverseDynamics : private detail::Held<ModelType>, private detail::Held<GuardType> {
   static_assert(detail::check_model<ModelType>());
+  static_assert(detail::require_caller<ModelType, CallerType>());
   static_assert(is_guard<GuardType>,
                 "pinnquad: the second argument of InverseDynamics is a Guard (inference/guard.hpp)");
 
  public:
   using Model = ModelType;
   using Guard = GuardType;
+  using Caller = CallerType;
   using Scalar = typename Model::Scalar;
   using Features = typename Model::Features;
   using Inputs = typename Features::template Inputs<Scalar>;

@@ -54,6 +54,7 @@ class LoadedModel : public ModelScales<ShapeType> {
   Status load(const ModelView<ShapeType>& view) noexcept {
     if (view.parameters() == nullptr) return Status::block_truncated;
     static_cast<Scales&>(*this) = view;
+    this->records.distance = nullptr;  // it lies in the block, which may go
     golden_features.copy(view.golden_features);
     golden_commands.copy(view.golden_commands);
     std::memcpy(&network_.parameters, view.parameters(), sizeof network_.parameters);

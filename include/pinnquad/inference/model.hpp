@@ -9,6 +9,7 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/inference/answer.hpp"
 #include "pinnquad/inference/features.hpp"
+#include "pinnquad/inference/model_records.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/scaler.hpp"
@@ -22,12 +23,14 @@ namespace pinnquad {
 ///      training_data_hash; optional, of a model that was judged: test_r_squared, linear_regression_r_squared (finite),
 ///      worse_than_mean, beats_linear_regression (evaluation/verdict.hpp)
 ///      Where the outputs have several units, output_units, one per output, in place of output_unit.
-inline constexpr int model_format_version = 2;
+///   3  besides, and with output_units always: records, and what they name (inference/model_records.hpp). A Vehicle that is
+///      none of the library's stands before the model, in the same header.
+inline constexpr int model_format_version = 3;
 
 /// The oldest format that still flies.
 inline constexpr int oldest_model_format_version = 1;
 
-/// The frames of every feature set, as a header of format 2 states them.
+/// The frames of every feature set, as a header of format 2 or 3 states them.
 inline constexpr const char* model_frame = "body FRD, world NED";
 
 /// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
@@ -38,14 +41,17 @@ inline constexpr double golden_tolerance = 1e-5;
 using TorqueSigns = std::array<int, 3>;
 
 /// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
-template <class Vehicle>
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe<double>& airframe) noexcept {
   std::array<TorqueSigns, rotor_count> result{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto signs = allocation_signs(Vehicle::template value<double>(), static_cast<int>(axis));
+    const auto signs = allocation_signs(airframe, static_cast<int>(axis));
     for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
   }
   return result;
+}
+template <class Vehicle>
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+  return motor_torque_signs(Vehicle::template value<double>());
 }
 
 namespace detail {
@@ -86,17 +92,6 @@ template <class M, class = void>
 struct HasOutputUnits : std::false_type {};
 template <class M>
 struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
-
-constexpr bool same_text(const char* a, const char* b) noexcept { return std::string_view(a) == std::string_view(b); }
-
-template <class Texts, class Others>
-constexpr bool same_texts(const Texts& texts, const Others& others) noexcept {
-  if (texts.size() != others.size()) return false;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (!same_text(texts[i], others[i])) return false;
-  }
-  return true;
-}
 
 /// All texts are one.
 template <class Texts>
@@ -139,14 +134,6 @@ constexpr bool between(const Array& lower, const Array& x, const Array& upper) n
   return true;
 }
 
-template <class Array>
-constexpr bool all_finite_constants(const Array& values) noexcept {
-  for (const auto& value : values) {
-    if (!is_finite_constant(value)) return false;
-  }
-  return true;
-}
-
 template <class M>
 constexpr bool golden_inside_envelope() noexcept {
   for (const auto& x : M::golden_features) {
@@ -163,7 +150,7 @@ constexpr bool all_positive(const Array& values) noexcept {
   return true;
 }
 
-/// What a header of format 2 says of itself, against what its types say.
+/// What a header of format 2 or 3 says of itself, against what its types say.
 template <class M>
 constexpr void require_description() noexcept {
   constexpr bool described = DescribesItself<M>::value && (HasOutputUnits<M>::value || HasOutputUnit<M>::value);
@@ -268,6 +255,7 @@ constexpr bool require_model() noexcept {
                           static_cast<std::size_t>(rotor_count),
                   "pinnquad: a golden vector does not have the length of features or commands");
     if constexpr (M::format_version >= 2) detail::require_description<M>();
+    if constexpr (M::format_version >= 3) detail::require_records<M>();
   }
   return is_model<M>;
 }

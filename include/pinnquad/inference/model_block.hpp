@@ -6,9 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/fnv1a.hpp"
+#include "pinnquad/inference/block_records.hpp"
 #include "pinnquad/inference/checksum.hpp"
 #include "pinnquad/inference/description.hpp"
 #include "pinnquad/inference/model.hpp"
@@ -16,7 +18,10 @@
 namespace pinnquad {
 
 inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N', 'N', 'Q', 'U', 'A', 'D'};
-inline constexpr std::uint32_t model_block_version = 1;
+
+/// The version that this library writes: 2 has records (inference/block_records.hpp), 1 has none and still opens.
+inline constexpr std::uint32_t model_block_version = 2;
+inline constexpr std::uint32_t oldest_model_block_version = 1;
 
 /// Where a block may begin: at multiples of this many bytes, so that its scalars can be read in place.
 inline constexpr std::size_t model_block_alignment = 8;
@@ -24,7 +29,7 @@ inline constexpr std::size_t model_block_alignment = 8;
 /// Byte offsets of the header's fields, and what they hold:
 ///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs, u32 outputs,
 ///   u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
-/// Scalars follow: input mean and spread, output mean and spread, envelope lower and upper, golden features, golden
+/// In version 2 the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow: input mean and spread, output mean and spread, envelope lower and upper, golden features, golden
 /// commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
 struct ModelBlockHeader {
   static constexpr std::size_t version = 8;
@@ -41,10 +46,18 @@ struct ModelBlockHeader {
   static constexpr std::size_t checksum_size = 4;
 };
 
-/// Where the scalars of a block for this shape stand, counted in scalars from the end of the header.
+namespace detail {
+/// Letters of a description.
+struct DescriptionLength {
+  std::size_t letters = 0;
+  constexpr void add(std::string_view text) noexcept { letters += text.size(); }
+  constexpr void add(int number) noexcept { letters += number >= 10 ? 10 : 1; }
+};
+}  // namespace detail
+
+/// Where the scalars of a block for this shape stand, counted in scalars from the end of the header and the records.
 template <class Shape>
 struct ModelBlockLayout {
-  static_assert(require_shape<Shape>());
   static constexpr std::size_t inputs = Shape::Network::inputs;
   static constexpr std::size_t outputs = Shape::Network::outputs;
   static constexpr std::size_t parameter_count = Shape::Network::parameter_count;
@@ -63,16 +76,38 @@ struct ModelBlockLayout {
   static PINNQUAD_ALWAYS_INLINE constexpr std::size_t parameters(std::size_t golden) noexcept {
     return golden_commands(golden) + golden * commands;
   }
-  /// Bytes of the whole block. In 64 bits: a golden count from a broken header must not wrap around.
+  /// Bytes of the whole block without its records. In 64 bits: a golden count from a broken header must not wrap around.
   static PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t length(std::uint64_t golden) noexcept {
     const std::uint64_t scalars = golden_features + golden * (inputs + commands) + parameter_count;
     return ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) + ModelBlockHeader::checksum_size;
   }
+  /// Bytes of the records, counts included, that no block of this library exceeds: room for one in a buffer is length(golden)
+  /// and this.
+  static constexpr std::size_t most_record_bytes() noexcept {
+    using Features = typename Shape::Features;
+    using Records = BlockRecordLayout;
+    constexpr std::size_t scalar = sizeof(typename Shape::Scalar);
+    std::size_t columns = 0;
+    for (const char* name : extra_column_names<Features>) columns += std::string_view(name).size() + 1;
+    for (const char* unit : extra_column_units<Features>) columns += std::string_view(unit).size() + 1;
+    detail::DescriptionLength base{};
+    Description<typename detail::BaseOf<typename Shape::Outputs>::type>::add(base);
+    const std::size_t distance = inputs + detail::triangle(inputs) + 1;
+    std::size_t bytes = Records::counts;
+    for (const std::size_t length :
+         {8 + 2 * scalar, std::size_t{8}, std::size_t{8}, columns, 16 * scalar, base.letters, std::size_t{8},
+          3 * std::size_t(rotor_count), 2 * outputs * scalar, distance * scalar}) {
+      bytes += Records::head + Records::padded(length);
+    }
+    return bytes;
+  }
 };
 
 namespace detail {
+/// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
 template <class Shape>
-constexpr std::uint64_t hash_of_shape() noexcept {
+constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
+                                      const std::array<TorqueSigns, rotor_count>& signs) noexcept {
   Fnv1a fnv;
   absorb_description<typename Shape::Network>(fnv);
   fnv.absorb_text(model_frame);
@@ -82,8 +117,8 @@ constexpr std::uint64_t hash_of_shape() noexcept {
   for (const char* name : Map::names) fnv.absorb_text(name);
   // one unit for all is said once
   for (std::size_t i = 0; i < (one_unit(Map::units) ? 1 : Map::units.size()); ++i) fnv.absorb_text(Map::units[i]);
-  fnv.absorb_text(Shape::Vehicle::name);
-  for (const TorqueSigns& rotor : motor_torque_signs<typename Shape::Vehicle>()) {
+  fnv.absorb_text(vehicle_name);
+  for (const TorqueSigns& rotor : signs) {
     for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
   }
   return fnv.hash;
@@ -93,17 +128,10 @@ constexpr std::uint64_t hash_of_shape() noexcept {
 /// Names what a block's weights are for: the answer's description (inference/description.hpp), frame, feature names and units,
 /// output names and units, vehicle name and motor order.
 template <class Shape>
-inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>();
+inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>(Shape::Vehicle::name,
+                                                                         motor_torque_signs<typename Shape::Vehicle>());
 
 namespace detail {
-
-PINNQUAD_ALWAYS_INLINE constexpr std::uint32_t read_u32(const unsigned char* from) noexcept {
-  return std::uint32_t{from[0]} | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 |
-         std::uint32_t{from[3]} << 24;
-}
-PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t read_u64(const unsigned char* from) noexcept {
-  return std::uint64_t{read_u32(from)} | std::uint64_t{read_u32(from + 4)} << 32;
-}
 
 /// What a reader expects of a block's header.
 struct ExpectedBlock {
@@ -129,7 +157,8 @@ inline Status check_block(const unsigned char* block, std::size_t available,
   for (std::size_t i = 0; i < sizeof model_block_magic; ++i) {
     if (block[i] != magic[i]) return Status::block_incompatible;
   }
-  if (read_u32(block + Header::version) != model_block_version) return Status::block_incompatible;
+  const std::uint32_t version = read_u32(block + Header::version);
+  if (version < oldest_model_block_version || version > model_block_version) return Status::block_incompatible;
   const std::size_t length = read_u32(block + Header::length);
   if (length > available) return Status::block_truncated;
   if (length < Header::size + Header::checksum_size) return Status::block_corrupt;

@@ -40,6 +40,8 @@ struct ModelScales {
   FeatureVector envelope_upper{};
   std::uint64_t training_data_hash = 0;
   std::uint32_t training_rows = 0;
+  /// What the block says of itself, where it is of version 2.
+  ModelRecords<Scalar, Features::size, OutputMap<Outputs>::size> records{};
 };
 
 /// Rows of scalars in a block. As made, one row of zeros.
@@ -65,7 +67,7 @@ class BlockRows {
 };
 
 /// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
-/// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle.
+/// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle, which may name its Caller.
 /// Lifetime: scalers and envelope are copied; weights and golden vectors are read in the block each time. A copy of a
 /// view looks into the same block. As made, a view declines: its envelope is empty, its self test fails, forward()
 /// gives NaN.
@@ -81,8 +83,9 @@ class ModelView : public ModelScales<ShapeType> {
   BlockRows<Scalar, rotor_count> golden_commands{};
 
   /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
-  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, or
-  /// for another shape. `block_corrupt`: wrong checksum, no golden vector, a value that is NaN or Inf, a spread that is
+  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
+  /// another shape or caller, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
+  /// not fit their place, no golden vector, a value that is NaN or Inf, a spread that is
   /// not positive, an envelope upside down. `view` is untouched unless the Status is ok.
   /// Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
@@ -93,12 +96,18 @@ class ModelView : public ModelScales<ShapeType> {
         check_block(bytes, length,
                     {sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, shape_hash<ShapeType>});
     if (checked != Status::ok) return checked;
+    const std::size_t whole = detail::read_u32(bytes + Header::length);
+    decltype(view.records) records{};
+    std::size_t record_bytes = 0;
+    const Status read = detail::read_u32(bytes + Header::version) < 2
+                            ? RecordReader::read_none()
+                            : RecordReader::read(bytes + Header::size, whole - Header::size - Header::checksum_size,
+                                                 records, record_bytes);
+    if (read != Status::ok) return read;
     const std::uint32_t golden = detail::read_u32(bytes + Header::golden_vectors);
-    if (golden == 0 || Layout::length(golden) != detail::read_u32(bytes + Header::length)) {
-      return Status::block_corrupt;
-    }
+    if (golden == 0 || Layout::length(golden) != whole - record_bytes) return Status::block_corrupt;
     // aligned, and of this scalar type: the header says so
-    const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes + Header::size));
+    const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes + Header::size + record_bytes));
     if (!sound(scalars, golden)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
@@ -112,6 +121,7 @@ class ModelView : public ModelScales<ShapeType> {
     view.parameters_ = scalars + Layout::parameters(golden);
     view.training_data_hash = detail::read_u64(bytes + Header::training_data_hash);
     view.training_rows = detail::read_u32(bytes + Header::training_rows);
+    view.records = records;
     return Status::ok;
   }
 
@@ -129,6 +139,8 @@ class ModelView : public ModelScales<ShapeType> {
   const Scalar* parameters() const noexcept { return parameters_; }
 
  private:
+  using RecordReader = BlockRecordReader<ShapeType>;
+
   template <class Array>
   static void copy(const Scalar* from, Array& to) noexcept {
     std::memcpy(&to, from, sizeof to);

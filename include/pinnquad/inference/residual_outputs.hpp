@@ -33,8 +33,9 @@ struct LinearizedInverse {
 };
 
 /// commands = base(x) + outputs.
-template <class Base>
+template <class BaseInverse>
 struct ResidualOutputs {
+  using Base = BaseInverse;  ///< what the outputs add to; a header and a block name it by its description
   static constexpr int size = rotor_count;
   static constexpr std::array<const char*, size> names = {"du1", "du2", "du3", "du4"};
   static constexpr std::array<const char*, size> units = {"1", "1", "1", "1"};

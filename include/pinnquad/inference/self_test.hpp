@@ -88,8 +88,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// wrong kernel, compiler flag or bit in flash, or no golden vector. Every NaN and infinity is found, under -ffast-math too,
 /// where a prediction may lose it on its way to the commands. A wrong bit of a weight is found if it moves a golden command by
 /// more than the tolerance: a bit that matters less than rounding is for a checksum to find.
-template <class Model, class Guard>
-Status self_test(const InverseDynamics<Model, Guard>& inverse,
+template <class Model, class Guard, class Caller>
+Status self_test(const InverseDynamics<Model, Guard, Caller>& inverse,
                  SelfTestReport<typename Model::Scalar>& report) noexcept {
   using Scalar = typename Model::Scalar;
   report = {};
@@ -138,8 +138,8 @@ Status self_test(const InverseDynamics<Model, Guard>& inverse,
   return Status::ok;
 }
 
-template <class Model, class Guard>
-Status self_test(const InverseDynamics<Model, Guard>& inverse) noexcept {
+template <class Model, class Guard, class Caller>
+Status self_test(const InverseDynamics<Model, Guard, Caller>& inverse) noexcept {
   SelfTestReport<typename Model::Scalar> report;
   return self_test(inverse, report);
 }

@@ -25,9 +25,8 @@ struct SignedCommandSum {
 
   SignedCommandSum(const Context& context, const Batch& batch, Scalar spread)
       : commands(Array::Zero(batch.prediction.cols())), slope(Slope::Zero(Map::size, batch.prediction.cols())) {
-    constexpr Airframe<Scalar> airframe = airframe_value<typename Context::Vehicle, Scalar>();
-    constexpr std::array<Scalar, rotor_count> signs = allocation_signs(airframe, Axis::axis);
-    constexpr auto setting = Map::setting(airframe);
+    const std::array<Scalar, rotor_count> signs = context.template signs<Axis, Scalar>();
+    const auto setting = context.template output_setting<typename Context::Outputs, Scalar>();
     for (Eigen::Index sample = 0; sample < commands.size(); ++sample) {
       Scalar x[Context::Features::size], outputs[Map::size], u[rotor_count], by_outputs[Map::slope_count];
       if constexpr (Map::takes_features) {

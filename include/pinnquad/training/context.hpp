@@ -6,20 +6,18 @@
 #include <array>
 
 #include "pinnquad/data/settings.hpp"
-#include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/schedule/progress.hpp"
+#include "pinnquad/training/context_airframe.hpp"
 
 namespace pinnquad {
 
 template <class FeatureSet, class VehicleType, class Schema = CommandOutputs>
-struct Context {
+struct Context : ContextAirframe<VehicleType> {
   static_assert(is_feature_set<FeatureSet>,
                 "pinnquad: Context's first argument is not a feature set (inference/features.hpp)");
-  static_assert(is_airframe<VehicleType>,
-                "pinnquad: Context's second argument is not an airframe (dynamics/airframe.hpp)");
   static_assert(is_output_schema<Schema>,
                 "pinnquad: Context's third argument is not an output schema (inference/output_schema.hpp)");
   using Features = FeatureSet;
@@ -39,12 +37,6 @@ struct Context {
     check_scaler("Context::input", input.mean, input.spread);
     check_scaler("Context::output", output.mean, output.spread);
     check_scaler("Context::signed_sum_spread", std::array<double, 3>{}, signed_sum_spread);
-  }
-
-  /// Signs of the commands in the torque about an axis: a row of Eq. (2) for this airframe.
-  template <class Axis>
-  static constexpr std::array<double, rotor_count> signs() noexcept {
-    return allocation_signs(airframe_value<Vehicle, double>(), Axis::axis);
   }
 
  private:

@@ -15,7 +15,7 @@ namespace pinnquad {
 
 /// Values of the network's own scalar type, as the exported header holds them.
 template <class NetworkType, class ContextType>
-struct TrainedModel {
+struct TrainedModel : ContextAirframe<typename ContextType::Vehicle> {
   static_assert(NetworkType::outputs == ContextType::output_count,
                 "pinnquad: a trained model's network has one output per output of its context's schema");
   static_assert(NetworkType::inputs == ContextType::Features::size,
@@ -39,9 +39,12 @@ struct TrainedModel {
     Commands<Scalar> commands{};
     const detail::Scales<Scalar> scales{input.mean.data(), input.spread.data(), output.mean.data(),
                                         output.spread.data()};
-    detail::Pipeline<Features, Outputs, Vehicle>::run(
-        scales, x.data(), outputs, commands.data(),
+    detail::Pipeline<Features, Outputs, Vehicle>::template ask<1>(
+        scales, x.data(), 1, 1, outputs,
         [this](const Scalar* standardised, Scalar* made) { network.forward(standardised, made); });
+    output.restore(outputs, outputs);
+    OutputMap<Outputs>::commands(x.data(), static_cast<const Scalar*>(outputs),
+                                 this->template output_setting<Outputs, Scalar>(), commands.data());
     return commands;
   }
   Commands<Scalar> predict(const Sample& sample) const noexcept {
@@ -60,7 +63,7 @@ TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkT
                                                                   const ContextType& context, const RowSet& training) {
   using Model = TrainedModel<Folded<NetworkType>, ContextType>;
   using Scalar = typename Model::Scalar;
-  Model model;
+  Model model{context};
   model.network = folded(network);
   for (Scalar& weight : model.network.parameters) {
     if (std::abs(static_cast<double>(weight)) < negligible_weight) weight = Scalar(0);

@@ -29,12 +29,12 @@ struct TrainingData {
 
 namespace detail {
 
-/// Outputs of a sample with these features in the schema's physical units.
-template <class ContextType, class FeatureVector>
+/// Outputs of a sample with these features in the schema's physical units. `setting`: ContextAirframe::output_setting().
+template <class ContextType, class FeatureVector, class Setting>
 std::array<double, static_cast<std::size_t>(ContextType::output_count)> sample_outputs(const FeatureVector& x,
-                                                                                       const Sample& sample) {
+                                                                                       const Sample& sample,
+                                                                                       const Setting& setting) {
   using Map = OutputMap<typename ContextType::Outputs>;
-  constexpr auto setting = Map::setting(airframe_value<typename ContextType::Vehicle, double>());
   std::array<double, static_cast<std::size_t>(Map::size)> outputs{};
   Map::from_commands(x.data(), sample.commands.data(), setting, outputs.data());
   return outputs;
@@ -70,19 +70,20 @@ std::vector<std::string> still_features(const Flight& flight, const IndexRange& 
 }
 
 /// The context of a training set: scalers and spreads of its rows. A column that stands still gets the spread 1.
-/// Flights count by their rows, whatever their weights.
+/// Flights count by their rows, whatever their weights. `airframe`: where the context's Vehicle is a GivenAirframe.
 template <class ContextType>
-ContextType make_context(const RowSet& rows) {
+ContextType make_context(const RowSet& rows, const ContextAirframe<typename ContextType::Vehicle>& airframe) {
   using Features = typename ContextType::Features;
   constexpr auto inputs = static_cast<std::size_t>(Features::size);
   constexpr std::size_t outputs = std::size_t(ContextType::output_count), axes = 3;
   const std::array<std::array<double, rotor_count>, axes> signs = {
-      ContextType::template signs<Roll>(), ContextType::template signs<Pitch>(), ContextType::template signs<Yaw>()};
+      airframe.template signs<Roll>(), airframe.template signs<Pitch>(), airframe.template signs<Yaw>()};
+  const auto setting = airframe.template output_setting<typename ContextType::Outputs, double>();
   // one table: features, outputs, signed sums of the commands
   const auto each_row = [&](const auto& visit) {
     each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
       const Sample& sample = flight[row];
-      const auto y = detail::sample_outputs<ContextType>(x, sample);
+      const auto y = detail::sample_outputs<ContextType>(x, sample, setting);
       std::array<double, inputs + outputs + axes> values{};
       for (std::size_t i = 0; i < inputs; ++i) values[i] = x[i];
       for (std::size_t i = 0; i < outputs; ++i) values[inputs + i] = y[i];
@@ -95,7 +96,7 @@ ContextType make_context(const RowSet& rows) {
     return i < inputs + outputs ? OutputMap<typename ContextType::Outputs>::units[i - inputs] : CommandOutputs::unit;
   };
   const auto columns = column_statistics<inputs + outputs + axes>(each_row, unit_of);
-  ContextType context;
+  ContextType context{airframe};
   for (std::size_t i = 0; i < inputs; ++i) {
     context.input.mean[i] = columns[i].mean;
     context.input.spread[i] = columns[i].scale();
@@ -106,6 +107,10 @@ ContextType make_context(const RowSet& rows) {
   }
   for (std::size_t i = 0; i < axes; ++i) context.signed_sum_spread[i] = columns[inputs + outputs + i].scale();
   return context;
+}
+template <class ContextType>
+ContextType make_context(const RowSet& rows) {
+  return make_context<ContextType>(rows, ContextAirframe<typename ContextType::Vehicle>{});
 }
 template <class ContextType>
 ContextType make_context(const Flight& flight, const IndexRange& range) {
@@ -122,8 +127,9 @@ TrainingData<Scalar, ContextType::Features::size, ContextType::output_count> sta
   data.outputs.reserve(rows.size() * static_cast<std::size_t>(ContextType::output_count));
   const bool weighted = std::any_of(rows.pieces().begin(), rows.pieces().end(),
                                     [](const FlightRows& piece) { return piece.flight->weight != 1; });
+  const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
   each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, auto x) {
-    auto y = detail::sample_outputs<ContextType>(x, flight[row]);
+    auto y = detail::sample_outputs<ContextType>(x, flight[row], setting);
     context.input.standardise(x.data(), x.data());
     context.output.standardise(y.data(), y.data());
     for (const double v : x) data.features.push_back(static_cast<Scalar>(v));

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// The records of an exported model, found once, for the header (inference/model_records.hpp) and for the block
+// (inference/block_records.hpp).
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "pinnquad/deploy/literal.hpp"
+#include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/inference/block_records.hpp"
+
+namespace pinnquad::detail {
+
+/// A description as a text (inference/description.hpp).
+struct DescriptionText {
+  std::string text;
+  void add(std::string_view piece) { text += piece; }
+  void add(int number) { text += std::to_string(number); }
+};
+template <class T>
+std::string description_text() {
+  DescriptionText sink;
+  Description<T>::add(sink);
+  return sink.text;
+}
+
+/// What the records of a model say that its types don't.
+struct ExportedTerms {
+  CommandMeaning command_meaning = CommandMeaning::thrust;
+  double command_lower = 0, command_upper = 1, sample_period_s = 0, lag_removed_s = 0;
+  AllocationMatrix<double> allocation{};
+  std::optional<std::uint32_t> judged{};  ///< bits of Judged
+  std::optional<std::array<TorqueSigns, rotor_count>> slope_signs{};
+  std::optional<ResidualRange> residual_range{};
+  std::optional<DistanceStatistics> distance{};
+};
+
+/// Of a training. Throws std::invalid_argument for a range that is none, a time beyond 0 to 4 s, another period than the
+/// window's, and for statistics of another length than the model's, or that are not finite.
+template <class Features, class Outputs>
+ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& airframe) {
+  const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
+  ExportedTerms terms;
+  terms.command_meaning = from.command_meaning ? *from.command_meaning : command_meaning_of(airframe);
+  terms.command_lower = from.command_lower;
+  terms.command_upper = from.command_upper;
+  if (!is_finite(from.command_lower) || !is_finite(from.command_upper) || !(from.command_lower <= from.command_upper)) {
+    refuse("the range of the commands is none");
+  }
+  const auto is_time = [](double seconds) { return is_finite(seconds) && seconds >= 0 && seconds <= 4; };
+  if (!is_time(from.sample_period_s)) refuse("the sample period is not one of 0 to 4 s");
+  if (!is_time(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 4 s");
+  constexpr double window_s = WindowOf<Features>::period_s;
+  if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
+    refuse("the sample period is not that of the features' window");
+  }
+  terms.sample_period_s = window_s > 0 ? window_s : from.sample_period_s;
+  terms.lag_removed_s = from.lag_removed_s;
+  terms.allocation = allocation(airframe);
+  if (from.verdict) {
+    terms.judged = (from.verdict->worse_than_mean() ? Judged::worse_than_mean : 0u) |
+                   (from.verdict->beats_linear_regression() ? Judged::beats_linear_regression : 0u);
+  }
+  terms.slope_signs = from.slope_signs;
+  if (from.residual_range) {
+    constexpr auto outputs = static_cast<std::size_t>(OutputMap<Outputs>::size);
+    const ResidualRange& range = *from.residual_range;
+    if (range.lower.size() != outputs || range.upper.size() != outputs) {
+      refuse("the range of a residual is not one of bounds for every output");
+    }
+    require_finite(range.lower, "the lower bounds of the residual");
+    require_finite(range.upper, "the upper bounds of the residual");
+    for (std::size_t i = 0; i < outputs; ++i) {
+      if (!(range.lower[i] <= range.upper[i])) refuse("a lower bound of the residual lies above the upper one");
+    }
+    terms.residual_range = range;
+  }
+  if (from.distance) {
+    constexpr auto size = static_cast<std::size_t>(Features::size);
+    const DistanceStatistics& distance = *from.distance;
+    if (distance.mean.size() != size || distance.inverse_cholesky.size() != triangle(size)) {
+      refuse("the statistics of a distance are not those of " + std::to_string(size) + " features");
+    }
+    require_finite(distance.mean, "the means of the distance");
+    require_finite(distance.inverse_cholesky, "the triangle of the distance");
+    if (!is_finite(distance.limit) || !(distance.limit > 0)) refuse("the limit of the distance is no number above 0");
+    terms.distance = distance;
+  }
+  return terms;
+}
+
+template <class M, class = void>
+struct HasVerdict : std::false_type {};
+template <class M>
+struct HasVerdict<M, std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>> : std::true_type {
+};
+
+template <class Array>
+std::vector<double> as_doubles(const Array& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
+/// Of an exported header, of whatever format.
+template <class M>
+ExportedTerms header_records() {
+  const auto airframe = airframe_value<typename M::Vehicle, double>();
+  ExportedTerms terms;
+  terms.allocation = allocation(airframe);
+  if constexpr (HasRecords<M>::value) {
+    terms.command_meaning = M::command_meaning;
+    terms.command_lower = M::command_lower;
+    terms.command_upper = M::command_upper;
+    terms.sample_period_s = M::sample_period_s;
+    terms.lag_removed_s = M::lag_removed_s;
+  } else {
+    terms.command_meaning = command_meaning_of(airframe);
+    terms.sample_period_s = WindowOf<typename M::Features>::period_s;
+  }
+  if constexpr (HasVerdict<M>::value) {
+    terms.judged = (M::worse_than_mean ? Judged::worse_than_mean : 0u) |
+                   (M::beats_linear_regression ? Judged::beats_linear_regression : 0u);
+  }
+  if constexpr (HasSlopeSigns<M>::value) terms.slope_signs = M::slope_signs;
+  if constexpr (HasResidualRange<M>::value) {
+    terms.residual_range = ResidualRange{as_doubles(M::residual_lower), as_doubles(M::residual_upper)};
+  }
+  if constexpr (HasDistance<M>::value) {
+    terms.distance = DistanceStatistics{as_doubles(M::distance_mean), as_doubles(M::distance_inverse_cholesky),
+                                        static_cast<double>(M::distance_limit)};
+  }
+  return terms;
+}
+
+/// The same numbers in a model's Scalar.
+template <class Scalar>
+std::vector<Scalar> rounded(const std::vector<double>& values) {
+  std::vector<Scalar> result;
+  for (const double value : values) result.push_back(static_cast<Scalar>(value));
+  return result;
+}
+
+/// Writes the constants of format 3 into a struct.
+template <class Network, class Features, class Outputs>
+void write_header_records(std::ostream& out, const ExportedTerms& terms) {
+  using Scalar = typename Network::Scalar;
+  const std::string scalar = std::is_same_v<Scalar, float> ? "float" : "double";
+  const auto constant = [&](const std::string& type, const char* name, const std::string& value) {
+    out << "  static constexpr " << type << " " << name << " = " << value << ";\n";
+  };
+  const auto list = [&](const std::string& type, const char* name, const auto& values) {
+    out << "  static constexpr std::array<" << type << ", " << values.size() << "> " << name << " = ";
+    if (values.size() == 0) {
+      out << "{};\n";
+      return;
+    }
+    out << '{';
+    write_braced(out, values, "  ");
+    out << "};\n";
+  };
+  const auto table = [&](const std::string& type, const char* name, const auto& rows) {
+    out << "  static constexpr std::array<std::array<" << type << ", " << rows[0].size() << ">, " << rows.size() << "> "
+        << name << " = {{";
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      out << (i == 0 ? "\n    {" : ",\n    {");
+      write_braced(out, rows[i], "    ");
+      out << '}';
+    }
+    out << "}};\n";
+  };
+  using Window = WindowOf<Features>;
+  out << "\n  // records: a reader that does not know one of them must not fly the model "
+         "(inference/model_records.hpp)\n";
+  std::vector<std::string> names;
+  for (const std::string_view record : known_records) names.emplace_back(record);
+  std::vector<const char*> records;
+  for (const std::string& name : names) records.push_back(name.c_str());
+  list("const char*", "records", records);
+  constant("const char*", "answer", quoted(description_text<Network>()));
+  constant("auto", "command_meaning", std::string("pinnquad::CommandMeaning::") + to_string(terms.command_meaning));
+  constant("double", "command_lower", literal(terms.command_lower));
+  constant("double", "command_upper", literal(terms.command_upper));
+  constant("double", "sample_period_s", literal(terms.sample_period_s));
+  constant("double", "lag_removed_s", literal(terms.lag_removed_s));
+  constant("int", "window_taps", std::to_string(Window::taps));
+  constant("bool", "causal", Window::causal ? "true" : "false");
+  list("const char*", "column_names", extra_column_names<Features>);
+  list("const char*", "column_units", extra_column_units<Features>);
+  out << "  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density\n";
+  table("double", "allocation", terms.allocation);
+  constant("const char*", "base", quoted(description_text<typename BaseOf<Outputs>::type>()));
+  if (terms.slope_signs) table("int", "slope_signs", *terms.slope_signs);
+  if (terms.residual_range) {
+    list(scalar, "residual_lower", rounded<Scalar>(terms.residual_range->lower));
+    list(scalar, "residual_upper", rounded<Scalar>(terms.residual_range->upper));
+  }
+  if (terms.distance) {
+    list(scalar, "distance_mean", rounded<Scalar>(terms.distance->mean));
+    list(scalar, "distance_inverse_cholesky", rounded<Scalar>(terms.distance->inverse_cholesky));
+    constant(scalar, "distance_limit", literal(static_cast<Scalar>(terms.distance->limit)));
+  }
+}
+
+}  // namespace pinnquad::detail
