@@ -11,6 +11,7 @@
 #include "fault_script.hpp"
 #include "model_blocks.hpp"
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/core/rotation.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "stacks.hpp"
 
@@ -104,7 +105,7 @@ class FaultyFlight {
                   "%s; altitude from %.2f m, tilt up to %.1f deg, error up to %.2f m, RMSE %.3f m; formula %.2f %% "
                   "of the answers, %u samples refused",
                   figures_.crashed ? "CRASHED" : "in the air", figures_.min_altitude_m,
-                  figures_.max_tilt_rad * 57.29577951308232, figures_.max_error_m, figures_.rmse_m,
+                  figures_.max_tilt_rad * pinnquad::degrees_per_radian, figures_.max_error_m, figures_.rmse_m,
                   100 * static_cast<double>(figures_.fallback_share), figures_.refused_samples);
     say("end", line);
     return figures_;

@@ -10,6 +10,7 @@
 #include "crazyflie_app/src/neural_control_core.hpp"
 #include "models/crazyflie_2_1.hpp"
 #include "models/demo_quadrotor.hpp"
+#include "pinnquad/core/rotation.hpp"
 #include "px4_module/neural_control_core.hpp"
 
 namespace flight_stacks::test {
@@ -120,9 +121,9 @@ class CrazyflieStackOf {
 
   void rates(std::uint64_t time_us, const pinnquad::Vector3<double>& w) {
     state_.gyro_timestamp = in_ms(time_us);
-    state_.gyro[0] = static_cast<float>(w[0] * degrees);
-    state_.gyro[1] = static_cast<float>(-w[1] * degrees);
-    state_.gyro[2] = static_cast<float>(-w[2] * degrees);
+    state_.gyro[0] = static_cast<float>(w[0] * pinnquad::degrees_per_radian);
+    state_.gyro[1] = static_cast<float>(-w[1] * pinnquad::degrees_per_radian);
+    state_.gyro[2] = static_cast<float>(-w[2] * pinnquad::degrees_per_radian);
   }
   /// Through matrices: columns are the body's axes forward, left and up; rows east, north and up.
   void attitude(std::uint64_t time_us, const pinnquad::Quaternion<double>& q) {
@@ -157,8 +158,8 @@ class CrazyflieStackOf {
     world(point.position_m, setpoint_.position);
     world(point.velocity_m_s, setpoint_.velocity);
     world(point.acceleration_m_s2, setpoint_.acceleration);
-    setpoint_.yaw = static_cast<float>(90.0 - point.yaw_rad * degrees);
-    setpoint_.yaw_rate = static_cast<float>(-point.yaw_rate_rad_s * degrees);
+    setpoint_.yaw = static_cast<float>(90.0 - point.yaw_rad * pinnquad::degrees_per_radian);
+    setpoint_.yaw_rate = static_cast<float>(-point.yaw_rate_rad_s * pinnquad::degrees_per_radian);
     for (std::uint8_t& mode : setpoint_.mode) mode = crazyflie_mode_abs;
     setpoint_.mode_yaw = crazyflie_mode_abs;
   }
@@ -174,7 +175,6 @@ class CrazyflieStackOf {
   }
 
  private:
-  static constexpr double degrees = 57.29577951308232;
   static std::uint32_t in_ms(std::uint64_t time_us) { return static_cast<std::uint32_t>(time_us / 1000); }
   static void world(const pinnquad::Vector3<double>& ned, float (&enu)[3]) {
     enu[0] = static_cast<float>(ned[1]);

@@ -112,7 +112,7 @@ each_value() { # <name of the array> <command>...
   for value in "${values[@]}"; do refused "$@" "$value"; done
 }
 
-unwritable=(. / .. /dev/null /dev/full /dev/stdout /proc/f.csv /proc/f.csv /dev/null/f.csv run/absent/f.csv in/short.csv/f.csv run/absent/
+unwritable=(. / .. /dev/null /dev/full /dev/stdout /proc/f.csv /dev/null/f.csv run/absent/f.csv in/short.csv/f.csv run/absent/
   run/folder run/fifo run/dangling run/loop '' "run/$(printf 'n%.0s' {1..256})" "$(printf 'run/%.0s' {1..1500})f.csv")
 hostile_places() {
   mkdir run/folder

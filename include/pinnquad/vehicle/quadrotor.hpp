@@ -52,8 +52,7 @@ class Quadrotor {
       "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
   static_assert((is_whole_effect<Effects, Scalar>() && ...),
                 "pinnquad: an effect's surroundings(), wrench(), wrench_on(), bound() or status() can't be called as "
-                "the contract "
-                "says, or returns something else: it would be passed over (aero/effect.hpp)");
+                "the contract says, or returns something else: it would be passed over (aero/effect.hpp)");
   static_assert((is_noexcept_effect<Effects, Scalar> && ...),
                 "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on(), bound() and status() must be "
                 "noexcept (aero/effect.hpp)");
