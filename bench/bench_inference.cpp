@@ -45,7 +45,7 @@ void register_eigen(const PaperNetwork& network) {
 /// `Dense/<In>x<Out>`: as many outputs as there are inputs to take them are fed back.
 template <int In, int Out>
 void register_dense() {
-  using Net = Network<float, Inputs<In>, Dense<Out>, Relu>;
+  using Net = Network<float, InputSize<In>, Dense<Out>, Relu>;
   static const PackedNetwork<Net> packed = [] {
     std::mt19937_64 engine(3);
     typename Net::Parameters parameters{};

@@ -23,7 +23,7 @@ struct EvenRotors {
 };
 
 int main() {
-  using Net = Mlp<float, Inputs<16>, Hidden<3, 25>, Outputs<4>, Relu>;
+  using Net = Mlp<float, InputSize<16>, Hidden<3, 25>, OutputSize<4>, Relu>;
   using Loss =
       PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnnealing>, Weighted<EvenRotors, Constant>>;
   using Settings = Context<PaperFeatures, PaperQuadrotor>;

@@ -15,8 +15,8 @@
 
 namespace pinnquad::bench {
 
-using PaperNetwork = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
-using PaperBatchNormNetwork = BatchNormMlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+using PaperNetwork = Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
+using PaperBatchNormNetwork = BatchNormMlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
 using PaperInput = std::array<float, PaperNetwork::inputs>;
 using PaperOutput = std::array<float, PaperNetwork::outputs>;
 

@@ -21,8 +21,8 @@
 namespace programs {
 
 /// The paper's network and its two losses.
-using PaperNetwork = pinnquad::Mlp<float, pinnquad::Inputs<pinnquad::PaperFeatures::size>, pinnquad::Hidden<10, 25>,
-                                   pinnquad::Outputs<pinnquad::rotor_count>, pinnquad::Relu>;
+using PaperNetwork = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::PaperFeatures::size>, pinnquad::Hidden<10, 25>,
+                                   pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
 using VanillaLoss = pinnquad::Mse;
 using PhysicsLoss = pinnquad::PaperLoss<pinnquad::CyclicalAnnealing>;
 

@@ -15,13 +15,13 @@ template <class Features, class BatchNormChoice>
 struct NetworkOf;
 template <class Features>
 struct NetworkOf<Features, Without> {
-  using type = pinnquad::Mlp<float, pinnquad::Inputs<Features::size>, pinnquad::Hidden<10, 25>,
-                             pinnquad::Outputs<pinnquad::rotor_count>, pinnquad::Relu>;
+  using type = pinnquad::Mlp<float, pinnquad::InputSize<Features::size>, pinnquad::Hidden<10, 25>,
+                             pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
 };
 template <class Features>
 struct NetworkOf<Features, With> {
-  using type = pinnquad::BatchNormMlp<float, pinnquad::Inputs<Features::size>, pinnquad::Hidden<10, 25>,
-                                      pinnquad::Outputs<pinnquad::rotor_count>, pinnquad::Relu>;
+  using type = pinnquad::BatchNormMlp<float, pinnquad::InputSize<Features::size>, pinnquad::Hidden<10, 25>,
+                                      pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
 };
 }  // namespace detail
 

@@ -13,10 +13,10 @@ namespace {
 
 using pinnquad::Dense;
 using pinnquad::Hidden;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Mlp;
 using pinnquad::Network;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::Relu;
 
 #if !defined(ROUNDED_TWICE) && !defined(__FP_FAST_FMAF) && !defined(__FMA__) && !defined(__ARM_FEATURE_FMA)
@@ -60,9 +60,9 @@ void print_network(const char* name) {
 
 int main() {
   using WithoutBias = pinnquad::DenseWithoutBias<9>;
-  print_network<Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>>("paper");
-  print_network<Mlp<double, Inputs<16>, Hidden<3, 25>, Outputs<4>, Relu>>("double");
-  print_network<Mlp<float, Inputs<16>, Hidden<2, 64>, Outputs<4>, Relu>>("wide");
-  print_network<Network<float, Inputs<7>, WithoutBias, Relu, WithoutBias, Dense<3>, Relu>>("without_bias");
+  print_network<Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>>("paper");
+  print_network<Mlp<double, InputSize<16>, Hidden<3, 25>, OutputSize<4>, Relu>>("double");
+  print_network<Mlp<float, InputSize<16>, Hidden<2, 64>, OutputSize<4>, Relu>>("wide");
+  print_network<Network<float, InputSize<7>, WithoutBias, Relu, WithoutBias, Dense<3>, Relu>>("without_bias");
   return 0;
 }

@@ -77,25 +77,25 @@ struct SquareByInput {
 };
 
 #if defined(NOT_A_LAYER)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, Nothing>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, pinnquad::Dense<4>, Nothing>;
 #elif defined(LAYER_WITHOUT_FORWARD)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, NoForward>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, NoForward>;
 #elif defined(LAYER_WITHOUT_SCALAR)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, NoScalar>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, NoScalar>;
 #elif defined(LAYER_OF_OTHER_WIDTH)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<5>, FourWide>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, pinnquad::Dense<5>, FourWide>;
 #elif defined(FORWARD_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, ForwardMayThrow>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, ForwardMayThrow>;
 #elif defined(ACTIVATION_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, Square<false, true>>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, Square<false, true>>;
 #elif defined(SLOPE_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, Square<true, false>>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, Square<true, false>>;
 #elif defined(SLOPE_FROM_INPUT_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, SquareByInput<false>>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, SquareByInput<false>>;
 #elif defined(NO_LAYERS)
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>>;
 #else
-using Net = pinnquad::Network<float, pinnquad::Inputs<4>, pinnquad::Dense<4>, pinnquad::Relu, Square<true, true>,
+using Net = pinnquad::Network<float, pinnquad::InputSize<4>, pinnquad::Dense<4>, pinnquad::Relu, Square<true, true>,
                               SquareByInput<true>, FourWide>;
 #endif
 

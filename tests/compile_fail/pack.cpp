@@ -54,17 +54,17 @@ struct TwoFloats {
   static constexpr int lane_of_value(int value) noexcept { return value; }
   static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
   template <int First>
-  TwoFloats spread() const noexcept {
+  TwoFloats repeat() const noexcept {
     return broadcast(First == 0 ? a : b);
   }
-  static TwoFloats spread(const float* x) noexcept { return broadcast(*x); }
-  static TwoFloats spread_last(TwoFloats v) noexcept { return broadcast(v.a); }
+  static TwoFloats repeat(const float* x) noexcept { return broadcast(*x); }
+  static TwoFloats repeat_last(TwoFloats v) noexcept { return broadcast(v.a); }
   static TwoFloats from_scalar(float v) noexcept { return broadcast(v); }
 #ifndef LAYOUT_WITHOUT_COLLECT
   static TwoFloats collect(const TwoFloats* sum) noexcept { return *sum; }
 #endif
   template <int Count>
-  TwoFloats keep() const noexcept {
+  TwoFloats head() const noexcept {
     return {a, Count > 1 ? b : 0};
   }
   TwoFloats sum_of_values() const noexcept { return broadcast(a + b); }
@@ -76,7 +76,8 @@ struct TwoFloats {
   }
 };
 
-using Net = pinnquad::Mlp<float, pinnquad::Inputs<4>, pinnquad::Hidden<2, 5>, pinnquad::Outputs<3>, pinnquad::Relu>;
+using Net =
+    pinnquad::Mlp<float, pinnquad::InputSize<4>, pinnquad::Hidden<2, 5>, pinnquad::OutputSize<3>, pinnquad::Relu>;
 
 }  // namespace
 

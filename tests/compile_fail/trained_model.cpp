@@ -7,11 +7,11 @@
 #include "pinnquad/nn/relu.hpp"
 
 #if defined(SIX_OUTPUTS)
-using Net = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<6>>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<6>>;
 #elif defined(FIFTEEN_INPUTS)
-using Net = pinnquad::Network<float, pinnquad::Inputs<15>, pinnquad::Dense<4>>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<15>, pinnquad::Dense<4>>;
 #else
-using Net = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<4>>;
+using Net = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<4>>;
 #endif
 
 int main() {

@@ -28,7 +28,7 @@
 namespace {
 
 using pinnquad::Dense;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Network;
 using pinnquad::Relu;
 
@@ -89,21 +89,21 @@ struct pinnquad::BackwardRule<Turned::Bind<Scalar, In>> {
 namespace {
 
 #if defined(INPUTS_DIFFER)
-using Net = Network<float, Inputs<15>, Dense<8>, Relu, Dense<4>>;
+using Net = Network<float, InputSize<15>, Dense<8>, Relu, Dense<4>>;
 #elif defined(OUTPUTS_DIFFER)
-using Net = Network<float, Inputs<16>, Dense<8>, Relu, Dense<3>>;
+using Net = Network<float, InputSize<16>, Dense<8>, Relu, Dense<3>>;
 #elif defined(NO_BACKWARD_RULE)
-using Net = Network<float, Inputs<16>, Dense<8>, Reverse, Dense<4>>;
+using Net = Network<float, InputSize<16>, Dense<8>, Reverse, Dense<4>>;
 #elif defined(NO_SLOPE)
-using Net = Network<float, Inputs<16>, Dense<8>, Square, Dense<4>>;
+using Net = Network<float, InputSize<16>, Dense<8>, Square, Dense<4>>;
 #elif defined(BATCH_NORM_OF_ONE)
-using Net = Network<float, Inputs<16>, pinnquad::DenseWithoutBias<8>, pinnquad::BatchNorm, Relu, Dense<4>>;
+using Net = Network<float, InputSize<16>, pinnquad::DenseWithoutBias<8>, pinnquad::BatchNorm, Relu, Dense<4>>;
 #elif defined(BATCH_NORM_BEHIND_ACTIVATION)
-using Net = Network<float, Inputs<16>, Dense<8>, Relu, pinnquad::BatchNorm, Dense<4>>;
+using Net = Network<float, InputSize<16>, Dense<8>, Relu, pinnquad::BatchNorm, Dense<4>>;
 #elif defined(NOT_A_NETWORK)
 using Net = Dense<4>;
 #else
-using Net = Network<float, Inputs<16>, Dense<8>, Relu, Turned, Dense<4>>;
+using Net = Network<float, InputSize<16>, Dense<8>, Relu, Turned, Dense<4>>;
 #endif
 
 #if defined(NOT_A_LOSS)

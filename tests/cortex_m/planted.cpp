@@ -93,7 +93,7 @@ void pinnquad_forward(const float* x, float* y) {
 #elif PLANTED == STATIC_BUFFER
   buffer[0] = y[0];
 #elif PLANTED == CODE_TWICE
-  using Wider = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<24>, pinnquad::Dense<23>>;
+  using Wider = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<24>, pinnquad::Dense<23>>;
   float unused[23];
   if (x[0] > 1e37F && y[0] < -1e37F) {
     Wider::forward(parameters, x, unused);

@@ -9,8 +9,8 @@
 
 namespace {
 
-using Net = pinnquad::Mlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<HIDDEN_LAYERS, HIDDEN_WIDTH>,
-                          pinnquad::Outputs<4>, pinnquad::Relu>;
+using Net = pinnquad::Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<HIDDEN_LAYERS, HIDDEN_WIDTH>,
+                          pinnquad::OutputSize<4>, pinnquad::Relu>;
 
 constexpr Net::Parameters numbers() {
   Net::Parameters result{};

@@ -14,7 +14,7 @@ namespace {
 using namespace pinnquad;
 
 void write(const std::string& path, const std::string& name) {
-  using Net = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+  using Net = Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
   using Model = TrainedModel<Net, Context<PaperFeatures, PaperQuadrotor>>;
   std::mt19937_64 engine(7);
   Model model;

@@ -29,7 +29,7 @@ namespace {
 
 using namespace pinnquad;
 
-using Net = Network<float, Inputs<16>, Dense<5>, Relu, Dense<4>>;
+using Net = Network<float, InputSize<16>, Dense<5>, Relu, Dense<4>>;
 using Model = TrainedModel<Net, Context<PaperFeatures, PaperQuadrotor>>;
 
 Model some_model(std::uint64_t seed) {
@@ -95,18 +95,17 @@ TEST_CASE("a literal reads back as the same bits and has the type of its value")
 TEST_CASE("type names are those that another translation unit can write") {
   CHECK(type_name<float>() == "float");
   CHECK(type_name<PaperFeatures>() == "pinnquad::PaperFeatures");
-  CHECK(
-      type_name<
-          Network<float, Inputs<3>, Dense<2>, pinnquad::Gelu, pinnquad::Silu, pinnquad::Softplus, pinnquad::Sine>>() ==
-      "pinnquad::Network<float, pinnquad::Inputs<3>, pinnquad::Dense<2>, pinnquad::Gelu, pinnquad::Silu, "
-      "pinnquad::Softplus, pinnquad::Sine>");
-  CHECK(type_name<Net>().find("pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<5>, pinnquad::Relu, "
+  CHECK(type_name<Network<float, InputSize<3>, Dense<2>, pinnquad::Gelu, pinnquad::Silu, pinnquad::Softplus,
+                          pinnquad::Sine>>() ==
+        "pinnquad::Network<float, pinnquad::InputSize<3>, pinnquad::Dense<2>, pinnquad::Gelu, pinnquad::Silu, "
+        "pinnquad::Softplus, pinnquad::Sine>");
+  CHECK(type_name<Net>().find("pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<5>, pinnquad::Relu, "
                               "pinnquad::Dense<4>>") == 0);  // with every compiler
   // nor of its flags: a type of an inline namespace that names an instruction set, in another such
-  using Small = Network<float, Inputs<2>, Dense<1>>;
+  using Small = Network<float, InputSize<2>, Dense<1>>;
   CHECK(type_name<pinnquad::Sum<pinnquad::Scaled<Small>, Small>>() ==
-        "pinnquad::Sum<pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<2>, pinnquad::Dense<1>>>, "
-        "pinnquad::Network<float, pinnquad::Inputs<2>, pinnquad::Dense<1>>>");
+        "pinnquad::Sum<pinnquad::Scaled<pinnquad::Network<float, pinnquad::InputSize<2>, pinnquad::Dense<1>>>, "
+        "pinnquad::Network<float, pinnquad::InputSize<2>, pinnquad::Dense<1>>>");
 }
 
 TEST_CASE("weights, scalers, envelope and golden vectors are in the header, bit for bit") {

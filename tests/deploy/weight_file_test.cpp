@@ -24,7 +24,7 @@ using pinnquad::test::BlockBytes;
 using pinnquad::test::DescribedModel;
 
 template <class Scalar, class Outputs>
-using ModelOf = TrainedModel<Network<Scalar, Inputs<17>, Dense<7>, Relu, Dense<4>>,
+using ModelOf = TrainedModel<Network<Scalar, InputSize<17>, Dense<7>, Relu, Dense<4>>,
                              Context<PaperFeaturesWithAltitude, PaperQuadrotor, Outputs>>;
 
 template <class Model>

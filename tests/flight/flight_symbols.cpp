@@ -232,12 +232,13 @@ float pinnquad_flight_output_schema(float output) {
 // nn: the layers that the small model has not
 
 void pinnquad_flight_tanh_network(const float* parameters, const float* x, float* y) {
-  using Net = pinnquad::Mlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<2, 12>, pinnquad::Outputs<4>, pinnquad::Tanh>;
+  using Net =
+      pinnquad::Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<2, 12>, pinnquad::OutputSize<4>, pinnquad::Tanh>;
   Net::forward(parameters, x, y);
 }
 
 void pinnquad_flight_smooth_network(const float* parameters, const float* x, float* y, float* jacobian) {
-  using Net = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
+  using Net = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
                                 pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus, pinnquad::Dense<9>,
                                 pinnquad::Sine, pinnquad::Dense<4>>;
   pinnquad::JacobianPass<Net>::run(parameters, x, y, jacobian);
@@ -245,7 +246,8 @@ void pinnquad_flight_smooth_network(const float* parameters, const float* x, flo
 }
 
 void pinnquad_flight_double_network(const double* parameters, const double* x, double* y) {
-  using Net = pinnquad::Mlp<double, pinnquad::Inputs<16>, pinnquad::Hidden<1, 8>, pinnquad::Outputs<4>, pinnquad::Relu>;
+  using Net =
+      pinnquad::Mlp<double, pinnquad::InputSize<16>, pinnquad::Hidden<1, 8>, pinnquad::OutputSize<4>, pinnquad::Relu>;
   Net::forward(parameters, x, y);
 }
 

@@ -261,7 +261,7 @@ TEST_CASE("whatever byte a record has under a right checksum, a block opens or l
   const std::size_t end = BlockBytes(block).scalars();
   int refused = 0, opened_all_the_same = 0;
   for (std::size_t i = ModelBlockHeader::size; i < end; ++i) {
-    for (const unsigned char mask : {0x01, 0x04, 0x10, 0x40, 0x80, 0xff}) {
+    for (const unsigned mask : {0x01u, 0x04u, 0x10u, 0x40u, 0x80u, 0xffu}) {
       BlockBytes other(block);
       other[i] = static_cast<unsigned char>(other[i] ^ mask);
       other.seal();
@@ -307,7 +307,7 @@ TEST_CASE("a record that says another thing than the shape is refused") {
 namespace {
 
 using WindowedFeatures = Windowed<WithColumns<PaperFeatures, BatteryVoltage>, 2, PeriodMicroseconds<10000>>;
-using WindowedNet = Network<float, Inputs<WindowedFeatures::size>, Dense<4>>;
+using WindowedNet = Network<float, InputSize<WindowedFeatures::size>, Dense<4>>;
 
 /// A trained model whose weights are of no interest.
 template <class NetworkType, class ContextType>
@@ -353,7 +353,7 @@ namespace {
 struct OtherInverse : LinearizedInverse {
   static constexpr const char* description = "OtherInverse";
 };
-using Net16 = Network<float, Inputs<16>, Dense<4>>;
+using Net16 = Network<float, InputSize<16>, Dense<4>>;
 template <class Base>
 using ResidualContext = Context<PaperFeatures, PaperQuadrotor, ResidualOutputs<Base>>;
 template <class Base>

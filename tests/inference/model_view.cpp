@@ -87,7 +87,7 @@ Status changed(const Change& change) {
 
 template <class Base>
 struct OtherActivation : Base {
-  using Network = Mlp<float, Inputs<16>, Hidden<1, 8>, Outputs<4>, Tanh>;
+  using Network = Mlp<float, InputSize<16>, Hidden<1, 8>, OutputSize<4>, Tanh>;
 };
 struct RenamedFeatures : PaperFeatures {
   static constexpr auto names = [] {

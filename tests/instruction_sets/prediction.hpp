@@ -21,14 +21,16 @@
 
 namespace instruction_sets {
 
-using Net = pinnquad::Mlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<3, 25>, pinnquad::Outputs<4>, pinnquad::Relu>;
+using Net =
+    pinnquad::Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<3, 25>, pinnquad::OutputSize<4>, pinnquad::Relu>;
 /// Runs from memory to memory: too wide for registers, with an activation that calls the C library.
-using WideNet = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<70>, pinnquad::Tanh, pinnquad::Dense<4>>;
+using WideNet =
+    pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<70>, pinnquad::Tanh, pinnquad::Dense<4>>;
 
 /// Every smooth activation that calls the C library, and derivatives asked with inputs.
-using SmoothNet = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
-                                    pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus, pinnquad::Dense<9>,
-                                    pinnquad::Sine, pinnquad::Dense<4>>;
+using SmoothNet = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu,
+                                    pinnquad::Dense<9>, pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus,
+                                    pinnquad::Dense<9>, pinnquad::Sine, pinnquad::Dense<4>>;
 
 /// Numbers in +-0.5 without a pattern that a sum would cancel: a linear congruence.
 template <class Network>
@@ -43,8 +45,8 @@ constexpr typename Network::Parameters some_parameters() noexcept {
 }
 
 /// With batch norm: the Jacobian takes its roots.
-using NormNet =
-    pinnquad::BatchNormMlp<float, pinnquad::Inputs<16>, pinnquad::Hidden<1, 9>, pinnquad::Outputs<4>, pinnquad::Relu>;
+using NormNet = pinnquad::BatchNormMlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<1, 9>, pinnquad::OutputSize<4>,
+                                       pinnquad::Relu>;
 
 /// The same numbers, positive as a variance is.
 template <class Network>

@@ -70,7 +70,7 @@ double error_of(const Model& model, const RowSet& rows) {
 
 template <class Features>
 auto trained(const RowSplit& split) {
-  using Net = Mlp<float, Inputs<Features::size>, Hidden<2, 32>, Outputs<4>, Tanh>;
+  using Net = Mlp<float, InputSize<Features::size>, Hidden<2, 32>, OutputSize<4>, Tanh>;
   using Setting = Context<Features, PaperQuadrotor>;
   const auto context = make_context<Setting>(split.train);
   const auto data = standardised<float>(context, split.train);

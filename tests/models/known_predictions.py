@@ -26,7 +26,7 @@ def layers(text):
     """[(outputs, activation)] and the number of inputs."""
     network = re.search(r"using Network = pinnquad::Network<(.*)>;", text).group(1)
     parts = [part.strip().replace("pinnquad::", "") for part in network.split(",")][1:]
-    inputs = int(re.match(r"Inputs<(\d+)>", parts[0]).group(1))
+    inputs = int(re.match(r"Input(?:s|Size)<(\d+)>", parts[0]).group(1))
     result = []
     for part in parts[1:]:
         dense = re.match(r"Dense<(\d+)>", part)

@@ -20,9 +20,9 @@ using pinnquad::BatchNormMlp;
 using pinnquad::Dense;
 using pinnquad::DenseWithoutBias;
 using pinnquad::Hidden;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Network;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::Relu;
 using pinnquad::Tanh;
 using pinnquad::test::fill_uniform;
@@ -30,7 +30,7 @@ using pinnquad::test::random_batch_norm_network;
 using pinnquad::test::rounding;
 
 TEST_CASE("by hand: gamma (x - mean) / sqrt(variance + 1e-5) + beta, parameters in that order") {
-  Network<double, Inputs<2>, BatchNorm> network;
+  Network<double, InputSize<2>, BatchNorm> network;
   network.parameters = {2, 3, 10, 20, 1, 4, 0.25 - 1e-5, 4 - 1e-5};
   const double x[2] = {2, -2};
   double y[2] = {};
@@ -40,7 +40,7 @@ TEST_CASE("by hand: gamma (x - mean) / sqrt(variance + 1e-5) + beta, parameters 
 }
 
 TEST_CASE("a variance of 0 divides by sqrt(1e-5), not by 0") {
-  Network<double, Inputs<1>, BatchNorm> network;
+  Network<double, InputSize<1>, BatchNorm> network;
   network.parameters = {1, 0, 3, 0};
   const double x = 4;
   double y = 0;
@@ -49,7 +49,7 @@ TEST_CASE("a variance of 0 divides by sqrt(1e-5), not by 0") {
 }
 
 TEST_CASE("a Dense without bias is W x") {
-  Network<double, Inputs<3>, DenseWithoutBias<2>> network;
+  Network<double, InputSize<3>, DenseWithoutBias<2>> network;
   network.parameters = {1, 20, 300, 4, 50, 600};
   const double x[3] = {1, 2, 3};
   double y[2] = {};
@@ -59,17 +59,17 @@ TEST_CASE("a Dense without bias is W x") {
 }
 
 TEST_CASE("the paper's network with batch norm: between Dense and activation, no bias before it") {
-  using Written =
-      Network<float, Inputs<7>, DenseWithoutBias<6>, BatchNorm, Tanh, DenseWithoutBias<6>, BatchNorm, Tanh, Dense<2>>;
-  CHECK((std::is_same_v<BatchNormMlp<float, Inputs<7>, Hidden<2, 6>, Outputs<2>, Tanh>, Written>));
-  using Paper = BatchNormMlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+  using Written = Network<float, InputSize<7>, DenseWithoutBias<6>, BatchNorm, Tanh, DenseWithoutBias<6>, BatchNorm,
+                          Tanh, Dense<2>>;
+  CHECK((std::is_same_v<BatchNormMlp<float, InputSize<7>, Hidden<2, 6>, OutputSize<2>, Tanh>, Written>));
+  using Paper = BatchNormMlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
   CHECK(Paper::parameter_count == 16 * 25 + 9 * 25 * 25 + 10 * 4 * 25 + 25 * 4 + 4);
   CHECK(pinnquad::is_layer<BatchNorm>);
   CHECK(pinnquad::is_layer<DenseWithoutBias<3>>);
 }
 
 TEST_CASE_TEMPLATE("forward agrees with plain loops in double, portable and packed", Scalar, float, double) {
-  using Net = BatchNormMlp<Scalar, Inputs<8>, Hidden<2, 13>, Outputs<3>, Relu>;
+  using Net = BatchNormMlp<Scalar, InputSize<8>, Hidden<2, 13>, OutputSize<3>, Relu>;
   std::mt19937_64 engine(21);
   for (int round = 0; round < 20; ++round) {
     const Net network = random_batch_norm_network<Net>(engine);

@@ -70,11 +70,13 @@ void check_all_sizes() {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("every sample of a batch as if alone", Net, Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>,
-                   Mlp<double, Inputs<17>, Hidden<2, 9>, Outputs<4>, Tanh>, Network<float, Inputs<1>, Dense<1>>,
-                   Network<float, Inputs<5>, Relu, DenseWithoutBias<8>, Tanh, Dense<13>>,
-                   Network<float, Inputs<6>, Dense<7>, Gelu, DenseWithoutBias<5>, Silu, Sine, Dense<3>, Softplus>,
-                   Network<float, Inputs<6>, Dense<7>, test::LeakyRelu, test::ChannelScale, Dense<2>>) {
+TEST_CASE_TEMPLATE("every sample of a batch as if alone", Net,
+                   Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>,
+                   Mlp<double, InputSize<17>, Hidden<2, 9>, OutputSize<4>, Tanh>,
+                   Network<float, InputSize<1>, Dense<1>>,
+                   Network<float, InputSize<5>, Relu, DenseWithoutBias<8>, Tanh, Dense<13>>,
+                   Network<float, InputSize<6>, Dense<7>, Gelu, DenseWithoutBias<5>, Silu, Sine, Dense<3>, Softplus>,
+                   Network<float, InputSize<6>, Dense<7>, test::LeakyRelu, test::ChannelScale, Dense<2>>) {
   using Scalar = typename Net::Scalar;
   SUBCASE("native pack") { check_all_sizes<Net, NativePack<Scalar>>(); }
   SUBCASE("packs of 4") { check_all_sizes<Net, GenericPack<Scalar, 4>>(); }
@@ -83,7 +85,7 @@ TEST_CASE_TEMPLATE("every sample of a batch as if alone", Net, Mlp<float, Inputs
 
 TEST_CASE("the bits are those of the portable kernel where both fuse multiply and add") {
   if (!has_vector_unit<float>) return;
-  using Net = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+  using Net = Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
   std::mt19937_64 engine(12);
   Net net;
   for (float& v : net.parameters) v = static_cast<float>(uniform(engine, -0.4, 0.4));
@@ -95,7 +97,7 @@ TEST_CASE("the bits are those of the portable kernel where both fuse multiply an
 }
 
 TEST_CASE("NaN in one sample stays in that sample, and reaches its outputs") {
-  using Net = Mlp<float, Inputs<16>, Hidden<2, 25>, Outputs<4>, Relu>;
+  using Net = Mlp<float, InputSize<16>, Hidden<2, 25>, OutputSize<4>, Relu>;
   std::mt19937_64 engine(13);
   Net net;
   for (float& v : net.parameters) v = static_cast<float>(uniform(engine, -0.4, 0.4));
@@ -131,7 +133,7 @@ struct Direction {
 
 TEST_CASE_TEMPLATE("a layer of a user's own meets no input that nobody gave: padding repeats a sample", Scalar, float,
                    double) {
-  using Net = Network<Scalar, Inputs<6>, Direction, Dense<5>, Relu, Dense<3>>;
+  using Net = Network<Scalar, InputSize<6>, Direction, Dense<5>, Relu, Dense<3>>;
   check_all_sizes<Net, NativePack<Scalar>>();
   CHECK(asked_at_zero == 0);
 }

@@ -32,7 +32,7 @@ Net random_network(std::mt19937_64& engine) {
 }
 
 template <class Scalar, class... Specs>
-using From16 = Network<Scalar, Inputs<16>, Specs...>;
+using From16 = Network<Scalar, InputSize<16>, Specs...>;
 
 /// A network whose batch norms have variances above zero.
 template <class Net>
@@ -72,15 +72,16 @@ std::vector<double> some_input(std::mt19937_64& engine) {
 }  // namespace
 
 TEST_CASE_TEMPLATE("Jacobian against central differences", Net,
-                   Mlp<double, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>,
-                   Mlp<double, Inputs<17>, Hidden<3, 32>, Outputs<4>, Tanh>, From16<double, Dense<1>>,
+                   Mlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>,
+                   Mlp<double, InputSize<17>, Hidden<3, 32>, OutputSize<4>, Tanh>, From16<double, Dense<1>>,
                    From16<double, Dense<7>, Tanh, Dense<9>>, From16<double, DenseWithoutBias<5>, Relu, Dense<13>, Tanh>,
                    From16<double, Dense<6>, test::LeakyRelu, Dense<3>>,
                    From16<double, Dense<7>, Gelu, Dense<9>, Silu, Dense<5>, Softplus, Dense<4>, Sine, Dense<3>>,
                    From16<double, Gelu, DenseWithoutBias<5>, Sine, Silu, Dense<3>, Gelu>,
                    From16<double, test::ScalarSquare, Dense<5>, test::Square, test::ScalarSquare, Dense<3>>,
-                   Network<double, Inputs<3>, Sine, Dense<1>>, Network<double, Inputs<1>, Dense<3>, Tanh, Dense<2>>,
-                   Network<double, Inputs<3>, Tanh, Dense<40>, Relu, Relu, Dense<4>>) {
+                   Network<double, InputSize<3>, Sine, Dense<1>>,
+                   Network<double, InputSize<1>, Dense<3>, Tanh, Dense<2>>,
+                   Network<double, InputSize<3>, Tanh, Dense<40>, Relu, Relu, Dense<4>>) {
   std::mt19937_64 engine(7);
   for (int round = 0; round < 5; ++round) {
     const auto net = random_network<Net>(engine);
@@ -98,7 +99,7 @@ TEST_CASE("Jacobian through batch norm uses the running statistics") {
 
 TEST_CASE_TEMPLATE("float agrees with double, with every pack", Pack, NativePack<float>, GenericPack<float, 4>,
                    GenericPack<float, 1>) {
-  using Net = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+  using Net = Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
   std::mt19937_64 engine(9);
   const auto net = random_network<Net>(engine);
   Net::Rebind<double> wide;
@@ -150,7 +151,7 @@ TEST_CASE_TEMPLATE("the vector unit's way forward keeps what slopes are asked wi
 }
 
 TEST_CASE("NaN in an input reaches the value") {
-  using Net = Mlp<float, Inputs<16>, Hidden<2, 25>, Outputs<4>, Relu>;
+  using Net = Mlp<float, InputSize<16>, Hidden<2, 25>, OutputSize<4>, Relu>;
   std::mt19937_64 engine(10);
   const auto net = random_network<Net>(engine);
   std::array<float, 16> x{};

@@ -20,10 +20,10 @@
 
 using pinnquad::Dense;
 using pinnquad::Hidden;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Mlp;
 using pinnquad::Network;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::Relu;
 using pinnquad::Tanh;
 using pinnquad::test::fill_uniform;
@@ -32,11 +32,11 @@ using pinnquad::test::rounding;
 
 namespace {
 
-using PaperNetwork = Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+using PaperNetwork = Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
 
 /// Eight inputs, two hidden layers of different width.
 template <class Scalar, class Activation>
-using Uneven = Network<Scalar, Inputs<8>, Dense<13>, Activation, Dense<5>, Activation, Dense<3>>;
+using Uneven = Network<Scalar, InputSize<8>, Dense<13>, Activation, Dense<5>, Activation, Dense<3>>;
 
 struct NotALayer {};
 struct NoForward {
@@ -50,7 +50,8 @@ struct NoForward {
 
 TEST_CASE("the paper's network has the paper's size") {
   CHECK(PaperNetwork::parameter_count == 6379);  // 16 x 25 + 25, nine times 25 x 25 + 25, 25 x 4 + 4
-  CHECK(Mlp<float, Inputs<15>, Hidden<10, 25>, Outputs<4>, Relu>::parameter_count == 6354);  // X in R^15 as printed
+  CHECK(Mlp<float, InputSize<15>, Hidden<10, 25>, OutputSize<4>, Relu>::parameter_count ==
+        6354);  // X in R^15 as printed
   CHECK(PaperNetwork::layer_count == 21);
   CHECK(PaperNetwork::inputs == 16);
   CHECK(PaperNetwork::outputs == 4);
@@ -60,10 +61,11 @@ TEST_CASE("the paper's network has the paper's size") {
 }
 
 TEST_CASE("Mlp is the network written out") {
-  using Written = Network<float, Inputs<7>, Dense<6>, Tanh, Dense<6>, Tanh, Dense<2>>;
-  CHECK((std::is_same_v<Mlp<float, Inputs<7>, Hidden<2, 6>, Outputs<2>, Tanh>, Written>));
-  CHECK((std::is_same_v<Written::Rebind<double>, Mlp<double, Inputs<7>, Hidden<2, 6>, Outputs<2>, Tanh>>));
-  CHECK((std::is_same_v<Mlp<float, Inputs<7>, Hidden<0, 6>, Outputs<2>, Tanh>, Network<float, Inputs<7>, Dense<2>>>));
+  using Written = Network<float, InputSize<7>, Dense<6>, Tanh, Dense<6>, Tanh, Dense<2>>;
+  CHECK((std::is_same_v<Mlp<float, InputSize<7>, Hidden<2, 6>, OutputSize<2>, Tanh>, Written>));
+  CHECK((std::is_same_v<Written::Rebind<double>, Mlp<double, InputSize<7>, Hidden<2, 6>, OutputSize<2>, Tanh>>));
+  CHECK((std::is_same_v<Mlp<float, InputSize<7>, Hidden<0, 6>, OutputSize<2>, Tanh>,
+                        Network<float, InputSize<7>, Dense<2>>>));
 }
 
 TEST_CASE("offsets: parameters stand layer after layer, activations have none") {
@@ -72,7 +74,7 @@ TEST_CASE("offsets: parameters stand layer after layer, activations have none") 
   for (int layer = 0; layer <= 5; ++layer) CHECK(Sizes::offset(layer) == expected[layer]);
   CHECK(Uneven<float, Relu>::parameter_count == 205);
   CHECK(Uneven<float, Relu>::widest == 13);
-  CHECK(Network<float, Inputs<40>, Dense<2>>::widest == 40);
+  CHECK(Network<float, InputSize<40>, Dense<2>>::widest == 40);
 }
 
 TEST_CASE("what is a layer") {
@@ -87,7 +89,7 @@ TEST_CASE("what is a layer") {
 }
 
 TEST_CASE("weights are row-major: row = output, column = input; the bias follows") {
-  Network<double, Inputs<3>, Dense<2>> network;
+  Network<double, InputSize<3>, Dense<2>> network;
   network.parameters = {1, 20, 300, 4, 50, 600, 7000, 8000};
   const double x[3] = {1, 2, 3};
   double y[2] = {};
@@ -117,9 +119,9 @@ TEST_CASE_TEMPLATE("forward agrees with plain loops in double", Scalar, float, d
   };
   compare(Uneven<Scalar, Relu>{}, {{8, 13, 5, 3}, plain::Activation::relu});
   compare(Uneven<Scalar, Tanh>{}, {{8, 13, 5, 3}, plain::Activation::tanh});
-  compare(Mlp<Scalar, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>{},
+  compare(Mlp<Scalar, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>{},
           {{16, 25, 25, 25, 25, 25, 25, 25, 25, 25, 25, 4}, plain::Activation::relu});
-  compare(Network<Scalar, Inputs<1>, Dense<1>>{}, {{1, 1}, plain::Activation::none});
+  compare(Network<Scalar, InputSize<1>, Dense<1>>{}, {{1, 1}, plain::Activation::none});
 }
 
 TEST_CASE_TEMPLATE("activations", Scalar, float, double) {
@@ -181,20 +183,22 @@ TEST_CASE_TEMPLATE("fused activations and loops over equal layers keep the bits 
     CHECK(y == layer_by_layer(network, x));
   };
   using D6 = Dense<6>;
-  compare(Mlp<Scalar, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>{});  // first differs, nine equal, last
-  compare(Mlp<Scalar, Inputs<6>, Hidden<3, 6>, Outputs<6>, Tanh>{});     // all equal but for the last activation
-  compare(Network<Scalar, Inputs<6>, D6, D6, D6, D6>{});                 // equal, nothing to fuse, last writes y
-  compare(Network<Scalar, Inputs<6>, D6, Relu, D6, Tanh, D6, Tanh, D6, Relu>{});  // equal layers, other activations
-  compare(Network<Scalar, Inputs<6>, Relu, D6, Relu, Relu, D6, D6, Relu>{});      // activation first, twice, last
-  compare(Network<Scalar, Inputs<6>, Scale, Relu, Scale, Relu, Dense<3>>{});      // repeats in twos: no step of its own
-  compare(Network<Scalar, Inputs<6>, pinnquad::DenseWithoutBias<6>, Relu, pinnquad::DenseWithoutBias<6>, Relu, D6>{});
+  compare(Mlp<Scalar, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>{});  // first differs, nine equal, last
+  compare(Mlp<Scalar, InputSize<6>, Hidden<3, 6>, OutputSize<6>, Tanh>{});     // all equal but for the last activation
+  compare(Network<Scalar, InputSize<6>, D6, D6, D6, D6>{});                    // equal, nothing to fuse, last writes y
+  compare(Network<Scalar, InputSize<6>, D6, Relu, D6, Tanh, D6, Tanh, D6, Relu>{});  // equal layers, other activations
+  compare(Network<Scalar, InputSize<6>, Relu, D6, Relu, Relu, D6, D6, Relu>{});      // activation first, twice, last
+  compare(Network<Scalar, InputSize<6>, Scale, Relu, Scale, Relu, Dense<3>>{});  // repeats in twos: no step of its own
+  compare(
+      Network<Scalar, InputSize<6>, pinnquad::DenseWithoutBias<6>, Relu, pinnquad::DenseWithoutBias<6>, Relu, D6>{});
   using pinnquad::Gelu;
-  compare(Network<Scalar, Inputs<6>, D6, Gelu, D6, Gelu, D6, pinnquad::Silu, D6, pinnquad::Softplus, pinnquad::Sine>{});
-  compare(Network<Scalar, Inputs<70>, Dense<60>, Relu, Dense<60>, Relu, Dense<60>, Relu, Dense<2>>{});
+  compare(
+      Network<Scalar, InputSize<6>, D6, Gelu, D6, Gelu, D6, pinnquad::Silu, D6, pinnquad::Softplus, pinnquad::Sine>{});
+  compare(Network<Scalar, InputSize<70>, Dense<60>, Relu, Dense<60>, Relu, Dense<60>, Relu, Dense<2>>{});
 }
 
 TEST_CASE("a network is a value: a copy has its own parameters") {
-  Network<double, Inputs<2>, Dense<2>, Relu, Dense<1>> first;
+  Network<double, InputSize<2>, Dense<2>, Relu, Dense<1>> first;
   first.parameters.fill(0.5);
   auto second = first;
   second.parameters.fill(0.0);

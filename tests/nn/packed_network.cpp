@@ -17,11 +17,11 @@
 using pinnquad::Dense;
 using pinnquad::GenericPack;
 using pinnquad::Hidden;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Mlp;
 using pinnquad::NativePack;
 using pinnquad::Network;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::PackedNetwork;
 using pinnquad::Relu;
 using pinnquad::Tanh;
@@ -60,11 +60,11 @@ template <class Pack>
 void agrees_for_many_networks() {
   using Scalar = typename Pack::Scalar;
   using plain::Activation;
-  agrees_with_plain_loops<Network<Scalar, Inputs<6>, Dense<3>, Tanh, Dense<18>, Tanh, Dense<3>>, Pack>(
+  agrees_with_plain_loops<Network<Scalar, InputSize<6>, Dense<3>, Tanh, Dense<18>, Tanh, Dense<3>>, Pack>(
       {{6, 3, 18, 3}, Activation::tanh});
-  agrees_with_plain_loops<Network<Scalar, Inputs<5>, Dense<9>, Relu, Dense<4>, Relu, Dense<1>>, Pack>(
+  agrees_with_plain_loops<Network<Scalar, InputSize<5>, Dense<9>, Relu, Dense<4>, Relu, Dense<1>>, Pack>(
       {{5, 9, 4, 1}, Activation::relu});
-  agrees_with_plain_loops<Network<Scalar, Inputs<3>, Dense<2>>, Pack>({{3, 2}, Activation::none});
+  agrees_with_plain_loops<Network<Scalar, InputSize<3>, Dense<2>>, Pack>({{3, 2}, Activation::none});
 }
 
 /// Where there are vector instructions: unrolled over plain loops, this size takes minutes to compile.
@@ -72,11 +72,11 @@ template <class Pack>
 void agrees_for_large_networks() {
   if constexpr (pinnquad::has_vector_unit<typename Pack::Scalar>) {
     using Scalar = typename Pack::Scalar;
-    agrees_with_plain_loops<Mlp<Scalar, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>, Pack>(
+    agrees_with_plain_loops<Mlp<Scalar, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>, Pack>(
         {{16, 25, 25, 25, 25, 25, 25, 25, 25, 25, 25, 4}, plain::Activation::relu});
-    agrees_with_plain_loops<Network<Scalar, Inputs<33>, Dense<7>, Tanh, Dense<40>, Tanh, Dense<3>>, Pack>(
+    agrees_with_plain_loops<Network<Scalar, InputSize<33>, Dense<7>, Tanh, Dense<40>, Tanh, Dense<3>>, Pack>(
         {{33, 7, 40, 3}, plain::Activation::tanh});
-    agrees_with_plain_loops<Network<Scalar, Inputs<4>, Dense<80>, Relu, Dense<2>>, Pack>(
+    agrees_with_plain_loops<Network<Scalar, InputSize<4>, Dense<80>, Relu, Dense<2>>, Pack>(
         {{4, 80, 2}, plain::Activation::relu});
   }
 }
@@ -103,7 +103,7 @@ TEST_CASE_TEMPLATE("layers of any order and kind: without pack form, with parame
   using Scalar = typename Pack::Scalar;
   using pinnquad::test::ChannelScale;
   using pinnquad::test::LeakyRelu;
-  using Net = Network<Scalar, Inputs<3>, Tanh, ChannelScale, Dense<5>, LeakyRelu, Dense<2>, ChannelScale, Relu,
+  using Net = Network<Scalar, InputSize<3>, Tanh, ChannelScale, Dense<5>, LeakyRelu, Dense<2>, ChannelScale, Relu,
                       Dense<4>, Tanh, Tanh, Dense<3>, LeakyRelu>;
   std::mt19937_64 engine(32);
   for (int round = 0; round < 10; ++round) {
@@ -120,7 +120,7 @@ TEST_CASE_TEMPLATE("layers of any order and kind: without pack form, with parame
 
 TEST_CASE_TEMPLATE("NaN goes through, from any input and any weight", Pack, NativePack<float>, NativePack<double>) {
   using Scalar = typename Pack::Scalar;
-  using Net = Network<Scalar, Inputs<6>, Dense<5>, Relu, Dense<3>, Relu, Dense<2>>;
+  using Net = Network<Scalar, InputSize<6>, Dense<5>, Relu, Dense<3>, Relu, Dense<2>>;
   const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
   std::mt19937_64 engine(33);
   Net network;
@@ -153,7 +153,7 @@ TEST_CASE_TEMPLATE("NaN goes through, from any input and any weight", Pack, Nati
 }
 
 TEST_CASE("packing happens at compile time for parameters that are known then") {
-  using Net = Network<float, Inputs<2>, Dense<1>>;
+  using Net = Network<float, InputSize<2>, Dense<1>>;
   static constexpr Net::Parameters parameters = {2.0F, 3.0F, 0.5F};
   static constexpr PackedNetwork<Net> packed{parameters};
   const float x[2] = {1.0F, 10.0F};
@@ -163,7 +163,7 @@ TEST_CASE("packing happens at compile time for parameters that are known then") 
 }
 
 namespace {
-using Large = Network<float, Inputs<256>, Dense<256>>;
+using Large = Network<float, InputSize<256>, Dense<256>>;
 /// Weight (row, column) = row - column, bias = 1: small integers, so that any order of a sum is exact.
 constexpr Large::Parameters large_parameters() {
   Large::Parameters parameters{};
@@ -191,7 +191,7 @@ TEST_CASE("a layer of 256 x 256 is packed at compile time, within the compilers'
 }
 
 TEST_CASE("inputs need not be aligned") {
-  using Net = Network<float, Inputs<16>, Dense<9>, Relu, Dense<4>>;
+  using Net = Network<float, InputSize<16>, Dense<9>, Relu, Dense<4>>;
   std::mt19937_64 engine(34);
   Net network;
   fill_uniform(network.parameters, engine);

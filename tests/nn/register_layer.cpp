@@ -17,7 +17,7 @@
 #include "support/random_network.hpp"
 
 using pinnquad::Dense;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Network;
 using pinnquad::PackedNetwork;
 using pinnquad::Relu;
@@ -105,7 +105,7 @@ void check_case(const Case& network, std::mt19937_64& engine) {
 /// From memory, A values; in registers, B and C of them.
 template <class Pack, int A, int B, int C>
 void check_sizes(std::mt19937_64& engine) {
-  using Net = Network<float, Inputs<A>, Dense<B>, Relu, Dense<C>, Relu, Dense<A>>;
+  using Net = Network<float, InputSize<A>, Dense<B>, Relu, Dense<C>, Relu, Dense<A>>;
   static_assert(pinnquad::detail::fits_registers<Net, Pack>());
   Net network;
   fill_uniform(network.parameters, engine);
@@ -157,7 +157,7 @@ TEST_CASE_TEMPLATE("an activation that is infinite at zero does not leak from un
   const auto check = [](auto size) {
     constexpr int count = decltype(size)::value;
     CAPTURE(count);
-    using Net = Network<float, Inputs<3>, Dense<count>, Reciprocal, Dense<25>, Reciprocal, Dense<2>>;
+    using Net = Network<float, InputSize<3>, Dense<count>, Reciprocal, Dense<25>, Reciprocal, Dense<2>>;
     std::mt19937_64 engine(42);
     Net network;
     for (auto& p : network.parameters)

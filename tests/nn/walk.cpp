@@ -36,7 +36,7 @@ struct Writer {
 
 using D = Dense<6>;
 template <class... Specs>
-using Net = Network<float, Inputs<6>, Specs...>;
+using Net = Network<float, InputSize<6>, Specs...>;
 
 template <class Network, class Kernel, bool Loops = true>
 std::string forward() {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <direct.hpp>
 #include <ensemble.hpp>
+#include <heads.hpp>
 #include <memory>
 #include <residual.hpp>
 #include <ridge.hpp>
@@ -227,7 +228,7 @@ TEST_CASE("a block of one meaning is none of another: six accelerations, a wrenc
   CHECK(ModelView<ResidualModel>::open(bytes.data(), bytes.size(), view) == Status::block_incompatible);
 }
 
-TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumModel, EnsembleModel) {
+TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumModel, EnsembleModel, HeadsModel) {
   const test::BlockBytes bytes(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
@@ -258,6 +259,17 @@ TEST_CASE("a formula and a network as a sum are that network's outputs on that f
       CHECK(std::abs(u[i] - expected[i]) <= rounding);
       CHECK(std::abs(mean[i] - (expected[i] + other[i]) / 2) <= rounding);
     }
+  }
+}
+
+TEST_CASE("a trunk with two heads gives what the network gave that it was cut from") {
+  const InverseDynamics<HeadsModel> heads;
+  const InverseDynamics<DirectModel> direct;
+  for (const auto& x : HeadsModel::golden_features) {
+    Commands<float> u{}, expected{};
+    REQUIRE(heads.predict_features(x.data(), u) == Status::ok);
+    REQUIRE(direct.predict_features(x.data(), expected) == Status::ok);
+    for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(u[i] - expected[i]) <= rounding);
   }
 }
 
@@ -296,11 +308,11 @@ struct Named : Relu {
 }  // namespace
 
 TEST_CASE("what a model is made of is written, whichever compiler reads it") {
-  CHECK(written<Network<float, Inputs<16>, Dense<25>, Named, Dense<4>>>() ==
-        "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, mine/leaky 0.1, pinnquad::Dense<4>>");
+  CHECK(written<Network<float, InputSize<16>, Dense<25>, Named, Dense<4>>>() ==
+        "pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<25>, mine/leaky 0.1, pinnquad::Dense<4>>");
   CHECK(
       written<EnsembleModel::Network>() ==
       "pinnquad::Ensemble<2><pinnquad::Sum<pinnquad::Analytic<16><float, pinnquad::LinearizedInverse>paper_quadrotor, "
-      "pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<20>, pinnquad::Tanh, "
+      "pinnquad::Scaled<pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<20>, pinnquad::Tanh, "
       "pinnquad::Dense<20>, pinnquad::Tanh, pinnquad::Dense<4>>>>>");
 }

@@ -30,7 +30,7 @@ std::vector<std::array<float, 16>> golden_of(const Flight& flight) {
 template <class Schema>
 auto train(const Flight& flight, const std::string& folder, const std::string& file, const std::string& name) {
   using Surroundings = Context<PaperFeatures, PaperQuadrotor, Schema>;
-  using Net = Mlp<float, Inputs<PaperFeatures::size>, Hidden<2, 20>, Outputs<OutputMap<Schema>::size>, Tanh>;
+  using Net = Mlp<float, InputSize<PaperFeatures::size>, Hidden<2, 20>, OutputSize<OutputMap<Schema>::size>, Tanh>;
   using Loss = PaperLoss<Constant>;
   const IndexRange rows{0, flight.size()};
   const auto context = make_context<Surroundings>(flight, rows);
@@ -101,8 +101,24 @@ void write_ridge(const Flight& flight, const Trained& envelope, const std::strin
     for (const double v : row) numbers.push_back(float(v));
   }
   for (const double v : fit.intercept) numbers.push_back(float(v));
-  using Ridge = Network<float, Inputs<16>, Dense<4>>;
+  using Ridge = Network<float, InputSize<16>, Dense<4>>;
   compose<Ridge>(joined<Ridge>({numbers}), envelope, flight, file, "RidgeModel");
+}
+
+/// A trained network cut before its last layer: a trunk, and rotor 1 and the other three as two heads.
+template <class Trained>
+void write_heads(const Flight& flight, const Trained& from, const std::string& file) {
+  using Trunk = Network<float, InputSize<16>, Dense<20>, Tanh, Dense<20>, Tanh>;
+  using Whole =
+      Scaled<Then<Trunk, Heads<Network<float, InputSize<20>, Dense<1>>, Network<float, InputSize<20>, Dense<3>>>>>;
+  const std::vector<float> numbers = scaled(from);
+  const auto last_weights = numbers.end() - 84, last_biases = numbers.end() - 4;
+  std::vector<float> cut(numbers.begin(), last_weights);
+  cut.insert(cut.end(), last_weights, last_weights + 20);
+  cut.push_back(*last_biases);
+  cut.insert(cut.end(), last_weights + 20, last_biases);
+  cut.insert(cut.end(), last_biases + 1, numbers.end());
+  compose<Whole>(joined<Whole>({cut}), from, flight, file, "HeadsModel");
 }
 
 }  // namespace
@@ -124,6 +140,7 @@ int main(int count, char** arguments) {
         train<ResidualOutputs<LinearizedInverse>>(recorded.flight, folder, "residual.hpp", "ResidualModel");
     const auto direct = train<CommandOutputs>(recorded.flight, folder, "direct.hpp", "DirectModel");
     write_ridge(recorded.flight, residual, folder + "/ridge.hpp");
+    write_heads(recorded.flight, direct, folder + "/heads.hpp");
     using Part = Scaled<std::decay_t<decltype(residual.network)>>;
     using Formula = Analytic<float, 16, LinearizedInverse, PaperQuadrotor>;
     using Whole = Sum<Formula, Part>;

@@ -21,8 +21,8 @@ constexpr int rows = 19 * 64 + 17;  // 20 batches, the last a small one
 constexpr int epochs = 10;
 constexpr int unseen_rows = 50;
 
-using Plain = Mlp<double, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
-using Normed = BatchNormMlp<double, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+using Plain = Mlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
+using Normed = BatchNormMlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
 using Knowledge = Context<PaperFeatures, PaperQuadrotor>;
 using Data = TrainingData<double, 16, 4>;
 

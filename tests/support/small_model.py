@@ -91,7 +91,7 @@ namespace pinnquad::test {{
 struct SmallModel {{
   using Scalar = float;
   using Network =
-      Mlp<float, pinnquad::Inputs<{INPUTS}>, pinnquad::Hidden<1, {HIDDEN}>, pinnquad::Outputs<{OUTPUTS}>, pinnquad::Relu>;
+      Mlp<float, pinnquad::InputSize<{INPUTS}>, pinnquad::Hidden<1, {HIDDEN}>, pinnquad::OutputSize<{OUTPUTS}>, pinnquad::Relu>;
   using Features = PaperFeatures;
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;

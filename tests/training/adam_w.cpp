@@ -50,7 +50,8 @@ struct PlainAdamW {
   }
 };
 
-using Net = pinnquad::Mlp<double, pinnquad::Inputs<16>, pinnquad::Hidden<1, 9>, pinnquad::Outputs<4>, pinnquad::Relu>;
+using Net =
+    pinnquad::Mlp<double, pinnquad::InputSize<16>, pinnquad::Hidden<1, 9>, pinnquad::OutputSize<4>, pinnquad::Relu>;
 using PaperContext = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::PaperQuadrotor>;
 
 /// Notes how far training was at each step; moves nothing.

@@ -31,12 +31,12 @@ using pinnquad::Dense;
 using pinnquad::DenseWithoutBias;
 using pinnquad::GenericPack;
 using pinnquad::Hidden;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Mse;
 using pinnquad::NativePack;
 using pinnquad::Network;
 using pinnquad::NetworkGradient;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::Relu;
 using pinnquad::Tanh;
 using pinnquad::test::central_differences;
@@ -171,18 +171,18 @@ void check_gradient() {
   }
 }
 
-using Small = BatchNormMlp<double, Inputs<16>, Hidden<2, 9>, Outputs<4>, Relu>;
+using Small = BatchNormMlp<double, InputSize<16>, Hidden<2, 9>, OutputSize<4>, Relu>;
 using PaperContext = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::PaperQuadrotor>;
 
 }  // namespace
 
 TEST_CASE_TEMPLATE("gradient through the batch's statistics against central differences", Net,
-                   Network<double, Inputs<5>, BatchNorm>,
-                   BatchNormMlp<double, Inputs<5>, Hidden<2, 7>, Outputs<4>, Relu>,
-                   BatchNormMlp<double, Inputs<3>, Hidden<3, 4>, Outputs<2>, Tanh>,
-                   Network<double, Inputs<5>, BatchNorm, Dense<6>, BatchNorm, Tanh, Dense<3>, BatchNorm>,
-                   Network<double, Inputs<5>, Tanh, BatchNorm, BatchNorm, Relu, Dense<3>>,
-                   Network<double, Inputs<5>, DenseWithoutBias<6>, BatchNorm, pinnquad::test::Softmax, Dense<3>>) {
+                   Network<double, InputSize<5>, BatchNorm>,
+                   BatchNormMlp<double, InputSize<5>, Hidden<2, 7>, OutputSize<4>, Relu>,
+                   BatchNormMlp<double, InputSize<3>, Hidden<3, 4>, OutputSize<2>, Tanh>,
+                   Network<double, InputSize<5>, BatchNorm, Dense<6>, BatchNorm, Tanh, Dense<3>, BatchNorm>,
+                   Network<double, InputSize<5>, Tanh, BatchNorm, BatchNorm, Relu, Dense<3>>,
+                   Network<double, InputSize<5>, DenseWithoutBias<6>, BatchNorm, pinnquad::test::Softmax, Dense<3>>) {
   SUBCASE("packs of 4") { check_gradient<Net, GenericPack<double, 4>>(); }
   SUBCASE("packs of 3") { check_gradient<Net, GenericPack<double, 3>>(); }
 }
@@ -190,8 +190,8 @@ TEST_CASE_TEMPLATE("gradient through the batch's statistics against central diff
 TEST_CASE_TEMPLATE("running statistics: 0.9 old + 0.1 of the batch, variance with divisor N - 1", Pack,
                    GenericPack<double, 4>, NativePack<float>) {
   using Scalar = typename Pack::Scalar;
-  using Net = Network<Scalar, Inputs<5>, BatchNorm>;
-  using Double = Network<double, Inputs<5>, BatchNorm>;
+  using Net = Network<Scalar, InputSize<5>, BatchNorm>;
+  using Double = Network<double, InputSize<5>, BatchNorm>;
   auto gradient = std::make_unique<NetworkGradient<Net, 9, Pack>>();
   std::mt19937_64 engine(162);
   Double expected = random_batch_norm_network<Double>(engine);
@@ -242,7 +242,7 @@ TEST_CASE("prediction is the network with its running statistics, whatever the b
 }
 
 TEST_CASE("what a larger batch left behind does not reach a smaller one, not even NaN") {
-  using Net = BatchNormMlp<double, Inputs<3>, Hidden<2, 5>, Outputs<2>, Relu>;
+  using Net = BatchNormMlp<double, InputSize<3>, Hidden<2, 5>, OutputSize<2>, Relu>;
   std::mt19937_64 engine(164);
   const auto net = random_batch_norm_network<Net>(engine);
   auto gradient = std::make_unique<NetworkGradient<Net, 8, GenericPack<double, 4>>>();

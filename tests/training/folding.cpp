@@ -22,10 +22,10 @@ using pinnquad::DenseWithoutBias;
 using pinnquad::Folded;
 using pinnquad::folded;
 using pinnquad::Hidden;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Mlp;
 using pinnquad::Network;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::Relu;
 using pinnquad::Tanh;
 using pinnquad::test::fill_uniform;
@@ -62,22 +62,22 @@ void check_outputs() {
 }  // namespace
 
 TEST_CASE_TEMPLATE("folded and unfolded agree to rounding", Scalar, float, double) {
-  check_outputs<BatchNormMlp<Scalar, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>>();
-  check_outputs<BatchNormMlp<Scalar, Inputs<5>, Hidden<1, 3>, Outputs<2>, Tanh>>();
+  check_outputs<BatchNormMlp<Scalar, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>>();
+  check_outputs<BatchNormMlp<Scalar, InputSize<5>, Hidden<1, 3>, OutputSize<2>, Tanh>>();
   check_outputs<
-      Network<Scalar, Inputs<5>, Dense<7>, BatchNorm, Relu, DenseWithoutBias<4>, Tanh, Dense<3>, BatchNorm>>();
-  check_outputs<Network<Scalar, Inputs<5>, DenseWithoutBias<7>, DenseWithoutBias<4>, BatchNorm>>();
+      Network<Scalar, InputSize<5>, Dense<7>, BatchNorm, Relu, DenseWithoutBias<4>, Tanh, Dense<3>, BatchNorm>>();
+  check_outputs<Network<Scalar, InputSize<5>, DenseWithoutBias<7>, DenseWithoutBias<4>, BatchNorm>>();
 }
 
 TEST_CASE("the folded type is the plain one") {
-  using Paper = BatchNormMlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
-  CHECK((std::is_same_v<Folded<Paper>, Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>>));
-  using Mixed = Network<float, Inputs<5>, Dense<7>, BatchNorm, DenseWithoutBias<4>, Tanh, Dense<3>>;
-  CHECK((std::is_same_v<Folded<Mixed>, Network<float, Inputs<5>, Dense<7>, Dense<4>, Tanh, Dense<3>>>));
+  using Paper = BatchNormMlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
+  CHECK((std::is_same_v<Folded<Paper>, Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>>));
+  using Mixed = Network<float, InputSize<5>, Dense<7>, BatchNorm, DenseWithoutBias<4>, Tanh, Dense<3>>;
+  CHECK((std::is_same_v<Folded<Mixed>, Network<float, InputSize<5>, Dense<7>, Dense<4>, Tanh, Dense<3>>>));
 }
 
 TEST_CASE("a network without batch norm is returned bit for bit") {
-  using Net = Mlp<float, Inputs<16>, Hidden<2, 9>, Outputs<4>, Relu>;
+  using Net = Mlp<float, InputSize<16>, Hidden<2, 9>, OutputSize<4>, Relu>;
   std::mt19937_64 engine(32);
   const Net network = random_batch_norm_network<Net>(engine);
   CHECK((std::is_same_v<Folded<Net>, Net>));
@@ -85,7 +85,7 @@ TEST_CASE("a network without batch norm is returned bit for bit") {
 }
 
 TEST_CASE("by hand") {
-  Network<double, Inputs<2>, Dense<1>, BatchNorm> network;
+  Network<double, InputSize<2>, Dense<1>, BatchNorm> network;
   network.parameters = {1, 2, 5, /* gamma */ 3, /* beta */ 7, /* mean */ 4, /* variance */ 0.25 - 1e-5};
   const auto plain = folded(network).parameters;  // s = 6
   REQUIRE(plain.size() == 3);

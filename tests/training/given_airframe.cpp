@@ -25,7 +25,7 @@ namespace {
 
 using namespace pinnquad;
 
-using Net = Network<double, Inputs<16>, Dense<6>, Relu, Dense<4>>;
+using Net = Network<double, InputSize<16>, Dense<6>, Relu, Dense<4>>;
 using Loss =
     PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, Constant>, Weighted<LocalMonotonicity<Yaw>, Constant>>;
 

@@ -13,15 +13,15 @@
 using pinnquad::Dense;
 using pinnquad::Hidden;
 using pinnquad::initialised;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Mlp;
 using pinnquad::Network;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::Relu;
 using pinnquad::test::ChannelScale;
 
 TEST_CASE_TEMPLATE("Xavier: bounds, mean and variance of each layer, biases 0", Scalar, float, double) {
-  using Net = Network<Scalar, Inputs<40>, Dense<100>, Relu, Dense<60>>;
+  using Net = Network<Scalar, InputSize<40>, Dense<100>, Relu, Dense<60>>;
   std::mt19937_64 engine(111);
   const Net net = initialised<Net>(engine);
   const auto check = [&net](int offset, int in, int out) {
@@ -47,7 +47,7 @@ TEST_CASE_TEMPLATE("Xavier: bounds, mean and variance of each layer, biases 0", 
 }
 
 TEST_CASE("the same seed gives the same bits, another seed others; float is double rounded") {
-  using Net = Mlp<double, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+  using Net = Mlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
   const auto drawn = [](std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     return initialised<Net>(engine).parameters;
@@ -61,7 +61,7 @@ TEST_CASE("the same seed gives the same bits, another seed others; float is doub
 }
 
 TEST_CASE("the bits of a seed are the same on every compiler and standard library") {
-  using Net = Network<double, Inputs<2>, Dense<2>>;
+  using Net = Network<double, InputSize<2>, Dense<2>>;
   std::mt19937_64 engine(1);
   const Net net = initialised<Net>(engine);
   std::mt19937_64 again(1);
@@ -73,7 +73,7 @@ TEST_CASE("the bits of a seed are the same on every compiler and standard librar
 }
 
 TEST_CASE("a layer that brings its own initial values uses them") {
-  using Net = Network<double, Inputs<3>, Dense<4>, ChannelScale>;
+  using Net = Network<double, InputSize<3>, Dense<4>, ChannelScale>;
   std::mt19937_64 engine(112);
   const Net net = initialised<Net>(engine);
   for (std::size_t i = 16; i < 20; ++i) {
@@ -83,10 +83,10 @@ TEST_CASE("a layer that brings its own initial values uses them") {
 }
 
 TEST_CASE("batch norm begins near the identity and draws nothing: weights are those of the network without it") {
-  using Normed = pinnquad::BatchNormMlp<double, Inputs<16>, Hidden<2, 9>, Outputs<4>, Relu>;
+  using Normed = pinnquad::BatchNormMlp<double, InputSize<16>, Hidden<2, 9>, OutputSize<4>, Relu>;
   std::mt19937_64 engine(113), again(113);
   const auto normed = initialised<Normed>(engine);
-  const auto plain = initialised<Mlp<double, Inputs<16>, Hidden<2, 9>, Outputs<4>, Relu>>(again);
+  const auto plain = initialised<Mlp<double, InputSize<16>, Hidden<2, 9>, OutputSize<4>, Relu>>(again);
   CHECK(engine() == again());
   for (std::size_t i = 0; i < 144; ++i) CHECK(normed.parameters[i] == plain.parameters[i]);
   for (std::size_t i = 0; i < 81; ++i) CHECK(normed.parameters[144 + 36 + i] == plain.parameters[144 + 9 + i]);

@@ -24,7 +24,7 @@ using pinnquad::Dense;
 using pinnquad::DenseWithoutBias;
 using pinnquad::Gelu;
 using pinnquad::GenericPack;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Network;
 using pinnquad::NetworkGradient;
 using pinnquad::Relu;
@@ -136,52 +136,53 @@ using Packs3 = GenericPack<double, 3>;
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("gradient of the library's layers in every order", Net, Network<double, Inputs<3>, Dense<2>>,
-                   Network<double, Inputs<5>, Dense<6>, Relu, Dense<7>, Relu, Dense<4>>,
-                   Network<double, Inputs<5>, Dense<6>, Tanh, Dense<9>, Relu, Dense<2>>,
-                   Network<double, Inputs<5>, DenseWithoutBias<6>, Tanh, DenseWithoutBias<9>, Dense<2>>,
-                   Network<double, Inputs<4>, Tanh, Dense<5>, Dense<3>, Tanh>) {
+TEST_CASE_TEMPLATE("gradient of the library's layers in every order", Net, Network<double, InputSize<3>, Dense<2>>,
+                   Network<double, InputSize<5>, Dense<6>, Relu, Dense<7>, Relu, Dense<4>>,
+                   Network<double, InputSize<5>, Dense<6>, Tanh, Dense<9>, Relu, Dense<2>>,
+                   Network<double, InputSize<5>, DenseWithoutBias<6>, Tanh, DenseWithoutBias<9>, Dense<2>>,
+                   Network<double, InputSize<4>, Tanh, Dense<5>, Dense<3>, Tanh>) {
   SUBCASE("packs of 4") { check_network<Net, Packs4>(); }
   SUBCASE("packs of 3") { check_network<Net, Packs3>(); }
 }
 
 TEST_CASE_TEMPLATE("gradient of a user's layers between them", Net,
-                   Network<double, Inputs<5>, Dense<6>, LeakyRelu, Dense<7>, LeakyRelu, Dense<4>>,
-                   Network<double, Inputs<5>, ChannelScale, Dense<6>, ChannelScale, Dense<3>, ChannelScale>,
-                   Network<double, Inputs<5>, Dense<7>, ChannelScale, Tanh, Dense<3>>,
-                   Network<double, Inputs<5>, Softmax, Dense<4>, Softmax, Dense<2>>) {
+                   Network<double, InputSize<5>, Dense<6>, LeakyRelu, Dense<7>, LeakyRelu, Dense<4>>,
+                   Network<double, InputSize<5>, ChannelScale, Dense<6>, ChannelScale, Dense<3>, ChannelScale>,
+                   Network<double, InputSize<5>, Dense<7>, ChannelScale, Tanh, Dense<3>>,
+                   Network<double, InputSize<5>, Softmax, Dense<4>, Softmax, Dense<2>>) {
   check_network<Net, Packs4>();
 }
 
 TEST_CASE_TEMPLATE("a layer whose rule needs its output keeps it, whatever follows", Net,
-                   Network<double, Inputs<5>, Dense<6>, Tanh, Tanh, Dense<3>>,
-                   Network<double, Inputs<5>, Dense<6>, Softmax, Tanh, Dense<3>>,
-                   Network<double, Inputs<5>, Tanh, Tanh, Dense<3>>,
-                   Network<double, Inputs<5>, Dense<6>, Tanh, Tanh, Tanh>) {
+                   Network<double, InputSize<5>, Dense<6>, Tanh, Tanh, Dense<3>>,
+                   Network<double, InputSize<5>, Dense<6>, Softmax, Tanh, Dense<3>>,
+                   Network<double, InputSize<5>, Tanh, Tanh, Dense<3>>,
+                   Network<double, InputSize<5>, Dense<6>, Tanh, Tanh, Tanh>) {
   check_network<Net, Packs4>();
 }
 
 TEST_CASE_TEMPLATE("a layer whose slope is asked with its input finds it, whatever stands before and behind", Net,
-                   Network<double, Inputs<5>, Dense<6>, Gelu, Dense<9>, Silu, Dense<2>>,
-                   Network<double, Inputs<5>, Dense<6>, Sine, Sine, Softplus, Dense<2>, Gelu>,
-                   Network<double, Inputs<5>, Gelu, Tanh, Sine, Dense<3>>,
-                   Network<double, Inputs<5>, Dense<6>, Gelu, Relu, Dense<3>>,
-                   Network<double, Inputs<5>, Dense<6>, Tanh, Square, Softmax, ScalarSquare, Dense<3>>) {
+                   Network<double, InputSize<5>, Dense<6>, Gelu, Dense<9>, Silu, Dense<2>>,
+                   Network<double, InputSize<5>, Dense<6>, Sine, Sine, Softplus, Dense<2>, Gelu>,
+                   Network<double, InputSize<5>, Gelu, Tanh, Sine, Dense<3>>,
+                   Network<double, InputSize<5>, Dense<6>, Gelu, Relu, Dense<3>>,
+                   Network<double, InputSize<5>, Dense<6>, Tanh, Square, Softmax, ScalarSquare, Dense<3>>) {
   SUBCASE("packs of 4") { check_network<Net, Packs4>(); }
   SUBCASE("packs of 3") { check_network<Net, Packs3>(); }
 }
 
-TEST_CASE_TEMPLATE("a layer without a value at 0 sees no padding row: it would spread NaN to every weight", Net,
-                   Network<double, Inputs<5>, UnitLength, Dense<4>, UnitLength, Dense<2>>,
-                   Network<double, Inputs<3>, Reciprocal, Dense<4>, Dense<2>>,
-                   Network<double, Inputs<3>, Reciprocal, ChannelScale, UnitLength, Dense<2>>,
-                   Network<double, Inputs<3>, PackReciprocal, Dense<4>, Dense<2>>,
-                   Network<double, Inputs<3>, PackReciprocal, UnitLength, DenseWithoutBias<3>, UnitLength, Dense<2>>) {
+TEST_CASE_TEMPLATE(
+    "a layer without a value at 0 sees no padding row: it would spread NaN to every weight", Net,
+    Network<double, InputSize<5>, UnitLength, Dense<4>, UnitLength, Dense<2>>,
+    Network<double, InputSize<3>, Reciprocal, Dense<4>, Dense<2>>,
+    Network<double, InputSize<3>, Reciprocal, ChannelScale, UnitLength, Dense<2>>,
+    Network<double, InputSize<3>, PackReciprocal, Dense<4>, Dense<2>>,
+    Network<double, InputSize<3>, PackReciprocal, UnitLength, DenseWithoutBias<3>, UnitLength, Dense<2>>) {
   check_network<Net, Packs4>();
 }
 
 TEST_CASE("what a larger batch left behind does not reach a smaller one, not even NaN") {
-  using Net = Network<double, Inputs<3>, Dense<5>, Relu, Dense<2>>;
+  using Net = Network<double, InputSize<3>, Dense<5>, Relu, Dense<2>>;
   auto gradient = std::make_unique<NetworkGradient<Net, 8, Packs4>>();
   std::mt19937_64 engine(92);
   Net net;

@@ -20,11 +20,11 @@ using pinnquad::Context;
 using pinnquad::Flight;
 using pinnquad::Hidden;
 using pinnquad::initialised;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::make_context;
 using pinnquad::make_trained_model;
 using pinnquad::Mlp;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::PaperFeatures;
 using pinnquad::PaperQuadrotor;
 using pinnquad::Relu;
@@ -34,7 +34,7 @@ using pinnquad::test::random_flight_rows;
 namespace {
 
 template <class Scalar>
-using Small = Mlp<Scalar, Inputs<16>, Hidden<1, 7>, Outputs<4>, Relu>;
+using Small = Mlp<Scalar, InputSize<16>, Hidden<1, 7>, OutputSize<4>, Relu>;
 using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
 
 /// Sums of at most 16 terms, twice, in float: some 1e-6 of values of order 1.
@@ -135,7 +135,7 @@ TEST_CASE("weights that weigh nothing are exported as 0, no others") {
 }
 
 TEST_CASE("batch norm is folded: the model holds plain layers and predicts what the trained network does") {
-  using Normed = pinnquad::BatchNormMlp<float, Inputs<16>, Hidden<1, 7>, Outputs<4>, Relu>;
+  using Normed = pinnquad::BatchNormMlp<float, InputSize<16>, Hidden<1, 7>, OutputSize<4>, Relu>;
   const Flight flight = random_flight_rows(60, 156);
   std::mt19937_64 engine(157);
   const auto context = make_context<PaperContext>(flight, {0, 60});

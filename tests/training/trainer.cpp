@@ -32,10 +32,10 @@ using pinnquad::Context;
 using pinnquad::CyclicalAnnealing;
 using pinnquad::Hidden;
 using pinnquad::initialised;
-using pinnquad::Inputs;
+using pinnquad::InputSize;
 using pinnquad::Mlp;
 using pinnquad::Mse;
-using pinnquad::Outputs;
+using pinnquad::OutputSize;
 using pinnquad::PaperFeatures;
 using pinnquad::PaperLoss;
 using pinnquad::PaperQuadrotor;
@@ -56,8 +56,8 @@ using pinnquad::test::linear_map;
 namespace {
 
 template <class Scalar>
-using Small = Mlp<Scalar, Inputs<16>, Hidden<2, 9>, Outputs<4>, Relu>;
-using PaperNetwork = Mlp<double, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>;
+using Small = Mlp<Scalar, InputSize<16>, Hidden<2, 9>, OutputSize<4>, Relu>;
+using PaperNetwork = Mlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
 using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
 using SpeedContext = Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>;
 
@@ -183,7 +183,7 @@ TEST_CASE("training lowers the loss; a linear map is learned") {
   trained<Type>(data, 3, 40, &late);
   CHECK(late < 0.5 * early);
 
-  using Linear = pinnquad::Network<double, Inputs<16>, pinnquad::Dense<4>>;
+  using Linear = pinnquad::Network<double, InputSize<16>, pinnquad::Dense<4>>;
   using Straight = Trainer<Linear, Mse, Adam, PaperContext>;
   const auto lines = linear_map<double>(256, 133);
   std::mt19937_64 engine(4);

@@ -8,8 +8,8 @@
 
 namespace pinnquad {
 
-/// Shifts all commands together so that the largest is at most 1; then, where the spread allows, so that the smallest
-/// is at least 0. Equal rotors: the torques stay, thrust changes. Does nothing to commands in 0..1. A spread above 1
+/// Shifts all commands together so that the largest is at most 1; then, where their range allows, so that the smallest
+/// is at least 0. Equal rotors: the torques stay, thrust changes. Does nothing to commands in 0..1. A range above 1
 /// can't fit: the rotors clip what is left. NaN passes through.
 template <class Scalar>
 constexpr Commands<Scalar> keep_torque(const Commands<Scalar>& commands) noexcept {

@@ -47,7 +47,7 @@ constexpr auto without_instruction_set() noexcept {
 template <class T>
 inline constexpr auto type_letters = without_instruction_set<T>();
 
-/// "pinnquad::Network<float, pinnquad::Inputs<16>, ...>". Types in anonymous namespaces and in functions have no name
+/// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>". Types in anonymous namespaces and in functions have no name
 /// that another translation unit could use.
 template <class T>
 constexpr std::string_view type_text() noexcept {

@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// "pinnquad::Network<float, pinnquad::Inputs<16>, ...>" (core/type_text.hpp), lists closed as ">>".
+/// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>" (core/type_text.hpp), lists closed as ">>".
 template <class T>
 std::string type_name() {
   std::string name(detail::type_text<T>());

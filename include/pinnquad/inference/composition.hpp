@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Answers made of answers (inference/answer.hpp): a model that is not one network exports, flies and tests itself as one that is.
-// A ridge or any other affine map is Network<Scalar, Inputs<n>, Dense<m>>. Parameters of the parts stand one after the other.
+// A ridge or any other affine map is Network<Scalar, InputSize<n>, Dense<m>>. Parameters of the parts stand one after the other.
 #pragma once
 
 #include "pinnquad/core/first_of.hpp"
@@ -99,6 +99,66 @@ struct Ensemble : AnswerBase<Ensemble<Member, Count>, typename Member::Scalar, M
   }
 };
 
+/// Answers to the same inputs side by side: the outputs of the first head, then those of the next.
+template <class... Part>
+struct Heads;
+template <class First, class... More>
+struct Heads<First, More...>
+    : AnswerBase<Heads<First, More...>, typename First::Scalar, First::inputs, (First::outputs + ... + More::outputs),
+                 (First::parameter_count + ... + More::parameter_count)> {
+  static_assert((is_answer<First> && ... && is_answer<More>), "pinnquad: Heads are answers (inference/answer.hpp)");
+  static_assert(((First::inputs == More::inputs && std::is_same_v<typename First::Scalar, typename More::Scalar>)&&...),
+                "pinnquad: Heads differ in inputs or Scalar");
+  using Scalar = typename First::Scalar;
+  using AnswerBase<Heads, Scalar, First::inputs, (First::outputs + ... + More::outputs),
+                   (First::parameter_count + ... + More::parameter_count)>::forward;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    First::forward(parameters, x, y);
+    if constexpr (sizeof...(More) > 0) {
+      Heads<More...>::forward(parameters + First::parameter_count, x, y + First::outputs);
+    }
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    answer_jacobian<First>(parameters, x, y, by_x);
+    if constexpr (sizeof...(More) > 0) {
+      Heads<More...>::jacobian(parameters + First::parameter_count, x, y + First::outputs,
+                               by_x + First::outputs * First::inputs);
+    }
+  }
+};
+
+/// `Second` of what `First` gave: a network of several heads is Then<Network<...>, Heads<...>>, a trunk and what grows on it.
+template <class First, class Second>
+struct Then : AnswerBase<Then<First, Second>, typename First::Scalar, First::inputs, Second::outputs,
+                         First::parameter_count + Second::parameter_count> {
+  static_assert(is_answer<First> && is_answer<Second>, "pinnquad: Then is of two answers (inference/answer.hpp)");
+  static_assert(First::outputs == Second::inputs && std::is_same_v<typename First::Scalar, typename Second::Scalar>,
+                "pinnquad: the second answer of a Then takes what the first one gives, in the same Scalar");
+  using Scalar = typename First::Scalar;
+  using AnswerBase<Then, Scalar, First::inputs, Second::outputs,
+                   First::parameter_count + Second::parameter_count>::forward;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Scalar between[First::outputs];
+    First::forward(parameters, x, static_cast<Scalar*>(between));
+    Second::forward(parameters + First::parameter_count, static_cast<const Scalar*>(between), y);
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    Scalar between[First::outputs], inner[First::outputs * First::inputs], outer[Second::outputs * Second::inputs];
+    answer_jacobian<First>(parameters, x, static_cast<Scalar*>(between), static_cast<Scalar*>(inner));
+    answer_jacobian<Second>(parameters + First::parameter_count, static_cast<const Scalar*>(between), y,
+                            static_cast<Scalar*>(outer));
+    for (int i = 0; i < Second::outputs; ++i) {
+      for (int k = 0; k < First::inputs; ++k) {
+        Scalar sum = Scalar(0);
+        for (int j = 0; j < First::outputs; ++j) sum += outer[i * First::outputs + j] * inner[j * First::inputs + k];
+        by_x[i * First::inputs + k] = sum;
+      }
+    }
+  }
+};
+
 /// An answer that takes and gives physical units as a part of one: its scalers are parameters before its own, as means and
 /// spreads of inputs, then of outputs.
 template <class Inner>
@@ -169,6 +229,20 @@ struct Description<Scaled<Inner>> {
   template <class Sink>
   static constexpr void add(Sink& sink) {
     detail::describe_list<Inner>(sink, "pinnquad::Scaled");
+  }
+};
+template <class... Part>
+struct Description<Heads<Part...>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<Part...>(sink, "pinnquad::Heads");
+  }
+};
+template <class First, class Second>
+struct Description<Then<First, Second>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<First, Second>(sink, "pinnquad::Then");
   }
 };
 template <class Member, int Count>

@@ -88,7 +88,7 @@ struct Description<double> {
   }
 };
 template <int Size>
-struct Description<Inputs<Size>> {
+struct Description<InputSize<Size>> {
   template <class Sink>
   static constexpr void add(Sink& sink) {
     detail::describe_sized(sink, "pinnquad::Inputs", Size);

@@ -60,7 +60,7 @@ struct BatchNormMlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activat
 }  // namespace detail
 
 /// The paper's network with batch norm between Dense and activation (docs/paper.md, deviation 15):
-/// `BatchNormMlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>`.
+/// `BatchNormMlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>`.
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
 using BatchNormMlp = typename detail::BatchNormMlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
 

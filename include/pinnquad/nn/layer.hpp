@@ -26,15 +26,19 @@ namespace pinnquad {
 
 /// Size of a network's input.
 template <int Size>
-struct Inputs {
+struct InputSize {
   static constexpr int size = Size;
 };
 
 /// Size of a network's output.
 template <int Size>
-struct Outputs {
+struct OutputSize {
   static constexpr int size = Size;
 };
+
+/// As headers of formats 1 and 2 call it.
+template <int Size>
+using Inputs = InputSize<Size>;
 
 /// `Count` hidden layers of `Width` neurons.
 template <int Count, int Width>

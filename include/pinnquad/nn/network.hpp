@@ -205,7 +205,7 @@ struct IsNetwork<Network<Scalar, InputSize, Specs...>> : std::true_type {};
 template <class T>
 inline constexpr bool is_network = detail::IsNetwork<T>::value;
 
-/// Eq. (4): `Mlp<float, Inputs<16>, Hidden<10, 25>, Outputs<4>, Relu>`.
+/// Eq. (4): `Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>`.
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
 using Mlp = typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
 

@@ -161,17 +161,19 @@ struct RegisterRun {
   using Kernel = PackedKernel<Pack>;
   using Sizes = typename Network::Sizes;
 
-  static constexpr int size() noexcept { return walk_forward<Network, Kernel>(CountSize{}, Count<Inputs>{0}).size; }
+  static constexpr int size() noexcept {
+    return walk_forward<Network, Kernel>(CountSize{}, Count<FirstValues>{0}).size;
+  }
   static constexpr void pack(const float* parameters, float* packed) noexcept {
-    walk_forward<Network, Kernel>(Arrange{{}, parameters}, Place<Inputs>{packed});
+    walk_forward<Network, Kernel>(Arrange{{}, parameters}, Place<FirstValues>{packed});
   }
   template <class Keep>
   static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const float* x, float* y, const Keep& keep) noexcept {
-    run<0>(packed, Inputs{x}, y, keep);
+    run<0>(packed, FirstValues{x}, y, keep);
   }
 
  private:
-  using Inputs = MemoryValues<Pack, Network::inputs>;
+  using FirstValues = MemoryValues<Pack, Network::inputs>;
   template <class Step, class State>
   using Dense = RegisterLayer<Pack, Step::Layer::outputs, typename State::Values>;
 

@@ -94,7 +94,7 @@ class NoisyRecorder {
   }
 
  private:
-  struct Held {
+  struct HeldCommands {
     double since_s;
     Commands<double> commands;
   };
@@ -115,7 +115,7 @@ class NoisyRecorder {
 
   Engine engine_;
   RecorderErrors errors_;
-  std::deque<Held> held_;
+  std::deque<HeldCommands> held_;
 };
 
 }  // namespace pinnquad

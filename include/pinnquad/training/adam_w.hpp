@@ -17,7 +17,7 @@ struct AdamW {
 
   struct Step {
     Adam::Step adam;
-    double keep;  ///< 1 - learning_rate decay
+    double decay;  ///< 1 - learning_rate decay
   };
   Step begin(long t) const { return {without_decay().begin(t), 1.0 - learning_rate * weight_decay}; }
 
@@ -31,8 +31,8 @@ struct AdamW {
   template <class Pack, class Scalar>
   void update(const Step& step, Scalar* parameters, const Scalar* gradient, Scalar* first, Scalar* second,
               int count) const noexcept {
-    const Pack keep = Pack::broadcast(Scalar(step.keep));
-    for (int i = 0; i < count; i += Pack::width) (keep * Pack::load(parameters + i)).store(parameters + i);
+    const Pack decay = Pack::broadcast(Scalar(step.decay));
+    for (int i = 0; i < count; i += Pack::width) (decay * Pack::load(parameters + i)).store(parameters + i);
     without_decay().template update<Pack>(step.adam, parameters, gradient, first, second, count);
   }
 

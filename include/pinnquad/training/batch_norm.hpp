@@ -80,12 +80,12 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
 
   void follow_statistics() noexcept {
     if (batch_samples < 2) return;
-    const Pack keep = Pack::broadcast(Scalar(1.0 - batch_norm_momentum));
+    const Pack old_share = Pack::broadcast(Scalar(1.0 - batch_norm_momentum));
     const Pack share = Pack::broadcast(Scalar(batch_norm_momentum));
     const Pack unbiased = Pack::broadcast(Scalar(batch_norm_momentum * batch_samples / (batch_samples - 1.0)));
     for (int i = 0; i < stride; i += Pack::width) {
-      Pack::multiply_add(keep, Pack::load(running_mean + i), share * Pack::load(mean + i)).store(running_mean + i);
-      Pack::multiply_add(keep, Pack::load(running_variance + i), unbiased * Pack::load(variance + i))
+      Pack::multiply_add(old_share, Pack::load(running_mean + i), share * Pack::load(mean + i)).store(running_mean + i);
+      Pack::multiply_add(old_share, Pack::load(running_variance + i), unbiased * Pack::load(variance + i))
           .store(running_variance + i);
     }
   }

@@ -22,8 +22,9 @@ constexpr double gradient_tolerance = 1e-6;
 
 using Vehicle = pinnquad::Quadrotor<double, own::RotorDrag, pinnquad::QuadraticDrag>;
 template <class Scalar>
-using Network = pinnquad::Network<Scalar, pinnquad::Inputs<16>, own::ChannelScale, pinnquad::Dense<12>, own::LeakyRelu,
-                                  pinnquad::Dense<12>, pinnquad::Tanh, own::ChannelScale, pinnquad::Dense<4>>;
+using Network =
+    pinnquad::Network<Scalar, pinnquad::InputSize<16>, own::ChannelScale, pinnquad::Dense<12>, own::LeakyRelu,
+                      pinnquad::Dense<12>, pinnquad::Tanh, own::ChannelScale, pinnquad::Dense<4>>;
 using Loss = pinnquad::PhysicsInformed<own::Huber,
                                        pinnquad::Weighted<pinnquad::LocalMonotonicity<pinnquad::Roll>, own::LinearRamp>,
                                        pinnquad::Weighted<pinnquad::LocalMonotonicity<pinnquad::Yaw>, own::LinearRamp>>;

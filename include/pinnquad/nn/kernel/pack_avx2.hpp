@@ -73,16 +73,16 @@ struct PackAvx2 {
 
   /// Values First and First + 1, in turn.
   template <int First>
-  PINNQUAD_ALWAYS_INLINE PackAvx2 spread() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackAvx2 repeat() const noexcept {
     return {_mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(value), First / 2 * 0x55))};
   }
-  static PINNQUAD_ALWAYS_INLINE PackAvx2 spread(const float* x) noexcept {
+  static PINNQUAD_ALWAYS_INLINE PackAvx2 repeat(const float* x) noexcept {
     double both;
     __builtin_memcpy(&both, x, sizeof both);
     return {_mm256_castpd_ps(_mm256_set1_pd(both))};
   }
   /// `v`, the last of an odd count, and 1 in turn.
-  static PINNQUAD_ALWAYS_INLINE PackAvx2 spread_last(PackAvx2 v) noexcept {
+  static PINNQUAD_ALWAYS_INLINE PackAvx2 repeat_last(PackAvx2 v) noexcept {
     return PackAvx2{_mm256_broadcastss_ps(_mm256_castps256_ps128(v.value))}.with_one();
   }
   PINNQUAD_ALWAYS_INLINE PackAvx2 with_one() const noexcept {
@@ -96,7 +96,7 @@ struct PackAvx2 {
   }
   /// The first Count values, zero behind them.
   template <int Count>
-  PINNQUAD_ALWAYS_INLINE PackAvx2 keep() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackAvx2 head() const noexcept {
     return {_mm256_blend_ps(_mm256_setzero_ps(), value, (1 << Count) - 1)};
   }
   /// Sum over the lanes, in the first.

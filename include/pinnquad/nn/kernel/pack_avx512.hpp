@@ -77,18 +77,18 @@ struct PackAvx512 {
 
   /// Values First and First + 1, in turn.
   template <int First>
-  PINNQUAD_ALWAYS_INLINE PackAvx512 spread() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackAvx512 repeat() const noexcept {
     constexpr long long two_lanes = 2 * First | static_cast<long long>(2 * First + 2) << 32;
     const __m512i index = _mm512_maskz_set1_epi64(0xff, two_lanes);
     return {_mm512_maskz_permutexvar_ps(all, index, value)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackAvx512 spread(const float* x) noexcept {
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 repeat(const float* x) noexcept {
     double both;
     __builtin_memcpy(&both, x, sizeof both);
     return {_mm512_castpd_ps(_mm512_set1_pd(both))};
   }
   /// `v`, the last of an odd count, and 1 in turn.
-  static PINNQUAD_ALWAYS_INLINE PackAvx512 spread_last(PackAvx512 v) noexcept {
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 repeat_last(PackAvx512 v) noexcept {
     return {_mm512_mask_broadcastss_ps(_mm512_set1_ps(1.0f), 0x5555, v.lowest_four())};
   }
   PINNQUAD_ALWAYS_INLINE PackAvx512 with_one() const noexcept {
@@ -105,7 +105,7 @@ struct PackAvx512 {
   }
   /// The first Count values, zero behind them.
   template <int Count>
-  PINNQUAD_ALWAYS_INLINE PackAvx512 keep() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackAvx512 head() const noexcept {
     return {_mm512_maskz_mov_ps(static_cast<__mmask16>((1u << (2 * Count)) - 1u), value)};
   }
   /// Sum over the lanes of values, in the first.

@@ -14,12 +14,12 @@
 //   blocks_at_once: blocks worked on side by side; chains: sums per block that hide the multiply-add's latency
 //   lane_of_value(i): the lane where value i of a register stands
 //   row_of_pair(block, pair): the row whose products stand in that pair, such that collect() puts it in its place
-//   spread<First>(): values First, ..., First + columns - 1 in every row; spread(const Scalar*): the same from memory
-//   spread_last(v): the first lane of v in every row and, with two columns, a 1 behind it; with_one(): a 1 in each row's last lane
+//   repeat<First>(): values First, ..., First + columns - 1 in every row; repeat(const Scalar*): the same from memory
+//   repeat_last(v): the first lane of v in every row and, with two columns, a 1 behind it; with_one(): a 1 in each row's last lane
 //     (two columns)
 //   from_scalar(v): v in the first lane; first_value(): the first lane
 //   collect(sums): blocks_per_register blocks, the lanes of each row added, as values
-//   keep<Count>(): the first Count values, 0 behind; sum_of_values(): their sum in the first lane
+//   head<Count>(): the first Count values, 0 behind; sum_of_values(): their sum in the first lane
 //   store_values<Count>(y): the first Count values to y, nothing behind
 #pragma once
 
@@ -58,14 +58,14 @@ template <class P> using ValuesOf =
 template <class P> using ChainsOf = std::enable_if_t<(P::blocks_at_once > 0 && P::chains > 0)>;
 template <class P> using LaneOfValueOf = std::enable_if_t<(P::lane_of_value(0) == 0)>;
 template <class P> using RowOfPairOf = std::enable_if_t<(P::row_of_pair(0, 0) == 0)>;
-template <class P> using SpreadOf = decltype(std::declval<const P&>().template spread<0>());
-template <class P> using SpreadMemoryOf = decltype(P::spread(std::declval<const typename P::Scalar*>()));
-template <class P> using SpreadLastOf = decltype(P::spread_last(std::declval<P>()));
+template <class P> using RepeatOf = decltype(std::declval<const P&>().template repeat<0>());
+template <class P> using RepeatMemoryOf = decltype(P::repeat(std::declval<const typename P::Scalar*>()));
+template <class P> using RepeatLastOf = decltype(P::repeat_last(std::declval<P>()));
 template <class P> using WithOneOf = decltype(std::declval<const P&>().with_one());
 template <class P> using FromScalarOf = decltype(P::from_scalar(std::declval<typename P::Scalar>()));
 template <class P> using FirstValueOf = decltype(std::declval<const P&>().first_value());
 template <class P> using CollectOf = decltype(P::collect(std::declval<const P*>()));
-template <class P> using KeepOf = decltype(std::declval<const P&>().template keep<1>());
+template <class P> using HeadOf = decltype(std::declval<const P&>().template head<1>());
 template <class P> using SumOfValuesOf = decltype(std::declval<const P&>().sum_of_values());
 template <class P> using StoreValuesOf =
     decltype(std::declval<const P&>().template store_values<1>(std::declval<typename P::Scalar*>()));
@@ -109,16 +109,16 @@ constexpr bool require_register_layout() noexcept {
   static_assert(PackHas<LaneOfValueOf, Pack>::value, "pinnquad: this pack lacks lane_of_value(i) (pack_contract.hpp)");
   static_assert(PackHas<RowOfPairOf, Pack>::value,
                 "pinnquad: this pack lacks row_of_pair(block, pair) (pack_contract.hpp)");
-  static_assert(PackHas<SpreadOf, Pack>::value, "pinnquad: this pack lacks spread<First>() (pack_contract.hpp)");
-  static_assert(PackHas<SpreadMemoryOf, Pack>::value,
-                "pinnquad: this pack lacks spread(const Scalar*) (pack_contract.hpp)");
-  static_assert(PackHas<SpreadLastOf, Pack>::value, "pinnquad: this pack lacks spread_last(v) (pack_contract.hpp)");
+  static_assert(PackHas<RepeatOf, Pack>::value, "pinnquad: this pack lacks repeat<First>() (pack_contract.hpp)");
+  static_assert(PackHas<RepeatMemoryOf, Pack>::value,
+                "pinnquad: this pack lacks repeat(const Scalar*) (pack_contract.hpp)");
+  static_assert(PackHas<RepeatLastOf, Pack>::value, "pinnquad: this pack lacks repeat_last(v) (pack_contract.hpp)");
   static_assert(PackHas<WithOneOf, Pack>::value || Pack::columns == 1,
                 "pinnquad: this pack lacks with_one() (pack_contract.hpp)");
   static_assert(PackHas<FromScalarOf, Pack>::value && PackHas<FirstValueOf, Pack>::value,
                 "pinnquad: this pack lacks from_scalar(v) or first_value() (pack_contract.hpp)");
   static_assert(PackHas<CollectOf, Pack>::value, "pinnquad: this pack lacks collect(const Pack*) (pack_contract.hpp)");
-  static_assert(PackHas<KeepOf, Pack>::value, "pinnquad: this pack lacks keep<Count>() (pack_contract.hpp)");
+  static_assert(PackHas<HeadOf, Pack>::value, "pinnquad: this pack lacks head<Count>() (pack_contract.hpp)");
   static_assert(PackHas<SumOfValuesOf, Pack>::value, "pinnquad: this pack lacks sum_of_values() (pack_contract.hpp)");
   static_assert(PackHas<StoreValuesOf, Pack>::value,
                 "pinnquad: this pack lacks store_values<Count>(y) (pack_contract.hpp)");

@@ -65,16 +65,16 @@ struct PackNeon {
 
   /// Value First in every lane.
   template <int First>
-  PINNQUAD_ALWAYS_INLINE PackNeon spread() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackNeon repeat() const noexcept {
     return {vdupq_laneq_f32(value, First)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackNeon spread(const float* x) noexcept { return broadcast(*x); }
-  static PINNQUAD_ALWAYS_INLINE PackNeon spread_last(PackNeon v) noexcept { return v.spread<0>(); }
+  static PINNQUAD_ALWAYS_INLINE PackNeon repeat(const float* x) noexcept { return broadcast(*x); }
+  static PINNQUAD_ALWAYS_INLINE PackNeon repeat_last(PackNeon v) noexcept { return v.repeat<0>(); }
   static PINNQUAD_ALWAYS_INLINE PackNeon from_scalar(float v) noexcept { return broadcast(v); }
   static PINNQUAD_ALWAYS_INLINE PackNeon collect(const PackNeon* sum) noexcept { return *sum; }
   /// The first Count values, zero behind them.
   template <int Count>
-  PINNQUAD_ALWAYS_INLINE PackNeon keep() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackNeon head() const noexcept {
     const uint32x4_t lane = {0, 1, 2, 3};
     const uint32x4_t used = vcltq_u32(lane, vdupq_n_u32(Count));
     return {vreinterpretq_f32_u32(vandq_u32(used, vreinterpretq_u32_f32(value)))};

@@ -85,16 +85,16 @@ struct PackSse2 {
 
   /// Value First in every lane.
   template <int First>
-  PINNQUAD_ALWAYS_INLINE PackSse2 spread() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackSse2 repeat() const noexcept {
     return {_mm_shuffle_ps(value, value, First * 0x55)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 spread(const float* x) noexcept { return broadcast(*x); }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 spread_last(PackSse2 v) noexcept { return v.spread<0>(); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 repeat(const float* x) noexcept { return broadcast(*x); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2 repeat_last(PackSse2 v) noexcept { return v.repeat<0>(); }
   static PINNQUAD_ALWAYS_INLINE PackSse2 from_scalar(float v) noexcept { return broadcast(v); }
   static PINNQUAD_ALWAYS_INLINE PackSse2 collect(const PackSse2* sum) noexcept { return *sum; }
   /// The first Count values, zero behind them.
   template <int Count>
-  PINNQUAD_ALWAYS_INLINE PackSse2 keep() const noexcept {
+  PINNQUAD_ALWAYS_INLINE PackSse2 head() const noexcept {
     const __m128i used = _mm_set_epi32(Count > 3 ? -1 : 0, Count > 2 ? -1 : 0, Count > 1 ? -1 : 0, Count > 0 ? -1 : 0);
     return {_mm_and_ps(_mm_castsi128_ps(used), value)};
   }

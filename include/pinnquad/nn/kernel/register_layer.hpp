@@ -33,12 +33,12 @@ struct RegisterValues {
 
   /// Inputs of one step in every row. Behind an odd count stands a 1: its weight is the bias.
   template <int Step>
-  PINNQUAD_ALWAYS_INLINE Pack spread() const noexcept {
+  PINNQUAD_ALWAYS_INLINE Pack repeat() const noexcept {
     constexpr int first = Step * Pack::columns;
     if constexpr (lone && first == Size - 1) {
-      return Pack::spread_last(last);
+      return Pack::repeat_last(last);
     } else {
-      const Pack inputs = value[first / Pack::values].template spread<first % Pack::values>();
+      const Pack inputs = value[first / Pack::values].template repeat<first % Pack::values>();
       if constexpr (first + Pack::columns > Size) {
         return inputs.with_one();
       } else {
@@ -51,7 +51,7 @@ struct RegisterValues {
   PINNQUAD_ALWAYS_INLINE Pack used() const noexcept {
     constexpr int left = in_registers - Register * Pack::values;
     if constexpr (left < Pack::values) {
-      return value[Register].template keep<left>();
+      return value[Register].template head<left>();
     } else {
       return value[Register];
     }
@@ -83,12 +83,12 @@ struct MemoryValues {
   const float* x;
 
   template <int Step>
-  PINNQUAD_ALWAYS_INLINE Pack spread() const noexcept {
+  PINNQUAD_ALWAYS_INLINE Pack repeat() const noexcept {
     constexpr int first = Step * Pack::columns;
     if constexpr (first + Pack::columns > Size) {
-      return Pack::spread_last(Pack::from_scalar(x[first]));
+      return Pack::repeat_last(Pack::from_scalar(x[first]));
     } else {
-      return Pack::spread(x + first);
+      return Pack::repeat(x + first);
     }
   }
 };
@@ -169,7 +169,7 @@ struct RegisterLayer {
     Pack sum[chains][Count];
     unroll<steps>([&](auto s) PINNQUAD_INLINE_LAMBDA {
       constexpr int step = decltype(s)::value;
-      const Pack inputs = x.template spread<step>();
+      const Pack inputs = x.template repeat<step>();
       unroll<Count>([&](auto b) PINNQUAD_INLINE_LAMBDA {
         constexpr int block = First + decltype(b)::value;
         const Pack weights = Pack::load(packed + Pack::width * (steps * block + step));
