@@ -145,8 +145,8 @@ FigureEight<double> trajectory_for(const Vehicle& vehicle) {
 template <class FeedForward>
 TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const FigureEight<double>& trajectory,
                            const FeedForward& feed_forward) {
-  const double density = vehicle.rotor_scale(vehicle.surroundings({}, 0));
-  const FlightController<double> controller({}, flight_limits(vehicle.airframe(), density));
+  const double rotor_scale = vehicle.rotor_scale(vehicle.surroundings({}, 0));
+  const FlightController<double> controller({}, flight_limits(vehicle.airframe(), rotor_scale));
   const TrackingResult<double> r = track(vehicle, trajectory, controller, feed_forward);
   char fallback[48] = "-";
   if (r.fallback.asked > 0) {

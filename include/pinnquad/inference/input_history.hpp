@@ -59,7 +59,8 @@ namespace detail {
 /// The inputs at an instant among samples `first` to `last`, whose times rise: a sample itself where it is within the window's
 /// tolerance. `near` is where the search begins. False before the first and behind the last sample.
 template <class Scalar, class Window, class Index, class TimeOf, class Read, class Tap>
-bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read, Tap& result) {
+bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
+             Tap& result) noexcept {
   const double until_s = time_s + Window::tolerance_s;
   Index at = near;
   while (at > first && time_of(at) > until_s) --at;
@@ -78,7 +79,7 @@ bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& t
 /// The other taps of a window about a present instant; `complete` if all of them are there.
 template <class Tap, class Scalar, class Window, class Index, class TimeOf, class Read>
 void fill_window(double present_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
-                 WindowInputs<Tap, Scalar, Window>& window) {
+                 WindowInputs<Tap, Scalar, Window>& window) noexcept {
   window.complete = true;
   for (int tap = 0; tap < Window::taps - 1; ++tap) {
     const double time_s = present_s + Window::offset_s(tap);
@@ -208,10 +209,11 @@ class InputHistory<Windowed<FeatureSet, Taps, Period, Reach>, Scalar, MostSample
   Inputs inputs_{};
 };
 
-/// A window, causal or centred, of a motion that is known ahead: `plan(time_s, inputs)` gives the inputs of an instant, a Status.
+/// A window, causal or centred, of a motion that is known ahead: `plan(time_s, inputs)` gives the inputs of an instant, a Status,
+/// and does not throw.
 /// The first Status of the plan that is not ok, and then `window` is untouched.
 template <class Tap, class Scalar, class Window, class Plan>
-Status planned_window(const Plan& plan, double present_s, WindowInputs<Tap, Scalar, Window>& window) {
+Status planned_window(const Plan& plan, double present_s, WindowInputs<Tap, Scalar, Window>& window) noexcept {
   WindowInputs<Tap, Scalar, Window> filled;
   Status status = plan(present_s, static_cast<Tap&>(filled));
   for (int tap = 0; tap < Window::taps - 1 && status == Status::ok; ++tap) {

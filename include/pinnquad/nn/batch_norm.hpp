@@ -30,17 +30,6 @@ struct BatchNormLayer {
       y[i] = gamma[i] * ((x[i] - mean[i]) / detail::square_root(variance[i] + Scalar(batch_norm_epsilon))) + beta[i];
     }
   }
-
-  /// gamma 1, beta 0, mean 0, variance 1: nearly the identity. Draws nothing.
-  template <class Engine>
-  static void initialise(Scalar* parameters, Engine&) noexcept {
-    for (int i = 0; i < Size; ++i) {
-      parameters[i] = Scalar(1);
-      parameters[Size + i] = Scalar(0);
-      parameters[2 * Size + i] = Scalar(0);
-      parameters[3 * Size + i] = Scalar(1);
-    }
-  }
 };
 
 struct BatchNorm {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 #include "pinnquad/nn/network.hpp"
 
@@ -22,6 +23,16 @@ struct XavierUniform {
   void initialise(DenseWithoutBiasLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
     const double limit = std::sqrt(6.0 / (In + Out));
     for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
+  }
+  /// gamma 1, beta 0, mean 0, variance 1: nearly the identity. Draws nothing.
+  template <class Scalar, int Size, class Engine>
+  void initialise(BatchNormLayer<Scalar, Size>, Scalar* parameters, Engine&) const {
+    for (int i = 0; i < Size; ++i) {
+      parameters[i] = Scalar(1);
+      parameters[Size + i] = Scalar(0);
+      parameters[2 * Size + i] = Scalar(0);
+      parameters[3 * Size + i] = Scalar(1);
+    }
   }
   template <class Layer, class Scalar, class Engine>
   void initialise(Layer, Scalar* parameters, Engine& engine) const {

@@ -17,9 +17,9 @@ struct Resolution {
 };
 
 /// Of a quantity with this unit (units of a feature set or an output schema) about `mean`:
-///   unit      m/s^2  rad/s^2  m/s   rad/s  rad    1       m     rev/s
-///   spread    0.01   0.01     0.01  0.001  0.001  0.0001  0.01  0.01
-///   margin    0.2    0.5      0.1   0.05   0.05   0.05    0.2   0.5
+///   unit      m/s^2  rad/s^2  m/s   rad/s  rad    1       m     rev/s  V
+///   spread    0.01   0.01     0.01  0.001  0.001  0.0001  0.01  0.01   0.01
+///   margin    0.2    0.5      0.1   0.05   0.05   0.05    0.2   0.5    0.5
 /// Any other unit: a millionth and a hundredth of |mean|, of 1 for a smaller mean. No spread is below a millionth of |mean|:
 /// a float's rounding.
 inline Resolution resolution_of(std::string_view unit, double mean) {
@@ -27,14 +27,15 @@ inline Resolution resolution_of(std::string_view unit, double mean) {
     std::string_view unit;
     Resolution resolution;
   };
-  constexpr std::array<Named, 8> named = {{{"m/s^2", {0.01, 0.2}},
+  constexpr std::array<Named, 9> named = {{{"m/s^2", {0.01, 0.2}},
                                            {"rad/s^2", {0.01, 0.5}},
                                            {"m/s", {0.01, 0.1}},
                                            {"rad/s", {0.001, 0.05}},
                                            {"rad", {0.001, 0.05}},
                                            {"1", {0.0001, 0.05}},
                                            {"m", {0.01, 0.2}},
-                                           {"rev/s", {0.01, 0.5}}}};
+                                           {"rev/s", {0.01, 0.5}},
+                                           {"V", {0.01, 0.5}}}};
   constexpr double rounding = 1e-6;
   const double magnitude = std::abs(mean);
   for (const Named& known : named) {
