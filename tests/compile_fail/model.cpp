@@ -169,7 +169,7 @@ struct Recorded : RecordedModel {
   static constexpr std::array<const char*, 2> records = {"answer", "phase_of_the_moon"};
 #elif defined(OTHER_ANSWER)
   static constexpr const char* answer =
-      "pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<8>, pinnquad::Tanh, pinnquad::Dense<4>>";
+      "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>, pinnquad::Tanh, pinnquad::Dense<4>>";
 #elif defined(NO_COMMAND_RANGE)
   static constexpr double command_lower = 1.5;
 #elif defined(PERIOD_NEGATIVE)

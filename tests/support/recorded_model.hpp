@@ -11,7 +11,7 @@ struct RecordedModel : DescribedModel {
   static constexpr std::array<const char*, 7> records = {"answer",  "commands",   "clock", "window",
                                                          "columns", "allocation", "base"};
   static constexpr const char* answer =
-      "pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<8>, pinnquad::Relu, pinnquad::Dense<4>>";
+      "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>, pinnquad::Relu, pinnquad::Dense<4>>";
   static constexpr std::array<const char*, 4> output_units = {"1", "1", "1", "1"};
   static constexpr CommandMeaning command_meaning = CommandMeaning::thrust;
   static constexpr double command_lower = 0.0;

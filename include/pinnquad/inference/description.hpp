@@ -87,6 +87,7 @@ struct Description<double> {
     sink.add(std::string_view("double"));
   }
 };
+/// By its name of formats 1 and 2: weights on flash keep their identity.
 template <int Size>
 struct Description<InputSize<Size>> {
   template <class Sink>
