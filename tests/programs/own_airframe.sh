@@ -26,4 +26,4 @@ grep -q "block: block_incompatible" refused.txt || fail "another vehicle's block
 
 sed 's/^mass_kg = .*/mass_kg = -1/' mine.toml >broken.toml
 expect_line 2 "broken.toml:[0-9]+:[0-9]+: expected a value above 0" "$train" --flight flight.csv --airframe broken.toml --out c
-expect_line 2 "none.toml: expected an airframe file" "$train" --flight flight.csv --airframe none.toml --out c
+expect_line 2 "none.toml: expected a readable file, found none" "$train" --flight flight.csv --airframe none.toml --out c

@@ -43,8 +43,8 @@ TEST_CASE("every unit of the feature sets and output schemas has a resolution of
 }
 
 TEST_CASE("an unknown unit: relative to the value, and to 1 about 0") {
-  CHECK(resolution_of("V", 0).smallest_spread == 1e-6);
-  CHECK(resolution_of("V", -0.5).still_margin == 0.01);
+  CHECK(resolution_of("K", 0).smallest_spread == 1e-6);
+  CHECK(resolution_of("K", -0.5).still_margin == 0.01);
   CHECK(resolution_of("Pa", 1e5).smallest_spread == doctest::Approx(0.1));
   CHECK(resolution_of("Pa", -1e5).still_margin == doctest::Approx(1000));
 }

@@ -14,6 +14,12 @@
 namespace pinnquad {
 namespace detail {
 
+/// a == b, meant as it is written: firmware is compiled with -Wfloat-equal. False for NaN.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE constexpr bool equal(const Scalar& a, const Scalar& b) noexcept {
+  return a <= b && a >= b;
+}
+
 PINNQUAD_ALWAYS_INLINE float hyperbolic_tangent(float v) noexcept { return __builtin_tanhf(v); }
 PINNQUAD_ALWAYS_INLINE double hyperbolic_tangent(double v) noexcept { return __builtin_tanh(v); }
 template <class Scalar>

@@ -37,7 +37,8 @@ struct RotorMount {
 /// True for thrust along -z, without lateral force.
 template <class Scalar>
 constexpr bool is_upright(const RotorMount<Scalar>& rotor) noexcept {
-  return rotor.axis[0] == Scalar(0) && rotor.axis[1] == Scalar(0) && rotor.axis[2] == Scalar(-1);
+  return detail::equal(rotor.axis[0], Scalar(0)) && detail::equal(rotor.axis[1], Scalar(0)) &&
+         detail::equal(rotor.axis[2], Scalar(-1));
 }
 
 /// True for an axis of length 1, to 0.001.
@@ -66,7 +67,7 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction_slope(Scalar curve, Scal
 /// The command of a thrust fraction: u = 2 s / (1 - k + sqrt((1 - k)^2 + 4 k |s|)), which subtracts nothing and is s for k = 0.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_of_fraction(Scalar curve, Scalar fraction) noexcept {
-  if (curve == Scalar(0)) return fraction;
+  if (detail::equal(curve, Scalar(0))) return fraction;
   const Scalar linear = Scalar(1) - curve;
   const Scalar magnitude = fraction < Scalar(0) ? -fraction : fraction;
   const Scalar divisor = linear + detail::square_root(linear * linear + Scalar(4) * curve * magnitude);

@@ -69,12 +69,12 @@ struct Airframe {
   /// Time constant of a rotor's growing thrust, s.
   constexpr Scalar rise_time_constant_s(std::size_t rotor) const noexcept {
     const Scalar own = rotors[rotor].rise_time_constant_s;
-    return own == as_airframe<Scalar> ? rotor_time_constant_s : own;
+    return detail::equal(own, as_airframe<Scalar>) ? rotor_time_constant_s : own;
   }
   /// Time constant of a rotor's falling thrust, s.
   constexpr Scalar fall_time_constant_s(std::size_t rotor) const noexcept {
     const Scalar own = rotors[rotor].fall_time_constant_s;
-    return own == as_airframe<Scalar> ? rotor_time_constant_s : own;
+    return detail::equal(own, as_airframe<Scalar>) ? rotor_time_constant_s : own;
   }
 };
 
@@ -82,7 +82,8 @@ struct Airframe {
 template <class Scalar>
 constexpr bool has_diagonal_inertia(const Airframe<Scalar>& airframe) noexcept {
   const auto& products = airframe.inertia_products_kg_m2;
-  return products[0] == Scalar(0) && products[1] == Scalar(0) && products[2] == Scalar(0);
+  return detail::equal(products[0], Scalar(0)) && detail::equal(products[1], Scalar(0)) &&
+         detail::equal(products[2], Scalar(0));
 }
 
 /// How an airframe is built, for code that leaves out what a plain one can't need.
@@ -95,9 +96,9 @@ template <class Scalar>
 constexpr Build build_of(const Airframe<Scalar>& airframe) noexcept {
   bool plain = has_diagonal_inertia(airframe);
   for (std::size_t i = 0; i < rotor_count; ++i) {
-    plain = plain && is_upright(airframe.rotors[i]) && airframe.rotors[i].thrust_curve == Scalar(0) &&
-            airframe.rise_time_constant_s(i) == airframe.rise_time_constant_s(0) &&
-            airframe.fall_time_constant_s(i) == airframe.rise_time_constant_s(0);
+    plain = plain && is_upright(airframe.rotors[i]) && detail::equal(airframe.rotors[i].thrust_curve, Scalar(0)) &&
+            detail::equal(airframe.rise_time_constant_s(i), airframe.rise_time_constant_s(0)) &&
+            detail::equal(airframe.fall_time_constant_s(i), airframe.rise_time_constant_s(0));
   }
   return plain ? Build::plain : Build::any;
 }
@@ -148,7 +149,7 @@ constexpr bool plausible_products(const Airframe<Scalar>& a) noexcept {
 /// constants of its own that are no less than 0.
 template <class Scalar>
 constexpr bool plausible_rotor(const RotorMount<Scalar>& r) noexcept {
-  const auto time_constant = [](Scalar own) { return own == as_airframe<Scalar> || plausible_or_zero(own); };
+  const auto time_constant = [](Scalar own) { return equal(own, as_airframe<Scalar>) || plausible_or_zero(own); };
   return bounded(r.x_m) && bounded(r.y_m) && bounded(r.z_m) && has_unit_axis(r) &&
          (r.spin == Spin::clockwise || r.spin == Spin::counter_clockwise) && plausible(r.thrust_scale) &&
          r.thrust_curve >= Scalar(0) && r.thrust_curve <= Scalar(1) && time_constant(r.rise_time_constant_s) &&

@@ -24,8 +24,8 @@ template <class Scalar>
 constexpr CommandMeaning command_meaning_of(const Airframe<Scalar>& airframe) noexcept {
   bool thrust = true, speed = true;
   for (const RotorMount<Scalar>& rotor : airframe.rotors) {
-    thrust = thrust && rotor.thrust_curve == Scalar(0);
-    speed = speed && rotor.thrust_curve == Scalar(1);
+    thrust = thrust && detail::equal(rotor.thrust_curve, Scalar(0));
+    speed = speed && detail::equal(rotor.thrust_curve, Scalar(1));
   }
   return thrust ? CommandMeaning::thrust : (speed ? CommandMeaning::speed : CommandMeaning::pulse_width);
 }

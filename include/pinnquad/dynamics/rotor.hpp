@@ -188,10 +188,10 @@ PINNQUAD_ALWAYS_INLINE Scalar command_slope_of_speed(const Airframe<Scalar>& air
   const Scalar n_max = airframe.max_rotor_speed_rev_s;
   const Scalar magnitude = speed_rev_s < Scalar(0) ? -speed_rev_s : speed_rev_s;
   const Scalar straight = Scalar(2) * magnitude / (n_max * n_max);
-  if (curve == Scalar(0)) return straight;
+  if (detail::equal(curve, Scalar(0))) return straight;
   const Scalar ratio = magnitude / n_max, linear = Scalar(1) - curve;
   const Scalar bend = detail::square_root(linear * linear + Scalar(4) * curve * (ratio * ratio));
-  return bend == Scalar(0) ? Scalar(1) / n_max : straight / bend;  // 0 / 0 at k = 1, n = 0; NaN stays NaN
+  return detail::equal(bend, Scalar(0)) ? Scalar(1) / n_max : straight / bend;  // 0 / 0 at k = 1, n = 0; NaN stays NaN
 }
 
 /// ... and the speed of a command in 0..1, rev/s.
@@ -227,7 +227,7 @@ class Rotors {
       most_thrust_N_[i] = rotor.thrust_scale * airframe.max_rotor_thrust_N();
       lateral_N_[0][i] = rotor.axis[0] * most_thrust_N_[i];
       lateral_N_[1][i] = rotor.axis[1] * most_thrust_N_[i];
-      straight_ = straight_ && curve_[i] == Scalar(0);
+      straight_ = straight_ && detail::equal(curve_[i], Scalar(0));
       upright_ = upright_ && is_upright(rotor);
     }
   }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/inference/caller.hpp"
 
@@ -39,7 +40,9 @@ struct Judged {
 struct BlockRecordLayout {
   static constexpr std::size_t counts = 8;  ///< u32 number of records, u32 bytes of them all, before the first
   static constexpr std::size_t head = 8;    ///< type and length
-  static constexpr std::size_t padded(std::size_t length) noexcept { return (length + 7) / 8 * 8; }
+  static PINNQUAD_ALWAYS_INLINE constexpr std::size_t padded(std::size_t length) noexcept {
+    return (length + 7) / 8 * 8;
+  }
 };
 
 namespace detail {
@@ -144,6 +147,7 @@ class BlockRecordReader {
 
  private:
   static constexpr std::uint32_t known_types = 10;
+  static constexpr std::size_t column_count = extra_column_names<Features>.size();
   using Base = typename detail::BaseOf<Outputs>::type;
   static constexpr bool has_base = !std::is_same_v<Base, detail::NoBase>;
   using Window = detail::WindowOf<Features>;
@@ -177,10 +181,13 @@ class BlockRecordReader {
                      detail::read_u32(bytes + 4) == std::uint32_t(Window::causal));
       case BlockRecord::columns: {
         detail::BytesMatch match{bytes, bytes + length};
-        constexpr const auto& names = extra_column_names<Features>;
-        for (std::size_t i = 0; i < names.size(); ++i) {
-          match.take_text(names[i]);
-          match.take_text(extra_column_units<Features>[i]);
+        if constexpr (column_count > 0) {
+          const auto* names = detail::first_of<const char*>(extra_column_names<Features>);
+          const auto* units = detail::first_of<const char*>(extra_column_units<Features>);
+          for (std::size_t i = 0; i < column_count; ++i) {
+            match.take_text(names[i]);
+            match.take_text(units[i]);
+          }
         }
         return holds(match.same && match.at == match.end);
       }
@@ -188,12 +195,16 @@ class BlockRecordReader {
         if (length != 16 * sizeof(Scalar)) return Status::block_corrupt;
         const Scalar* entries = scalars(0);
         constexpr AllocationMatrix<Scalar> expected = allocation(airframe_value<typename Shape::Vehicle, Scalar>());
-        return holds(detail::same_allocation(
-            [entries](std::size_t row, std::size_t column) { return entries[row * rotor_count + column]; }, expected));
+        const Scalar* own = detail::first_of<Scalar>(expected);
+        const auto entry_of = [](const Scalar* matrix) {
+          return [matrix](std::size_t row, std::size_t column) { return matrix[row * rotor_count + column]; };
+        };
+        return holds(detail::same_allocation<Scalar>(entry_of(entries), entry_of(own)));
       }
-      case BlockRecord::base:
-        return holds(
-            detail::describes<Base>({static_cast<const char*>(static_cast<const void*>(bytes)), std::size_t{length}}));
+      case BlockRecord::base: {
+        constexpr auto letters = detail::description_letters<Base>();
+        return holds(detail::same_letters(&letters.text[0], letters.count, bytes, length));
+      }
       case BlockRecord::verdict:
         if (length != 8) return Status::block_corrupt;
         to.judged = detail::read_u32(bytes);
@@ -202,9 +213,10 @@ class BlockRecordReader {
       case BlockRecord::slope_signs: {
         if (length != 3 * rotor_count) return Status::block_corrupt;
         bool signs = true;
+        auto* slope_signs = detail::first_of<std::int8_t>(to.slope_signs);
         for (std::size_t i = 0; i < 3 * std::size_t(rotor_count); ++i) {
           signs &= bytes[i] <= 1 || bytes[i] == 0xff;
-          to.slope_signs[i / 3][i % 3] = bytes[i] == 0xff ? std::int8_t(-1) : static_cast<std::int8_t>(bytes[i] & 1);
+          slope_signs[i] = bytes[i] == 0xff ? std::int8_t(-1) : static_cast<std::int8_t>(bytes[i] & 1);
         }
         to.has_slope_signs = true;
         return signs ? Status::ok : Status::block_corrupt;
@@ -213,11 +225,13 @@ class BlockRecordReader {
         if (length != 2 * std::size_t(outputs) * sizeof(Scalar)) return Status::block_corrupt;
         const Scalar* lower = scalars(0);
         const Scalar* upper = lower + outputs;
+        auto* to_lower = detail::first_of<Scalar>(to.residual_lower);
+        auto* to_upper = detail::first_of<Scalar>(to.residual_upper);
         bool sound = all_finite(lower, 2 * outputs);
         for (int i = 0; i < outputs; ++i) {
           sound &= lower[i] <= upper[i];
-          to.residual_lower[std::size_t(i)] = lower[i];
-          to.residual_upper[std::size_t(i)] = upper[i];
+          to_lower[i] = lower[i];
+          to_upper[i] = upper[i];
         }
         to.has_residual_range = true;
         return sound ? Status::ok : Status::block_corrupt;
@@ -238,7 +252,7 @@ class BlockRecordReader {
     const auto said = [seen](BlockRecord record) { return (seen >> static_cast<unsigned>(record) & 1u) != 0; };
     return said(BlockRecord::commands) && said(BlockRecord::clock) && said(BlockRecord::window) &&
            said(BlockRecord::allocation) && (!has_base || said(BlockRecord::base)) &&
-           (extra_column_names<Features>.size() == 0 || said(BlockRecord::columns));
+           (column_count == 0 || said(BlockRecord::columns));
   }
 
   /// In the terms of the shape's caller, which a block must state; or of the header that is the shape, which a block of

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/inference/windowed.hpp"
 
 namespace pinnquad {
@@ -152,7 +153,7 @@ class InputHistory<Windowed<FeatureSet, Taps, Period, Reach>, Scalar, MostSample
     if (checked != Status::ok) return checked;
     if (count_ > 0) {
       const double newest_s = sample(count_ - 1).time_s;
-      if (time_s == newest_s) {
+      if (detail::equal(time_s, newest_s)) {
         --count_;
       } else if (!detail::follows<Window>(newest_s, time_s)) {
         count_ = 0;

@@ -46,15 +46,6 @@ struct ModelBlockHeader {
   static constexpr std::size_t checksum_size = 4;
 };
 
-namespace detail {
-/// Letters of a description.
-struct DescriptionLength {
-  std::size_t letters = 0;
-  constexpr void add(std::string_view text) noexcept { letters += text.size(); }
-  constexpr void add(int number) noexcept { letters += number >= 10 ? 10 : 1; }
-};
-}  // namespace detail
-
 /// Where the scalars of a block for this shape stand, counted in scalars from the end of the header and the records.
 template <class Shape>
 struct ModelBlockLayout {
@@ -90,12 +81,11 @@ struct ModelBlockLayout {
     std::size_t columns = 0;
     for (const char* name : extra_column_names<Features>) columns += std::string_view(name).size() + 1;
     for (const char* unit : extra_column_units<Features>) columns += std::string_view(unit).size() + 1;
-    detail::DescriptionLength base{};
-    Description<typename detail::BaseOf<typename Shape::Outputs>::type>::add(base);
+    constexpr std::size_t base = detail::description_length<typename detail::BaseOf<typename Shape::Outputs>::type>();
     const std::size_t distance = inputs + detail::triangle(inputs) + 1;
     std::size_t bytes = Records::counts;
     for (const std::size_t length :
-         {8 + 2 * scalar, std::size_t{8}, std::size_t{8}, columns, 16 * scalar, base.letters, std::size_t{8},
+         {8 + 2 * scalar, std::size_t{8}, std::size_t{8}, columns, 16 * scalar, base, std::size_t{8},
           3 * std::size_t(rotor_count), 2 * outputs * scalar, distance * scalar}) {
       bytes += Records::head + Records::padded(length);
     }

@@ -80,6 +80,53 @@ constexpr bool describes(std::string_view text) noexcept {
   return match.same && match.rest.empty();
 }
 
+/// A description's letters, without spaces: what a block is compared with, made by the compiler.
+template <std::size_t Most>
+struct DescriptionLetters {
+  char text[Most + 1] = {};
+  std::size_t count = 0;
+
+  constexpr void add(std::string_view piece) noexcept {
+    for (const char c : piece) {
+      if (c != ' ') text[count++] = c;
+    }
+  }
+  constexpr void add(int number) noexcept {
+    if (number >= 10) add(number / 10);
+    text[count++] = static_cast<char>('0' + number % 10);
+  }
+};
+/// The most letters that a description has.
+struct DescriptionLength {
+  std::size_t letters = 0;
+  constexpr void add(std::string_view text) noexcept { letters += text.size(); }
+  constexpr void add(int number) noexcept { letters += number >= 10 ? 10 : 1; }
+};
+template <class T>
+constexpr std::size_t description_length() noexcept {
+  DescriptionLength length;
+  Description<T>::add(length);
+  return length.letters;
+}
+template <class T>
+constexpr auto description_letters() noexcept {
+  DescriptionLetters<description_length<T>()> letters;
+  Description<T>::add(letters);
+  return letters;
+}
+
+/// A description's letters against a text in bytes; spaces don't count.
+inline bool same_letters(const char* letters, std::size_t count, const unsigned char* text,
+                         std::size_t length) noexcept {
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < length; ++i) {
+    if (text[i] == static_cast<unsigned char>(' ')) continue;
+    if (seen == count || text[i] != static_cast<unsigned char>(letters[seen])) return false;
+    ++seen;
+  }
+  return seen == count;
+}
+
 /// What an output schema adds its outputs to: its `Base`, or nothing.
 struct NoBase {
   static constexpr const char* description = "";
@@ -118,17 +165,19 @@ constexpr bool same_period(double a, double b) noexcept {
 /// Entries of two allocations count as one if they differ by no more than this share of the largest of their row.
 inline constexpr double allocation_tolerance = 1e-4;
 
-/// `get(row, column)` against an allocation.
-template <class Scalar, class Get>
-constexpr bool same_allocation(const Get& get, const AllocationMatrix<Scalar>& expected) noexcept {
-  for (std::size_t row = 0; row < expected.size(); ++row) {
+/// Entries `get(row, column)` against those expected.
+template <class Scalar, class Get, class Expected>
+constexpr bool same_allocation(const Get& get, const Expected& expected) noexcept {
+  constexpr std::size_t rows = 4, columns = static_cast<std::size_t>(rotor_count);
+  for (std::size_t row = 0; row < rows; ++row) {
     Scalar largest(0);
-    for (const Scalar entry : expected[row]) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Scalar entry = expected(row, column);
       const Scalar magnitude = entry < Scalar(0) ? -entry : entry;
       largest = magnitude > largest ? magnitude : largest;
     }
-    for (std::size_t column = 0; column < expected[row].size(); ++column) {
-      const Scalar difference = get(row, column) - expected[row][column];
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Scalar difference = get(row, column) - expected(row, column);
       const Scalar magnitude = difference < Scalar(0) ? -difference : difference;
       if (!(magnitude <= Scalar(allocation_tolerance) * largest)) return false;
     }
@@ -185,8 +234,9 @@ constexpr std::size_t triangle(std::size_t size) noexcept { return size * (size 
 
 template <class M>
 constexpr bool same_header_allocation() noexcept {
-  return same_allocation([](std::size_t row, std::size_t column) { return M::allocation[row][column]; },
-                         allocation(M::Vehicle::template value<double>()));
+  constexpr AllocationMatrix<double> expected = allocation(M::Vehicle::template value<double>());
+  return same_allocation<double>([](std::size_t row, std::size_t column) { return double(M::allocation[row][column]); },
+                                 [&](std::size_t row, std::size_t column) { return expected[row][column]; });
 }
 
 template <class M>

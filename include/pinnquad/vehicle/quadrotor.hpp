@@ -203,7 +203,8 @@ class Quadrotor {
     const ThrustFractions<Scalar> start = at_start(before, end, time_constant_s);
     Status air = Status::ok;
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
-      const ThrustFractions<Scalar>& now = offset_s == Scalar(0) ? start : (offset_s < step_s ? middle : end);
+      const ThrustFractions<Scalar>& now =
+          detail::equal(offset_s, Scalar(0)) ? start : (offset_s < step_s ? middle : end);
       return rate_of_change<build>(body, now, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
     };
     const State<Scalar> next = rk4_step(state.body, step_s, rate);
@@ -245,7 +246,7 @@ class Quadrotor {
     }
     constexpr double latest_s = 1e12;  // beyond, no clock in seconds tells milliseconds apart
     const double start_s = state.time_s, end_s = start_s + static_cast<double>(step_s);
-    const bool clock_moves = end_s > start_s || step_s == Scalar(0);
+    const bool clock_moves = end_s > start_s || detail::equal(step_s, Scalar(0));
     if (!(clock_moves && start_s >= -latest_s && end_s <= latest_s)) return Status::out_of_range;
     if (!can_follow(state.body, step_s)) return Status::out_of_range;
     return is_unit(state.body.attitude) ? Status::ok : Status::not_unit_quaternion;

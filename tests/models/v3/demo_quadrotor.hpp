@@ -7,7 +7,7 @@
 
 struct DemoQuadrotorV3 {
   using Scalar = float;
-  using Network = pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4>>;
+  using Network = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4>>;
   using Features = pinnquad::PaperFeatures;
   using Outputs = pinnquad::CommandOutputs;
   using Vehicle = pinnquad::PaperQuadrotor;

@@ -37,7 +37,7 @@ struct OwnRacerV3Airframe {
 
 struct OwnRacerV3 {
   using Scalar = double;
-  using Network = pinnquad::Network<double, pinnquad::Inputs<34>, pinnquad::Dense<6>, pinnquad::Tanh, pinnquad::Dense<4>>;
+  using Network = pinnquad::Network<double, pinnquad::InputSize<34>, pinnquad::Dense<6>, pinnquad::Tanh, pinnquad::Dense<4>>;
   using Features = pinnquad::Windowed<pinnquad::WithColumns<pinnquad::PaperFeatures, pinnquad::BatteryVoltage>, 2, pinnquad::PeriodMicroseconds<10000>>;
   using Outputs = pinnquad::CommandOutputs;
   using Vehicle = OwnRacerV3Airframe;
