@@ -47,40 +47,7 @@ constexpr bool all_finite_constants(const Array& values) noexcept {
   return true;
 }
 
-/// Compares a description with a text piece by piece; spaces don't count.
-struct DescriptionMatch {
-  std::string_view rest;
-  bool same = true;
-
-  constexpr void add(std::string_view text) noexcept {
-    for (const char c : text) {
-      if (c != ' ') take(c);
-    }
-  }
-  constexpr void add(int number) noexcept {
-    if (number >= 10) add(number / 10);
-    take(static_cast<char>('0' + number % 10));
-  }
-  constexpr void skip_spaces() noexcept {
-    while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
-  }
-  constexpr void take(char c) noexcept {
-    skip_spaces();
-    same = same && !rest.empty() && rest.front() == c;
-    if (!rest.empty()) rest.remove_prefix(1);
-  }
-};
-
-/// True for the text of T's description (inference/description.hpp).
-template <class T>
-constexpr bool describes(std::string_view text) noexcept {
-  DescriptionMatch match{text};
-  Description<T>::add(match);
-  match.skip_spaces();
-  return match.same && match.rest.empty();
-}
-
-/// A description's letters, without spaces: what a block is compared with, made by the compiler.
+/// A description's letters, without spaces: what a header and a block are compared with, made by the compiler.
 template <std::size_t Most>
 struct DescriptionLetters {
   char text[Most + 1] = {};
@@ -115,16 +82,24 @@ constexpr auto description_letters() noexcept {
   return letters;
 }
 
-/// A description's letters against a text in bytes; spaces don't count.
-inline bool same_letters(const char* letters, std::size_t count, const unsigned char* text,
-                         std::size_t length) noexcept {
+/// A description's letters against a text of chars or bytes; spaces don't count.
+template <class Byte>
+constexpr bool same_letters(const char* letters, std::size_t count, const Byte* text, std::size_t length) noexcept {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < length; ++i) {
-    if (text[i] == static_cast<unsigned char>(' ')) continue;
-    if (seen == count || text[i] != static_cast<unsigned char>(letters[seen])) return false;
+    const char letter = static_cast<char>(text[i]);
+    if (letter == ' ') continue;
+    if (seen == count || letter != letters[seen]) return false;
     ++seen;
   }
   return seen == count;
+}
+
+/// True for the text of T's description (inference/description.hpp).
+template <class T>
+constexpr bool describes(std::string_view text) noexcept {
+  constexpr auto letters = description_letters<T>();
+  return same_letters(letters.text, letters.count, text.data(), text.size());
 }
 
 /// What an output schema adds its outputs to: its `Base`, or nothing.
