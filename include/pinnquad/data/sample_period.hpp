@@ -11,7 +11,8 @@
 namespace pinnquad {
 
 /// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of two
-/// pieces differ by more than `tolerance` of the first: then there is no one period.
+/// pieces differ by more than `tolerance` of the first: then there is no one period. To the nanosecond, as a block holds it: times
+/// are sums of steps.
 inline double sample_period_s(const RowSet& rows, double tolerance = 0.01) {
   double period = 0;
   for (const FlightRows& piece : rows.pieces()) {
@@ -25,7 +26,7 @@ inline double sample_period_s(const RowSet& rows, double tolerance = 0.01) {
     if (period > 0 && !(std::abs(*middle - period) <= tolerance * period)) return 0;
     if (!(period > 0)) period = *middle;
   }
-  return period;
+  return std::round(period * 1e9) / 1e9;
 }
 
 }  // namespace pinnquad
