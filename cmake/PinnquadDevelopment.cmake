@@ -17,14 +17,10 @@ target_compile_options(pinnquad_development INTERFACE
   -ffp-contract=off)
 
 # gcc 12's straight-line vectoriser makes vfmaddsub of separate products and sums, whatever -ffp-contract says.
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(pinnquad_development INTERFACE -fno-tree-slp-vectorize)
-endif()
-
-# gcc otherwise collects its garbage from 4 MiB on, again and again: an eighth of the time of a heavy translation unit,
+# Its garbage it otherwise collects from 4 MiB on, again and again: an eighth of the time of a heavy translation unit,
 # which needs no more memory without.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(pinnquad_development INTERFACE --param=ggc-min-heapsize=1000000)
+  target_compile_options(pinnquad_development INTERFACE -fno-tree-slp-vectorize --param=ggc-min-heapsize=1000000)
 endif()
 
 # gcc before 13 calls the deliberately undefined operands inside its own AVX-512 intrinsics uninitialised (Eigen uses

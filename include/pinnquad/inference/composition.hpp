@@ -49,8 +49,7 @@ struct Sum : AnswerBase<Sum<First, Second>, typename First::Scalar, First::input
                     std::is_same_v<typename First::Scalar, typename Second::Scalar>,
                 "pinnquad: the two answers of a Sum differ in inputs, outputs or Scalar");
   using Scalar = typename First::Scalar;
-  using AnswerBase<Sum, Scalar, First::inputs, First::outputs,
-                   First::parameter_count + Second::parameter_count>::forward;
+  using Sum::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Scalar other[Second::outputs];
@@ -75,7 +74,7 @@ struct Ensemble : AnswerBase<Ensemble<Member, Count>, typename Member::Scalar, M
   static_assert(is_answer<Member> && Count > 0,
                 "pinnquad: an Ensemble is of one answer or more (inference/answer.hpp)");
   using Scalar = typename Member::Scalar;
-  using AnswerBase<Ensemble, Scalar, Member::inputs, Member::outputs, Count * Member::parameter_count>::forward;
+  using Ensemble::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     for (int i = 0; i < Member::outputs; ++i) y[i] = Scalar(0);
@@ -110,8 +109,7 @@ struct Heads<First, More...>
   static_assert(((First::inputs == More::inputs && std::is_same_v<typename First::Scalar, typename More::Scalar>)&&...),
                 "pinnquad: Heads differ in inputs or Scalar");
   using Scalar = typename First::Scalar;
-  using AnswerBase<Heads, Scalar, First::inputs, (First::outputs + ... + More::outputs),
-                   (First::parameter_count + ... + More::parameter_count)>::forward;
+  using Heads::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     First::forward(parameters, x, y);
@@ -136,8 +134,7 @@ struct Then : AnswerBase<Then<First, Second>, typename First::Scalar, First::inp
   static_assert(First::outputs == Second::inputs && std::is_same_v<typename First::Scalar, typename Second::Scalar>,
                 "pinnquad: the second answer of a Then takes what the first one gives, in the same Scalar");
   using Scalar = typename First::Scalar;
-  using AnswerBase<Then, Scalar, First::inputs, Second::outputs,
-                   First::parameter_count + Second::parameter_count>::forward;
+  using Then::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Scalar between[First::outputs];
@@ -166,8 +163,7 @@ struct Scaled : AnswerBase<Scaled<Inner>, typename Inner::Scalar, Inner::inputs,
                            2 * (Inner::inputs + Inner::outputs) + Inner::parameter_count> {
   static_assert(is_answer<Inner>, "pinnquad: Scaled is of an answer (inference/answer.hpp)");
   using Scalar = typename Inner::Scalar;
-  using AnswerBase<Scaled, Scalar, Inner::inputs, Inner::outputs,
-                   2 * (Inner::inputs + Inner::outputs) + Inner::parameter_count>::forward;
+  using Scaled::AnswerBase::forward;
   static constexpr int input_mean = 0;  ///< where they stand among the parameters
   static constexpr int input_spread = Inner::inputs;
   static constexpr int output_mean = 2 * Inner::inputs;
@@ -199,7 +195,7 @@ template <class ScalarType, int InputCount, class Formula, class Vehicle>
 struct Analytic
     : AnswerBase<Analytic<ScalarType, InputCount, Formula, Vehicle>, ScalarType, InputCount, rotor_count, 1> {
   using Scalar = ScalarType;
-  using AnswerBase<Analytic, Scalar, InputCount, rotor_count, 1>::forward;
+  using Analytic::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     constexpr auto prepared = Formula::prepare(airframe_value<Vehicle, Scalar>());

@@ -49,19 +49,26 @@ constexpr void describe_list(Sink& sink, std::string_view name) {
   sink.add(std::string_view(">"));
 }
 
-/// The letters of a description, without spaces, as Fnv1a::absorb_text() takes a text.
-struct DescriptionHash {
-  Fnv1a& fnv;
-
+/// A sink of letters one by one, digits among them and spaces left out: `Taker` has `take(char)`.
+template <class Taker>
+struct LetterSink {
   constexpr void add(std::string_view text) noexcept {
     for (const char c : text) {
-      if (c != ' ') fnv.absorb(static_cast<unsigned char>(c));
+      if (c != ' ') static_cast<Taker&>(*this).take(c);
     }
   }
   constexpr void add(int number) noexcept {
     if (number >= 10) add(number / 10);
-    fnv.absorb(static_cast<unsigned char>('0' + number % 10));
+    static_cast<Taker&>(*this).take(static_cast<char>('0' + number % 10));
   }
+};
+
+/// The letters of a description as Fnv1a::absorb_text() takes a text.
+struct DescriptionHash : LetterSink<DescriptionHash> {
+  Fnv1a& fnv;
+
+  constexpr explicit DescriptionHash(Fnv1a& hash) noexcept : fnv(hash) {}
+  constexpr void take(char c) noexcept { fnv.absorb(static_cast<unsigned char>(c)); }
 };
 
 template <class T>

@@ -49,19 +49,11 @@ constexpr bool all_finite_constants(const Array& values) noexcept {
 
 /// A description's letters, without spaces: what a header and a block are compared with, made by the compiler.
 template <std::size_t Most>
-struct DescriptionLetters {
+struct DescriptionLetters : LetterSink<DescriptionLetters<Most>> {
   char text[Most + 1] = {};
   std::size_t count = 0;
 
-  constexpr void add(std::string_view piece) noexcept {
-    for (const char c : piece) {
-      if (c != ' ') text[count++] = c;
-    }
-  }
-  constexpr void add(int number) noexcept {
-    if (number >= 10) add(number / 10);
-    text[count++] = static_cast<char>('0' + number % 10);
-  }
+  constexpr void take(char c) noexcept { text[count++] = c; }
 };
 /// The most letters that a description has.
 struct DescriptionLength {
