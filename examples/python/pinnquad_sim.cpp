@@ -20,7 +20,7 @@
 #include <variant>
 #include <vector>
 
-#include "airframes.hpp"
+#include "airframe/names.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"

@@ -6,7 +6,7 @@
 #include <exception>
 #include <string>
 
-#include "study_report.hpp"
+#include "report/report.hpp"
 #include "synthetic_study.hpp"
 
 int main(int argument_count, char** arguments) {
