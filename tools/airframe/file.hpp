@@ -3,22 +3,13 @@
 // examples/airframes/ has one file for each airframe of the library.
 #pragma once
 
-// the parser answers broken text with an error of its own behind these: a debug build must not end there
-#define TOML_ASSERT(expr) static_cast<void>(0)
-#include <toml++/toml.h>
-
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <set>
 #include <string>
-#include <system_error>
 
-#include "pinnquad/data/decimal.hpp"
-#include "pinnquad/data/file_error.hpp"
-#include "pinnquad/data/text_file.hpp"
+#include "command_line/toml_file.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace programs {
@@ -89,14 +80,6 @@ class AirframeTable {
     refuse(node.source(), expected, found);
   }
 
-  /// A node as the one-line messages name it: its value, or its kind.
-  static std::string described(const toml::node& node) {
-    if (const auto* text = node.as_string()) return "\"" + pinnquad::printable(text->get()) + "\"";
-    if (node.is_number()) return pinnquad::number_text(value_of(node));
-    if (node.is_array()) return "an array of " + std::to_string(node.as_array()->size());
-    return node.is_table() ? "a table" : node.is_boolean() ? "a truth value" : "a date or time";
-  }
-
  private:
   static constexpr const char* three_numbers = "an array of three numbers";
 
@@ -104,13 +87,9 @@ class AirframeTable {
     known_.insert(key);
     return table_.get(key);
   }
-  /// Of a number: an integer, however large, or a floating-point one.
-  static double value_of(const toml::node& node) {
-    return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-  }
   double as_number(const toml::node& node, const NumberRange& range) const {
     if (!node.is_number()) refuse(node, "a number", described(node));
-    const double value = value_of(node);
+    const double value = toml_number(node);
     if (!(value >= range.least && value <= range.most)) refuse(node, range.words, described(node));
     return value;
   }
@@ -121,7 +100,7 @@ class AirframeTable {
   }
   [[noreturn]] void refuse(const toml::source_region& where, const std::string& expected,
                            const std::string& found) const {
-    throw pinnquad::InputError(path_, where.begin.line, where.begin.column, expected, found);
+    refuse_toml(path_, where, expected, found);
   }
 
   const std::string& path_;
@@ -138,7 +117,7 @@ inline pinnquad::RotorMount<double> rotor_of(const std::string& path, const toml
   const std::string spin = rotor.text("spin", spins);
   if (spin != "clockwise" && spin != "counter_clockwise") {
     const toml::node& node = rotor.required("spin", spins);
-    rotor.refuse(node, spins, AirframeTable::described(node));
+    rotor.refuse(node, spins, described(node));
   }
   r.spin = spin == "clockwise" ? pinnquad::Spin::clockwise : pinnquad::Spin::counter_clockwise;
   r.z_m = rotor.number("z_m", of_either_sign, r.z_m);
@@ -156,23 +135,6 @@ inline pinnquad::RotorMount<double> rotor_of(const std::string& path, const toml
   return r;
 }
 
-/// The tables of a file. Throws InputError: it can't be read, is larger than any airframe, or is no TOML.
-inline toml::table airframe_tables(const std::string& path) {
-  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 20;
-  pinnquad::require_regular_file(path);
-  std::error_code absent;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, absent);
-  if (!absent && bytes > most_bytes)
-    throw pinnquad::InputError(path, 0, 0, "an airframe of at most 1 MiB", "a larger file");
-  const std::string content = pinnquad::file_text(path);
-  try {
-    return toml::parse(content, path);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw pinnquad::InputError(path, at.line, at.column, "TOML", pinnquad::printable(error.description()));
-  }
-}
-
 }  // namespace detail
 
 /// The airframe of a file. Throws InputError, one line, for a file that can't be read, is no TOML, has a key that is unknown,
@@ -181,7 +143,7 @@ inline NamedAirframe read_airframe_file(const std::string& path) {
   using detail::above_zero;
   using detail::from_zero;
   using detail::of_either_sign;
-  const toml::table root = detail::airframe_tables(path);
+  const toml::table root = read_toml_file(path, "an airframe");
   detail::AirframeTable table(path, root);
   NamedAirframe result;
   pinnquad::Airframe<double>& a = result.value;
@@ -189,7 +151,7 @@ inline NamedAirframe read_airframe_file(const std::string& path) {
   result.name = table.text("name", one_line);
   if (result.name.empty() || result.name != pinnquad::printable(result.name)) {
     const toml::node& node = table.required("name", one_line);
-    table.refuse(node, one_line, detail::AirframeTable::described(node));
+    table.refuse(node, one_line, described(node));
   }
   a.mass_kg = table.number("mass_kg", above_zero);
   a.inertia_kg_m2 = table.triple("inertia_kg_m2", above_zero);
@@ -206,8 +168,7 @@ inline NamedAirframe read_airframe_file(const std::string& path) {
   const toml::array* list = rotors.as_array();
   if (!list || list->size() != a.rotors.size() || !list->is_homogeneous<toml::table>()) {
     table.refuse(rotors, four,
-                 list && list->is_homogeneous<toml::table>() ? std::to_string(list->size())
-                                                             : detail::AirframeTable::described(rotors));
+                 list && list->is_homogeneous<toml::table>() ? std::to_string(list->size()) : described(rotors));
   }
   for (std::size_t i = 0; i < a.rotors.size(); ++i) a.rotors[i] = detail::rotor_of(path, *(*list)[i].as_table());
   table.require_no_more();

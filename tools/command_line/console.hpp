@@ -39,8 +39,9 @@ inline void take_closed_streams() {
 
 /// Runs a program: `body()` gives its exit code; what it throws becomes one line and exit_bad_input. Standard output
 /// that could not be written (a full disk, a closed pipe: files are finished all the same) is told the same way.
+/// Lines begin with `program`, which the body may change: to the command that was chosen.
 template <class Body>
-int run_program(const char* program, const Body& body) {
+int run_program(const std::string& program, const Body& body) {
   detail::take_closed_streams();
   std::signal(SIGPIPE, SIG_IGN);  // a reader who left is no reason to lose a training
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a full disk: an error to report
@@ -48,15 +49,15 @@ int run_program(const char* program, const Body& body) {
   try {
     code = body();
   } catch (const std::bad_alloc&) {
-    complain(program, "out of memory");
+    complain(program.c_str(), "out of memory");
   } catch (const std::exception& error) {  // InputError, OutputError, contradictions: one line
-    complain(program, error.what());
+    complain(program.c_str(), error.what());
   }
   errno = 0;
   const bool failed_before = std::ferror(stdout) != 0;
   if (std::fflush(stdout) != 0 || failed_before) {
     const std::string reason = pinnquad::system_reason(errno, "it is closed or full");
-    if (code == 0) complain(program, pinnquad::OutputError("standard output", reason).what());
+    if (code == 0) complain(program.c_str(), pinnquad::OutputError("standard output", reason).what());
     if (code == 0) code = exit_bad_input;
   }
   return code;

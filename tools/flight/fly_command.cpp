@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Flies a simulated quadrotor on one of the paper's flights and writes the recorded flight as CSV.
-//   fly d1 --out flight.csv --seed 1
+//   pinnquad fly d1 --out flight.csv --seed 1
+#include "flight/fly_command.hpp"
+
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -48,6 +51,7 @@ struct Options {
   std::size_t statistics = 0;
   std::string pictures;
   std::string replay;
+  bool list_airframes = false;
 };
 
 /// Thrown out of a flight by Ctrl-C; nothing is written then.
@@ -313,22 +317,18 @@ int fly_chosen(const Options& options) {
   return code;
 }
 
-int run(int argument_count, char** arguments) {
+void add_options(CLI::App& app, Options& options) {
   using programs::add_number;
   using programs::add_path;
-  Options options;
-  bool list = false;
   std::string flights = "the flight";
   programs::each_flight([&flights](auto tag) {
     flights += std::string("\n") + decltype(tag)::type::name + ": " + decltype(tag)::type::summary;
   });
-  CLI::App app{
-      "Flies a simulated quadrotor on one of the paper's three flights and records it as CSV.\n"
-      "  fly d1 --seed 1 --out d1.csv\n"
-      "  fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
-      "  fly d3 --statistics 20",
-      "fly"};
   app.footer(
+      "Examples:\n"
+      "  pinnquad fly d1 --seed 1 --out d1.csv\n"
+      "  pinnquad fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
+      "  pinnquad fly d3 --statistics 20\n"
       "Exit codes: 0; 1 the flight ended early, or gnuplot is missing or failed; 2 bad input or a file that can't be "
       "read or\nwritten; 130 interrupted: nothing was written, or pictures alone are missing.");
   app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3")->capture_default_str();
@@ -360,9 +360,12 @@ int run(int argument_count, char** arguments) {
            "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)");
   add_path(app, "--replay", options.replay, "FILE.html",
            "page that replays the flight in 3D in a browser (docs/replay.md)");
-  app.add_flag("--list-airframes", list, "print the airframes and where their values are from, and stop");
-  if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
-  if (list) {
+  app.add_flag("--list-airframes", options.list_airframes,
+               "print the airframes and where their values are from, and stop");
+}
+
+int run(const Options& options) {
+  if (options.list_airframes) {
     list_airframes();
     return 0;
   }
@@ -376,6 +379,10 @@ int run(int argument_count, char** arguments) {
 
 }  // namespace
 
-int main(int argument_count, char** arguments) {
-  return programs::run_program("fly", [&] { return run(argument_count, arguments); });
+programs::Command programs::fly_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "fly", "Flies a simulated quadrotor on one of the paper's three flights and records it as CSV");
+  const auto options = std::make_shared<Options>();
+  add_options(*line, *options);
+  return {line, [options] { return run(*options); }};
 }

@@ -142,9 +142,8 @@ class Campaign {
 
  private:
   int told_interrupted(std::size_t finished) const {
-    programs::complain("paper_study", "interrupted; " + std::to_string(finished) + " of " +
-                                          std::to_string(jobs_.size()) + " trainings are in " + folder_.rows() +
-                                          "; the same command goes on");
+    programs::complain("study", "interrupted; " + std::to_string(finished) + " of " + std::to_string(jobs_.size()) +
+                                    " trainings are in " + folder_.rows() + "; the same command goes on");
     return programs::exit_interrupted;
   }
 
@@ -173,8 +172,8 @@ class Campaign {
     for (const Job& job : jobs_) own[job.id()] = job.assignment.epochs;
     require_own_rows(folder_.rows(), stored_, own, plan_.best_weights);
     if (stored_.broken > 0) {
-      programs::complain("paper_study", folder_.rows() + ": " + std::to_string(stored_.broken) +
-                                            (stored_.broken == 1 ? " row is" : " rows are") + " not whole; run again");
+      programs::complain("study", folder_.rows() + ": " + std::to_string(stored_.broken) +
+                                      (stored_.broken == 1 ? " row is" : " rows are") + " not whole; run again");
     }
     note_run();
     write_rows(folder_.rows(), lines());

@@ -16,7 +16,7 @@
 #include "pinnquad/version.hpp"
 #include "study/contender.hpp"
 #include "study/rows.hpp"
-#include "study/table.hpp"
+#include "study/shard.hpp"
 
 namespace study {
 

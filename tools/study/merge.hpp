@@ -62,8 +62,7 @@ inline Part read_part(const std::string& path) {
   }
   part.stored = read_rows(path + "/rows.csv");
   if (part.stored.broken > 0) {
-    programs::complain("paper_study",
-                       path + "/rows.csv: " + std::to_string(part.stored.broken) + " not whole; left out");
+    programs::complain("study", path + "/rows.csv: " + std::to_string(part.stored.broken) + " not whole; left out");
   }
   return part;
 }
@@ -202,8 +201,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   std::printf("%zu of %zu trainings from %zu folders are in %s, %zu of them from before\n", lines.size(),
               expected.size(), named, folder.rows().c_str(), held);
   if (missing == nullptr) return 0;
-  programs::complain("paper_study", "merge: " + std::to_string(expected.size() - lines.size()) +
-                                        " trainings are missing, the first is " + to_string(*missing));
+  programs::complain("study", "merge: " + std::to_string(expected.size() - lines.size()) +
+                                  " trainings are missing, the first is " + to_string(*missing));
   return programs::exit_failed;
 }
 

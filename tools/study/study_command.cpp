@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The paper's campaign: the 14 models of Table 2 on three flights, 20 seeds each, as rows for Table 3.
-//   paper_study --seeds 20 --out DIR
-//   paper_study merge DIR... --out DIR
-//   paper_study report DIR
-//   paper_study ablation --out DIR
+//   pinnquad study paper --seeds 20 --out DIR
+//   pinnquad study merge DIR... --out DIR
+//   pinnquad study ablation --out DIR
+#include "study/study_command.hpp"
+
 #include <cstdint>
 #include <cstdio>
-#include <optional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "command_line/commands.hpp"
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
@@ -60,12 +62,8 @@ void add_campaign_options(CLI::App& app, Options& options) {
       ->capture_default_str();
 }
 
-void write_report(const std::string& folder) {
-  programs::write_study_report(folder);
-  std::printf("report      %s/report.html\n", folder.c_str());
-}
-
 int run_campaign(const Options& options, const char* kind, std::vector<study::Contender> contenders) {
+  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
   study::Plan plan;
   plan.kind = kind;
   plan.contenders = std::move(contenders);
@@ -84,73 +82,70 @@ int run_campaign(const Options& options, const char* kind, std::vector<study::Co
   // a shard's rows are for merge; an ablation is no Table 3
   if (code == 0 && plan.kind == "table 2" && options.shard == "1/1") {
     if (!study::draw_flights(options.out, options.flight_seed) && programs::interrupted()) {
-      programs::complain("paper_study", "interrupted; all trainings are in " + options.out +
-                                            "/rows.csv, the report is missing; the same command goes on");
+      programs::complain("study", "interrupted; all trainings are in " + options.out +
+                                      "/rows.csv, the report is missing; the same command goes on");
       return programs::exit_interrupted;
     }
-    write_report(options.out);
+    programs::report_study(options.out);
   }
   return code;
 }
 
-/// A command takes its options behind its name; one before it would decide nothing.
-void require_nothing_before(const CLI::App& app, const CLI::App& command) {
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->count() == 0) continue;
-    throw std::invalid_argument(option->get_name() + " stands before " + command.get_name() +
-                                ", which takes its options behind it (see --help)");
-  }
+/// Options of a command that trains; `flights` is how many flights it takes.
+std::shared_ptr<Options> training_options(CLI::App& line, int flights, const char* flights_are) {
+  const auto options = std::make_shared<Options>();
+  options->flights = flights;
+  programs::add_path(line, "--out", options->out, "DIR", "folder of rows.csv, study.json and series/");
+  programs::add_number(line, "--flights", options->flights, 1, 1000, flights_are);
+  add_campaign_options(line, *options);
+  return options;
 }
 
-int run(int argument_count, char** arguments) {
-  using programs::add_number;
-  using programs::add_path;
-  Options options;
-  CLI::App app{
-      "Trains and judges the 14 models of the paper's Table 2; each finished training is a row of DIR/rows.csv.\n"
-      "  paper_study --seeds 20 --out study\n"
-      "  paper_study --models 2,4,5-8 --epochs 100 --out part\n"
-      "  paper_study --shard 2/8 --out study/2        part 2 of 8, for a job array\n"
-      "  paper_study merge study/* --out study/all    joins such parts\n"
-      "The same command goes on where it was stopped or killed.",
-      "paper_study"};
-  app.footer(
-      "Exit codes: 0; 1 a merge of parts that are not all there; 2 bad input or a file that can't be read or written; "
-      "130 interrupted.\nWithout gnuplot the pictures are left out, with a line.");
-  add_path(app, "--out", options.out, "DIR", "folder of rows.csv, study.json and series/");
-  app.add_option("--models", options.models, "models of Table 2, such as 2,4,5-8 (default: all 14)");
-  add_number(app, "--flights", options.flights, 1, 1000,
-             "flights d1 of the main comparison (models 2, 3, 4), the seeds from --flight-seed on");
-  add_campaign_options(app, options);
-  CLI::App* merge = app.add_subcommand("merge", "Joins the folders of a study's shards into one");
-  merge->add_option("parts", options.parts, "folders to join")->type_name("DIR...")->required();
-  add_path(*merge, "--out", options.out, "DIR", "folder to write")->required();
-  CLI::App* report = app.add_subcommand("report", "Writes DIR/report.html, table3.csv, comparisons.csv and claims.csv");
-  add_path(*report, "dir", options.out, "DIR", "folder of a study")->required();
-  CLI::App* ablation = app.add_subcommand(
+constexpr const char* exit_codes =
+    "Exit codes: 0; 1 a merge of parts that are not all there; 2 bad input or a file that can't be read or written; "
+    "130 interrupted.";
+
+programs::Command paper_command(CLI::App& parent) {
+  CLI::App* line =
+      parent.add_subcommand("paper", "The 14 models of Table 2; each finished training is a row of DIR/rows.csv");
+  const auto options =
+      training_options(*line, 4, "flights d1 of the main comparison (models 2, 3, 4), the seeds from --flight-seed on");
+  line->add_option("--models", options->models, "models of Table 2, such as 2,4,5-8 (default: all 14)");
+  line->footer(std::string("Examples:\n"
+                           "  pinnquad study paper --seeds 20 --out study\n"
+                           "  pinnquad study paper --models 2,4,5-8 --epochs 100 --out part\n"
+                           "  pinnquad study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
+                           "  pinnquad study merge study/* --out study/all         joins such parts\n"
+                           "The same command goes on where it was stopped or killed.\n") +
+               exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
+  return {line, [options] { return run_campaign(*options, "table 2", study::chosen_models(options->models)); }};
+}
+
+programs::Command ablation_command(CLI::App& parent) {
+  CLI::App* line = parent.add_subcommand(
       "ablation",
       "What decides: gain, lambda, batch order, learning rate, loss forms, and the same budget for vanilla");
-  add_path(*ablation, "--out", options.out, "DIR", "folder of rows.csv, study.json and series/")->required();
-  int ablation_flights = 1;
-  add_number(*ablation, "--flights", ablation_flights, 1, 1000, "flights d1, the seeds from --flight-seed on");
-  ablation->add_option("--variants", options.variants, "some of the variants, by the names in rows.csv (default: all)")
+  const auto options = training_options(*line, 1, "flights d1, the seeds from --flight-seed on");
+  line->add_option("--variants", options->variants, "some of the variants, by the names in rows.csv (default: all)")
       ->delimiter(',');
-  add_campaign_options(*ablation, options);
-  if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
-  for (const CLI::App* command : app.get_subcommands()) require_nothing_before(app, *command);
-  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
-  if (merge->parsed()) return study::merge(options.parts, options.out);
-  if (report->parsed()) {
-    write_report(options.out);
-    return 0;
-  }
-  if (!ablation->parsed()) return run_campaign(options, "table 2", study::chosen_models(options.models));
-  options.flights = ablation_flights;
-  return run_campaign(options, "ablation", study::chosen_variants(options.variants));
+  line->footer(exit_codes);
+  return {line, [options] { return run_campaign(*options, "ablation", study::chosen_variants(options->variants)); }};
+}
+
+programs::Command merge_command(CLI::App& parent) {
+  CLI::App* line = parent.add_subcommand("merge", "Joins the folders of a study's shards into one");
+  const auto options = std::make_shared<Options>();
+  line->add_option("parts", options->parts, "folders to join")->type_name("DIR...")->required();
+  programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
+  line->footer(exit_codes);
+  return {line, [options] { return study::merge(options->parts, options->out); }};
 }
 
 }  // namespace
 
-int main(int argument_count, char** arguments) {
-  return programs::run_program("paper_study", [&] { return run(argument_count, arguments); });
+programs::Command programs::study_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand("study", "The paper's campaign: its models trained and judged, seed by seed");
+  line->footer(exit_codes);
+  const std::vector<Command> commands = {paper_command(*line), ablation_command(*line), merge_command(*line)};
+  return {line, [commands] { return run_chosen(commands); }};
 }

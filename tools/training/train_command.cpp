@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part of one
 // flight, or the last of several flights), exports the best physics-informed network as a header.
-//   train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
+//   pinnquad train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
+#include "training/train_command.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -363,12 +366,9 @@ int train_chosen(const Options& options) {
   return code;
 }
 
-int run(int argument_count, char** arguments) {
+void add_options(CLI::App& app, Options& options) {
   using programs::add_number;
   using programs::add_path;
-  Options options;
-  CLI::App app{"Trains vanilla and physics-informed networks on flights, judges them, exports the best as a header.",
-               "train"};
   app.footer(
       "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
       "commands;\n"
@@ -376,7 +376,7 @@ int run(int argument_count, char** arguments) {
       "Without gnuplot the pictures are left out, with a line.");
   programs::add_paths(
       app, "--flight", options.flights, "FILE.csv",
-      "recorded flight, CSV as `fly` writes it: its first part trains, its last tests. Of three or more, "
+      "recorded flight, CSV as `pinnquad fly` writes it: its first part trains, its last tests. Of three or more, "
       "whole flights, in this order: the first train, the last test")
       ->required();
   app.add_option("--airframe", options.airframe,
@@ -394,12 +394,14 @@ int run(int argument_count, char** arguments) {
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
   app.add_flag("--allow-poor", options.allow_poor,
                "export the best network even if it is worse than the mean of the commands; its header says so");
-  if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
-  return train_chosen(options);
 }
 
 }  // namespace
 
-int main(int argument_count, char** arguments) {
-  return programs::run_program("train", [&] { return run(argument_count, arguments); });
+programs::Command programs::train_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "train", "Trains vanilla and physics-informed networks on flights, judges them, exports the best as a header");
+  const auto options = std::make_shared<Options>();
+  add_options(*line, *options);
+  return {line, [options] { return train_chosen(*options); }};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Makes a synthetic study, and writes the report of a study as paper_study does:
+// Makes a synthetic study, and writes the report of a study as pinnquad report does:
 //   report_driver make DIR SEEDS
 //   report_driver report DIR
 #include <cstdio>
