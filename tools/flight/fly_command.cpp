@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "airframe/file.hpp"
-#include "airframe/names.hpp"
+#include "airframe/choice.hpp"
 #include "command_line/console.hpp"
+#include "command_line/file_roles.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
@@ -24,7 +24,6 @@
 #include "flight/pictures.hpp"
 #include "flight/statistics.hpp"
 #include "flight/trace.hpp"
-#include "logs/file_roles.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/simulation/noisy_recorder.hpp"
 #include "pinnquad/simulation/recorded_sticks.hpp"
@@ -56,16 +55,6 @@ struct Options {
 
 /// Thrown out of a flight by Ctrl-C; nothing is written then.
 struct Interrupted {};
-
-void list_airframes() {
-  programs::each_airframe([](auto tag) {
-    using Vehicle = typename decltype(tag)::type;
-    constexpr Airframe<double> airframe = airframe_value<Vehicle, double>();
-    std::printf("%-16s %6.3f kg, rotors up to %5.0f rpm, thrust-to-weight %.3f\n%18s%s\n", Vehicle::name,
-                airframe.mass_kg, 60 * airframe.max_rotor_speed_rev_s, airframe.thrust_to_weight(), "",
-                programs::airframe_source(tag));
-  });
-}
 
 /// No output takes the place of the sticks or of another output.
 void require_separate_files(const Options& options) {
@@ -278,22 +267,10 @@ void with_all_choices(const Options& options, const Function& function) {
     throw std::invalid_argument("no ground effect named '" + options.ground_effect +
                                 "'; known: none, cheeseman-bennett, conyers");
   }
-  std::optional<programs::NamedAirframe> airframe;
-  if (programs::is_airframe_file(options.airframe)) {
-    airframe = programs::read_airframe_file(options.airframe);
-  } else {
-    programs::with_airframe(options.airframe, [&airframe](auto tag) {
-      using Vehicle = typename decltype(tag)::type;
-      airframe = programs::NamedAirframe{Vehicle::name, airframe_value<Vehicle, double>()};
-    });
-  }
-  if (!airframe) {
-    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names() +
-                                ", or a file whose name ends in .toml");
-  }
+  const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   const bool known = programs::with_flight(options.flight, [&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
-    function(tag, *airframe, options.ground_effect.empty() ? PaperFlight::ground_effect : model);
+    function(tag, airframe, options.ground_effect.empty() ? PaperFlight::ground_effect : model);
   });
   if (!known) {
     throw std::invalid_argument("no flight named '" + options.flight + "'; known: " + programs::flight_names());
@@ -366,7 +343,7 @@ void add_options(CLI::App& app, Options& options) {
 
 int run(const Options& options) {
   if (options.list_airframes) {
-    list_airframes();
+    programs::list_airframes();
     return 0;
   }
   try {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "command_line/console.hpp"
-#include "logs/file_roles.hpp"
+#include "command_line/file_roles.hpp"
 #include "study/campaign.hpp"
 
 namespace study {

@@ -17,12 +17,11 @@
 #include <thread>
 #include <vector>
 
-#include "airframe/file.hpp"
-#include "airframe/names.hpp"
+#include "airframe/choice.hpp"
 #include "command_line/console.hpp"
+#include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
 #include "command_line/options.hpp"
-#include "logs/file_roles.hpp"
 #include "logs/training_flights.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/sample_period.hpp"
@@ -347,8 +346,7 @@ int train_chosen(const Options& options) {
   if (programs::is_airframe_file(options.airframe)) {
     given = programs::read_airframe_file(options.airframe);
   } else if (!programs::with_airframe(options.airframe, [](auto) {})) {
-    throw std::invalid_argument("no airframe named '" + options.airframe + "'; known: " + programs::airframe_names() +
-                                ", or a file whose name ends in .toml");
+    throw programs::no_airframe(options.airframe);
   }
   require_separate_files(options);
   const Dataset dataset = programs::read_flights(options.flights, minimum_rows);
