@@ -18,6 +18,32 @@ for command in fly train study report evaluate airframe; do
   "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
 done
 
+# completion, as bash asks for it
+complete_words() { # <what the last word may become> <word>...
+  local expected=$1
+  shift
+  COMP_WORDS=("$pinnquad" "$@") COMP_CWORD=$#
+  COMPREPLY=()
+  _pinnquad
+  [ "${COMPREPLY[*]}" = "$expected" ] || fail "$* is completed to: ${COMPREPLY[*]}"
+}
+# shellcheck source=../../tools/command_line/completion.bash
+source "$source_dir/tools/command_line/completion.bash"
+complete_words 'fly' f
+complete_words 'paper' study p
+complete_words '--samples' fly d1 --sam
+complete_words '--models' study paper --mo
+complete_words '--config' train --seeds 3 --conf
+complete_words '' fly d1 --out fi
+
+# the manual page has a section for every command
+if command -v help2man >/dev/null; then
+  bash "$source_dir/tools/command_line/manual_page.sh" "$pinnquad" "$work/pinnquad.1"
+  for section in 'NAME' 'PINNQUAD FLY' 'PINNQUAD STUDY MERGE' 'PINNQUAD AIRFRAME CONVERT'; do
+    grep -qE "^\.SH \"?$section\"?$" pinnquad.1 || fail "the manual page has no section $section"
+  done
+fi
+
 expect_line 2 '^pinnquad: expected a command: fly, train, study, report' "$pinnquad"
 expect_line 2 "^pinnquad: no command named 'land'; known: fly, train, study, report" "$pinnquad" land --seed 1
 expect_line 2 '^pinnquad: expected a command before --seed: fly, ' "$pinnquad" --seed 1
