@@ -61,8 +61,16 @@ std::string base64_of(const std::vector<Value>& values) {
 /// flights up to 32 m/s), quaternion (16 bit, 0.003 deg), commands (16 bit). What a screen shows needs no more.
 class ReplayPage {
  public:
-  /// Where the build puts the page without a flight.
-  static std::string built_page() { return PINNQUAD_REPLAY_PAGE; }
+  /// Where the page without a flight is: where the build puts it, or beside the program where that was installed.
+  static std::string built_page() {
+    std::error_code ignored;
+    const std::filesystem::path built = PINNQUAD_REPLAY_PAGE;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const std::filesystem::path installed = program.parent_path().parent_path() / "share/pinnquad/replay.html";
+    const bool use_installed =
+        !std::filesystem::is_regular_file(built, ignored) && std::filesystem::is_regular_file(installed, ignored);
+    return (use_installed ? installed : built).string();
+  }
 
   static bool available() {
     std::error_code ignored;
