@@ -27,7 +27,7 @@ cat >>tilted.toml <<'EOF'
 name = "a \"tilted\" \\ one"
 mass_kg = 1.0
 inertia_kg_m2 = [0.01, 0.012, 0.02]
-inertia_products_kg_m2 = [0.0001, 0.0, -0.0002]
+inertia_products_kg_m2 = [1e-04, 0.0, -2e-04]
 thrust_coefficient = 0.1
 power_coefficient = 0.05
 propeller_diameter_m = 0.25
@@ -42,7 +42,7 @@ done
 "$pinnquad" airframe convert tilted.toml --out once.toml
 "$pinnquad" airframe convert once.toml --out twice.toml
 cmp once.toml twice.toml || fail "a tilted airframe is changed by being converted again"
-for key in 'inertia_products_kg_m2 = \[0.0001, 0.0, -0.0002\]' 'axis = \[0.0, 0.6, -0.8\]' 'thrust_scale = 1.1' 'thrust_curve = 0.3' 'z_m = 0.02' \
+for key in 'inertia_products_kg_m2 = \[1e-04, 0.0, -2e-04\]' 'axis = \[0.0, 0.6, -0.8\]' 'thrust_scale = 1.1' 'thrust_curve = 0.3' 'z_m = 0.02' \
   'rise_time_constant_s = 0.04' 'fall_time_constant_s = 0.06' 'name = "a \\"tilted\\" \\\\ one"'; do
   grep -q "^$key\$" once.toml || fail "lost: $key; wrote: $(cat once.toml)"
 done

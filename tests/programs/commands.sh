@@ -34,7 +34,7 @@ complete_words 'paper' study p
 complete_words '--samples' fly d1 --sam
 complete_words '--models' study paper --mo
 complete_words '--config' train --seeds 3 --conf
-complete_words '' fly d1 --out fi
+complete_words '' fly d1 --out 'fi'
 
 # the manual page has a section for every command
 if command -v help2man >/dev/null; then
@@ -87,7 +87,7 @@ wrong() { # <pattern> <line>...: of a file for fly
   [ ! -e w.csv ] || fail "flew in spite of $*"
 }
 wrong ':2:8: --seed: expected a whole number' '[fly]' 'seed = -1'
-wrong ':2:11: --samples: expected a whole number' '[fly]' 'samples = 20.5'
+wrong ':2:13: --max-speed: expected a number from 0.5 to 8' '[fly]' 'max-speed = 20'
 wrong ':2:1: expected an option of fly, found `sed`' '[fly]' 'sed = 1'
 wrong ':2:1: expected an option of fly, found `help`' '[fly]' 'help = true'
 wrong ':1:2: expected a command of pinnquad, found `land`' '[land]' 'seed = 1'
