@@ -12,10 +12,10 @@ macro(pinnquad_require_package name)
   endif()
 endmacro()
 
-# pinnquad_part(<option> <what> <package>...): a part that ON demands and OFF leaves out. AUTO, the default, builds it
+# pinnquad_part(<option> <what> [<package>...]): a part that ON demands and OFF leaves out. AUTO, the default, builds it
 # where pinnquad is the top-level project and the packages are there.
 macro(pinnquad_part option what)
-  set(${option} AUTO CACHE STRING "Build ${what}: ON, OFF, or AUTO, which is where pinnquad is top-level and finds ${ARGN}")
+  set(${option} AUTO CACHE STRING "Build ${what}: ON, OFF, or AUTO, which is where pinnquad is top-level and finds what it needs (${ARGN})")
   set_property(CACHE ${option} PROPERTY STRINGS AUTO ON OFF)
   if(${option} STREQUAL "AUTO")
     set(${option} ${PROJECT_IS_TOP_LEVEL})

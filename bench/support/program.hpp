@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "build_facts.hpp"
+#include "command_line/build_facts.hpp"
 
 namespace pinnquad::bench {
 

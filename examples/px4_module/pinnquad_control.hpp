@@ -27,7 +27,7 @@
 #include <uORB/Subscription.hpp>
 #include <uORB/SubscriptionCallback.hpp>
 
-#include "model.hpp"  // the exported header: what train wrote
+#include "model.hpp"  // the exported header: what pinnquad train wrote
 #include "neural_control_core.hpp"
 
 class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams, public px4::ScheduledWorkItem {

@@ -20,7 +20,7 @@
 #include <variant>
 #include <vector>
 
-#include "airframes.hpp"
+#include "airframe/names.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
@@ -459,7 +459,7 @@ PYBIND11_MODULE(pinnquad_sim, module) {
            "4).")
       .def("clear_recording", &PythonSimulator::clear_recording, "Forgets the rows so far; the flight goes on.")
       .def("save_csv", &PythonSimulator::save_csv, py::arg("path"),
-           "Writes the rows as the program `fly` does. OSError if that is not possible.")
+           "Writes the rows as `pinnquad fly` does. OSError if that is not possible.")
       .def(
           "copy", [](const PythonSimulator& self) { return new PythonSimulator(self); },
           "A simulator that flies on from here like this one, and apart from it.")

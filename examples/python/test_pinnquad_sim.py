@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Tests of the module pinnquad_sim: names, shapes, units, the switch, the same bits as the program fly, errors.
+"""Tests of the module pinnquad_sim: names, shapes, units, the switch, the same bits as pinnquad fly, errors.
 
-PINNQUAD_FLY: the program fly; without it the comparison with it is skipped.
+PINNQUAD_PROGRAM: the program pinnquad; without it the comparison with it is skipped.
 """
 import _thread
 import os
@@ -243,12 +243,12 @@ class SameBits(unittest.TestCase):
         np.testing.assert_array_equal(flights[0], flights[1])
         self.assertTrue((flights[0] != flights[2]).any())
 
-    @unittest.skipUnless(os.environ.get("PINNQUAD_FLY"), "PINNQUAD_FLY does not name the program fly")
+    @unittest.skipUnless(os.environ.get("PINNQUAD_PROGRAM"), "PINNQUAD_PROGRAM does not name the program")
     def test_the_file_of_the_program_fly(self):
         with tempfile.TemporaryDirectory() as folder:
             for airframe, seed in (("paper_quadrotor", 3), (pinnquad_sim.airframes()[-1], 5)):
                 ours, theirs = pathlib.Path(folder, "python.csv"), pathlib.Path(folder, "fly.csv")
-                subprocess.run([os.environ["PINNQUAD_FLY"], "--airframe", airframe, "--seed", str(seed),
+                subprocess.run([os.environ["PINNQUAD_PROGRAM"], "fly", "--airframe", airframe, "--seed", str(seed),
                                 "--samples", "1000", "--out", str(theirs)], check=True, stdout=subprocess.DEVNULL)
                 simulator = Simulator(airframe, seed)
                 simulator.fly(50.0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # Installs SOURCE_DIR into an emptied PREFIX, configured with Eigen alone and without a build, and finds headers and
-# package files there and nothing else; the build tree BUILD_DIR, where all is built, installs the same. The consumers'
+# package files there and nothing else; the build tree BUILD_DIR, where all is built, adds the program pinnquad. The consumers'
 # build trees go too: a cache would keep the defaults of options from the last run.
 cmake_minimum_required(VERSION 3.22)
 
@@ -21,7 +21,7 @@ endmacro()
 
 run("configuring with Eigen alone" "${CMAKE_COMMAND}" -S "${SOURCE_DIR}" -B "${TREES}/eigen_alone" -G "${GENERATOR}"
   "-DCMAKE_CXX_COMPILER=${COMPILER}" ${hidden})
-if(NOT said MATCHES "\n-- pinnquad: not built: the tests \\(no doctest\\), the examples and programs \\(no CLI11, nlohmann_json, tomlplusplus\\), the benchmarks \\(no benchmark\\);[^\n]*\n")
+if(NOT said MATCHES "\n-- pinnquad: not built: the tests \\(no doctest\\), the program pinnquad \\(no CLI11, nlohmann_json, tomlplusplus\\), the benchmarks \\(no benchmark\\);[^\n]*\n")
   message(FATAL_ERROR "configured without doctest, CLI11, nlohmann_json, tomlplusplus and benchmark, and no line says what is off:\n${said}")
 endif()
 run("the installation" "${CMAKE_COMMAND}" --install "${TREES}/eigen_alone" --prefix "${PREFIX}")
@@ -44,6 +44,17 @@ foreach(file IN LISTS installed)
   endif()
 endforeach()
 file(GLOB_RECURSE installed_with_tests RELATIVE "${TREES}/prefix" "${TREES}/prefix/*")
+set(of_program bin/pinnquad share/bash-completion/completions/pinnquad share/man/man1/pinnquad.1
+  share/pinnquad/replay.html) # the last two by help2man and npm
+if(EXISTS "${BUILD_DIR}/bin/pinnquad")
+  foreach(file IN ITEMS bin/pinnquad share/bash-completion/completions/pinnquad)
+    if(NOT file IN_LIST installed_with_tests)
+      message(FATAL_ERROR "not installed: ${file}")
+    endif()
+  endforeach()
+  run("the installed program" "${TREES}/prefix/bin/pinnquad" --version)
+endif()
+list(REMOVE_ITEM installed_with_tests ${of_program})
 if(NOT installed_with_tests STREQUAL installed)
   message(FATAL_ERROR "with Eigen alone other files are installed:\n${installed}\nthan with the tests:\n${installed_with_tests}")
 endif()

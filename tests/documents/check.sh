@@ -33,22 +33,22 @@ awk -v out="$parts" -v name="$document" -f "$here/extract.awk" "$path" || faults
 # (demo_out, study) is not linked: a block would write into it.
 tree=$work/tree
 mkdir -p "$tree/build"
-for entry in bench cmake docs examples include scripts tests CMakeLists.txt CMakePresets.json CHANGELOG.md LICENSE README.md; do
+for entry in bench cmake docs examples include scripts tests tools CMakeLists.txt CMakePresets.json CHANGELOG.md LICENSE README.md; do
   ln -s "$root/$entry" "$tree/"
 done
 printf '#include "pinnquad/flight.hpp"\nint main() {}\n' >"$tree/main.cpp" # the reader's own program
 mkdir "$work/home"
 export HOME=$work/home # what is installed there is the block's
 for preset in dev native demo release; do ln -s "$build" "$tree/build/$preset"; done
-export PATH="$build/examples:$PATH"
+export PATH="$build/bin:$build/examples:$PATH"
 
 # What a program says of its options; nothing for what is not ours.
 help_of() {
-  local cached=$work/help.$1
+  local cached=$work/help.${1// /.}
   if [ ! -f "$cached" ]; then
     case $1 in
-      fly | train) "$1" --help ;;
-      paper_study) for part in "" merge report ablation; do paper_study $part --help; done ;;
+      # shellcheck disable=SC2086 # program and commands
+      pinnquad*) $1 --help ;;
       demo | test) "$root/scripts/$1" --help ;;
       run) "$root/bench/run" --help ;;
     esac >"$cached" 2>&1 || true
@@ -71,12 +71,22 @@ check_simple_command() {
     ./scripts/* | scripts/* | bench/* | tests/*)
       compgen -G "$root/${program#./}" >/dev/null || fault "$line" "no such file: $program"
       ;;
-    build/*/examples/*) [ -x "$tree/$program" ] || fault "$line" "no such program: $program" ;;
+    build/*/bin/* | build/*/examples/*) [ -x "$tree/$program" ] || fault "$line" "no such program: $program" ;;
+  esac
+  case $program in
+    pinnquad | */pinnquad) # the command, and that of a command
+      program=pinnquad
+      for word in "${words[@]:1:2}"; do
+        help_of "$program" | grep -q '^Subcommands:' && [[ $word != -* ]] || break
+        help_of "$program" | sed '1,/^Subcommands:/d' | grep -qE "^  $word( |$)" || { fault "$line" "$program has no command $word"; return 0; }
+        program+=" $word"
+      done
+      ;;
   esac
   for ((i = 1; i < ${#words[@]}; ++i)); do
     word=${words[i]} next=${words[i + 1]:-}
     case $program:$word in
-      *fly:--* | *train:--* | *paper_study:--* | *scripts/demo:--* | *scripts/test:--* | *bench/run:--*)
+      pinnquad*:--* | *scripts/demo:--* | *scripts/test:--* | *bench/run:--*)
         word=${word%%=*}
         help_of "${program##*/}" | grep -qE -- "(^|[ ,|\[])$word([ ,=|]|\]|$)" ||
           fault "$line" "${program##*/} has no option $word"

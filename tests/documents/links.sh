@@ -72,13 +72,13 @@ done
 if [ "$sources" = yes ]; then
   while IFS=: read -r file line number; do
     grep -qE "^\| $number \|" docs/paper.md || fault "$file:$line" "docs/paper.md has no deviation $number"
-  done < <(grep -rnoE 'paper\.md\)?,? deviations? [0-9]+(( and|,) [0-9]+)*' README.md docs include examples tests --include='*.md' --include='*.hpp' \
+  done < <(grep -rnoE 'paper\.md\)?,? deviations? [0-9]+(( and|,) [0-9]+)*' README.md docs include examples tools tests --include='*.md' --include='*.hpp' \
     --include='*.cpp' --include='*.sh' --include='*.py' --exclude-dir=faults |
     awk -F: '{ n = split($3, words, /[^0-9]+/); for (i = 1; i <= n; ++i) if (words[i] != "") print $1 ":" $2 ":" words[i] }')
   # a file that only its writers have
   while IFS= read -r where; do
     fault "$where" "cites NOTES, which are not in the tree: docs/paper.md, deviation n"
-  done < <(grep -rnw 'NOTES' README.md docs include examples tests bench scripts --exclude-dir=documents | cut -d: -f1,2)
+  done < <(grep -rnw 'NOTES' README.md docs include examples tools tests bench scripts --exclude-dir=documents | cut -d: -f1,2)
 fi
 
 if [ "$faults" -ne 0 ]; then exit 1; fi

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 #
 # Flies what scripts/models flies, and compares with what the headers of examples/models say of their flights.
-#   shipped_models.sh ROOT FLY SHIPPED_MODELS WORK
+#   shipped_models.sh ROOT PINNQUAD SHIPPED_MODELS WORK
 set -euo pipefail
-root=$1 fly=$2 shipped=$3 work=$4
+root=$1 pinnquad=$2 shipped=$3 work=$4
 mkdir -p "$work"
-"$root/scripts/models" --flights "$fly" "$work"
+"$root/scripts/models" --flights "$pinnquad" "$work"
 "$shipped" "$work/flight.csv" "$work/crazyflie_flight.csv"

@@ -2,10 +2,10 @@
 # fly -> train -> judge -> export -> fly the export, small; and the same seed gives the same bits.
 source "$(dirname "$0")/common.sh" "$@"
 
-"$fly" --seed 3 --samples 3000 --out flight.csv
+"$pinnquad" fly --seed 3 --samples 3000 --out flight.csv
 [ "$(wc -l <flight.csv)" -eq 3001 ] || fail "3000 rows and a header were expected"
 mkdir a b c
-"$train" --flight flight.csv --out a --seeds 2 --epochs 8 --threads 2 --block a/model.block >a.txt
+"$pinnquad" train --flight flight.csv --out a --seeds 2 --epochs 8 --threads 2 --block a/model.block >a.txt
 grep -q "physics-informed" a.txt || fail "the table names no physics-informed network"
 for file in results.csv report.json model.hpp model.block replay.txt ellipses.svg errors.svg prediction.svg; do
   [ -s "a/$file" ] || fail "$file is missing or empty"
@@ -13,11 +13,11 @@ done
 [ "$(wc -l <a/results.csv)" -eq 6 ] || fail "results.csv: a header, the linearized model and 4 networks were expected"
 
 # same seed, same bits, whatever the number of threads
-"$fly" --seed 3 --samples 3000 --out again.csv >/dev/null
+"$pinnquad" fly --seed 3 --samples 3000 --out again.csv >/dev/null
 cmp flight.csv again.csv || fail "the same seed flew another flight"
-"$fly" --seed 4 --samples 3000 --out other.csv >/dev/null
+"$pinnquad" fly --seed 4 --samples 3000 --out other.csv >/dev/null
 ! cmp -s flight.csv other.csv || fail "another seed flew the same flight"
-"$train" --flight flight.csv --out b --seeds 2 --epochs 8 --threads 1 --block b/model.block >/dev/null
+"$pinnquad" train --flight flight.csv --out b --seeds 2 --epochs 8 --threads 1 --block b/model.block >/dev/null
 cmp a/model.hpp b/model.hpp || fail "the same seeds trained other weights"
 cmp a/model.block b/model.block || fail "the same seeds wrote another block"
 
@@ -26,15 +26,15 @@ for part in 1 2 3; do
   sed -n "1p;$((part * 1000 - 998)),$((part * 1000 + 1))p" flight.csv >"part_$part.csv"
 done
 mkdir d
-"$train" --flight part_1.csv part_2.csv --flight part_3.csv --out d --seeds 1 --epochs 2 --allow-poor >d.txt
+"$pinnquad" train --flight part_1.csv part_2.csv --flight part_3.csv --out d --seeds 1 --epochs 2 --allow-poor >d.txt
 grep -q "3000 rows: 1000 train, 1000 validate, 1000 test, in whole flights" d.txt || fail "said: $(cat d.txt)"
 grep -q "test: part_3.csv" d.txt || fail "the last flight is not the test: $(cat d.txt)"
 grep -q 'training_data = "part_1.csv, part_2.csv, part_3.csv"' d/model.hpp || fail "the header does not name its flights"
 [ "$(head -n 1 d/replay.txt)" = "pinnquad-replay 1 1000 24" ] || fail "the replay is not the test flight"
 grep -q '"block": "validation"' d/report.json || fail "report.json does not say which flight validates"
-expect_line 2 'at least 3 flights' "$train" --flight part_1.csv other.csv --out e
-expect_line 2 'part_1.csv and part_1.csv hold the same flight' "$train" --flight part_1.csv part_1.csv part_2.csv --out e
-expect_line 2 'at least 2200 rows in 2 flights, found 2000' "$train" --flight part_1.csv part_2.csv --out e
+expect_line 2 'at least 3 flights' "$pinnquad" train --flight part_1.csv other.csv --out e
+expect_line 2 'part_1.csv and part_1.csv hold the same flight' "$pinnquad" train --flight part_1.csv part_1.csv part_2.csv --out e
+expect_line 2 'at least 2200 rows in 2 flights, found 2000' "$pinnquad" train --flight part_1.csv part_2.csv --out e
 
 # the exported header in a project of its own, from a folder of any name
 odd='a @place@ "of"; its own'
@@ -55,7 +55,7 @@ head -c 5000 a/replay.txt >truncated.txt
 expect_line 2 "truncated.txt:[0-9]+:[0-9]+: expected a number" fly_export/fly_export --replay truncated.txt
 
 # weights of a later training as a block, flown by the program that was built for the first
-"$train" --flight flight.csv --out c --seeds 1 --seed 7 --epochs 6 --block c/model.block >/dev/null
+"$pinnquad" train --flight flight.csv --out c --seeds 1 --seed 7 --epochs 6 --block c/model.block >/dev/null
 ! cmp -s a/model.block c/model.block || fail "another seed trained the same weights"
 fly_export/fly_export --replay c/replay.txt --block c/model.block >block.txt 2>/dev/null || true
 grep -q "block .*c/model.block, .* bytes" block.txt || fail "the block was not read"
@@ -70,5 +70,5 @@ refused block_incompatible flight.csv
 refused "no such readable file" none.block
 
 # hostile invocations of that program
-bash "$(dirname "$0")/hostile.sh" "$fly" "$train" "$source_dir" "$work/hostile" "$compiler" "$compiler_flags" "$study" \
+bash "$(dirname "$0")/hostile.sh" "$pinnquad" "$source_dir" "$work/hostile" "$compiler" "$compiler_flags" \
   "$work/fly_export/fly_export" "$work/c/replay.txt" "$work/c/model.block"

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
 # Arguments and checks that the program tests share.
 set -euo pipefail
-fly=$1
-train=$2
-source_dir=$3
-work=$4
-compiler=$5
-compiler_flags=$6
-study=${7:-}
+pinnquad=$1
+source_dir=$2
+work=$3
+compiler=$4
+compiler_flags=$5
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work"

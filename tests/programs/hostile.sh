@@ -2,32 +2,34 @@
 # shellcheck shell=bash disable=SC2034,SC2054,SC2154
 # Hostile invocations of every program. Each has its exit code, at most one line on stderr, leaves no partial file, and what it
 # was given is untouched. All are tried; what went wrong is told at the end, per program.
-#   hostile.sh <fly> <train> <source> <work> <compiler> <flags> <paper_study>
+#   hostile.sh <pinnquad> <source> <work> <compiler> <flags>
 #   hostile.sh <as above>... <fly_export> <replay.txt> <model.block>     that program alone
-source "$(dirname "$0")/common.sh" "${@:1:7}"
-fly_export=${8:-}
+source "$(dirname "$0")/common.sh" "${@:1:5}"
+fly_export=${6:-}
 
 declare -A tried wrong
 timeout=$(command -v timeout)
 env=$(command -v env)
 settings=() # of the environment: NAME=value
 run_it() { "$timeout" --foreground -s KILL "${HOSTILE_PATIENCE:-20}" ${settings[@]+"$env" "${settings[@]}"} "$@"; } # nobody waits for ever
-fly() { run_it "$fly" "$@"; }
-train() { run_it "$train" "$@"; }
-paper_study() { run_it "$study" "$@"; }
+fly() { run_it "$pinnquad" fly "$@"; }
+train() { run_it "$pinnquad" train "$@"; }
+study() { run_it "$pinnquad" study "$@"; }
+report() { run_it "$pinnquad" report "$@"; }
+pinnquad() { run_it "$pinnquad" "$@"; }
 fly_export() { run_it "$fly_export" "$@"; }
 demo() { run_it "$source_dir/scripts/demo" "$@"; }
 
 # what the programs are given; copies of it are what they get to see
 mkdir given run
-"$fly" --samples 2200 --out given/flight.csv >/dev/null
-"$fly" --samples 40 --record-sticks given/sticks.csv --out given/short.csv >/dev/null
+"$pinnquad" fly --samples 2200 --out given/flight.csv >/dev/null
+"$pinnquad" fly --samples 40 --record-sticks given/sticks.csv --out given/short.csv >/dev/null
 : >given/empty.csv
-head -c 3000 "$fly" >given/binary.csv
+head -c 3000 "$pinnquad" >given/binary.csv
 printf 'time_s\0,v_north_m_s\n' >given/nul.csv
 tr '\n' ' ' <given/sticks.csv >given/one_line.csv
 chmod a-w given/*
-if [ -n "$fly_export" ]; then cp "$9" given/replay.txt && cp "${10}" given/model.block; fi
+if [ -n "$fly_export" ]; then cp "$7" given/replay.txt && cp "$8" given/model.block; fi
 cp -r given in
 intact=$(sha256sum in/*)
 
@@ -45,7 +47,7 @@ expect() {
   "$@" >stdout.txt 2>stderr.txt || actual=$?
   sed -i '/^train: warning: /d' stderr.txt # of a poor network: one epoch makes no other
   for word in "$@"; do
-    case $word in fly | train | paper_study | fly_export | demo) program=$word && break ;; esac
+    case $word in fly | train | study | report | pinnquad | fly_export | demo) program=$word && break ;; esac
   done
   [ "$actual" -eq "$code" ] || problem "exit code $actual instead of $code"
   lines=$(wc -l <stderr.txt)
@@ -300,23 +302,31 @@ hostile_train() {
 }
 
 hostile_study() {
-  each_value whole_numbers paper_study --models 1 --epochs 1 --out run/o --seeds
-  each_value whole_numbers paper_study --models 1 --seeds 1 --out run/o --epochs
+  each_value whole_numbers study paper --models 1 --epochs 1 --out run/o --seeds
+  each_value whole_numbers study paper --models 1 --seeds 1 --out run/o --epochs
   for option in --flights --flight-seed --patience --threads; do
-    each_value whole_numbers paper_study --models 1 --shard 2/2 "${short[@]}" --out run/o $option
+    each_value whole_numbers study paper --models 1 --shard 2/2 "${short[@]}" --out run/o $option
   done
   for words in '--models 0' '--models 15' '--models 1,' '--models 1-' '--models 010' '--models +1' '--shard 0/1' '--shard 2' '--shard 3/2' '--shard 1/2/3' \
-    '--weights worst' '--seeds 0' '--flights 0' '--flights 1001' '--epochs 0' 'x' '--no-such-option' 'merge' 'merge in' 'report' 'ablation' \
-    'ablation --out run/o --variants none' 'merge absent --out run/o' 'report absent' 'report in/short.csv'; do
+    '--weights worst' '--seeds 0' '--flights 0' '--flights 1001' '--epochs 0' 'x' 'ablation' '--no-such-option'; do
     # shellcheck disable=SC2086
-    refused paper_study $words
+    refused study paper --out run/o $words
+  done
+  for words in '' 'x' '--seeds 1' 'paper' 'merge' 'merge in' 'ablation' 'ablation --out run/o --variants none' 'merge absent --out run/o' \
+    '--out run/o paper' '--out run/o merge absent'; do
+    # shellcheck disable=SC2086
+    refused study $words
+  done
+  for words in '' 'absent' 'in/short.csv' 'in x' '--out in'; do
+    # shellcheck disable=SC2086
+    refused report $words
   done
   for path in '' in/short.csv in/short.csv/x /dev/null /proc/x run/fifo run/dangling run/loop "run/$(printf 'n%.0s' {1..256})"; do
-    left_alone paper_study --models 1 "${short[@]}" --out "$path"
-    left_alone paper_study report "$path"
-    left_alone paper_study merge "$path" --out run/o
+    left_alone study paper --models 1 "${short[@]}" --out "$path"
+    left_alone report "$path"
+    left_alone study merge "$path" --out run/o
   done
-  for surroundings in closed_stdout full_stdout; do expect 2 nothing $surroundings paper_study --help; done
+  for surroundings in closed_stdout full_stdout; do expect 2 nothing $surroundings study --help; done
 }
 
 hostile_demo() { # refused before anything is built

@@ -2,10 +2,10 @@
 # Ctrl-C in training keeps what is finished: the results are whole, the exit code says that it was interrupted.
 source "$(dirname "$0")/common.sh" "$@"
 
-"$fly" --seed 1 --samples 2400 --out flight.csv >/dev/null
+"$pinnquad" fly --seed 1 --samples 2400 --out flight.csv >/dev/null
 mkdir out
 # More work than any machine does before the first line of progress (5 s), in pieces small enough for any.
-setsid "$train" --flight flight.csv --out out --seeds 500 --epochs 30 --threads 2 >stdout.txt 2>stderr.txt &
+setsid "$pinnquad" train --flight flight.csv --out out --seeds 500 --epochs 30 --threads 2 >stdout.txt 2>stderr.txt &
 pid=$!
 # one percent is ten trainings' worth of epochs on two threads: some are finished then
 for ((second = 0; second < 240; ++second)); do
@@ -43,9 +43,9 @@ interrupted_drawing() {
   [ "$(grep -vc '^train: warning: ' stderr.txt)" -eq 1 ] || fail "not one line: $(cat stderr.txt)"
   grep -q "$pattern" stderr.txt || fail "said: $(cat stderr.txt)"
 }
-interrupted_drawing 'the flight is written, pictures are missing' "$fly" --samples 40 --out drawn.csv --pictures pictures
+interrupted_drawing 'the flight is written, pictures are missing' "$pinnquad" fly --samples 40 --out drawn.csv --pictures pictures
 [ "$(wc -l <drawn.csv)" -eq 41 ] || fail "the flight was lost"
-interrupted_drawing '2 of 2 trainings were finished and kept' "$train" --flight flight.csv --out exported --seeds 1 --epochs 4 \
+interrupted_drawing '2 of 2 trainings were finished and kept' "$pinnquad" train --flight flight.csv --out exported --seeds 1 --epochs 4 \
   --block exported/model.block --allow-poor
 for file in results.csv report.json model.hpp replay.txt model.block; do [ -s "exported/$file" ] || fail "$file was lost to a picture"; done
 [ -z "$(find pictures exported -name '*.partial*')" ] || fail "a half-written file was left behind"

@@ -2,12 +2,12 @@
 # What train takes for a flight, what it thinks worth exporting, and that what it exports compiles and flies.
 source "$(dirname "$0")/common.sh" "$@"
 
-"$fly" --seed 3 --samples 3000 --out good.csv >/dev/null
+"$pinnquad" fly --seed 3 --samples 3000 --out good.csv >/dev/null
 refused() { # <pattern> [option]...: train refuses bad.csv before training and leaves no trace
   local pattern=$1
   shift
   mkdir -p out
-  expect_line 2 "$pattern" "$train" --flight bad.csv --out out --epochs 1 --seeds 1 "$@"
+  expect_line 2 "$pattern" "$pinnquad" train --flight bad.csv --out out --epochs 1 --seeds 1 "$@"
   [ -z "$(ls -A out)" ] || fail "something was left in the output folder: $(ls -A out)"
 }
 edit() { # <awk program>: bad.csv from good.csv
@@ -41,7 +41,7 @@ refused '^train: bad\.csv:2:11: expected radians per second .*found degrees per 
 edit 'NR > 1 { $19 = 0.5 } { print }'
 refused '^train: bad\.csv:2:19: expected commands that change in column u2, found 0\.5 in all 1800 training rows$'
 edit 'NR > 2500 { $20 = 0.25 } { print }'
-"$train" --flight bad.csv --out varies --epochs 1 --seeds 1 --allow-poor >/dev/null 2>&1 ||
+"$pinnquad" train --flight bad.csv --out varies --epochs 1 --seeds 1 --allow-poor >/dev/null 2>&1 ||
   fail "a command that stands still in some of the test rows was refused"
 edit 'NR > 2401 { $20 = 0.25 } { print }'
 refused '^train: bad\.csv:2402:20: expected commands that change in column u3, found 0\.25 in all 600 test rows$'
@@ -56,7 +56,7 @@ awk -F, -v OFS=, 'NR > 1 { for (i = 18; i <= 21; i++) $i = (NR < 2400 ? 0.2 : 0.
   good.csv >noise.csv
 mkdir poor
 code=0
-"$train" --flight noise.csv --out poor --epochs 2 --seeds 1 --block poor/model.block >poor.txt 2>stderr.txt || code=$?
+"$pinnquad" train --flight noise.csv --out poor --epochs 2 --seeds 1 --block poor/model.block >poor.txt 2>stderr.txt || code=$?
 [ "$code" -eq 1 ] || fail "exit code $code for a model worse than the mean"
 [ "$(wc -l <stderr.txt)" -eq 1 ] || fail "not one line: $(cat stderr.txt)"
 grep -q '^train: not exported: .*worse than the mean of the commands (R^2 -' stderr.txt || fail "said: $(cat stderr.txt)"
@@ -64,7 +64,7 @@ for file in results.csv report.json; do [ -s "poor/$file" ] || fail "$file is mi
 for file in model.hpp model.block replay.txt; do [ ! -e "poor/$file" ] || fail "$file of a refused model was written"; done
 grep -q '"worse_than_mean": true' poor/report.json || fail "report.json does not say it"
 grep -q '"exported": false' poor/report.json || fail "report.json does not say that nothing was exported"
-"$train" --flight noise.csv --out poor --epochs 2 --seeds 1 --allow-poor --block poor/model.block >poor.txt 2>stderr.txt
+"$pinnquad" train --flight noise.csv --out poor --epochs 2 --seeds 1 --allow-poor --block poor/model.block >poor.txt 2>stderr.txt
 grep -q 'NOT FOR FLIGHT' poor.txt || fail "stdout does not warn: $(cat poor.txt)"
 head -n 3 poor/model.hpp | grep -q '^// NOT FOR FLIGHT' || fail "the header's head does not warn"
 grep -q 'bool worse_than_mean = true;' poor/model.hpp || fail "the header does not mark the model"
@@ -72,13 +72,13 @@ grep -q '"exported": true' poor/report.json || fail "report.json does not say th
 # one that is refused where another was exported: what there is old is named
 cp -r poor stale
 expect_line 1 'of an earlier training: stale/model.hpp, stale/replay.txt, stale/model.block$' \
-  "$train" --flight noise.csv --out stale --epochs 2 --seeds 1 --block stale/model.block
+  "$pinnquad" train --flight noise.csv --out stale --epochs 2 --seeds 1 --block stale/model.block
 for file in model.hpp replay.txt model.block; do cmp "poor/$file" "stale/$file" || fail "$file was changed by a refused training"; done
 
 # no better than linear regression: a warning, and the fact in header and report. The commands are a linear map.
 awk -F, -v OFS=, 'NR > 1 { for (i = 18; i <= 21; i++) $i = 0.5 + 0.01 * $(i - 16) + 0.01 * $(i - 8) } { print }' \
   good.csv >linear.csv
-"$train" --flight linear.csv --out linear --epochs 3 --seeds 1 >/dev/null 2>stderr.txt
+"$pinnquad" train --flight linear.csv --out linear --epochs 3 --seeds 1 >/dev/null 2>stderr.txt
 grep -q '^train: warning: .*does not beat linear regression' stderr.txt || fail "said: $(cat stderr.txt)"
 grep -q 'bool beats_linear_regression = false;' linear/model.hpp || fail "the header does not say it"
 grep -q 'linear_regression_r_squared = 1.0;\|linear_regression_r_squared = 0.99999' linear/model.hpp ||
@@ -88,7 +88,7 @@ grep -q '"beats_linear_regression": false' linear/report.json || fail "report.js
 # A flight at yaw 0 and one constant climb rate, from a file whose name is no text: trained, exported, compiled and flown.
 name=$'yaw\xff* "0";\n\\\n#error?\?.csv'
 awk -F, -v OFS=, 'NR > 1 { $16 = 0; $13 = 0; $7 = 0; $10 = -0.5 } { print }' good.csv >"$name"
-"$train" --flight "$name" --out still --epochs 4 --seeds 1 --allow-poor --block still/model.block >/dev/null 2>stderr.txt
+"$pinnquad" train --flight "$name" --out still --epochs 4 --seeds 1 --allow-poor --block still/model.block >/dev/null 2>stderr.txt
 grep -q '^train: warning: wdot_z, v_bz, w_z, sin_yaw, cos_yaw: ' stderr.txt || fail "said: $(cat stderr.txt)"
 iconv -f UTF-8 -t UTF-8 still/report.json >/dev/null || fail "report.json is no text"
 grep -qF '"flight": "yaw?* \"0\";?\\?#error??.csv"' still/report.json || fail "report.json does not name the flight"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The weights: a file that `train --block` wrote, in flash, aligned as a model block must be. */
+ * The weights: a file that `pinnquad train --block` wrote, in flash, aligned as a model block must be. */
     .section .rodata
     .balign 8
     .global pinnquad_model_block

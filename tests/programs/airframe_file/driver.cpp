@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string>
 
-#include "airframe_file.hpp"
-#include "airframes.hpp"
+#include "airframe/file.hpp"
+#include "airframe/names.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "support/uneven_airframe.hpp"
 #include "written_airframes.hpp"

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "airframe_file.hpp"
+#include "airframe/file.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "support/uneven_airframe.hpp"
 

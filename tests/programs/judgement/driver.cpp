@@ -8,7 +8,7 @@
 #include <string>
 
 #include "data/temporary_folder.hpp"
-#include "judgement.hpp"
+#include "training/judgement.hpp"
 
 namespace {
 

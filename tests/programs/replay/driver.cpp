@@ -12,7 +12,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/flight.hpp"
-#include "replay_page.hpp"
+#include "replay/page.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 # ReplayPage without a browser: what it refuses, that text cannot leave its element, and that the page holds the flight.
 #   page.sh <replay_driver> <work folder>
 driver=$1
-source "$(dirname "$0")/../common.sh" "$driver" - - "$2" - -
+source "$(dirname "$0")/../common.sh" "$driver" - "$2" - -
 
 # without the bundle: one line, before anything flies or is written
 expect_line 2 'cannot write out\.html: the replay page is not built.*replay_bundle' "$driver" out.html rows.csv

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Makes a synthetic study, and writes the report of a study as paper_study does:
+// Makes a synthetic study, and writes the report of a study as pinnquad report does:
 //   report_driver make DIR SEEDS
 //   report_driver report DIR
 #include <cstdio>
 #include <exception>
 #include <string>
 
-#include "study_report.hpp"
+#include "report/report.hpp"
 #include "synthetic_study.hpp"
 
 int main(int argument_count, char** arguments) {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "pinnquad/data/csv_table.hpp"
-#include "study_report_rows.hpp"
+#include "report/rows.hpp"
 
 namespace synthetic {
 

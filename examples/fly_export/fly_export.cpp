@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// Flies an exported model with nothing of the trainer: the flight headers, the exported one, and a program's edge.
+//   1. self test   2. replay of the test flight against what the trainer predicted   3. closed loop in the simulator
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line/console.hpp"
+#include "command_line/options.hpp"
+#include "model.hpp"
+#include "pinnquad/data/regular_file.hpp"
+#include "pinnquad/flight.hpp"
+#include "pinnquad/simulation/tracking.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+using Model = TrainedQuadModel;
+using Scalar = Model::Scalar;
+
+constexpr double agreement_tolerance = 1e-6;  // float rounding of another order of summation, commands in 0..1
+constexpr double fallback_limit = 0.05;       // more, and it is not the network that flies
+
+/// The exported model with all weights and biases zero: what the network contributes is what this one lacks.
+struct ZeroedModel : Model {
+  static constexpr std::array<Scalar, Model::parameters.size()> parameters{};
+};
+
+/// A row of the replay file, as `train` writes it.
+struct ReplayRow {
+  Model::Inputs inputs;
+  std::array<double, rotor_count> predicted{};
+  std::array<double, rotor_count> flown{};
+};
+
+/// Reads the replay file. Throws InputError, one line.
+std::vector<ReplayRow> read_replay(const std::string& path) {
+  require_regular_file(path);
+  std::ifstream file(path);
+  if (!file) throw InputError(path, 0, 0, "a readable file", "none");
+  std::string magic;
+  int version = 0, columns = 0;
+  std::size_t rows = 0;
+  file >> magic >> version >> rows >> columns;
+  if (!file || magic != "pinnquad-replay" || version != 1 || columns != 24 || rows == 0) {
+    throw InputError(path, 1, 0, "'pinnquad-replay 1 <rows> 24'", "something else");
+  }
+  std::vector<ReplayRow> result;
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::array<double, 24> v{};
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (!(file >> v[i])) {
+        throw InputError(path, row + 2, i + 1, "a number", file.eof() ? "the end of the file" : "something else");
+      }
+    }
+    ReplayRow r;
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      r.inputs.linear_acceleration_m_s2[i] = Scalar(v[k]);
+      r.inputs.angular_acceleration_rad_s2[i] = Scalar(v[3 + k]);
+      r.inputs.velocity_m_s[i] = Scalar(v[6 + k]);
+      r.inputs.body_rates_rad_s[i] = Scalar(v[9 + k]);
+    }
+    r.inputs.attitude = {Scalar(v[12]), Scalar(v[13]), Scalar(v[14]), Scalar(v[15])};
+    for (std::size_t i = 0; i < rotor_count; ++i) {
+      r.predicted[i] = v[16 + i];
+      r.flown[i] = v[20 + i];
+    }
+    result.push_back(r);
+  }
+  return result;
+}
+
+/// Replays the test flight. True if every answer agrees with the trainer's.
+template <class Inverse>
+bool replay(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
+  double worst = 0, error = 0;
+  std::size_t answered = 0, outside = 0;
+  for (const ReplayRow& row : rows) {
+    Commands<Scalar> commands{};
+    const Status status = inverse.predict(row.inputs, commands);
+    if (status == Status::outside_envelope) ++outside;
+    if (status != Status::ok) continue;
+    ++answered;
+    for (std::size_t i = 0; i < rotor_count; ++i) {
+      const double u = static_cast<double>(commands[i]);
+      worst = std::max(worst, std::abs(u - row.predicted[i]));
+      error += std::abs(u - row.flown[i]) / rotor_count;
+    }
+  }
+  const bool agrees = answered > 0 && worst <= agreement_tolerance;
+  std::printf("  replay       %zu samples, %zu outside the training envelope (%.2f %%)\n", rows.size(), outside,
+              100.0 * static_cast<double>(outside) / static_cast<double>(rows.size()));
+  std::printf("               largest difference from the trainer %.1e (limit %.0e): %s\n", worst, agreement_tolerance,
+              agrees ? "agrees" : "DISAGREES");
+  std::printf("               mean absolute error against the flown commands %.2fe-3\n",
+              1e3 * error / static_cast<double>(answered > 0 ? answered : 1));
+  return agrees;
+}
+
+/// Nanoseconds per predict(), best of several passes over the replay: each call depends on the one before.
+template <class Inverse>
+double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int passes = 40;
+  double best = 1e300;
+  Commands<Scalar> commands{};
+  Scalar sink(0);
+  for (int pass = 0; pass < passes; ++pass) {
+    const auto start = Clock::now();
+    for (const ReplayRow& row : rows) {
+      Model::Inputs inputs = row.inputs;
+      inputs.velocity_m_s[0] += commands[0] * Scalar(1e-12);  // chains the calls
+      const Status status = inverse.predict(inputs, commands);
+      sink += status == Status::ok ? commands[1] : Scalar(0);
+    }
+    const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+    best = std::min(best, ns / static_cast<double>(rows.size()));
+  }
+  if (!is_finite(sink)) std::printf("  (not finite)\n");  // keeps the results alive
+  return best;
+}
+
+using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
+
+/// A figure-eight that this airframe can fly: its sideways acceleration stays within 40 % of what thrust beyond hover allows.
+FigureEight<double> trajectory_for(const Vehicle& vehicle) {
+  FigureEight<double> eight;
+  eight.center_m = {0, 0, -20};
+  const double thrust_to_weight = vehicle.airframe().thrust_to_weight();
+  const double sideways =
+      standard_gravity_m_s2<double> * std::sqrt(std::max(0.01, thrust_to_weight * thrust_to_weight - 1));
+  const double rate_limit = std::sqrt(0.4 * sideways / (4 * eight.half_width_m));
+  eight.period_s = std::max(eight.period_s, 6.283185307179586 / rate_limit);
+  return eight;
+}
+
+template <class FeedForward>
+TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const FigureEight<double>& trajectory,
+                           const FeedForward& feed_forward) {
+  const double rotor_scale = vehicle.rotor_scale(vehicle.surroundings({}, 0));
+  const FlightController<double> controller({}, flight_limits(vehicle.airframe(), rotor_scale));
+  const TrackingResult<double> r = track(vehicle, trajectory, controller, feed_forward);
+  char fallback[48] = "-";
+  if (r.fallback.asked > 0) {
+    std::snprintf(fallback, sizeof fallback, "%u of %u (%.2f %%)", r.fallback.fallbacks(), r.fallback.asked,
+                  100.0 * r.fallback.fallbacks() / r.fallback.asked);
+  }
+  std::printf("  %-28s %8.2f %8.2f %9.2f   %-22s%s\n", label, 100 * r.rmse_m, 100 * r.max_error_m, r.max_speed_m_s,
+              fallback, r.status == Status::ok ? "" : to_string(r.status));
+  return r;
+}
+
+/// The closed loop. True if the network flew it, mostly by itself, and its weights were worth having.
+template <class Flown>
+bool closed_loop(const Flown& model) {
+  const Vehicle vehicle(airframe_value<Model::Vehicle, double>(), paper_site<double>(), {}, {});
+  const FigureEight<double> trajectory = trajectory_for(vehicle);
+  const AnalyticInverse<Vehicle> analytic(vehicle);
+  HoverTrim<double> trim;
+  if (hover_trim(vehicle, trajectory.center_m, trim) != Status::ok) return false;
+  std::printf(
+      "  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
+      trajectory.period_s, TrackingPlan<double>{}.duration_s);
+  std::printf("  %-28s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "fell back to analytic");
+  using Guard = Extend<TrainingGuard, Fallback<AnalyticInverse<Vehicle>>>;
+  using Guarded = InverseDynamics<Flown, Guard>;
+  using Zeroed = InverseDynamics<ZeroedModel, Guard>;
+  const auto network = fly("network", vehicle, trajectory, NetworkInverse<Guarded>(Guarded(model, analytic)));
+  fly("analytic inverse", vehicle, trajectory, analytic);
+  fly("none (hover trim)", vehicle, trajectory, trim);
+  const auto zeroed = fly("network, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed>(Zeroed(analytic)));
+  const double fallbacks = static_cast<double>(network.fallback.fallbacks()) / network.fallback.asked;
+  if (fallbacks > fallback_limit) {
+    std::printf("  the network declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,
+                100 * fallback_limit);
+  }
+  return network.status == Status::ok && fallbacks <= fallback_limit && network.rmse_m < zeroed.rmse_m;
+}
+
+/// Self test, replay, speed, closed loop: the exit code.
+template <class Flown>
+int fly_model(const Flown& model, const std::vector<ReplayRow>& rows) {
+  const InverseDynamics<Flown> inverse(model);
+  const Status tested = self_test(inverse);
+  std::printf("  self test    %zu golden vectors: %s\n", model.golden_features.size(), to_string(tested));
+  if (tested != Status::ok) return programs::exit_failed;
+  const bool agrees = replay(inverse, rows);
+  std::printf("  speed        %.0f ns per predict(), checks and features included\n",
+              nanoseconds_per_prediction(inverse, rows));
+  const bool flew = closed_loop(model);
+  if (!agrees || !flew) programs::complain("fly_export", "the export does not fly as it should");
+  return agrees && flew ? 0 : programs::exit_failed;
+}
+
+/// The same for the weights of a block that a later training has written for this header.
+int fly_block(const std::string& path, const std::vector<ReplayRow>& rows) {
+  require_regular_file(path);
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> block{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  ModelView<Model> view;
+  const Status opened = ModelView<Model>::open(block.data(), block.size(), view);
+  if (!file || opened != Status::ok) {
+    programs::complain("fly_export", path + ": " + (file ? to_string(opened) : "no such readable file"));
+    return programs::exit_bad_input;
+  }
+  std::printf("  block        %s, %zu bytes, trained on %u rows\n", path.c_str(), block.size(), view.training_rows);
+  static LoadedModel<Model> loaded;
+  if (loaded.load(view) != Status::ok) return programs::exit_failed;
+  return fly_model(loaded, rows);
+}
+
+int run(int argument_count, char** arguments) {
+  std::string path, block;
+  CLI::App app{"Flies an exported model: self test, replay of its test flight, closed loop.", "fly_export"};
+  app.footer("Exit codes: 0; 1 the export does not fly as it should; 2 bad input or a file that can't be read.");
+  programs::add_path(app, "--replay", path, "FILE", "the test flight and the trainer's predictions, written by train")
+      ->required();
+  programs::add_path(app, "--block", block, "FILE",
+                     "fly the weights of this model block, written by train, instead of the header's");
+  if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
+  const std::vector<ReplayRow> rows = read_replay(path);
+  std::printf("  model        %s, %d parameters in %zu bytes, trained on %s (%d rows)\n", Model::name,
+              Model::Network::parameter_count, sizeof Model::parameters, Model::training_data, Model::training_rows);
+  return block.empty() ? fly_model(Model{}, rows) : fly_block(block, rows);
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  return programs::run_program("fly_export", [&] { return run(argument_count, arguments); });
+}

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+# block writes from a header's text what the library writes from its types, byte by byte; evaluate then judges it.
+#   block.sh <arguments of common.sh> <block_driver>
+source "$(dirname "$0")/common.sh" "$@"
+driver=$6
+
+mkdir library text
+"$driver" library
+headers=("$source_dir/examples/models/demo_quadrotor.hpp" "$source_dir/examples/models/crazyflie_2_1.hpp"
+  "$source_dir/tests/models/v2/crazyflie_tanh.hpp" "$source_dir/tests/models/v3/demo_quadrotor.hpp" "$source_dir/tests/models/v3/own_racer.hpp")
+names=(demo_quadrotor crazyflie_2_1 crazyflie_tanh v3_demo_quadrotor v3_own_racer)
+for i in "${!headers[@]}"; do
+  "$pinnquad" block "${headers[i]}" --out "text/${names[i]}.block" >said.txt
+  cmp "library/${names[i]}.block" "text/${names[i]}.block" || fail "${names[i]} is another block from its text"
+  grep -q "as a block of $(wc -c <"text/${names[i]}.block") bytes" said.txt || fail "said: $(cat said.txt)"
+done
+
+# what evaluate says of them, on a flight of the vehicle
+"$pinnquad" fly --seed 9 --samples 500 --out flight.csv >/dev/null
+"$pinnquad" evaluate text/demo_quadrotor.block --flight flight.csv --json >judged.json
+grep -q '"airframe": "paper_quadrotor"' judged.json || fail "said: $(cat judged.json)"
+expect_line 2 '17 inputs, 4 outputs and 167 parameters whose shape is unknown' "$pinnquad" evaluate text/crazyflie_tanh.block --flight flight.csv
+answer=$(sed -n 's/.*using Network = \(.*\);/\1/p' "${headers[2]}")
+"$pinnquad" evaluate text/crazyflie_tanh.block --flight flight.csv --answer "$answer" >tanh.txt 2>&1 || [ $? -eq 1 ] || fail "said: $(cat tanh.txt)"
+grep -q 'pinnquad::Tanh' tanh.txt || fail "said: $(cat tanh.txt)"
+expect_line 2 'found one with (a window of instants|further columns)' "$pinnquad" evaluate text/v3_own_racer.block --flight flight.csv
+
+# what is no header, or no longer one; nothing is written
+cp "${headers[3]}" model.hpp
+refused() { # <pattern> <sed program>: of the header
+  sed "$2" model.hpp >changed.hpp
+  expect_line 2 "$1" "$pinnquad" block changed.hpp --out changed.block
+  [ ! -e changed.block ] || fail "a block was written in spite of $2"
+}
+expect_line 2 'none.hpp: expected a readable file, found none' "$pinnquad" block none.hpp --out changed.block
+expect_line 2 'flight.csv: expected a header that pinnquad train exported' "$pinnquad" block flight.csv --out changed.block
+expect_line 2 'same file; it would be overwritten' "$pinnquad" block model.hpp --out ./model.hpp
+refused 'changed.hpp:[0-9]+: expected format 2 or 3, found 4' 's/format_version = 3/format_version = 4/'
+refused 'changed.hpp:[0-9]+: expected records that are known, found `moon`' 's/"answer", "commands"/"moon", "commands"/'
+refused 'changed.hpp:49: expected numbers in `command_lower`, found `low`' 's/command_lower = 0.0/command_lower = low/'
+refused 'changed.hpp: expected `answer` in an exported header, found none' '/ answer = /d'
+refused 'changed.hpp:[0-9]+: expected 16 numbers in `allocation`, found 12' '/7.378601163836665/d'

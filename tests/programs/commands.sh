@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+# The command line itself: commands and their help, --version, options from a file by --config.
+source "$(dirname "$0")/common.sh" "$@"
+
+number() { sed -n "s/^#define PINNQUAD_VERSION_$1 \([0-9]*\)$/\1/p" "$source_dir/include/pinnquad/version.hpp"; }
+version="pinnquad $(number MAJOR).$(number MINOR).$(number PATCH)"
+commands=("" fly train study evaluate block airframe "airframe list" "airframe check" "airframe convert" "study paper" "study ablation" "study merge" report)
+for command in "${commands[@]}"; do
+  # shellcheck disable=SC2086 # several words
+  "$pinnquad" $command --help >help.txt 2>stderr.txt || fail "pinnquad $command --help: exit code $?"
+  [ ! -s stderr.txt ] || fail "pinnquad $command --help speaks on stderr"
+  grep -qE '^Exit codes: 0' help.txt || fail "pinnquad $command --help does not name its exit codes"
+  grep -qE '(^|[^0-9])2 bad input' help.txt || fail "pinnquad $command --help does not say what 2 is"
+  # shellcheck disable=SC2086
+  [ "$("$pinnquad" $command --version)" = "$version" ] || fail "pinnquad $command --version"
+done
+for command in fly train study report evaluate block airframe; do
+  "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
+done
+
+# completion, as bash asks for it
+complete_words() { # <what the last word may become> <word>...
+  local expected=$1
+  shift
+  COMP_WORDS=("$pinnquad" "$@") COMP_CWORD=$#
+  COMPREPLY=()
+  _pinnquad
+  [ "${COMPREPLY[*]}" = "$expected" ] || fail "$* is completed to: ${COMPREPLY[*]}"
+}
+# shellcheck source=../../tools/command_line/completion.bash
+source "$source_dir/tools/command_line/completion.bash"
+complete_words 'fly' f
+complete_words 'paper' study p
+complete_words '--samples' fly d1 --sam
+complete_words '--models' study paper --mo
+complete_words '--config' train --seeds 3 --conf
+complete_words '' fly d1 --out 'fi'
+
+# the manual page has a section for every command
+if command -v help2man >/dev/null; then
+  bash "$source_dir/tools/command_line/manual_page.sh" "$pinnquad" "$work/pinnquad.1"
+  for section in 'NAME' 'PINNQUAD FLY' 'PINNQUAD STUDY MERGE' 'PINNQUAD AIRFRAME CONVERT'; do
+    grep -qE "^\.SH \"?$section\"?$" pinnquad.1 || fail "the manual page has no section $section"
+  done
+fi
+
+expect_line 2 '^pinnquad: expected a command: fly, train, study, report' "$pinnquad"
+expect_line 2 "^pinnquad: no command named 'land'; known: fly, train, study, report" "$pinnquad" land --seed 1
+expect_line 2 '^pinnquad: expected a command before --seed: fly, ' "$pinnquad" --seed 1
+expect_line 2 '^study: expected a command: paper, ablation, merge ' "$pinnquad" study
+expect_line 2 "^study: no command named 'news'; known: paper, ablation, merge" "$pinnquad" study news
+expect_line 2 '^fly: The following argument was not expected: train' "$pinnquad" fly d1 train --out f.csv
+expect_line 2 '^fly: The following argument was not expected: --epochs' "$pinnquad" fly d1 --out f.csv --epochs
+expect_line 2 '^train: --flight is required' "$pinnquad" train --seeds 1
+expect_line 2 '^report: dir is required' "$pinnquad" report
+
+# options from a file: the same flight; the command line goes first; it may stand before the command or behind
+cat >options.toml <<'EOF'
+[fly]
+flight = "d3"
+seed = 4
+samples = 50
+max-speed = 5.5
+
+[train]
+flight = ["a.csv", "b.csv"]
+allow-poor = true
+
+[study.paper]
+models = "2,4"
+EOF
+"$pinnquad" fly d3 --seed 4 --samples 50 --max-speed 5.5 --out words.csv >/dev/null
+"$pinnquad" fly --config options.toml --out behind.csv >/dev/null
+"$pinnquad" --config options.toml fly --out before.csv >/dev/null
+cmp words.csv behind.csv || fail "options from a file fly another flight"
+cmp words.csv before.csv || fail "--config before the command flies another flight"
+"$pinnquad" fly d3 --seed 5 --samples 50 --max-speed 5.5 --out words.csv >/dev/null
+"$pinnquad" fly --seed 5 --config options.toml --out both.csv >/dev/null
+cmp words.csv both.csv || fail "the file goes before the command line"
+expect_line 2 '^train: a\.csv: expected a readable file, found none' "$pinnquad" train --config options.toml --out o
+
+wrong() { # <pattern> <line>...: of a file for fly
+  local pattern=$1
+  shift
+  printf '%s\n' "$@" >wrong.toml
+  expect_line 2 "wrong\.toml$pattern" "$pinnquad" fly --config wrong.toml --samples 20 --out w.csv
+  [ ! -e w.csv ] || fail "flew in spite of $*"
+}
+wrong ':2:8: --seed: expected a whole number' '[fly]' 'seed = -1'
+wrong ':2:13: --max-speed: expected a number from 0.5 to 8' '[fly]' 'max-speed = 20'
+wrong ':2:1: expected an option of fly, found `sed`' '[fly]' 'sed = 1'
+wrong ':2:1: expected an option of fly, found `help`' '[fly]' 'help = true'
+wrong ':1:2: expected a command of pinnquad, found `land`' '[land]' 'seed = 1'
+wrong ':2:8: expected a value of --seed, found a truth value' '[fly]' 'seed = true'
+wrong ':2:18: expected true or false, found 1' '[fly]' 'list-airframes = 1'
+wrong ':2:9: expected a text, a number or a truth value, found an array of 0' '[fly]' 'seed = [[]]'
+wrong ':2:6: expected TOML' '[fly]' 'seed 3'
+wrong ':2:10: --epochs: expected a whole number' '[train]' 'epochs = 0'
+expect_line 2 '^fly: none\.toml: expected a readable file, found none' "$pinnquad" fly --config none.toml --out w.csv

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+# evaluate judges a block as the training judged the network that it was written from, and refuses what is no block of its own.
+source "$(dirname "$0")/common.sh" "$@"
+
+"$pinnquad" fly --seed 3 --samples 3000 --out flight.csv >/dev/null
+mkdir a
+"$pinnquad" train --flight flight.csv --out a --seeds 2 --epochs 8 --block a/model.block --allow-poor >/dev/null 2>&1
+code=0
+"$pinnquad" evaluate a/model.block --flight flight.csv --rows test --json >judged.json || code=$?
+python3 - a/report.json judged.json "$code" <<'EOF'
+import json, sys
+report, judged = (json.load(open(name)) for name in sys.argv[1:3])
+verdict = report["verdict"]
+row = next(r for r in report["results"] if r["model"] == verdict["model"] and r["seed"] == verdict["seed"])
+differ = [name for name, value in judged["figures"].items() if value != row[name]]
+assert not differ, f"evaluate and train judge otherwise: {differ}"
+assert judged["mean_absolute_error"] == row["mae"] and judged["rmse"] == row["rmse"] and judged["r2"] == row["r2"]
+for axis in "roll", "pitch", "yaw":
+    assert judged["pair_violations"][axis] == row[f"sign_violation_share_{axis}"], axis
+    assert judged["slope_error"][axis] == row[f"slope_error_{axis}"], axis
+    assert 0 <= judged["wrong_derivative_share"][axis] <= 1, axis
+assert judged["rows"] == 600 and judged["airframe"] == "paper_quadrotor", judged
+assert judged["golden_difference"] == 0, judged["golden_difference"]
+assert int(sys.argv[3]) == (1 if verdict["worse_than_mean"] else 0), sys.argv[3]
+EOF
+"$pinnquad" evaluate a/model.block --flight flight.csv --rows test >table.txt || [ $? -eq "$code" ] || fail "another exit code without --json"
+grep -q 'Dense<25>' table.txt || fail "does not name the network: $(cat table.txt)"
+
+# an airframe of its own: found by its file alone
+sed 's/^name = .*/name = "mine"/; s/^mass_kg = .*/mass_kg = 1.31/' "$source_dir/examples/airframes/paper_quadrotor.toml" >mine.toml
+mkdir b
+"$pinnquad" train --flight flight.csv --airframe mine.toml --out b --seeds 1 --epochs 2 --block b/model.block --allow-poor >/dev/null 2>&1
+expect_line 2 'b/model.block: a network of 16 inputs, 4 outputs and 6379 parameters whose shape is unknown' \
+  "$pinnquad" evaluate b/model.block --flight flight.csv
+"$pinnquad" evaluate b/model.block --flight flight.csv --airframe mine.toml >mine.txt || [ $? -eq 1 ]
+grep -q 'for mine' mine.txt || fail "said: $(cat mine.txt)"
+expect_line 2 'whose shape is unknown' "$pinnquad" evaluate a/model.block --flight flight.csv --airframe mine.toml
+answer=$(sed -n 's/.*answer = "\(.*\)";/\1/p' a/model.hpp)
+"$pinnquad" evaluate a/model.block --flight flight.csv --answer "$answer" >answer.txt || [ $? -eq 1 ]
+expect_line 2 'whose shape is unknown' "$pinnquad" evaluate a/model.block --flight flight.csv --answer "${answer/Relu/Tanh}"
+
+# commands that no model predicts: exit code 1
+awk -F, -v OFS=, 'NR > 1 { for (i = 18; i <= 21; i++) $i = 0.5 + 0.4 * sin(NR * i) } { print }' flight.csv >noise.csv
+code=0
+"$pinnquad" evaluate a/model.block --flight noise.csv >/dev/null 2>stderr.txt || code=$?
+[ "$code" -eq 1 ] || fail "exit code $code for a model worse than the mean"
+grep -q '^evaluate: a/model.block: worse than the mean of the commands' stderr.txt || fail "said: $(cat stderr.txt)"
+
+# what is no block, or no longer one
+refused() { expect_line 2 "$1" "$pinnquad" evaluate "$2" --flight flight.csv; }
+refused 'none.block: expected a readable file, found none' none.block
+refused 'flight.csv: expected a model block, as pinnquad train --block writes it, found something else' flight.csv
+head -c 20000 a/model.block >cut.block
+refused 'cut.block: expected a model block of [0-9]* bytes, found 20000' cut.block
+head -c 30 a/model.block >short.block
+refused 'short.block: expected a model block' short.block
+for offset in 9 16 30 60 2000 20000; do
+  cp a/model.block changed.block
+  printf '\377' | dd of=changed.block bs=1 seek="$offset" conv=notrunc status=none
+  refused 'changed.block: expected ' changed.block
+done
+expect_line 2 'none.csv: expected a readable file' "$pinnquad" evaluate a/model.block --flight none.csv

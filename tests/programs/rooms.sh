@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# The rooms of the program: a file includes headers of its own room and of those that tools/CMakeLists.txt names before it, all
+# by their path from tools/; the program itself may include every room.
+#   rooms.sh TOOLS
+set -euo pipefail
+cd -- "$1"
+faults=0
+fault() {
+  echo "$1"
+  faults=$((faults + 1))
+}
+mapfile -t rooms < <(sed -n 's/^#   \([a-z_]*\)  .*/\1/p' CMakeLists.txt)
+[ ${#rooms[@]} -gt 1 ] || fault "CMakeLists.txt:1: names no rooms"
+declare -A place
+for ((i = 0; i < ${#rooms[@]}; ++i)); do place[${rooms[i]}]=$i; done
+for folder in */; do
+  [ -n "${place[${folder%/}]:-}" ] || fault "${folder%/}: CMakeLists.txt does not name this room"
+done
+while IFS=: read -r file line text; do
+  header=${text#*\"} header=${header%\"*}
+  case $header in pinnquad/*) continue ;; esac
+  room=${file%%/*} other=${header%%/*}
+  if [ ! -f "$header" ]; then
+    fault "$file:$line: no such header from here: $header"
+  elif [[ $file == */* ]] && [ "${place[$other]:-99}" -gt "${place[$room]:-0}" ]; then
+    fault "$file:$line: $room comes before $other"
+  fi
+done < <(grep -rn '^#include "' --include='*.hpp' --include='*.cpp' .  | sed 's,^\./,,')
+if [ "$faults" -ne 0 ]; then
+  printf '\n%s faults\n' "$faults"
+  exit 1
+fi
+echo "${#rooms[@]} rooms, one direction"

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+// Clean: low comes before high.
+#pragma once
+
+#include "low/first.hpp"

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// A program of several commands: one is chosen by name, its options stand behind it or, by --config, in a file.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "command_line/command.hpp"
+#include "command_line/console.hpp"
+#include "command_line/options.hpp"
+#include "command_line/settings_file.hpp"
+
+namespace programs {
+
+namespace detail {
+
+/// The command that was chosen: of `study merge` it is merge; the program itself where none was.
+inline const CLI::App& chosen_command(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return *command;
+}
+
+/// --version of the program and all its commands.
+inline void add_version(CLI::App& command, const std::string& text) {
+  command.set_version_flag("--version", text);
+  for (CLI::App* part : command.get_subcommands({})) add_version(*part, text);
+}
+
+/// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command does not
+/// know is handed up.
+inline void require_command(const CLI::App& program) {
+  const CLI::App& command = chosen_command(program);
+  const std::vector<std::string> unknown = program.remaining();
+  std::string known;
+  for (const CLI::App* part : command.get_subcommands([](const CLI::App*) { return true; })) {
+    known += (known.empty() ? "" : ", ") + part->get_name();
+  }
+  if (known.empty()) {
+    if (!unknown.empty()) throw CLI::ExtrasError(command.get_name(), unknown);
+    return;
+  }
+  if (unknown.empty()) throw std::invalid_argument("expected a command: " + known + " (see --help)");
+  if (unknown.front().compare(0, 1, "-") == 0) {
+    throw std::invalid_argument("expected a command before " + unknown.front() + ": " + known + " (see --help)");
+  }
+  throw std::invalid_argument("no command named '" + unknown.front() + "'; known: " + known);
+}
+
+}  // namespace detail
+
+/// Runs the command that was chosen (choose_command has seen to it that there is one): its exit code.
+inline int run_chosen(const std::vector<Command>& commands) {
+  for (const Command& command : commands) {
+    if (command.line->parsed()) return command.run();
+  }
+  throw std::logic_error("no command was chosen");
+}
+
+/// Adds --version and --config to a program whose commands are complete, and parses. Empty to go on; else the exit code. `name`
+/// becomes that of the command as soon as it is known: messages name it.
+inline std::optional<int> choose_command(CLI::App& program, int argument_count, char** arguments, std::string& name) {
+  detail::add_version(program, program.get_name() + " " + PINNQUAD_VERSION);
+  program
+      .add_option_function<std::string>(
+          "--config", [&program](const std::string& path) { take_settings(program, path); },
+          "options from a file: a table per command, such as [fly]; what stands on the command line goes first")
+      ->type_name("FILE.toml");
+  program.require_subcommand(0, 1);
+  program.allow_extras();
+  for (CLI::App* command : program.get_subcommands({})) {
+    command->preparse_callback([&name, command](std::size_t /*words*/) { name = command->get_name(); });
+  }
+  try {
+    program.parse(argument_count, arguments);
+    detail::require_command(program);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);
+    complain(name.c_str(), error.what());
+    return exit_bad_input;
+  }
+  return {};
+}
+
+}  // namespace programs

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// A program's edge to its terminal: exit codes, one line for what goes wrong, and standard output that was not lost.
+#pragma once
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/printable.hpp"
+
+namespace programs {
+
+constexpr int exit_failed = 1;
+constexpr int exit_bad_input = 2;
+
+/// "fly: what is wrong" on stderr: one line, whatever stands in a path or an argument.
+inline void complain(const char* program, const std::string& what) {
+  std::fprintf(stderr, "%s: %s\n", program, pinnquad::printable(what).c_str());
+}
+
+namespace detail {
+
+/// Descriptors 0, 1 and 2 that the caller closed are taken, or the first files opened would get what is printed.
+/// Writing to them fails, as it should.
+inline void take_closed_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) static_cast<void>(::open("/dev/null", O_RDONLY));
+  }
+}
+
+}  // namespace detail
+
+/// Runs a program: `body()` gives its exit code; what it throws becomes one line and exit_bad_input. Standard output
+/// that could not be written (a full disk, a closed pipe: files are finished all the same) is told the same way.
+/// Lines begin with `program`, which the body may change: to the command that was chosen.
+template <class Body>
+int run_program(const std::string& program, const Body& body) {
+  detail::take_closed_streams();
+  std::signal(SIGPIPE, SIG_IGN);  // a reader who left is no reason to lose a training
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a full disk: an error to report
+  int code = exit_bad_input;
+  try {
+    code = body();
+  } catch (const std::bad_alloc&) {
+    complain(program.c_str(), "out of memory");
+  } catch (const std::exception& error) {  // InputError, OutputError, contradictions: one line
+    complain(program.c_str(), error.what());
+  }
+  errno = 0;
+  const bool failed_before = std::ferror(stdout) != 0;
+  if (std::fflush(stdout) != 0 || failed_before) {
+    const std::string reason = pinnquad::system_reason(errno, "it is closed or full");
+    if (code == 0) complain(program.c_str(), pinnquad::OutputError("standard output", reason).what());
+    if (code == 0) code = exit_bad_input;
+  }
+  return code;
+}
+
+}  // namespace programs

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// Options of the programs: numbers taken as they are written or refused, paths that name something, --version.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "command_line/console.hpp"
+#include "pinnquad/version.hpp"
+
+namespace programs {
+
+/// Largest seed: those that count on from it are seeds too.
+inline constexpr std::uint64_t most_seed = ~std::uint64_t{0} >> 1;
+
+/// The whole text as a plain decimal number from `least` to `most`. No signs but a minus, no octal or hexadecimal, no
+/// leading zeros of a whole number, no NaN, no Inf.
+template <class Number>
+bool parse_decimal(const std::string& text, Number least, Number most, Number& value) {
+  if constexpr (std::is_integral_v<Number>) {
+    if (text.empty() || text.find_first_not_of("0123456789") != std::string::npos) return false;
+    if (text.size() > 1 && text[0] == '0') return false;
+  }
+  Number read{};
+  const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), read);
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return false;
+  if (!(read >= least && read <= most)) return false;
+  value = read;
+  return true;
+}
+
+/// An option that takes a number from `least` to `most`; whatever else it is given is refused in one line.
+/// `Value` is a number, or a std::optional of one: it stays empty where the option is not given.
+template <class Value, class Number>
+CLI::Option* add_number(CLI::App& app, const std::string& name, Value& value, Number least, Number most,
+                        const std::string& description) {
+  const auto text_of = [](Number number) {
+    char text[32];
+    return std::string(text, std::to_chars(text, text + sizeof text, number).ptr);
+  };
+  const std::string kind = std::is_integral_v<Number> ? "a whole number" : "a number";
+  const std::string expected = "expected " + kind + " from " + text_of(least) + " to " + text_of(most);
+  const auto take = [&value, name, least, most, expected](const std::string& text) {
+    Number number{};
+    if (!parse_decimal(text, least, most, number)) {
+      throw CLI::ValidationError(name, expected + ", found '" + text + "'");
+    }
+    value = number;
+  };
+  CLI::Option* option =
+      app.add_option_function<std::string>(name, take, description)->type_name(text_of(least) + ".." + text_of(most));
+  if constexpr (std::is_same_v<Value, Number>) option->default_str(text_of(value));
+  return option;
+}
+
+/// An option that takes a path. An empty one is refused: it would be the root folder, or nothing.
+inline CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path, const std::string& kind,
+                             const std::string& description) {
+  const auto take = [&path, name, kind](const std::string& text) {
+    if (text.empty()) throw CLI::ValidationError(name, "expected " + kind + ", found ''");
+    path = text;
+  };
+  return app.add_option_function<std::string>(name, take, description)->type_name(kind);
+}
+
+/// An option that takes one path or more; an empty one is refused, as by add_path.
+inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vector<std::string>& paths,
+                              const std::string& kind, const std::string& description) {
+  const auto take = [&paths, name, kind](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      if (text.empty()) throw CLI::ValidationError(name, "expected " + kind + ", found ''");
+    }
+    paths = texts;
+  };
+  return app.add_option_function<std::vector<std::string>>(name, take, description)->type_name(kind + " ...");
+}
+
+/// Adds --version and parses. Empty to go on; else the exit code: --help and --version have been printed, or one line
+/// says what is wrong.
+inline std::optional<int> parse_command_line(CLI::App& app, int argument_count, char** arguments) {
+  app.set_version_flag("--version", app.get_name() + " (pinnquad) " + PINNQUAD_VERSION);
+  try {
+    app.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    complain(app.get_name().c_str(), error.what());
+    return exit_bad_input;
+  }
+  return {};
+}
+
+}  // namespace programs

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// TOML files as the programs take them: small, and what is wrong with one is said with line and column.
+#pragma once
+
+// the parser answers broken text with an error of its own behind these: a debug build must not end there
+#define TOML_ASSERT(expr) static_cast<void>(0)
+#include <toml++/toml.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "pinnquad/data/decimal.hpp"
+#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/text_file.hpp"
+
+namespace programs {
+
+/// The tables of a file. Throws InputError: it can't be read, has more than 1 MiB where `what` ("an airframe") was expected, or
+/// is no TOML.
+inline toml::table read_toml_file(const std::string& path, const std::string& what) {
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 20;
+  pinnquad::require_regular_file(path);
+  std::error_code absent;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, absent);
+  if (!absent && bytes > most_bytes)
+    throw pinnquad::InputError(path, 0, 0, what + " of at most 1 MiB", "a larger file");
+  const std::string content = pinnquad::file_text(path);
+  try {
+    return toml::parse(content, path);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw pinnquad::InputError(path, at.line, at.column, "TOML", pinnquad::printable(error.description()));
+  }
+}
+
+[[noreturn]] inline void refuse_toml(const std::string& path, const toml::source_region& where,
+                                     const std::string& expected, const std::string& found) {
+  throw pinnquad::InputError(path, where.begin.line, where.begin.column, expected, found);
+}
+
+/// Of a number: an integer, however large, or a floating-point one.
+inline double toml_number(const toml::node& node) {
+  return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+}
+
+/// A node as the one-line messages name it: its value, or its kind.
+inline std::string described(const toml::node& node) {
+  if (const auto* text = node.as_string()) return "\"" + pinnquad::printable(text->get()) + "\"";
+  if (node.is_number()) return pinnquad::number_text(toml_number(node));
+  if (node.is_array()) return "an array of " + std::to_string(node.as_array()->size());
+  return node.is_table() ? "a table" : node.is_boolean() ? "a truth value" : "a date or time";
+}
+
+}  // namespace programs

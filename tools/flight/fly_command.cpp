@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: MIT
+// Flies a simulated quadrotor on one of the paper's flights and writes the recorded flight as CSV.
+//   pinnquad fly d1 --out flight.csv --seed 1
+#include "flight/fly_command.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "airframe/choice.hpp"
+#include "command_line/console.hpp"
+#include "command_line/file_roles.hpp"
+#include "command_line/interrupt.hpp"
+#include "command_line/options.hpp"
+#include "command_line/progress_line.hpp"
+#include "flight/choice.hpp"
+#include "flight/pictures.hpp"
+#include "flight/statistics.hpp"
+#include "flight/trace.hpp"
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/simulation/noisy_recorder.hpp"
+#include "pinnquad/simulation/recorded_sticks.hpp"
+#include "replay/page.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+struct Options {
+  std::string flight = AgileFlight::name;
+  std::string out;
+  std::uint64_t seed = 1;
+  std::optional<std::size_t> samples;
+  std::string airframe = PaperQuadrotor::name;
+  std::optional<double> max_speed_m_s;
+  std::string ground_effect;  ///< empty: the flight's own
+  double gyro_noise_rad_s = 0;
+  double latency_ms = 0;
+  double jitter_ms = 0;
+  std::string sticks;
+  std::string record_sticks;
+  double stick_interval_ms = 0;
+  std::size_t statistics = 0;
+  std::string pictures;
+  std::string replay;
+  bool list_airframes = false;
+};
+
+/// Thrown out of a flight by Ctrl-C; nothing is written then.
+struct Interrupted {};
+
+/// No output takes the place of the sticks or of another output.
+void require_separate_files(const Options& options) {
+  programs::FileRoles roles;
+  roles.reads("--sticks", options.sticks);
+  if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
+  roles.writes("--out", options.out);
+  roles.writes("--record-sticks", options.record_sticks);
+  roles.writes("--replay", options.replay);
+  if (options.pictures.empty()) return;
+  roles.writes("--pictures", options.pictures);
+  for (const char* name : programs::flight_picture_names) roles.writes("--pictures", options.pictures + "/" + name);
+}
+
+/// An output must be writable before minutes are spent on what goes there.
+void require_writable(const std::string& path) {
+  if (!path.empty()) AtomicFile probe(path);
+}
+
+/// The folder for pictures, made if its own folder is there.
+void make_folder(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return;
+  std::filesystem::create_directory(path, error);
+  if (error) throw OutputError(path, error.message());
+}
+
+/// A flight with all choices made, whatever its vehicle.
+template <class PaperFlight>
+class Campaign {
+ public:
+  Campaign(const Options& options, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect)
+      : options_(options),
+        name_(airframe.name),
+        ground_effect_(ground_effect),
+        vehicle_(flight_vehicle<PaperFlight>(airframe.value, ground_effect)),
+        without_(flight_vehicle<PaperFlight>(airframe.value, GroundEffectModel::none)),
+        airframe_(airframe.value),
+        plan_(PaperFlight::plan()) {
+    if (!options.sticks.empty()) {
+      sticks_ = RecordedSticks(read_sticks_csv(options.sticks));
+      constexpr double rounding = 1e-6;
+      plan_.samples = static_cast<std::size_t>(std::ceil(sticks_->duration_s() / plan_.sample_period_s() - rounding));
+      if (plan_.samples == 0) plan_.samples = 1;
+    }
+    if (options.samples) plan_.samples = *options.samples;
+    constexpr std::size_t fewest_drawn = 20;  // three blocks and a line in each
+    if (!options.pictures.empty() && plan_.samples < fewest_drawn) {
+      throw std::invalid_argument("--pictures needs " + std::to_string(fewest_drawn) + " rows or more");
+    }
+    require_thrust();
+  }
+
+  int run() {
+    if (options_.statistics > 0) return run_statistics();
+    StickRecording sticks;
+    std::vector<programs::TraceRow> trace;
+    programs::AnyPilot pilot = pilot_of(options_.seed);
+    if (!options_.record_sticks.empty()) pilot = written_down(pilot, sticks, options_.stick_interval_ms / 1000);
+    programs::ReplayPage replay(title(), airframe_, paper_site<double>().ground_z_m);
+    programs::ProgressLine progress("flying");
+    const RecordedFlight recorded = flown(options_.seed, pilot, [&](const FlightRow& row) {
+      progress.update(static_cast<double>(row.rows_done) / static_cast<double>(row.rows));
+      if (!options_.pictures.empty()) trace.push_back(programs::trace_row(vehicle_, without_, row.vehicle));
+      if (!options_.replay.empty()) replay.add(row.vehicle, row.sample.commands);
+    });
+    progress.clear();
+    if (recorded.report.end != FlightEnd::completed) {
+      programs::complain("fly", why_it_ended(recorded.report));
+      return programs::exit_failed;
+    }
+    if (!options_.out.empty()) write_flight_csv(options_.out, recorded.flight);
+    if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
+    if (!options_.replay.empty()) replay.write(options_.replay);
+    print_summary(recorded);
+    const bool drawn =
+        options_.pictures.empty() || programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_,
+                                                           ground_effect_, std::is_same_v<PaperFlight, WindyFlight>);
+    if (drawn) return 0;
+    if (!programs::interrupted()) return programs::exit_failed;
+    programs::complain("fly", "interrupted; the flight is written, pictures are missing");
+    return programs::exit_interrupted;
+  }
+
+ private:
+  /// An airframe that the controller can't hold up here is refused before it flies.
+  void require_thrust() const {
+    const double hover = hover_command(vehicle_, plan_.start_m);
+    constexpr double most = 0.97;  // of its thrust: flight_limits
+    if (hover < most) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  " cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
+                  PaperFlight::name, 100 * hover, 100 * most);
+    throw std::invalid_argument(name_ + text);
+  }
+
+  programs::AnyPilot pilot_of(std::uint64_t seed) const {
+    if (sticks_) return *sticks_;
+    const std::mt19937_64 engine(seed);
+    return options_.max_speed_m_s ? PaperFlight::pilot(vehicle_, engine, *options_.max_speed_m_s)
+                                  : PaperFlight::pilot(vehicle_, engine);
+  }
+
+  /// "paper_quadrotor, d1, seed 1"
+  std::string title() const {
+    const std::string flown = sticks_ ? "sticks " + options_.sticks : "seed " + std::to_string(options_.seed);
+    return name_ + ", " + PaperFlight::name + ", " + flown;
+  }
+
+  bool exact() const { return options_.gyro_noise_rad_s == 0 && options_.latency_ms == 0 && options_.jitter_ms == 0; }
+
+  /// `observer` sees each row; Ctrl-C ends the flight by an exception.
+  template <class Observer>
+  RecordedFlight flown(std::uint64_t seed, const programs::AnyPilot& pilot, const Observer& observer) const {
+    const auto watched = [&observer](const FlightRow& row) {
+      if (programs::interrupted()) throw Interrupted{};
+      observer(row);
+    };
+    if (exact()) return fly(vehicle_, pilot, plan_, watched);
+    RecorderErrors errors;
+    errors.gyro_noise_rad_s = options_.gyro_noise_rad_s;
+    errors.command_latency_s = options_.latency_ms / 1000;
+    errors.command_jitter_s = options_.jitter_ms / 1000;
+    constexpr std::uint64_t another = 0x9e3779b97f4a7c15u;  // not the pilot's numbers again
+    return fly(vehicle_, pilot, plan_, watched,
+               NoisyRecorder<std::mt19937_64>(std::mt19937_64(seed ^ another), errors));
+  }
+
+  std::string why_it_ended(const FlightReport& report) const {
+    const Vector3<double>& p = report.last.body.position_m;
+    char text[240];
+    std::snprintf(text, sizeof text, "the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground: %s",
+                  report.last.time_s, p[0], p[1], paper_site<double>().ground_z_m - p[2],
+                  report.end == FlightEnd::ground ? "it came down to the ground" : to_string(report.status));
+    return text;
+  }
+
+  int run_statistics() {
+    const auto one = [this](std::uint64_t seed, std::atomic<std::size_t>& rows_done) {
+      const RecordedFlight recorded =
+          flown(seed, pilot_of(seed), [&rows_done](const FlightRow&) { rows_done.fetch_add(1); });
+      return programs::FlightFigures{seed, recorded.report, programs::axis_correlations(recorded.flight, airframe_)};
+    };
+    const std::vector<programs::FlightFigures> figures =
+        programs::fly_seeds(PaperFlight::name, options_.seed, options_.statistics, plan_.samples, one);
+    if (programs::interrupted()) throw Interrupted{};
+    if (!options_.out.empty()) programs::write_flight_table(options_.out, figures);
+    programs::print_flight_table(figures);
+    for (const programs::FlightFigures& f : figures) {
+      if (f.report.end == FlightEnd::completed) continue;
+      programs::complain("fly", "seed " + std::to_string(f.seed) + ": " + why_it_ended(f.report));
+      return programs::exit_failed;
+    }
+    return 0;
+  }
+
+  void print_summary(const RecordedFlight& recorded) const {
+    const FlightReport& report = recorded.report;
+    std::printf("airframe    %s: %.3f kg, rotor speed limit %.0f rpm, thrust-to-weight %.3f\n", name_.c_str(),
+                airframe_.mass_kg, 60 * airframe_.max_rotor_speed_rev_s, airframe_.thrust_to_weight());
+    std::printf("flight      %s, ground effect %s, ", PaperFlight::name, programs::name_of(ground_effect_));
+    if (sticks_) {
+      std::printf("sticks %s", options_.sticks.c_str());
+    } else {
+      std::printf("seed %llu", static_cast<unsigned long long>(options_.seed));
+    }
+    std::printf(", %zu rows at %.3g s, %.1f s\n", report.rows, plan_.sample_period_s(),
+                static_cast<double>(report.rows) * plan_.sample_period_s());
+    std::printf("speed       up to %.2f m/s; tilt up to %.1f deg\n", report.max_speed_m_s,
+                pinnquad::degrees_per_radian * report.max_tilt_rad);
+    std::printf("altitude    %.*f to %.*f m above ground\n", report.max_altitude_m < 5 ? 2 : 1, report.min_altitude_m,
+                report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
+    std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
+    const std::array<double, 3> pcc = programs::axis_correlations(recorded.flight, airframe_);
+    std::printf("correlation of angular acceleration and command sum: roll %.3f, pitch %.3f, yaw %.3f\n", pcc[0],
+                pcc[1], pcc[2]);
+    if (sticks_) return;
+    const double climb_m_s = with_quadrotor(
+        vehicle_, [&](const auto& quadrotor) { return pilot_style(quadrotor, plan_.start_m).max_climb_m_s; });
+    if (climb_m_s < PilotStyle{}.max_climb_m_s) {
+      std::printf("note        this airframe's thrust allows the pilot %.1f m/s of climb at most\n", climb_m_s);
+    }
+  }
+
+  const Options& options_;
+  std::string name_;  ///< the airframe's
+  GroundEffectModel ground_effect_;
+  typename PaperFlight::SwitchableVehicle vehicle_;
+  typename PaperFlight::SwitchableVehicle without_;
+  Airframe<double> airframe_;
+  FlightPlan plan_;
+  std::optional<RecordedSticks> sticks_;
+};
+
+/// What contradicts itself; empty if nothing does.
+std::string contradiction(const Options& o) {
+  const bool single_output = !o.record_sticks.empty() || !o.pictures.empty() || !o.replay.empty();
+  if (o.out.empty() && !single_output && o.statistics == 0) return "--out FILE.csv is needed (see --help)";
+  if (o.statistics > 0 && !o.sticks.empty()) return "--statistics flies seeds, --sticks a recording: one of them";
+  if (o.statistics > 0 && single_output) return "--statistics goes with none of --record-sticks, --pictures, --replay";
+  if (!o.sticks.empty() && o.max_speed_m_s) return "--max-speed is the random pilot's, --sticks has no use for it";
+  return {};
+}
+
+template <class Function>
+void with_all_choices(const Options& options, const Function& function) {
+  GroundEffectModel model = GroundEffectModel::none;
+  if (!options.ground_effect.empty() && !programs::ground_effect_of(options.ground_effect, model)) {
+    throw std::invalid_argument("no ground effect named '" + options.ground_effect +
+                                "'; known: none, cheeseman-bennett, conyers");
+  }
+  const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
+  const bool known = programs::with_flight(options.flight, [&](auto tag) {
+    using PaperFlight = typename decltype(tag)::type;
+    function(tag, airframe, options.ground_effect.empty() ? PaperFlight::ground_effect : model);
+  });
+  if (!known) {
+    throw std::invalid_argument("no flight named '" + options.flight + "'; known: " + programs::flight_names());
+  }
+}
+
+/// Flies what the options ask for: the exit code.
+int fly_chosen(const Options& options) {
+  const std::string fault = contradiction(options);
+  if (!fault.empty()) throw std::invalid_argument(fault);
+  require_separate_files(options);
+  int code = programs::exit_bad_input;
+  with_all_choices(options, [&](auto tag, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect) {
+    Campaign<typename decltype(tag)::type> campaign(options, airframe, ground_effect);
+    for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_writable(file);
+    if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);
+    if (!options.pictures.empty()) make_folder(options.pictures);
+    programs::catch_interrupt();
+    code = campaign.run();
+  });
+  return code;
+}
+
+void add_options(CLI::App& app, Options& options) {
+  using programs::add_number;
+  using programs::add_path;
+  std::string flights = "the flight";
+  programs::each_flight([&flights](auto tag) {
+    flights += std::string("\n") + decltype(tag)::type::name + ": " + decltype(tag)::type::summary;
+  });
+  app.footer(
+      "Examples:\n"
+      "  pinnquad fly d1 --seed 1 --out d1.csv\n"
+      "  pinnquad fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
+      "  pinnquad fly d3 --statistics 20\n"
+      "Exit codes: 0; 1 the flight ended early, or gnuplot is missing or failed; 2 bad input or a file that can't be "
+      "read or\nwritten; 130 interrupted: nothing was written, or pictures alone are missing.");
+  app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3")->capture_default_str();
+  add_path(app, "--out", options.out, "FILE.csv", "the flight, or with --statistics the table");
+  add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
+             "seed of pilot and recorder noise; the same seed gives the same flight")
+      ->type_name("N");
+  add_number(app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
+             "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)");
+  app.add_option("--airframe", options.airframe,
+                 "a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
+      ->capture_default_str();
+  add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0,
+             "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)");
+  app.add_option("--ground-effect", options.ground_effect,
+                 "none, cheeseman-bennett or conyers (default: d2 conyers, else none)");
+  add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
+  add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");
+  add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0, "up to this much more latency, uniform, row by row, ms");
+  add_path(app, "--sticks", options.sticks, "FILE.csv",
+           "fly this stick recording instead of the random pilot (docs/flights.md)");
+  add_path(app, "--record-sticks", options.record_sticks, "FILE.csv", "write down what the pilot asks for");
+  add_number(app, "--stick-interval", options.stick_interval_ms, 0.0, 1000.0,
+             "a row of it at most this often, ms; 0: every control tick, which flies the same flight again");
+  add_number(app, "--statistics", options.statistics, std::size_t{1}, std::size_t{100000},
+             "fly this many seeds from --seed on, and print what they reach")
+      ->default_str("");
+  add_path(app, "--pictures", options.pictures, "DIR",
+           "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)");
+  add_path(app, "--replay", options.replay, "FILE.html",
+           "page that replays the flight in 3D in a browser (docs/replay.md)");
+  app.add_flag("--list-airframes", options.list_airframes,
+               "print the airframes and where their values are from, and stop");
+}
+
+int run(const Options& options) {
+  if (options.list_airframes) {
+    programs::list_airframes();
+    return 0;
+  }
+  try {
+    return fly_chosen(options);
+  } catch (const Interrupted&) {
+    programs::complain("fly", "interrupted; nothing was written");
+    return programs::exit_interrupted;
+  }
+}
+
+}  // namespace
+
+programs::Command programs::fly_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "fly", "Flies a simulated quadrotor on one of the paper's three flights and records it as CSV");
+  const auto options = std::make_shared<Options>();
+  add_options(*line, *options);
+  return {line, [options] { return run(*options); }};
+}

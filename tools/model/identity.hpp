@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Which model a block is: a block names its answer, features, outputs and vehicle by a hash, so those that the program knows are
+// tried until one has it.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "airframe/choice.hpp"
+#include "model/block.hpp"
+#include "model/run_time_network.hpp"
+#include "pinnquad/inference/features.hpp"
+
+namespace programs {
+
+/// Feature sets and output schemas that a row of a flight is enough for; `function` is called with a value of each pair.
+template <class Function>
+void each_schema(const Function& function) {
+  using namespace pinnquad;
+  function(PaperFeatures{}, CommandOutputs{});
+  function(PaperFeatures{}, RotorSpeedOutputs{});
+  function(PaperFeaturesWithAltitude{}, CommandOutputs{});
+  function(PaperFeaturesWithAltitude{}, RotorSpeedOutputs{});
+}
+
+/// What was found.
+struct Identity {
+  std::string answer;  ///< description of the network
+  NetworkSpec network;
+  NamedAirframe airframe;
+  std::string features, outputs;  ///< first and last name of each, for a reader
+};
+
+namespace detail {
+
+/// As pinnquad::detail::hash_of_shape, for an answer that is a text.
+template <class Features, class Outputs>
+std::uint64_t shape_hash_of(const std::string& answer, const NamedAirframe& airframe) {
+  using Map = pinnquad::OutputMap<Outputs>;
+  pinnquad::detail::Fnv1a fnv;
+  fnv.absorb_text(answer);
+  fnv.absorb_text(pinnquad::model_frame);
+  for (const char* name : Features::names) fnv.absorb_text(name);
+  for (const char* unit : Features::units) fnv.absorb_text(unit);
+  for (const char* name : Map::names) fnv.absorb_text(name);
+  for (std::size_t i = 0; i < (pinnquad::detail::one_unit(Map::units) ? 1 : Map::units.size()); ++i) {
+    fnv.absorb_text(Map::units[i]);
+  }
+  fnv.absorb_text(pinnquad::printable(airframe.name));
+  for (const pinnquad::TorqueSigns& rotor : pinnquad::motor_torque_signs(airframe.value)) {
+    for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
+  }
+  return fnv.hash;
+}
+
+/// "Network<float, Inputs<16>, Dense<25>, Relu, ..., Dense<4>>" with hidden layers of one width.
+inline std::string uniform_network(const Block& block, int layers, int width, const char* activation) {
+  std::string text = std::string("pinnquad::Network<") + (block.is_double ? "double" : "float") +
+                     ", pinnquad::Inputs<" + std::to_string(block.inputs) + ">";
+  for (int i = 0; i < layers; ++i) {
+    text += ", pinnquad::Dense<" + std::to_string(width) + ">, ";
+    text += activation;
+  }
+  return text + ", pinnquad::Dense<" + std::to_string(block.outputs) + ">>";
+}
+
+/// Networks with hidden layers of one width that have as many parameters as the block.
+inline std::vector<std::string> candidate_networks(const Block& block) {
+  constexpr int most_layers = 64, widest = 4096;
+  std::vector<std::string> all;
+  const long long in = block.inputs, out = block.outputs, wanted = static_cast<long long>(block.parameter_count);
+  if (in * out + out == wanted) all.push_back(uniform_network(block, 0, 0, ""));
+  for (int layers = 1; layers <= most_layers; ++layers) {
+    for (long long width = 1; width <= widest; ++width) {
+      const long long count = (in + 1) * width + (layers - 1) * (width + 1) * width + (width + 1) * out;
+      if (count > wanted) break;
+      if (count < wanted) continue;
+      for (const Activation<double>& activation : activations<double>()) {
+        all.push_back(uniform_network(block, layers, static_cast<int>(width), activation.description));
+      }
+    }
+  }
+  return all;
+}
+
+/// The airframes to try: the one that is named or in a file, else all that the program knows.
+inline std::vector<NamedAirframe> candidate_airframes(const std::string& wanted) {
+  if (is_airframe_file(wanted)) return {read_airframe_file(wanted)};
+  std::vector<NamedAirframe> all;
+  each_airframe([&](auto tag) {
+    using Vehicle = typename decltype(tag)::type;
+    if (wanted.empty() || wanted == Vehicle::name) {
+      all.push_back({Vehicle::name, pinnquad::airframe_value<Vehicle, double>()});
+    }
+  });
+  if (all.empty()) throw no_airframe(wanted);
+  return all;
+}
+
+}  // namespace detail
+
+/// Finds out which model a block is. `airframe` (a name or a file) and `answer` (as an exported header states it) narrow what is
+/// tried; empty: all that is known. Throws std::invalid_argument, one line, where nothing has the block's hash.
+inline Identity identify(const Block& block, const std::string& airframe, const std::string& answer) {
+  const std::vector<NamedAirframe> airframes = detail::candidate_airframes(airframe);
+  std::vector<std::string> answers = {answer};
+  if (answer.empty()) answers = detail::candidate_networks(block);
+  std::optional<Identity> found;
+  each_schema([&](auto features, auto outputs) {
+    using Features = decltype(features);
+    using Outputs = decltype(outputs);
+    using Map = pinnquad::OutputMap<Outputs>;
+    if (found || Features::size != block.inputs || Map::size != block.outputs) return;
+    for (const std::string& text : answers) {
+      for (const NamedAirframe& candidate : airframes) {
+        if (detail::shape_hash_of<Features, Outputs>(text, candidate) != block.shape_hash) continue;
+        const std::optional<NetworkSpec> spec = parse_network(text);
+        if (!spec || static_cast<std::size_t>(spec->parameter_count()) != block.parameter_count ||
+            spec->inputs != block.inputs || spec->outputs() != block.outputs ||
+            (spec->scalar == "double") != block.is_double) {
+          continue;
+        }
+        found = Identity{text, *spec, candidate, std::string(Features::names.front()) + ".." + Features::names.back(),
+                         std::string(Map::names.front()) + ".." + Map::names.back()};
+        return;
+      }
+    }
+  });
+  if (!found) {
+    throw std::invalid_argument(block.path + ": a network of " + std::to_string(block.inputs) + " inputs, " +
+                                std::to_string(block.outputs) + " outputs and " +
+                                std::to_string(block.parameter_count) +
+                                " parameters whose shape is unknown here; say --airframe FILE.toml if it is for an "
+                                "airframe of its own, --answer "
+                                "TEXT as its header states it if its layers differ in width");
+  }
+  return *found;
+}
+
+}  // namespace programs

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The program pinnquad: fly, train, study, judge, report. Each command is a translation unit of its own in its room.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "airframe/airframe_command.hpp"
+#include "command_line/commands.hpp"
+#include "flight/fly_command.hpp"
+#include "model/block_command.hpp"
+#include "model/evaluate_command.hpp"
+#include "report/report_command.hpp"
+#include "study/study_command.hpp"
+#include "training/train_command.hpp"
+
+namespace {
+
+int run(int argument_count, char** arguments, std::string& name) {
+  CLI::App program("Physics-informed inverse dynamics of quadrotors: from a flight to a network that may fly", name);
+  program.fallthrough();  // --config may stand anywhere
+  const std::vector<programs::Command> commands = {
+      programs::fly_command(program),     programs::train_command(program),    programs::study_command(program),
+      programs::report_command(program),  programs::evaluate_command(program), programs::block_command(program),
+      programs::airframe_command(program)};
+  program.footer(
+      "pinnquad COMMAND --help says more.\n"
+      "Exit codes: 0; 1 it ran, but the answer is no; 2 bad input or a file that can't be read or written; 130 "
+      "interrupted.");
+  if (const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name)) return *code;
+  return programs::run_chosen(commands);
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  std::string name = "pinnquad";
+  return programs::run_program(name, [&] { return run(argument_count, arguments, name); });
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// The drawings of a study's report: Figs. 2, 3, 7, 8 and 9 of the paper, and every seed's relative change per pair.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/evaluation/confidence_ellipse.hpp"
+#include "pinnquad/evaluation/correlation.hpp"
+#include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "report/comparisons.hpp"
+#include "report/drawing.hpp"
+#include "training/judgement.hpp"
+
+namespace programs {
+
+/// One seed of one model on its test block: flown and predicted sums over the angular accelerations.
+struct StudySeries {
+  std::vector<double> time_s;
+  std::array<AxisSeries, 3> axes;
+};
+
+/// Reads series/model<ID>.csv. The signs of the sums come from the airframe's allocation, which all airframes of the
+/// paper's rotor order share. Throws InputError.
+inline StudySeries read_study_series(const std::string& path) {
+  const pinnquad::CsvTable table = pinnquad::read_csv(
+      path, {"time_s", "wdot_x", "wdot_y", "wdot_z", "u1", "u2", "u3", "u4", "p1", "p2", "p3", "p4"}, 3);
+  constexpr auto airframe = pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>();
+  StudySeries series;
+  for (const std::vector<double>& row : table.rows) {
+    series.time_s.push_back(row[0]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto signs = pinnquad::allocation_signs(airframe, static_cast<int>(axis));
+      series.axes[axis].angular_acceleration.push_back(row[1 + axis]);
+      series.axes[axis].target.push_back(pinnquad::signed_sum(signs, {row[4], row[5], row[6], row[7]}));
+      series.axes[axis].predicted.push_back(pinnquad::signed_sum(signs, {row[8], row[9], row[10], row[11]}));
+    }
+  }
+  return series;
+}
+
+/// Fig. 3: the weight of the physics term over the epochs, Eq. (6).
+inline std::string schedule_figure(const pinnquad::CyclicalAnnealing& schedule, int epochs) {
+  const html::Axis x{0, static_cast<double>(epochs), 70, 1030}, y{0, 1.15 * schedule.maximum, 190, 16};
+  html::Trace trace;
+  for (int epoch = 0; epoch < epochs; ++epoch) trace.to(x(epoch), y(schedule.weight(epoch, epochs)));
+  return html::svg(1060, 236,
+                   html::vertical_axis(y, 70, 1030, 4, "weight &#955;") +
+                       html::horizontal_axis(x, 16, 190, 6, "epoch") + html::path(trace.d(), "first"),
+                   "weight of the physics term over the epochs");
+}
+
+namespace detail {
+
+inline const char* bar_colour(int model) {
+  if (model <= 4) return "red";
+  if (model <= 6) return "green";
+  if (model <= 8) return "yellow";
+  if (model <= 10) return "orange";
+  return model <= 12 ? "violet" : "blue";
+}
+
+}  // namespace detail
+
+/// Figs. 7 and 9: mean absolute errors as bars, deviations over the seeds as whiskers, the paper's values as diamonds.
+/// Models without rows leave an empty line.
+inline std::string errors_figure(const Study& study, const std::vector<int>& models) {
+  constexpr double row_height = 33, top = 8, left = 200, right = 1020;
+  double most = 0;
+  for (const int model : models) {
+    const pinnquad::Summary ours = pinnquad::summarize(study.values(model, "mae"));
+    const PaperEntry& paper = paper_entry(model, 0);
+    most = std::max(most, 1e3 * (paper.mean + paper.deviation));
+    if (ours.count > 0) most = std::max(most, 1e3 * (ours.mean + (ours.count > 1 ? ours.deviation : 0)));
+  }
+  const double bottom = top + row_height * static_cast<double>(models.size());
+  const html::Axis x{0, 1.04 * most, left, right};
+  std::string text = html::horizontal_axis(x, top, bottom, 8, "mean absolute error of the commands, 10&#8315;&#179;");
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const int model = models[i];
+    const double middle = top + row_height * (static_cast<double>(i) + 0.5);
+    const pinnquad::Summary ours = pinnquad::summarize(study.values(model, "mae"));
+    text +=
+        html::label(16, middle, "M" + std::to_string(model), "title") +
+        html::label(58, middle, std::string(loss_words(model)) + (paper_model(model).batch_norm ? ", BN" : ""), "name");
+    if (ours.count == 0) {
+      text += html::label(left + 8, middle, "not in this study", "small");
+    } else {
+      const bool vanilla = paper_model(model).term == PhysicsTerm::none;
+      text += html::rectangle(left, middle - 13, x(1e3 * ours.mean) - left, 17,
+                              std::string(detail::bar_colour(model)) + (vanilla ? " vanilla" : ""));
+      if (ours.count > 1) {
+        const double bar = middle - 4.5, from = x(1e3 * (ours.mean - ours.deviation)),
+                     to = x(1e3 * (ours.mean + ours.deviation));
+        text += html::line(from, bar, to, bar, "deviation") + html::line(from, bar - 4, from, bar + 4, "deviation") +
+                html::line(to, bar - 4, to, bar + 4, "deviation");
+      }
+    }
+    const PaperEntry& paper = paper_entry(model, 0);
+    const double at_paper = x(1e3 * paper.mean), below = middle + 10;
+    text += html::line(x(1e3 * (paper.mean - paper.deviation)), below, x(1e3 * (paper.mean + paper.deviation)), below,
+                       "reference-line") +
+            html::path("M" + html::at(at_paper - 5) + " " + html::at(below) + "l5 -5l5 5l-5 5z", "reference");
+  }
+  text += html::line(left, top, left, bottom, "axis");
+  return html::svg(1060, bottom + 44, text, "mean absolute errors by model");
+}
+
+/// Every seed's relative change of the mean absolute error, per pair; a stroke is the mean, a diamond the paper's.
+inline std::string changes_figure(const std::vector<Comparison>& comparisons) {
+  constexpr double row_height = 32, top = 8, left = 200, right = 1020;
+  std::vector<const Comparison*> shown;
+  double least = -5, most = 5;
+  for (const Comparison& c : comparisons) {
+    if (c.measure != 0 || !std::isfinite(c.result.relative_difference)) continue;
+    shown.push_back(&c);
+    std::vector<double> changes = c.relative_changes();
+    if (const std::optional<double> paper = paper_change(c.pair, 0)) changes.push_back(*paper);
+    for (const double change : changes) {
+      least = std::min(least, 100 * change);
+      most = std::max(most, 100 * change);
+    }
+  }
+  if (shown.empty()) return "";
+  const double margin = 0.04 * (most - least);
+  const double bottom = top + row_height * static_cast<double>(shown.size());
+  const html::Axis x{least - margin, most + margin, left, right};
+  std::string text = html::horizontal_axis(x, top, bottom, 8, "change of the mean absolute error, %") +
+                     html::line(x(0), top, x(0), bottom, "axis");
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const Comparison& c = *shown[i];
+    const double middle = top + row_height * (static_cast<double>(i) + 0.5);
+    html::Trace seeds;
+    const std::vector<double> changes = c.relative_changes();
+    for (std::size_t k = 0; k < changes.size(); ++k) {  // five levels keep near seeds apart
+      seeds.dot(x(100 * changes[k]), middle + 3.2 * (static_cast<double>(k * 2 % 5) - 2));
+    }
+    text +=
+        html::label(16, middle + 4,
+                    "M" + std::to_string(c.pair.candidate) + " against M" + std::to_string(c.pair.baseline), "title") +
+        html::label(left - 12, middle + 4, paper_model(c.pair.candidate).data, "small end") +
+        html::path(seeds.d(), "seed");
+    const double mean = x(100 * c.result.relative_difference);
+    text += html::line(mean, middle - 12, mean, middle + 12, "mean");
+    if (const std::optional<double> paper = paper_change(c.pair, 0)) {
+      text += html::path("M" + html::at(x(100 * *paper) - 5) + " " + html::at(middle) + "l5 -5l5 5l-5 5z", "reference");
+    }
+  }
+  return html::svg(1060, bottom + 44, text, "relative change of the error by pair and seed");
+}
+
+/// Fig. 8: signed command sum over angular acceleration in units of the target's spread; dots target, plus signs
+/// prediction, 3-sigma ellipses with their major axes.
+inline std::string ellipses_figure(const std::vector<int>& models, const std::vector<StudySeries>& series) {
+  constexpr double panel = 300, gap = 50, left = 50, top = 38, range = 4.6;
+  constexpr std::size_t most_points = 450;
+  constexpr std::array<const char*, 3> rates = {"dp/dt", "dq/dt", "dr/dt"};
+  std::string text;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const AxisSeries& s = series[m].axes[axis];
+      const double x0 = left + static_cast<double>(axis) * (panel + gap),
+                   y0 = top + static_cast<double>(m) * (panel + 92);
+      const html::Axis x{-range, range, x0, x0 + panel}, y{-range, range, y0 + panel, y0};
+      const pinnquad::AxisSpread spread = pinnquad::axis_spread(s.angular_acceleration, s.target);
+      const pinnquad::PhysicalConsistency c =
+          pinnquad::physical_consistency(s.target, s.predicted, s.angular_acceleration);
+      text += html::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target spreads") +
+              html::vertical_axis(y, x0, x0 + panel, 5, "");
+      html::Trace target, predicted;
+      for (std::size_t i = 0; i < s.target.size(); i += s.target.size() / most_points + 1) {
+        const double px = s.angular_acceleration[i] / spread.x;
+        const double flown = s.target[i] / spread.y, said = s.predicted[i] / spread.y;
+        if (std::abs(px) > range) continue;
+        if (std::abs(flown) <= range) target.dot(x(px), y(flown));
+        if (std::abs(said) <= range) predicted.plus(x(px), y(said));
+      }
+      text += html::path(target.d(), "cloud") + html::path(predicted.d(), "plus");
+      const auto ellipse = [&](const pinnquad::ConfidenceEllipse& e, const std::string& kind) {
+        html::Trace outline, major;
+        for (const auto& p : pinnquad::ellipse_outline(e, 91)) outline.to(x(p[0]), y(p[1]));
+        const auto tips = pinnquad::ellipse_outline(e, 3);
+        major.to(x(tips[0][0]), y(tips[0][1]));
+        major.to(x(tips[1][0]), y(tips[1][1]));
+        text += html::path(outline.d(), kind) + html::path(major.d(), kind + " dash");
+      };
+      ellipse(c.target_standardized, "first");
+      ellipse(c.predicted_standardized, "second");
+      text += html::label(x0, y0 - 10, "M" + std::to_string(models[m]) + ", " + axis_names[axis], "title") +
+              html::label(x0 + panel, y0 - 10,
+                          "angle difference " + html::number(c.angle_difference_deg, 2) + "&#176;, slope error " +
+                              html::number(100 * c.slope_error, 1) + " %",
+                          "small end");
+    }
+  }
+  return html::svg(1060, top + static_cast<double>(models.size()) * (panel + 92) - 40, text,
+                   "confidence ellipses of target and prediction");
+}
+
+/// Fig. 2: angular acceleration and signed sum of the flown commands over some seconds, each in its spread.
+inline std::string correlation_figure(const StudySeries& series) {
+  constexpr double height = 118, gap = 34, left = 70, right = 1030, top = 26;
+  constexpr std::size_t shown = 240;
+  constexpr std::array<const char*, 3> rates = {"dp/dt", "dq/dt", "dr/dt"};
+  const std::size_t last = std::min(series.time_s.size(), shown) - 1;
+  std::string text;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisSeries& s = series.axes[axis];
+    const pinnquad::AxisSpread spread = pinnquad::axis_spread(s.angular_acceleration, s.target);
+    const double y0 = top + static_cast<double>(axis) * (height + gap);
+    const html::Axis x{series.time_s.front(), series.time_s[last], left, right}, y{-4, 4, y0 + height, y0};
+    html::Trace acceleration, sum;
+    for (std::size_t i = 0; i <= last; ++i) {
+      acceleration.to(x(series.time_s[i]), y(std::clamp(s.angular_acceleration[i] / spread.x, -4.0, 4.0)));
+      sum.to(x(series.time_s[i]), y(std::clamp(s.target[i] / spread.y, -4.0, 4.0)));
+    }
+    text += html::horizontal_axis(x, y0, y0 + height, 8, axis == 2 ? "time, s" : "", axis == 2) +
+            html::vertical_axis(y, left, right, 4, axis == 1 ? "in spreads" : "") +
+            html::path(acceleration.d(), "thick") + html::path(sum.d(), "thin") +
+            html::label(left, y0 - 8, std::string(axis_names[axis]) + ": " + rates[axis] + " and its command sum",
+                        "title") +
+            html::label(right, y0 - 8,
+                        "PCC " + html::number(pinnquad::pearson_correlation(s.angular_acceleration, s.target), 3) +
+                            " over the block",
+                        "small end");
+  }
+  return html::svg(1060, top + 3 * (height + gap) + 14, text, "angular acceleration and signed command sums over time");
+}
+
+}  // namespace programs

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// What the paper says: Table 2 (its models), Table 3 (its results) and the training times of Sec. 5.4. Typed once, here.
+// Gu, Primatesta, Rizzo: Physics-informed Neural Network for Quadrotor Dynamical Modeling, Robotics and Autonomous
+// Systems 171 (2024).
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "report/rows.hpp"
+
+namespace programs {
+
+/// The four figures of Table 3: its columns and those of rows.csv.
+struct Measure {
+  const char* column;  ///< of rows.csv
+  const char* label;
+  const char* unit;
+  double scale;  ///< from the unit of rows.csv to the one shown
+};
+
+inline constexpr std::array<Measure, 4> table3_measures = {{{"mae", "mean absolute error", "1e-3", 1e3},
+                                                            {"angle_difference_deg_roll", "angle, roll", "deg", 1},
+                                                            {"angle_difference_deg_pitch", "angle, pitch", "deg", 1},
+                                                            {"angle_difference_deg_yaw", "angle, yaw", "deg", 1}}};
+
+enum class PhysicsTerm { none, constant, annealed };
+
+/// A line of Table 2. docs/paper.md, deviation 16: models 7-10 are printed alike; the caption of Fig. 7 tells them apart.
+struct PaperModel {
+  int id;
+  const char* network;
+  bool batch_norm;
+  PhysicsTerm term;
+  const char* data;
+  const char* split;  ///< training / validation / test, % of the flight, as HTML
+};
+
+inline constexpr std::array<PaperModel, study_models> table2 = {{
+    {1, "linearized model, Eq. (3)", false, PhysicsTerm::none, "D1", "&ndash; / &ndash; / 20"},
+    {2, "vanilla", false, PhysicsTerm::none, "D1", "60 / 20 / 20"},
+    {3, "physics-informed", false, PhysicsTerm::constant, "D1", "60 / 20 / 20"},
+    {4, "physics-informed", false, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
+    {5, "vanilla", true, PhysicsTerm::none, "D1", "60 / 20 / 20"},
+    {6, "physics-informed", true, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
+    {7, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / &ndash; / 40"},
+    {8, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / &ndash; / 40"},
+    {9, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / &ndash; / 80"},
+    {10, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / &ndash; / 80"},
+    {11, "vanilla", true, PhysicsTerm::none, "D2", "60 / 20 / 20"},
+    {12, "physics-informed", true, PhysicsTerm::annealed, "D2", "60 / 20 / 20"},
+    {13, "vanilla", true, PhysicsTerm::none, "D3", "60 / 20 / 20"},
+    {14, "physics-informed", true, PhysicsTerm::annealed, "D3", "60 / 20 / 20"},
+}};
+
+inline const PaperModel& paper_model(int id) { return table2[static_cast<std::size_t>(id - 1)]; }
+
+/// As the caption of Fig. 7 tells the losses apart.
+inline const char* loss_words(int model) {
+  switch (paper_model(model).term) {
+    case PhysicsTerm::constant: return "constant weight";
+    case PhysicsTerm::annealed: return "annealed";
+    case PhysicsTerm::none: break;
+  }
+  return "vanilla";
+}
+
+/// An entry of Table 3 in the units of rows.csv; the deviation is 0 for model 1, which has none.
+struct PaperEntry {
+  double mean;
+  double deviation;
+};
+
+/// Table 3, by model: mean absolute error, then the ellipses' angles in roll, pitch, yaw (degrees).
+inline constexpr std::array<std::array<PaperEntry, 4>, study_models> table3 = {{
+    {{{1.023e-1, 0}, {1.321, 0}, {6.327, 0}, {9.200e-2, 0}}},
+    {{{3.867e-3, 2.424e-4}, {22.669, 4.603}, {25.309, 4.626}, {1.402, 0.466}}},
+    {{{3.775e-3, 3.525e-4}, {12.507, 1.666}, {1.706, 1.498}, {0.118, 9.611e-2}}},
+    {{{3.493e-3, 3.296e-4}, {16.550, 2.517}, {23.543, 4.238}, {0.463, 0.204}}},
+    {{{2.625e-3, 1.160e-4}, {26.409, 4.746}, {28.281, 5.491}, {0.499, 0.118}}},
+    {{{2.480e-3, 1.030e-4}, {24.337, 3.555}, {28.604, 4.618}, {0.273, 0.0677}}},
+    {{{4.874e-3, 6.764e-4}, {33.717, 4.994}, {22.997, 4.762}, {0.347, 0.142}}},
+    {{{3.793e-3, 3.444e-4}, {6.550, 1.546}, {6.472, 1.478}, {0.136, 4.227e-2}}},
+    {{{5.981e-3, 1.190e-3}, {40.489, 7.631}, {23.196, 6.782}, {0.269, 0.141}}},
+    {{{4.405e-3, 6.185e-4}, {12.053, 1.176}, {1.171, 1.383}, {0.316, 3.021e-2}}},
+    {{{2.747e-4, 4.570e-5}, {4.582, 1.829}, {1.615, 0.796}, {57.040, 11.849}}},
+    {{{2.580e-4, 4.290e-5}, {5.662, 2.031}, {1.724, 0.631}, {23.399, 5.521}}},
+    {{{4.771e-3, 3.661e-4}, {9.526, 4.686}, {18.904, 5.065}, {6.954, 0.997}}},
+    {{{4.525e-3, 3.087e-4}, {5.754, 3.315}, {16.587, 3.202}, {1.729, 0.716}}},
+}};
+
+inline const PaperEntry& paper_entry(int model, std::size_t measure) {
+  return table3[static_cast<std::size_t>(model - 1)][measure];
+}
+
+/// docs/paper.md, deviation 19: a leading digit may be lost in two angles in pitch, 1.706 of model 3 and 1.171 of model
+/// 10. They are marked, and no claim is judged by them.
+constexpr bool suspect_entry(int model, std::size_t measure) { return measure == 2 && (model == 3 || model == 10); }
+
+/// Which model is compared with which: candidate against baseline, on the same seeds.
+struct ModelPair {
+  int baseline;
+  int candidate;
+};
+
+inline constexpr std::array<ModelPair, 8> compared_pairs = {
+    {{2, 4}, {2, 3}, {3, 4}, {5, 6}, {7, 8}, {9, 10}, {11, 12}, {13, 14}}};
+
+/// Sec. 5.4: seconds of one training of models 2 and 4 (300 epochs), PyTorch with CUDA on a laptop's RTX 3060.
+inline constexpr double paper_vanilla_s = 234;
+inline constexpr double paper_physics_informed_s = 373;
+
+}  // namespace programs

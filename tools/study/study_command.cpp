@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// The paper's campaign: the 14 models of Table 2 on three flights, 20 seeds each, as rows for Table 3.
+//   pinnquad study paper --seeds 20 --out DIR
+//   pinnquad study merge DIR... --out DIR
+//   pinnquad study ablation --out DIR
+#include "study/study_command.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "command_line/commands.hpp"
+#include "command_line/console.hpp"
+#include "command_line/options.hpp"
+#include "pinnquad/evaluation/paired_test.hpp"
+#include "report/report.hpp"
+#include "study/ablation.hpp"
+#include "study/campaign.hpp"
+#include "study/merge.hpp"
+#include "study/pictures.hpp"
+#include "study/summary.hpp"
+#include "study/table.hpp"
+
+namespace {
+
+struct Options {
+  std::string out;
+  std::string models;
+  std::string shard = "1/1";
+  std::string weights = "final";
+  std::vector<std::string> parts;
+  std::vector<std::string> variants;
+  int seeds = 20;
+  int epochs = 300;
+  int flights = 4;
+  std::uint64_t flight_seed = study::first_flight_seed;
+  int patience = 0;
+  unsigned threads = 0;
+};
+
+void add_campaign_options(CLI::App& app, Options& options) {
+  using programs::add_number;
+  add_number(app, "--seeds", options.seeds, 1, static_cast<int>(pinnquad::most_pairs),
+             "trainings of each model, from seeds 1, 2, ...");
+  add_number(app, "--epochs", options.epochs, 1, 100000, "epochs of each training");
+  add_number(app, "--flight-seed", options.flight_seed, std::uint64_t{0}, programs::most_seed,
+             "seed of the flights d1, d2, d3; further flights count on from it")
+      ->type_name("N");
+  app.add_option("--weights", options.weights,
+                 "final: judge the weights after the last epoch; best: those of the least validation error")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"final", "best"}));
+  add_number(app, "--patience", options.patience, 0, 100000,
+             "end a training after this many epochs without a lesser validation error; 0: never");
+  add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
+  app.add_option("--shard", options.shard, "run part i of n only, for job arrays (docs/study.md)")
+      ->type_name("i/n")
+      ->capture_default_str();
+}
+
+int run_campaign(const Options& options, const char* kind, std::vector<study::Contender> contenders) {
+  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
+  study::Plan plan;
+  plan.kind = kind;
+  plan.contenders = std::move(contenders);
+  plan.seeds = options.seeds;
+  plan.epochs = options.epochs;
+  plan.flights = options.flights;
+  plan.best_weights = options.weights == "best";
+  plan.patience = options.patience;
+  plan.flight_seed = options.flight_seed;
+  plan.shard = study::parse_shard(options.shard);
+  programs::catch_interrupt();
+  study::Campaign campaign(plan, options.out,
+                           options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()));
+  const int code = campaign.run();
+  if (code == 0) study::print_summary(plan, campaign.rows());
+  // a shard's rows are for merge; an ablation is no Table 3
+  if (code == 0 && plan.kind == "table 2" && options.shard == "1/1") {
+    if (!study::draw_flights(options.out, options.flight_seed) && programs::interrupted()) {
+      programs::complain("study", "interrupted; all trainings are in " + options.out +
+                                      "/rows.csv, the report is missing; the same command goes on");
+      return programs::exit_interrupted;
+    }
+    programs::report_study(options.out);
+  }
+  return code;
+}
+
+/// Options of a command that trains; `flights` is how many flights it takes.
+std::shared_ptr<Options> training_options(CLI::App& line, int flights, const char* flights_are) {
+  const auto options = std::make_shared<Options>();
+  options->flights = flights;
+  programs::add_path(line, "--out", options->out, "DIR", "folder of rows.csv, study.json and series/");
+  programs::add_number(line, "--flights", options->flights, 1, 1000, flights_are);
+  add_campaign_options(line, *options);
+  return options;
+}
+
+constexpr const char* exit_codes =
+    "Exit codes: 0; 1 a merge of parts that are not all there; 2 bad input or a file that can't be read or written; "
+    "130 interrupted.";
+
+programs::Command paper_command(CLI::App& parent) {
+  CLI::App* line =
+      parent.add_subcommand("paper", "The 14 models of Table 2; each finished training is a row of DIR/rows.csv");
+  const auto options =
+      training_options(*line, 4, "flights d1 of the main comparison (models 2, 3, 4), the seeds from --flight-seed on");
+  line->add_option("--models", options->models, "models of Table 2, such as 2,4,5-8 (default: all 14)");
+  line->footer(std::string("Examples:\n"
+                           "  pinnquad study paper --seeds 20 --out study\n"
+                           "  pinnquad study paper --models 2,4,5-8 --epochs 100 --out part\n"
+                           "  pinnquad study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
+                           "  pinnquad study merge study/* --out study/all         joins such parts\n"
+                           "The same command goes on where it was stopped or killed.\n") +
+               exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
+  return {line, [options] { return run_campaign(*options, "table 2", study::chosen_models(options->models)); }};
+}
+
+programs::Command ablation_command(CLI::App& parent) {
+  CLI::App* line = parent.add_subcommand(
+      "ablation",
+      "What decides: gain, lambda, batch order, learning rate, loss forms, and the same budget for vanilla");
+  const auto options = training_options(*line, 1, "flights d1, the seeds from --flight-seed on");
+  line->add_option("--variants", options->variants, "some of the variants, by the names in rows.csv (default: all)")
+      ->delimiter(',');
+  line->footer(exit_codes);
+  return {line, [options] { return run_campaign(*options, "ablation", study::chosen_variants(options->variants)); }};
+}
+
+programs::Command merge_command(CLI::App& parent) {
+  CLI::App* line = parent.add_subcommand("merge", "Joins the folders of a study's shards into one");
+  const auto options = std::make_shared<Options>();
+  line->add_option("parts", options->parts, "folders to join")->type_name("DIR...")->required();
+  programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
+  line->footer(exit_codes);
+  return {line, [options] { return study::merge(options->parts, options->out); }};
+}
+
+}  // namespace
+
+programs::Command programs::study_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand("study", "The paper's campaign: its models trained and judged, seed by seed");
+  line->footer(exit_codes);
+  const std::vector<Command> commands = {paper_command(*line), ablation_command(*line), merge_command(*line)};
+  return {line, [commands] { return run_chosen(commands); }};
+}

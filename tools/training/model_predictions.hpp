@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What the models of Table 2 predict on a set of rows.
+#pragma once
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/dynamics/linearized.hpp"
+#include "pinnquad/dynamics/site.hpp"
+#include "pinnquad/evaluation/linear_regression.hpp"
+#include "training/judgement.hpp"
+
+namespace programs {
+
+/// Model 1 on a set of rows. The air's density is that of the paper's site at the row's altitude.
+inline Predictions linear_predictions(const pinnquad::Airframe<double>& airframe, const pinnquad::RowSet& rows) {
+  using namespace pinnquad;
+  const Rotors<double> rotors(airframe);
+  const Site<double> site = paper_site<double>();
+  Predictions result;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const Sample& sample = rows[row];
+    const double density = standard_atmosphere_density_kg_m3(site.elevation_m + sample.altitude_m);
+    result.push_back(linearized_commands(
+        airframe, rotors, Accelerations<double>{sample.linear_acceleration_m_s2, sample.angular_acceleration_rad_s2},
+        site.gravity_m_s2, density / standard_air_density_kg_m3<double>));
+  }
+  return result;
+}
+
+/// Linear regression of the commands on the features, fitted on the training rows, on a set of rows.
+template <class Features>
+Predictions regression_predictions(const pinnquad::RowSet& training, const pinnquad::RowSet& rows) {
+  std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
+  Predictions commands;
+  pinnquad::each_features<Features, double>(training,
+                                            [&](const pinnquad::Flight& flight, std::size_t row, const auto& x) {
+                                              features.push_back(x);
+                                              commands.push_back(flight[row].commands);
+                                            });
+  const auto regression = pinnquad::fit_linear_regression(features, commands);
+  Predictions result;
+  pinnquad::each_features<Features, double>(
+      rows, [&](const pinnquad::Flight&, std::size_t, const auto& x) { result.push_back(regression.predict(x)); });
+  return result;
+}
+
+/// A trained model on a set of rows.
+template <class Model>
+Predictions network_predictions(const Model& model, const pinnquad::RowSet& rows) {
+  Predictions result;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const auto u = model.predict(rows[row]);
+    result.push_back(
+        {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]), static_cast<double>(u[3])});
+  }
+  return result;
+}
+
+}  // namespace programs

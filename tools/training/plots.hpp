@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Pictures of a judgement as SVG, drawn by gnuplot from a script and data that go through a pipe.
+#pragma once
+
+#include <cstdio>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "pictures/gnuplot.hpp"
+#include "pinnquad/evaluation/confidence_ellipse.hpp"
+#include "training/judgement.hpp"
+
+namespace programs {
+
+/// Fig. 8: signed command sum over angular acceleration, standardised by the target's spread; dots target, plus signs
+/// prediction, 3-sigma ellipses with their major axis. One row of panels per model.
+inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>& models,
+                          const std::vector<std::array<AxisSeries, 3>>& series, const std::vector<Judgement>& judged) {
+  std::ostringstream out;
+  const int rows = static_cast<int>(models.size());
+  out << "set multiplot layout " << rows << ",3\n";
+  for (std::size_t model = 0; model < models.size(); ++model) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const AxisSeries& s = series[model][axis];
+      const pinnquad::PhysicalConsistency& c = judged[model].axes[axis];
+      const pinnquad::AxisSpread spread = pinnquad::axis_spread(s.angular_acceleration, s.target);
+      constexpr std::size_t most_points = 600;  // more only darkens the cloud
+      const std::size_t stride = s.target.size() / most_points + 1;
+      const auto points = [&](const char* name, const std::vector<double>& sum) {
+        out << "$" << name << " << EOD\n";
+        for (std::size_t i = 0; i < sum.size(); i += stride) {
+          out << s.angular_acceleration[i] / spread.x << ' ' << sum[i] / spread.y << '\n';
+        }
+        out << "EOD\n";
+      };
+      const auto ellipse = [&](const char* name, const pinnquad::ConfidenceEllipse& e) {
+        out << "$" << name << " << EOD\n";
+        for (const auto& p : pinnquad::ellipse_outline(e, 121)) out << p[0] << ' ' << p[1] << '\n';
+        out << "EOD\n$" << name << "_axis << EOD\n";
+        const auto tips = pinnquad::ellipse_outline(e, 3);
+        out << tips[0][0] << ' ' << tips[0][1] << '\n' << tips[1][0] << ' ' << tips[1][1] << "\nEOD\n";
+      };
+      points("target", s.target);
+      points("predicted", s.predicted);
+      ellipse("target_ellipse", c.target_standardized);
+      ellipse("predicted_ellipse", c.predicted_standardized);
+      char title[160];
+      std::snprintf(title, sizeof title, "%s, %s\\nangle difference %.2f deg, slope error %.1f %%",
+                    models[model].c_str(), axis_names[axis], c.angle_difference_deg, 100 * c.slope_error);
+      const char* rate = axis == 0 ? "dp/dt" : (axis == 1 ? "dq/dt" : "dr/dt");
+      out << "set title \"" << title << "\" font ',12'\nset xlabel '" << rate << " (in target spreads)'\n"
+          << "set ylabel 'signed command sum'\n"
+          << (model == 0 && axis == 0 ? "set key top left font ',10' samplen 1.5 spacing 0.9\n" : "unset key\n")
+          << "set xrange [-5:5]\nset yrange [-5:5]\n"
+          << "plot $target w p pt 7 ps 0.35 lc rgb '#9ec5e8' t 'target', "
+          << "$predicted w p pt 1 ps 0.55 lc rgb '#f2a65a' t 'prediction', "
+          << "$target_ellipse w l lw 2 lc rgb '#1f6fb2' t 'target, 3 sigma', "
+          << "$predicted_ellipse w l lw 2 lc rgb '#d1541a' t 'prediction, 3 sigma', "
+          << "$target_ellipse_axis w l dt 2 lw 1.5 lc rgb '#1f6fb2' notitle, "
+          << "$predicted_ellipse_axis w l dt 2 lw 1.5 lc rgb '#d1541a' notitle\n";
+    }
+  }
+  out << "unset multiplot\n";
+  return draw_svg(svg, 1200, 60 + 370 * rows, out.str());
+}
+
+/// Fig. 7: mean absolute error of each model, mean and deviation over seeds.
+inline bool plot_errors(const std::string& svg, const std::vector<Result>& results,
+                        const std::vector<std::string>& models) {
+  std::ostringstream out;
+  out << "$errors << EOD\n";
+  const Figure mae = figures().front();
+  for (const std::string& model : models) {
+    const pinnquad::Summary s = pinnquad::summarize(over_seeds(results, model, mae));
+    out << '"' << model << "\" " << 1e3 * s.mean << ' ' << (s.count > 1 ? 1e3 * s.deviation : 0.0) << '\n';
+  }
+  out << "EOD\nset style data histogram\nset style histogram errorbars gap 1 lw 1.5\nset style fill solid 0.75\n"
+      << "set boxwidth 0.9\nset yrange [0:*]\nset ylabel 'mean absolute error of the commands, 1e-3'\nunset key\n"
+      << "plot $errors using 2:3:xtic(1) lc rgb '#1f6fb2'\n";
+  return draw_svg(svg, 700, 420, out.str());
+}
+
+/// Commands of one rotor over some seconds of the test flight: flown and predicted.
+inline bool plot_prediction(const std::string& svg, const std::vector<double>& time_s,
+                            const std::vector<double>& target, const std::vector<std::string>& models,
+                            const std::vector<std::vector<double>>& predicted) {
+  static constexpr std::array<const char*, 3> colours = {"#8a8a8a", "#d1541a", "#2a8f4f"};
+  std::ostringstream out;
+  out << "$series << EOD\n";
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    out << time_s[i] << ' ' << target[i];
+    for (const auto& p : predicted) out << ' ' << p[i];
+    out << '\n';
+  }
+  out << "EOD\nset xlabel 'time, s'\nset ylabel 'command u_1'\nset key top right horizontal\n"
+      << "plot $series using 1:2 w l lw 3 lc rgb '#9ec5e8' t 'flown'";
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    out << ", $series using 1:" << m + 3 << " w l lw 1.3 lc rgb '" << colours[m % colours.size()] << "' t '"
+        << models[m] << "'";
+  }
+  out << '\n';
+  return draw_svg(svg, 1200, 420, out.str());
+}
+
+}  // namespace programs
