@@ -22,6 +22,7 @@ struct DecimalComma {
     for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"}) {
       if (std::setlocale(LC_ALL, name) != nullptr) return;
     }
+    MESSAGE("this machine has no locale with a decimal comma: the C locale alone is tested");
   }
   ~DecimalComma() { std::setlocale(LC_ALL, "C"); }
 };

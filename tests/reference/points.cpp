@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // 1000 random states for each ground effect model, one evaluation each: force, torque, acceleration, density, and the way back.
+// Every tenth of them ships with the tests (test suite "shipped rows").
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -96,9 +97,8 @@ plain::Constants constants_of_simulator() {
 
 /// Compares one formula with one file: every row, every quantity.
 template <class Formula>
-void compare(const char* file, const char* who, const Formula& formula) {
-  const ReferenceTable table(std::string("points/") + file);
-  REQUIRE(table.size() == 1000);
+void compare(const ReferenceTable& table, std::size_t rows, const std::string& label, const Formula& formula) {
+  REQUIRE(table.size() == rows);
   Statistics density, rotor_force, rotor_torque, drag_force, ground_force, acceleration, angular;
   int pole_rows = 0;
   for (std::size_t row = 0; row < table.size(); ++row) {
@@ -122,7 +122,6 @@ void compare(const char* file, const char* who, const Formula& formula) {
     CHECK(d.acceleration <= (pole ? pole_tolerance : row_tolerance));
     CHECK(d.angular <= row_tolerance);
   }
-  const std::string label = std::string(file) + " " + who;
   density.print(label.c_str(), "density");
   rotor_force.print(label.c_str(), "rotor force");
   rotor_torque.print(label.c_str(), "rotor torque");
@@ -139,13 +138,17 @@ const char* const files[] = {"points_ge0.csv", "points_ge1.csv", "points_ge2.csv
 
 TEST_CASE("the library agrees with the simulator in every row") {
   const auto airframe = airframe_of_simulator();
-  for (const char* file : files)
-    compare(file, "library", [&](const plain::Point& p) { return pinnquad::test::evaluate(airframe, p); });
+  for (const char* file : files) {
+    compare(ReferenceTable(std::string("points/") + file), 1000, std::string(file) + " library",
+            [&](const plain::Point& p) { return pinnquad::test::evaluate(airframe, p); });
+  }
 }
 
 TEST_CASE("the plain formula agrees with the simulator in every row") {
-  for (const char* file : files)
-    compare(file, "plain", [](const plain::Point& p) { return plain::evaluate(p, constants_of_simulator()); });
+  for (const char* file : files) {
+    compare(ReferenceTable(std::string("points/") + file), 1000, std::string(file) + " plain",
+            [](const plain::Point& p) { return plain::evaluate(p, constants_of_simulator()); });
+  }
 }
 
 TEST_CASE("the library in float agrees with the simulator to float's digits") {
@@ -174,8 +177,7 @@ namespace {
 /// Commands recovered from the simulator's accelerations, where no rotor was clipped. A row may be left out only where the
 /// thrust equation has two solutions (rotor_equation.hpp) and the simulator flew the other one.
 template <class... Ground>
-void recover(const char* file, std::size_t fewest_rows) {
-  const ReferenceTable table(std::string("points/") + file);
+void recover(const ReferenceTable& table, const char* file, std::size_t fewest_rows) {
   const auto airframe = airframe_of_simulator();
   Statistics commands;
   int clipped = 0, other_branch = 0;
@@ -217,7 +219,21 @@ void recover(const char* file, std::size_t fewest_rows) {
 }  // namespace
 
 TEST_CASE("the inverse recovers the simulator's commands") {
-  recover<>("points_ge0.csv", 800);
-  recover<pinnquad::CheesemanBennettGroundEffect>("points_ge1.csv", 800);
-  recover<pinnquad::ConyersGroundEffect>("points_ge2.csv", 800);
+  recover<>(ReferenceTable("points/points_ge0.csv"), "points_ge0.csv", 800);
+  recover<pinnquad::CheesemanBennettGroundEffect>(ReferenceTable("points/points_ge1.csv"), "points_ge1.csv", 800);
+  recover<pinnquad::ConyersGroundEffect>(ReferenceTable("points/points_ge2.csv"), "points_ge2.csv", 800);
+}
+
+TEST_SUITE("shipped rows") {
+  TEST_CASE("the library agrees with the simulator in each of a hundred rows per ground effect, and back") {
+    const auto airframe = airframe_of_simulator();
+    for (const char* file : files) {
+      compare(pinnquad::test::shipped_rows(file), 100, std::string(file) + " shipped",
+              [&](const plain::Point& p) { return pinnquad::test::evaluate(airframe, p); });
+    }
+    using pinnquad::test::shipped_rows;
+    recover<>(shipped_rows("points_ge0.csv"), "points_ge0.csv", 80);
+    recover<pinnquad::CheesemanBennettGroundEffect>(shipped_rows("points_ge1.csv"), "points_ge1.csv", 80);
+    recover<pinnquad::ConyersGroundEffect>(shipped_rows("points_ge2.csv"), "points_ge2.csv", 80);
+  }
 }
