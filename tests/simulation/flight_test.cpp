@@ -204,8 +204,10 @@ TEST_CASE("bounds over seeds: speed, tilt, altitude, saturation" * pinnquad::tes
     CHECK(report.max_speed_m_s > 0.85 * style.max_speed_m_s);
     CHECK(report.min_altitude_m > style.lowest_m);
     CHECK(report.max_altitude_m < style.highest_m);
-    CHECK(report.max_tilt_rad < 1.05);  // 60 degrees: no gimbal lock in the Euler angles
-    CHECK(report.saturated_share < 0.05);
+    CHECK(report.max_tilt_rad < 0.95);  // 54 degrees, 49 of them asked for: no gimbal lock in the Euler angles
+    CHECK(report.max_tilt_rad > 0.8);
+    CHECK(report.saturated_share < 0.03);
+    CHECK(report.saturated_share > 0);
     for (const Sample& sample : recorded.flight) {
       for (const double u : sample.commands) CHECK((u >= 0 && u <= 1));
     }
