@@ -171,7 +171,7 @@ template <class Net, class Pack>
 void check_within_memory() {
   using Scalar = typename Net::Scalar;
   constexpr auto in = static_cast<std::size_t>(Net::inputs), out = static_cast<std::size_t>(Net::outputs);
-  constexpr std::size_t behind = 64;
+  constexpr int behind = 64;
   CAPTURE(in);
   CAPTURE(out);
   std::mt19937_64 engine(12);
