@@ -36,27 +36,23 @@ struct Both {
 
 }  // namespace
 
-TEST_CASE("who is an effect") {
-  static_assert(pinnquad::is_effect<pinnquad::QuadraticDrag>);
-  static_assert(pinnquad::is_effect<pinnquad::ConstantWind>);
-  static_assert(pinnquad::is_effect<pinnquad::PeriodicWind>);
-  static_assert(pinnquad::is_effect<pinnquad::StandardAtmosphere>);
-  static_assert(pinnquad::is_effect<pinnquad::ConyersGroundEffect>);
-  static_assert(pinnquad::is_effect<Both>);
-  static_assert(!pinnquad::is_effect<Nothing>);
-  static_assert(!pinnquad::is_effect<WrongReturnType>);
-  static_assert(!pinnquad::is_effect<NotConst>);
-  static_assert(!pinnquad::is_effect<int>);
-  CHECK(true);
-}
+// who is an effect
+static_assert(pinnquad::is_effect<pinnquad::QuadraticDrag>);
+static_assert(pinnquad::is_effect<pinnquad::ConstantWind>);
+static_assert(pinnquad::is_effect<pinnquad::PeriodicWind>);
+static_assert(pinnquad::is_effect<pinnquad::StandardAtmosphere>);
+static_assert(pinnquad::is_effect<pinnquad::ConyersGroundEffect>);
+static_assert(pinnquad::is_effect<Both>);
+static_assert(!pinnquad::is_effect<Nothing>);
+static_assert(!pinnquad::is_effect<WrongReturnType>);
+static_assert(!pinnquad::is_effect<NotConst>);
+static_assert(!pinnquad::is_effect<int>);
 
-TEST_CASE("which part of the contract an effect fulfils") {
-  static_assert(pinnquad::makes_wrench<Both> && pinnquad::changes_surroundings<Both>);
-  static_assert(pinnquad::makes_wrench<pinnquad::QuadraticDrag> &&
-                !pinnquad::changes_surroundings<pinnquad::QuadraticDrag>);
-  static_assert(!pinnquad::makes_wrench<pinnquad::PeriodicWind> &&
-                pinnquad::changes_surroundings<pinnquad::PeriodicWind>);
-  static_assert(!pinnquad::uses_rotor_wrench<pinnquad::QuadraticDrag>);
-  static_assert(!pinnquad::uses_rotor_wrench<Both>);
-  CHECK(true);
-}
+// which part of the contract an effect fulfils
+static_assert(pinnquad::makes_wrench<Both> && pinnquad::changes_surroundings<Both>);
+static_assert(pinnquad::makes_wrench<pinnquad::QuadraticDrag> &&
+              !pinnquad::changes_surroundings<pinnquad::QuadraticDrag>);
+static_assert(!pinnquad::makes_wrench<pinnquad::PeriodicWind> &&
+              pinnquad::changes_surroundings<pinnquad::PeriodicWind>);
+static_assert(!pinnquad::uses_rotor_wrench<pinnquad::QuadraticDrag>);
+static_assert(!pinnquad::uses_rotor_wrench<Both>);

@@ -151,6 +151,107 @@ TEST_CASE("limits: tilt, thrust and horizontal acceleration hold whatever is ask
   CHECK((controller.limited(small) - small).norm() <= rounding);
 }
 
+TEST_CASE("gains: what each error alone asks for, of the pilot and of a trajectory") {
+  const FlightController<double> controller;
+  const double small = 0.01, half_angle = std::sin(small / 2);
+  struct Error {
+    const char* what;
+    State<double> state;
+    Vector3<double> linear_m_s2, angular_rad_s2;  ///< asked for
+    bool pilot_sees = true;
+  };
+  const auto error = [](const char* what) { return Error{what, {}, Vector3<double>::Zero(), Vector3<double>::Zero()}; };
+  Error velocity = error("velocity"), roll = error("roll"), pitch = error("pitch"), yaw = error("yaw"),
+        roll_rate = error("roll rate"), pitch_rate = error("pitch rate"), yaw_rate = error("yaw rate"),
+        position = error("position");
+  velocity.state.velocity_m_s[2] = small;  // down: the attitude wanted stays level
+  velocity.linear_m_s2[2] = -3 * small;
+  roll.state.attitude = from_euler<double>({small, 0, 0});
+  roll.angular_rad_s2[0] = -22 * 9 * 2 * half_angle;
+  pitch.state.attitude = from_euler<double>({0, small, 0});
+  pitch.angular_rad_s2[1] = -22 * 9 * 2 * half_angle;
+  roll_rate.state.body_rates_rad_s[0] = small;
+  roll_rate.angular_rad_s2[0] = -22 * small;
+  pitch_rate.state.body_rates_rad_s[1] = small;
+  pitch_rate.angular_rad_s2[1] = -22 * small;
+  yaw_rate.state.body_rates_rad_s[2] = small;
+  yaw_rate.angular_rad_s2[2] = -8 * small;
+  yaw.state.attitude = from_euler<double>({0, 0, small});
+  yaw.angular_rad_s2[2] = -8 * 3 * 2 * half_angle;
+  yaw.pilot_sees = position.pilot_sees = false;
+  position.state.position_m[2] = 0.1;
+  position.linear_m_s2[2] = -0.54;
+  constexpr double rounding = 1e-12;
+  for (const Error& e : {velocity, roll, pitch, roll_rate, pitch_rate, yaw_rate, yaw, position}) {
+    CAPTURE(e.what);
+    TrackingDemand<double> tracking;
+    REQUIRE(controller(e.state, TrajectoryPoint<double>{}, tracking) == Status::ok);
+    const Vector3<double> linear = body_to_world(e.state.attitude, tracking.feedback_acceleration_m_s2);
+    CHECK((linear - e.linear_m_s2).norm() <= rounding);
+    CHECK((tracking.feedback_angular_acceleration_rad_s2 - e.angular_rad_s2).norm() <= 100 * rounding);
+    Accelerations<double> demand;
+    REQUIRE(controller(e.state, SetPoint<double>{}, demand) == Status::ok);
+    const Vector3<double> nothing = Vector3<double>::Zero();
+    CHECK((world_acceleration(e.state, demand.linear_m_s2) - (e.pilot_sees ? e.linear_m_s2 : nothing)).norm() <=
+          rounding);
+    CHECK((demand.angular_rad_s2 - (e.pilot_sees ? e.angular_rad_s2 : nothing)).norm() <= 100 * rounding);
+  }
+  Accelerations<double> demand;
+  REQUIRE(controller(State<double>{}, {Vector3<double>::Zero(), 0.1, Vector3<double>(0.01, -0.02, 0.03)}, demand) ==
+          Status::ok);
+  CHECK((demand.angular_rad_s2 - Vector3<double>(22 * 0.01, -22 * 0.02, 8 * (0.1 + 0.03))).norm() <= rounding);
+}
+
+TEST_CASE("limits: turning and its onset hold whatever the attitude and what is asked for, and are reached") {
+  const FlightController<double> controller;
+  const FlightLimits<double>& limits = controller.limits();
+  constexpr double rounding = 1e-9;
+  double steepest_onset = 0, fastest_yaw_onset = 0;
+  std::mt19937_64 engine(8);
+  for (int i = 0; i < 1000; ++i) {
+    const auto drawn = [&](double most) {
+      return Vector3<double>(uniform(engine, -most, most), uniform(engine, -most, most), uniform(engine, -most, most));
+    };
+    State<double> state;
+    state.velocity_m_s = drawn(10);
+    state.body_rates_rad_s = drawn(6);
+    state.attitude = from_euler<double>({uniform(engine, -3, 3), uniform(engine, -1.4, 1.4), uniform(engine, -3, 3)});
+    Accelerations<double> demand;
+    REQUIRE(controller(state, {drawn(10), uniform(engine, -2, 2), drawn(2)}, demand) == Status::ok);
+    const double onset = std::hypot(demand.angular_rad_s2[0], demand.angular_rad_s2[1]);
+    const double yaw_onset = std::fabs(demand.angular_rad_s2[2]);
+    CHECK(onset <= limits.max_roll_pitch_acceleration_rad_s2 + rounding);
+    CHECK(yaw_onset <= limits.max_yaw_acceleration_rad_s2 + rounding);
+    steepest_onset = std::max(steepest_onset, onset);
+    fastest_yaw_onset = std::max(fastest_yaw_onset, yaw_onset);
+  }
+  CHECK(steepest_onset == doctest::Approx(100));
+  CHECK(fastest_yaw_onset == doctest::Approx(4));
+
+  // at rest the onset is the rate gain times the rate that the attitude error asks for, 4 rad/s at most
+  for (const double roll_rad : {0.2, 0.4, 0.5, 1.0, -1.0, 2.0}) {
+    CAPTURE(roll_rad);
+    State<double> state;
+    state.attitude = from_euler<double>({roll_rad, 0, 0});
+    Accelerations<double> demand;
+    REQUIRE(controller(state, SetPoint<double>{}, demand) == Status::ok);
+    const double rate_rad_s = std::min(4.0, 9 * 2 * std::sin(std::fabs(roll_rad) / 2));
+    CHECK(demand.angular_rad_s2[0] == doctest::Approx(roll_rad > 0 ? -22 * rate_rad_s : 22 * rate_rad_s));
+    CHECK(std::fabs(demand.angular_rad_s2[1]) <= rounding);
+  }
+}
+
+TEST_CASE("default limits in figures: 49 degrees, 9 m/s^2, thrust from 3.5 to 17 m/s^2") {
+  const FlightController<double> controller;
+  const auto horizontal = [&](double down_m_s2) { return controller.limited(Vector3<double>(90, 0, down_m_s2)); };
+  CHECK(horizontal(50)[2] == doctest::Approx(9.80665 - 3.5));
+  CHECK(std::atan2(horizontal(50)[0], 3.5) == doctest::Approx(0.85));  // the tilt's
+  CHECK(0.85 * 57.29577951308232 == doctest::Approx(49).epsilon(0.01));
+  CHECK(horizontal(0)[0] == doctest::Approx(9));
+  CHECK(horizontal(-50)[2] == doctest::Approx(9.80665 - 17));
+  CHECK(std::fabs(horizontal(-50)[0]) <= 1e-6);
+}
+
 TEST_CASE("an airframe with little thrust gets narrower limits") {
   Airframe<double> heavy = airframe_value<PaperQuadrotor, double>();
   const FlightLimits<double> light_limits = flight_limits(heavy, 1.0);
@@ -159,6 +260,11 @@ TEST_CASE("an airframe with little thrust gets narrower limits") {
   CHECK(limits.max_specific_force_m_s2 < heavy.thrust_to_weight() * standard_gravity_m_s2<double>);
   CHECK(limits.max_roll_pitch_acceleration_rad_s2 < 0.4 * light_limits.max_roll_pitch_acceleration_rad_s2);
   CHECK(limits.max_yaw_acceleration_rad_s2 < light_limits.max_yaw_acceleration_rad_s2);
+  const double reach = heavy.thrust_to_weight();
+  CHECK(limits.max_specific_force_m_s2 == doctest::Approx(0.97 * reach * 9.80665));
+  CHECK(limits.max_horizontal_acceleration_m_s2 == doctest::Approx(0.55 * 9.80665 * std::sqrt(reach * reach - 1)));
+  CHECK(limits.max_roll_pitch_rate_rad_s == doctest::Approx(limits.max_roll_pitch_acceleration_rad_s2 / 9));
+  REQUIRE(limits.max_roll_pitch_rate_rad_s < light_limits.max_roll_pitch_rate_rad_s);
 }
 
 TEST_CASE(

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 namespace {
 
 using pinnquad::TrajectoryPoint;
@@ -93,4 +95,34 @@ TEST_CASE("a ramp of zero starts at full rate") {
   pinnquad::Circle<float> fast;
   fast.ramp_s = 0;
   CHECK(fast.sample(0.0f).velocity_m_s.norm() == doctest::Approx(6.283185 * 4 / 6).epsilon(1e-5));
+}
+
+TEST_CASE("the circle goes from north by east, south and west: clockwise seen from above, at one height") {
+  pinnquad::Circle<double> round = circle();
+  round.center_m = Vector3<double>(3, -2, -20);
+  round.ramp_s = 0;
+  const Vector3<double> quarters[] = {{4, 0, 0}, {0, 4, 0}, {-4, 0, 0}, {0, -4, 0}};
+  for (int quarter = 0; quarter < 8; ++quarter) {
+    CAPTURE(quarter);
+    const TrajectoryPoint<double> point = round.sample(1.5 * quarter);  // of a period of 6 s
+    CHECK((point.position_m - round.center_m - quarters[quarter % 4]).norm() <= 1e-12);
+    CHECK(point.velocity_m_s.normalized().dot(quarters[(quarter + 1) % 4] / 4) == doctest::Approx(1));
+    const double yaw_rad = quarter % 4 == 1 ? 0.4 : (quarter % 4 == 3 ? -0.4 : 0);
+    CHECK(std::fabs(point.yaw_rad - yaw_rad) <= 1e-12);
+  }
+}
+
+TEST_CASE("the figure-eight leaves its center to the north-east, lower there, and comes back from the north-west") {
+  pinnquad::FigureEight<double> eight = figure_eight();
+  eight.ramp_s = 0;
+  const double half = std::sqrt(0.5);
+  const Vector3<double> eighths[] = {
+      {0, 0, 0}, {4 * half, 2, 0.5 * half},   {4, 0, 0.5},   {4 * half, -2, 0.5 * half},
+      {0, 0, 0}, {-4 * half, 2, -0.5 * half}, {-4, 0, -0.5}, {-4 * half, -2, -0.5 * half}};
+  for (std::size_t i = 0; i < 8; ++i) {
+    CAPTURE(i);
+    const TrajectoryPoint<double> point = eight.sample(7.5 / 8 * static_cast<double>(i));
+    CHECK((point.position_m - eight.center_m - eighths[i]).norm() <= 1e-12);
+    CHECK(point.yaw_rad == doctest::Approx(0.7 * std::sin(0.7853981633974483 * static_cast<double>(i))).scale(1));
+  }
 }

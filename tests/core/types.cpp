@@ -8,15 +8,18 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-TEST_CASE_TEMPLATE("matrices have no alignment demands and no padding", Scalar, float, double) {
-  static_assert(alignof(pinnquad::Vector<Scalar, 4>) == alignof(Scalar));
-  static_assert(alignof(pinnquad::Matrix<Scalar, 4, 4>) == alignof(Scalar));
-  static_assert(sizeof(pinnquad::Vector3<Scalar>) == 3 * sizeof(Scalar));
-  static_assert(sizeof(pinnquad::State<Scalar>) == 13 * sizeof(Scalar));
-  static_assert(pinnquad::Matrix<Scalar, 1, 4>::IsRowMajor);
-  static_assert(!pinnquad::Matrix<Scalar, 4, 4>::IsRowMajor);
-  CHECK(true);
+namespace {
+/// Matrices have no alignment demands and no padding.
+template <class Scalar>
+constexpr bool lie_dense() {
+  return alignof(pinnquad::Vector<Scalar, 4>) == alignof(Scalar) &&
+         alignof(pinnquad::Matrix<Scalar, 4, 4>) == alignof(Scalar) &&
+         sizeof(pinnquad::Vector3<Scalar>) == 3 * sizeof(Scalar) &&
+         sizeof(pinnquad::State<Scalar>) == 13 * sizeof(Scalar) && pinnquad::Matrix<Scalar, 1, 4>::IsRowMajor &&
+         !pinnquad::Matrix<Scalar, 4, 4>::IsRowMajor;
 }
+static_assert(lie_dense<float>() && lie_dense<double>());
+}  // namespace
 
 TEST_CASE_TEMPLATE("cross: basis vectors, at a right angle to both, Lagrange's identity", Scalar, float, double) {
   using V = pinnquad::Vector3<Scalar>;

@@ -3,13 +3,16 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 
 using pinnquad::Airframe;
@@ -52,9 +55,13 @@ TEST_CASE_TEMPLATE("the airframes of the library are valid and carry their names
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::PaperQuadrotor, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::ReferenceQuadrotor15, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::ReferenceQuadrotor10, Scalar>()) == Status::ok);
+  CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Racer5Inch, Scalar>()) == Status::ok);
+  CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Crazyflie, Scalar>()) == Status::ok);
   CHECK(std::string(pinnquad::PaperQuadrotor::name) == "paper_quadrotor");
   CHECK(std::string(pinnquad::ReferenceQuadrotor15::name) == "reference_1.5kg");
   CHECK(std::string(pinnquad::ReferenceQuadrotor10::name) == "reference_1.0kg");
+  CHECK(std::string(pinnquad::Racer5Inch::name) == "racer_5_inch");
+  CHECK(std::string(pinnquad::Crazyflie::name) == "crazyflie_2_1");
 }
 
 TEST_CASE_TEMPLATE("check_airframe refuses each bad field", Scalar, float, double) {
@@ -151,6 +158,94 @@ TEST_CASE("the arm is half the diagonal motor spacing over sqrt(2)") {
 }
 
 namespace {
+
+/// What the sources of an airframe's header state, in the units that they state it in.
+struct Published {
+  double mass_kg, jx, jy, jz, forward_m, right_m;
+  double newton_per_rad_s_squared, newton_metre_per_rad_s_squared, max_rad_s, time_constant_s;
+  double drag_newton[3],
+      drag_speed_m_s;  ///< forward, right and down at that speed, with the precision that two digits leave
+  double propeller_diameter_m, thrust_to_weight;
+};
+
+void check_published(const Airframe<double>& a, const Published& source, double drag_digits) {
+  constexpr double rounding = 1e-12, two_pi = 6.283185307179586;
+  CHECK(a.mass_kg == source.mass_kg);
+  CHECK(a.inertia_kg_m2[0] == source.jx);
+  CHECK(a.inertia_kg_m2[1] == source.jy);
+  CHECK(a.inertia_kg_m2[2] == source.jz);
+  CHECK(pinnquad::has_diagonal_inertia(a));
+  // front right and rear left turn counter-clockwise, front left and rear right clockwise
+  const double sides[4][2] = {{1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    CAPTURE(i);
+    CHECK(a.rotors[i].x_m == doctest::Approx(sides[i][0] * source.forward_m).epsilon(rounding));
+    CHECK(a.rotors[i].y_m == doctest::Approx(sides[i][1] * source.right_m).epsilon(rounding));
+    CHECK(a.rotors[i].z_m == 0);
+    CHECK(a.rotors[i].spin == (i < 2 ? pinnquad::Spin::counter_clockwise : pinnquad::Spin::clockwise));
+    CHECK(a.rise_time_constant_s(i) == source.time_constant_s);
+    CHECK(a.fall_time_constant_s(i) == source.time_constant_s);
+  }
+  CHECK(a.propeller_diameter_m == doctest::Approx(source.propeller_diameter_m).epsilon(rounding));
+  CHECK(a.max_rotor_speed_rev_s == doctest::Approx(source.max_rad_s / two_pi).epsilon(rounding));
+  const double square = source.max_rad_s * source.max_rad_s;
+  CHECK(a.max_rotor_thrust_N() == doctest::Approx(source.newton_per_rad_s_squared * square).epsilon(rounding));
+  CHECK(a.max_rotor_torque_N_m() == doctest::Approx(source.newton_metre_per_rad_s_squared * square).epsilon(rounding));
+  CHECK(a.thrust_to_weight() == doctest::Approx(source.thrust_to_weight).epsilon(0.01));
+  const double speed = source.drag_speed_m_s;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    CHECK(a.drag_area_m2[axis] * 1.225 * speed * speed ==
+          doctest::Approx(source.drag_newton[axis]).epsilon(drag_digits));
+  }
+  CHECK(a.drag_deadband_m_s == 0);
+}
+
+}  // namespace
+
+TEST_CASE("racer_5_inch: each number as its source has it") {
+  constexpr double thrust = 1.562522e-6, torque_over_thrust_m = 0.022, speed = 8;
+  check_published(pinnquad::Racer5Inch::value<double>(),
+                  {0.752,
+                   2.5e-3,
+                   2.1e-3,
+                   4.3e-3,
+                   0.075,
+                   0.10,
+                   thrust,
+                   torque_over_thrust_m * thrust,
+                   2333,
+                   0.033,
+                   {0.26 * speed, 0.28 * speed, 0.42 * speed},
+                   speed,
+                   5 * 0.0254,
+                   4.6},
+                  0.002);
+}
+
+TEST_CASE("crazyflie_2_1: each number as its sources have it") {
+  constexpr double rpm = 6.283185307179586 / 60, hover_N = 0.027 * 9.80665, speed = 3;
+  constexpr double thrust = 3.16e-10 / (rpm * rpm), torque = 7.94e-12 / (rpm * rpm);
+  const double rotors_rad_s = 4 * std::sqrt(hover_N / 4 / thrust), arm = 0.092 / 2 / std::sqrt(2.0);
+  check_published(
+      pinnquad::Crazyflie::value<double>(),
+      {0.027,
+       1.4e-5,
+       1.4e-5,
+       2.17e-5,
+       arm,
+       arm,
+       thrust,
+       torque,
+       21709 * rpm,
+       0.06,
+       {9.1785e-7 * rotors_rad_s * speed, 9.1785e-7 * rotors_rad_s * speed, 10.311e-7 * rotors_rad_s * speed},
+       speed,
+       2 * 23.1348e-3,
+       2.25},
+      0.005);
+}
+
+namespace {
 struct NotAnAirframe {};
 struct WithoutName {
   template <class Scalar>
@@ -165,14 +260,11 @@ struct ReturnsSomethingElse {
     return {};
   }
 };
-}  // namespace
 
-TEST_CASE("the contract of an airframe") {
-  static_assert(pinnquad::is_airframe<pinnquad::PaperQuadrotor>);
-  static_assert(!pinnquad::is_airframe<NotAnAirframe>);
-  static_assert(!pinnquad::is_airframe<WithoutName>);
-  static_assert(!pinnquad::is_airframe<ReturnsSomethingElse>);
-  static_assert(check_airframe(pinnquad::PaperQuadrotor::value<float>()) == Status::ok,
-                "an airframe is a literal type");
-  CHECK(true);
-}
+// the contract of an airframe
+static_assert(pinnquad::is_airframe<pinnquad::PaperQuadrotor>);
+static_assert(!pinnquad::is_airframe<NotAnAirframe>);
+static_assert(!pinnquad::is_airframe<WithoutName>);
+static_assert(!pinnquad::is_airframe<ReturnsSomethingElse>);
+static_assert(check_airframe(pinnquad::PaperQuadrotor::value<float>()) == Status::ok, "an airframe is a literal type");
+}  // namespace

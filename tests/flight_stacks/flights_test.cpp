@@ -146,10 +146,11 @@ TEST_CASE("without the age limits a module falls") {
     const std::array<Fault, 1> outage = {{{6, 4, kind, 0, "outage", Reaction::flies}}};
     FaultyFlight<Px4Stack> with, without(none);
     FaultyFlight<CrazyflieStack> small_with, small_without(none);
-    const FlightFigures a = with.boot() ? with.fly(Eight(4, 9), 12, outage) : FlightFigures{};
-    const FlightFigures b = without.boot() ? without.fly(Eight(4, 9), 12, outage) : FlightFigures{};
-    const FlightFigures c = small_with.boot() ? small_with.fly(Eight(1.5, 6), 12, outage) : FlightFigures{};
-    const FlightFigures d = small_without.boot() ? small_without.fly(Eight(1.5, 6), 12, outage) : FlightFigures{};
+    REQUIRE((with.boot() && without.boot() && small_with.boot() && small_without.boot()));
+    const FlightFigures a = with.fly(Eight(4, 9), 12, outage);
+    const FlightFigures b = without.fly(Eight(4, 9), 12, outage);
+    const FlightFigures c = small_with.fly(Eight(1.5, 6), 12, outage);
+    const FlightFigures d = small_without.fly(Eight(1.5, 6), 12, outage);
     for (const FlightFigures* f : {&a, &b, &c, &d}) std::printf("%s\n", f->log.back().c_str());
     CHECK_FALSE(a.crashed);
     CHECK(a.max_tilt_rad < steepest_rad);

@@ -3,15 +3,19 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 
 #include "../examples/models/demo_quadrotor.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/loaded_model.hpp"
 #include "support/block_bytes.hpp"
+#include "support/jacobian_differences.hpp"
+#include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
 
@@ -27,38 +31,27 @@ struct SpeedModel : DemoQuadModel {
   static constexpr const char* output_unit = RotorSpeedOutputs::unit;
 };
 
-/// Float rounding of the network over the step, and the step's own error, both far below this share of the largest entry.
-constexpr double tolerance = 0.02;
+/// Float rounding through eleven layers, of a column's largest entry.
+constexpr double float_tolerance = 2e-5;
+/// What the step of the differences leaves.
+constexpr double double_tolerance = 2.8e-9;
 
-template <class Model>
-void check_against_differences(const Model& model = {}) {
+/// `Header` has the numbers of `model`.
+template <class Header, class Model>
+void check_against_differences(const Model& model, double tolerance = float_tolerance) {
+  using Scalar = typename Header::Scalar;
   const InverseDynamics<Model> inverse(model);
-  for (const auto& golden : DemoQuadModel::golden_features) {
-    float commands[4], plain[4], jacobian[4 * size];
+  double worst = 0;
+  for (const auto& golden : Header::golden_features) {
+    Scalar commands[4], plain[4], jacobian[4 * Header::Features::size];
     REQUIRE(predict_with_jacobian(inverse, golden.data(), commands, jacobian) == Status::ok);
     REQUIRE(inverse.predict_features(golden.data(), plain) == Status::ok);
     for (int i = 0; i < 4; ++i) CHECK(commands[i] == plain[i]);  // the kernel of prediction, to the bit
-    double largest = 0;
-    for (const float j : jacobian) largest = std::max(largest, std::abs(static_cast<double>(j)));
-    REQUIRE(largest > 0);
-    int wrong = 0;
-    for (int k = 0; k < size; ++k) {
-      const float step = 1e-3f * DemoQuadModel::input.spread[static_cast<std::size_t>(k)];
-      auto above = golden, below = golden;
-      above[static_cast<std::size_t>(k)] += step;
-      below[static_cast<std::size_t>(k)] -= step;
-      float up[4], down[4];
-      if (inverse.predict_features(above.data(), up) != Status::ok) continue;
-      if (inverse.predict_features(below.data(), down) != Status::ok) continue;
-      for (int i = 0; i < 4; ++i) {
-        const double distance =
-            static_cast<double>(above[static_cast<std::size_t>(k)] - below[static_cast<std::size_t>(k)]);
-        const double slope = static_cast<double>(up[i] - down[i]) / distance;
-        wrong += std::abs(slope - static_cast<double>(jacobian[i * size + k])) > tolerance * largest ? 1 : 0;
-      }
-    }
-    CHECK(wrong <= 2);  // a kink of a ReLU within the step
+    const auto expected = test::jacobian_by_differences<Header>(golden.data());
+    for (std::size_t k = 0; k < Header::Features::size; ++k) REQUIRE(expected[k] != 0);
+    worst = std::fmax(worst, test::worst_column(jacobian, expected));
   }
+  CHECK(worst <= tolerance);
 }
 
 /// The demo's model as a block, as a view of it and loaded from it.
@@ -78,12 +71,100 @@ struct Narrow {
 
 }  // namespace
 
-TEST_CASE("commands as predicted, derivatives as differences give them, in physical units") {
-  SUBCASE("commands") { check_against_differences<DemoQuadModel>(); }
-  SUBCASE("rotor speeds") { check_against_differences<SpeedModel>(); }
+TEST_CASE("commands as predicted, derivatives as differences give them, in physical units, column by column") {
+  SUBCASE("commands") { check_against_differences<DemoQuadModel>(DemoQuadModel{}); }
+  SUBCASE("rotor speeds") { check_against_differences<SpeedModel>(SpeedModel{}); }
   const DemoBlock block;
-  SUBCASE("a view of a block") { check_against_differences(block.view); }
-  SUBCASE("a loaded model") { check_against_differences(*block.loaded); }
+  SUBCASE("a view of a block") { check_against_differences<DemoQuadModel>(block.view); }
+  SUBCASE("a loaded model") { check_against_differences<DemoQuadModel>(*block.loaded); }
+  SUBCASE("an instance") { check_against_differences<test::SmallModel>(test::SmallInstance{}); }
+  SUBCASE("in double") {
+    check_against_differences<test::SmallDoubleModel>(test::SmallDoubleModel{}, double_tolerance);
+  }
+}
+
+namespace {
+
+struct Tight {
+  static constexpr double lower = 0.5, upper = 0.55;
+};
+using Counts = std::array<int, static_cast<std::size_t>(status_count)>;
+
+/// Under a guard: Status and commands as predict_features() gives them, to the bit; the Jacobian as if the guard left the commands
+/// alone. How often each Status came.
+template <class GuardType>
+Counts check_guard(const GuardType& guard = GuardType{}) {
+  const InverseDynamics<DemoQuadModel, GuardType> guarded(guard);
+  const Inverse free;
+  Counts counts{};
+  for (const auto& golden : DemoQuadModel::golden_features) {
+    for (const float stretch : {1.0f, 40.0f}) {
+      auto x = golden;
+      for (float& v : x) v *= stretch;
+      float commands[4], plain[4], jacobian[4 * size], untouched[4 * size];
+      std::fill_n(untouched, 4 * size, -7.0f);
+      for (float* const marked : {commands, plain}) std::fill_n(marked, 4, -7.0f);
+      std::fill_n(jacobian, 4 * size, -7.0f);
+      const Status status = predict_with_jacobian(guarded, x.data(), commands, jacobian);
+      ++counts[static_cast<std::size_t>(status)];
+      CHECK(status == guarded.predict_features(x.data(), plain));
+      CHECK(std::equal(commands, commands + 4, plain));
+      float free_commands[4], expected[4 * size];
+      std::fill_n(expected, 4 * size, -7.0f);
+      if (has_output(status)) {
+        REQUIRE(predict_with_jacobian(free, x.data(), free_commands, expected) == Status::ok);
+      }
+      CHECK(std::equal(jacobian, jacobian + 4 * size, expected));
+      CHECK(has_output(status) == !std::equal(jacobian, jacobian + 4 * size, untouched));
+    }
+  }
+  return counts;
+}
+
+int of(const Counts& counts, Status status) { return counts[static_cast<std::size_t>(status)]; }
+
+}  // namespace
+
+TEST_CASE("under every guard: its Status, its commands, and the derivatives of the network's own") {
+  using Formula = AnalyticInverse<Quadrotor<double>>;
+  constexpr auto golden = static_cast<int>(DemoQuadModel::golden_features.size());
+  const auto check = [&](const Counts& counts, Status least, bool some_ok) {
+    CHECK(of(counts, least) > 0);
+    CHECK((of(counts, Status::ok) > 0) == some_ok);
+    CHECK(of(counts, Status::outside_envelope) == golden);
+    CHECK(of(counts, Status::ok) + of(counts, least) == (least == Status::ok ? 2 : 1) * golden);
+  };
+  check(check_guard<TrainingGuard>(), Status::ok, true);
+  check(check_guard<Guard<TrainingEnvelope, FiniteOutputs>>(), Status::ok, true);
+  check(check_guard<Extend<TrainingGuard, ClipCommands<>>>(), Status::ok, true);
+  check(check_guard<Extend<TrainingGuard, ClipCommands<Tight>>>(), Status::limited, false);
+  check(check_guard<Extend<TrainingGuard, RefuseCommands<Tight>>>(), Status::outside_limits, false);
+  check(check_guard<Extend<TrainingGuard, RefuseCommands<>, ClipCommands<Tight>>>(), Status::limited, false);
+  const Formula formula{Quadrotor<double>(airframe_value<PaperQuadrotor, double>(), Site<double>{})};
+  using FallingBack = Extend<TrainingGuard, ClipCommands<Tight>, Fallback<Formula>>;
+  check(check_guard(FallingBack(formula)), Status::limited, false);  // the fallback is not asked
+}
+
+TEST_CASE("numbers that are none: refused, and nothing is written") {
+  test::SmallInstance broken;
+  float commands[4] = {-7, -7, -7, -7}, jacobian[4 * size], plain[4];
+  std::fill_n(jacobian, 4 * size, -7.0f);
+  auto x = test::SmallModel::golden_features[0];
+  SUBCASE("a weight is NaN") {
+    broken.parameters[20] = std::nanf("");
+    const InverseDynamics<test::SmallInstance> inverse(broken);
+    CHECK(predict_with_jacobian(inverse, x.data(), commands, jacobian) == Status::output_not_finite);
+  }
+  SUBCASE("the commands are sound, a derivative overflows") {
+    broken.input.spread[3] = 2e-38f;
+    broken.output.spread.fill(1e3f);
+    x[3] = broken.input.mean[3];
+    const InverseDynamics<test::SmallInstance> inverse(broken);
+    CHECK(inverse.predict_features(x.data(), plain) == Status::ok);
+    CHECK(predict_with_jacobian(inverse, x.data(), commands, jacobian) == Status::output_not_finite);
+  }
+  for (const float v : commands) CHECK(v == -7);
+  for (const float v : jacobian) CHECK(v == -7);
 }
 
 TEST_CASE("the derivative of what is refused is refused") {

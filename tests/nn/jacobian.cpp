@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -17,7 +18,9 @@
 #include "pinnquad/nn/sine.hpp"
 #include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
+#include "support/end_of_page.hpp"
 #include "support/own_layers.hpp"
+#include "support/packs.hpp"
 
 using namespace pinnquad;
 
@@ -159,4 +162,58 @@ TEST_CASE("NaN in an input reaches the value") {
   float y[4] = {}, jacobian[64];
   JacobianPass<Net>::run(net.parameters.data(), x.data(), y, jacobian);
   for (const float v : y) CHECK(std::isnan(v));
+}
+
+namespace {
+
+/// The same from memory that ends with its page as from memory with NaN behind it.
+template <class Net, class Pack>
+void check_within_memory() {
+  using Scalar = typename Net::Scalar;
+  constexpr auto in = static_cast<std::size_t>(Net::inputs), out = static_cast<std::size_t>(Net::outputs);
+  constexpr int behind = 64;
+  CAPTURE(in);
+  CAPTURE(out);
+  std::mt19937_64 engine(12);
+  const auto net = random_network<Net>(engine);
+  test::EndOfPage<Scalar> parameters(net.parameters.size()), x(in), y(out), jacobian(in * out);
+  std::copy(net.parameters.begin(), net.parameters.end(), parameters.begin());
+  for (Scalar& v : x) v = static_cast<Scalar>(uniform(engine, -1.0, 1.0));
+  const auto followed_by_nan = [](const auto& values) {
+    std::vector<Scalar> result(values.begin(), values.end());
+    result.resize(result.size() + behind, std::numeric_limits<Scalar>::quiet_NaN());
+    return result;
+  };
+  const auto roomy_parameters = followed_by_nan(net.parameters), roomy_x = followed_by_nan(x);
+  constexpr Scalar canary(-77);
+  std::vector<Scalar> roomy_y(out + behind, canary), roomy_jacobian(in * out + behind, canary);
+  const auto check = [&] {
+    CHECK(std::equal(y.begin(), y.end(), roomy_y.begin()));
+    CHECK(std::equal(jacobian.begin(), jacobian.end(), roomy_jacobian.begin()));
+    CHECK(std::count(roomy_y.begin(), roomy_y.end(), canary) == behind);
+    CHECK(std::count(roomy_jacobian.begin(), roomy_jacobian.end(), canary) == behind);
+  };
+  using Jacobian = JacobianPass<Net, Pack>;
+  Jacobian::run(parameters.data(), x.data(), y.data(), jacobian.data());
+  Jacobian::run(roomy_parameters.data(), roomy_x.data(), roomy_y.data(), roomy_jacobian.data());
+  check();
+  test::EndOfPage<PackedNetwork<Net, Pack>> packed(1);
+  packed.data()->assign(parameters.data());
+  Jacobian::run(*packed.data(), parameters.data(), x.data(), y.data(), jacobian.data());
+  Jacobian::run(*packed.data(), roomy_parameters.data(), roomy_x.data(), roomy_y.data(), roomy_jacobian.data());
+  check();
+}
+
+}  // namespace
+
+// Rows of weights that end before, with and after a pack; a bias behind the last of them that is long enough to be read, that is
+// not, and none.
+TEST_CASE_TEMPLATE("nothing is read behind parameters and inputs, nothing written behind outputs and Jacobian", Pack,
+                   PINNQUAD_TEST_REGISTER_PACKS, GenericPack<float, 4>) {
+  check_within_memory<Network<float, InputSize<5>, Dense<2>>, Pack>();
+  check_within_memory<Network<float, InputSize<7>, Dense<1>, Gelu>, Pack>();
+  check_within_memory<Network<float, InputSize<17>, Dense<3>>, Pack>();
+  check_within_memory<Network<float, InputSize<16>, Dense<9>, Relu, Dense<4>>, Pack>();
+  check_within_memory<Network<float, InputSize<3>, Sine, Dense<5>, Relu, DenseWithoutBias<2>>, Pack>();
+  check_within_memory<Network<float, InputSize<1>, Relu, DenseWithoutBias<9>>, Pack>();
 }

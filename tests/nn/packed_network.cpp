@@ -4,9 +4,12 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
+#include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "support/own_layers.hpp"
@@ -204,4 +207,79 @@ TEST_CASE("inputs need not be aligned") {
   for (std::size_t i = 0; i < 16; ++i) aligned[i] = x[i + 1];
   packed.forward(aligned.data(), moved.data() + 1);
   for (std::size_t i = 0; i < 4; ++i) CHECK(y[i] == moved[i + 1]);
+}
+
+namespace {
+
+/// Each layer's outputs by the layer itself, one behind the other.
+template <class Net, int Index = 0>
+void by_layers(const typename Net::Scalar* parameters, const typename Net::Scalar* x, typename Net::Scalar* outputs) {
+  if constexpr (Index < Net::layer_count) {
+    using Layer = typename Net::template Layer<Index>;
+    Layer::forward(parameters + Net::Sizes::offset(Index), x, outputs);
+    by_layers<Net, Index + 1>(parameters, outputs, outputs + Layer::outputs);
+  }
+}
+
+/// `kept`: one letter per layer, k for outputs that are left behind, - for those that are not.
+template <class Net, class Pack>
+void keeps(const std::string& kept) {
+  using Scalar = typename Net::Scalar;
+  constexpr auto all = static_cast<std::size_t>(Net::Sizes::outputs_before(Net::layer_count));
+  REQUIRE(kept.size() == Net::layer_count);
+  std::mt19937_64 engine(35);
+  Net network;
+  fill_uniform(network.parameters, engine, 0.6);
+  std::array<Scalar, Net::inputs> x{};
+  fill_uniform(x, engine);
+  std::array<Scalar, all> expected{};
+  by_layers<Net>(network.parameters.data(), x.data(), expected.data());
+
+  constexpr Scalar canary(-77);
+  std::array<Scalar, all + 1> left{};
+  left.fill(canary);
+  std::array<Scalar, Net::outputs + 1> y{};
+  y.fill(canary);
+  PackedNetwork<Net, Pack>(network.parameters).forward_keeping(x.data(), y.data(), left.data());
+  CHECK(left.back() == canary);
+  CHECK(y.back() == canary);
+  const double tolerance = rounding<Scalar>(100);  // some fifty operations on values of order 1
+  std::size_t at = 0;
+  for (std::size_t layer = 0; layer < kept.size(); ++layer) {
+    CAPTURE(layer);
+    for (int i = 0; i < Net::Sizes::outputs[layer]; ++i, ++at) {
+      if (kept[layer] == 'k') {
+        CHECK(std::fabs(static_cast<double>(left[at] - expected[at])) <= tolerance);
+      } else {
+        CHECK(left[at] == canary);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < Net::outputs; ++i) {
+    CHECK(std::fabs(static_cast<double>(y[i] - expected[all - Net::outputs + i])) <= tolerance);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("forward_keeping leaves each layer's outputs where they are asked for, from registers and from memory") {
+  using pinnquad::DenseWithoutBias;
+  using pinnquad::Gelu;
+  using pinnquad::test::ChannelScale;
+  using pinnquad::test::LeakyRelu;
+  using pinnquad::test::Square;
+  const auto check = [](auto pack, auto width) {
+    using Pack = decltype(pack);
+    using Scalar = typename Pack::Scalar;
+    using Wide = Dense<decltype(width)::value>;
+    // equal layers are a loop; a slope asked with the output leaves the sums out, one asked with the input does not
+    keeps<Network<Scalar, InputSize<5>, Wide, Relu, Wide, Relu, Wide, Relu, Dense<3>>, Pack>("-k-k-kk");
+    keeps<Network<Scalar, InputSize<5>, Wide, Square, Wide, Square, Dense<3>, Relu>, Pack>("kkkk-k");
+    keeps<Network<Scalar, InputSize<5>, Tanh, Wide, Gelu, DenseWithoutBias<7>, Relu, ChannelScale, LeakyRelu>, Pack>(
+        "kkkkkkk");
+    keeps<Network<Scalar, InputSize<5>, Wide, LeakyRelu, Dense<9>, ChannelScale>, Pack>("kkkk");
+  };
+  SUBCASE("float, as wide as registers take") { check(NativePack<float>{}, pinnquad::Index<6>{}); }
+  SUBCASE("float, in memory") { check(NativePack<float>{}, pinnquad::Index<41>{}); }
+  SUBCASE("double, in memory") { check(NativePack<double>{}, pinnquad::Index<6>{}); }
 }

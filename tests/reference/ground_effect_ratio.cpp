@@ -11,7 +11,7 @@
 
 TEST_CASE("the ground effect table, both models") {
   // float32 in the simulator; Cheeseman-Bennett's pole at 0.25 multiplies the rounding of Z/R by 2 * 0.25 / (x - 0.25)
-  const double table_tolerance = 1e-6;
+  const double table_tolerance = 8e-9;
   const pinnquad::test::ReferenceTable table("ground_effect_ratio.csv");
   const auto airframe = pinnquad::ReferenceQuadrotor15::value<double>();
   pinnquad::test::Statistics cheeseman_bennett, conyers;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Own main: without the rows of the independent simulator there is nothing to test; 77 says "skipped" to CTest.
+// Own main: without all rows of the independent simulator only the test suite "shipped rows" has something to test; 77 says
+// "skipped" to CTest.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -9,8 +10,9 @@
 #include "reference/reference_rows.hpp"
 
 int main(int argc, char** argv) {
+  const bool asks_for_shipped_alone = argc == 2 && std::string(argv[1]) == "--test-suite=shipped rows";
   const std::string first = pinnquad::test::reference_folder() + "/airlib/points/points_ge0.csv";
-  if (!std::ifstream(first)) {
+  if (!asks_for_shipped_alone && !std::ifstream(first)) {
     std::printf("skipped: no reference rows, %s does not exist\n", first.c_str());
     return 77;
   }

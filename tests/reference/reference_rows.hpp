@@ -30,8 +30,8 @@ inline std::string reference_folder() {
 /// A CSV file by column name. Throws if a file, a column or a number is missing: a test must not pass on nothing.
 class ReferenceTable {
  public:
-  explicit ReferenceTable(const std::string& name) {
-    const std::string path = reference_folder() + "/airlib/" + name;
+  explicit ReferenceTable(const std::string& name, const std::string& folder = reference_folder() + "/airlib/") {
+    const std::string path = folder + name;
     std::ifstream file(path);
     if (!file) throw std::runtime_error(path + " can't be opened");
     std::string line, cell;
@@ -61,6 +61,11 @@ class ReferenceTable {
   std::map<std::string, std::size_t> columns_;
   std::vector<std::vector<double>> rows_;
 };
+
+/// Every tenth row of the random states of each ground effect model, as they are there: they ship with the tests.
+inline ReferenceTable shipped_rows(const std::string& name) {
+  return ReferenceTable(name, PINNQUAD_TESTS_DIR "/reference/rows/");
+}
 
 /// Differences of one quantity over a file; prints what the documentation quotes.
 class Statistics {

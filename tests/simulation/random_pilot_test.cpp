@@ -38,23 +38,31 @@ TEST_CASE("set points are bounded and smooth") {
   CHECK(fastest_m_s > 0.9 * style.max_speed_m_s);
 }
 
-TEST_CASE("sticks: the standard deviation and the memory the style states") {
-  const PilotStyle style;
-  Pilot pilot(std::mt19937_64(2), style);
-  double square = 0, product = 0, before = 0;
+TEST_CASE("sticks: the standard deviation of each axis and the memory") {
+  Pilot pilot(std::mt19937_64(2));
+  constexpr double spreads_rad_s[3] = {0.21, 0.21, 0.062};  // the yaw of four rotors has little torque
+  const double memory = std::exp(-0.004 * 14);              // from frame to frame, at a bandwidth of 14 rad/s
+  Vector3<double> square = Vector3<double>::Zero(), product = square, before = square;
   int frames = 0;
+  bool held = true;
   for (int i = 0; i < 400000; ++i) {
-    const double stick = pilot(State<double>{}, i * tick_s).stick_rad_s[0];
-    if (i % 2 != 0) continue;  // a frame every 4 ms
-    square += stick * stick;
-    product += stick * before;
+    const Vector3<double> stick = pilot(State<double>{}, i * tick_s).stick_rad_s;
+    if (i % 2 != 0) {  // a frame every 4 ms
+      held = held && stick == before;
+      continue;
+    }
+    square += stick.cwiseProduct(stick);
+    product += stick.cwiseProduct(before);
     before = stick;
     ++frames;
   }
+  CHECK(held);
   constexpr double sampling_error = 0.05;  // 800 s hold some 5,000 independent values
-  CHECK(std::abs(std::sqrt(square / frames) / style.thumbs.roll_pitch_spread_rad_s - 1) <= sampling_error);
-  const double memory = std::exp(-style.thumbs.frame_s * style.thumbs.bandwidth_rad_s);
-  CHECK(std::abs((1 - product / square) / (1 - memory) - 1) <= sampling_error);
+  for (int axis = 0; axis < 3; ++axis) {
+    CAPTURE(axis);
+    CHECK(std::abs(std::sqrt(square[axis] / frames) / spreads_rad_s[axis] - 1) <= sampling_error);
+    CHECK(std::abs((1 - product[axis] / square[axis]) / (1 - memory) - 1) <= sampling_error);
+  }
 }
 
 TEST_CASE("outside the box every target leads back") {

@@ -4,8 +4,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
@@ -119,8 +122,13 @@ TEST_CASE("where the network declines the fallback flies, and is counted by Stat
   CHECK(never.fallback.of(Status::outside_envelope) == never.fallback.asked);
 
   const TrackingResult<double> slow_only = tracked(FakeNetwork({1.0f, 4.0f}));
-  CHECK(slow_only.fallback.fallbacks() > 0);
-  CHECK(slow_only.fallback.of(Status::ok) > slow_only.fallback.fallbacks());
+  CHECK(slow_only.fallback.asked == 15000);
+  CHECK(slow_only.fallback.of(Status::outside_envelope) == slow_only.fallback.fallbacks());
+  CHECK(slow_only.fallback.of(Status::ok) == 15000 - slow_only.fallback.fallbacks());
+  // the eight's own speed is above 4 m/s for a tenth of a period or more, around each crossing
+  int fast = 0;
+  for (int tick = 0; tick < 15000; ++tick) fast += course().sample(0.002 * tick).velocity_m_s.norm() > 4 ? 1 : 0;
+  CHECK(std::abs(static_cast<int>(slow_only.fallback.fallbacks()) - fast) <= 150);  // flown a little late and slower
   CHECK(slow_only.rmse_m < 0.05);
 }
 
@@ -154,6 +162,65 @@ TEST_CASE("a circle, and a hover that stays") {
   const Hover<double> still{Vector3<double>(1, 2, -20), 0.5};
   CHECK(track(vehicle(), still, FlightController<double>{}, inverse).max_error_m <= 1e-9);
   CHECK(track(vehicle(), still, FlightController<double>{}, trim()).max_error_m <= 1e-9);
+}
+
+namespace {
+
+/// Another policy's commands; what the loop asked it with is written down, and every fourth time all rotors are told to give all
+/// they have and more.
+struct Witness {
+  struct Seen {
+    State<double> state;
+    double time_s;
+  };
+  HoverTrim<double> inner;
+  std::vector<Seen>* seen;
+
+  Status operator()(const State<double>& state, const Accelerations<double>& desired, double time_s,
+                    Commands<double>& commands) noexcept {
+    seen->push_back({state, time_s});  // has room
+    const Status status = inner(state, desired, time_s, commands);
+    if (seen->size() % 4 == 0) commands = {2, 2, 2, 2};
+    return status;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a result's figures are those of what was flown") {
+  TrackingPlan<double> plan;
+  plan.duration_s = 4;
+  std::vector<Witness::Seen> seen;
+  seen.reserve(3000);
+  const auto flown = track(vehicle(), course(), FlightController<double>{}, Witness{trim(), &seen}, plan);
+  REQUIRE(flown.status == Status::ok);
+  REQUIRE(seen.size() == 2000);
+  double squares = 0, farthest_m = 0, fastest_m_s = 0;
+  for (const auto& [state, time_s] : seen) {
+    const double error_m = (course().sample(time_s).position_m - state.position_m).norm();
+    squares += error_m * error_m;
+    farthest_m = std::max(farthest_m, error_m);
+    fastest_m_s = std::max(fastest_m_s, state.velocity_m_s.norm());
+  }
+  constexpr double rounding = 1e-12;
+  CHECK(flown.flown_s == doctest::Approx(4));
+  CHECK(flown.rmse_m == doctest::Approx(std::sqrt(squares / 2000)).epsilon(rounding));
+  CHECK(flown.max_error_m == doctest::Approx(farthest_m).epsilon(rounding));
+  CHECK(flown.max_speed_m_s == doctest::Approx(fastest_m_s).epsilon(rounding));
+  CHECK(flown.saturated_share == 0.25);
+}
+
+TEST_CASE("answers are counted by Status; neither the network's own nor what was limited is a fallback") {
+  FallbackCount count;
+  std::uint32_t asked = 0;
+  for (int status = 0; status < status_count; ++status) {
+    for (int times = 0; times <= status; ++times, ++asked) count.add(static_cast<Status>(status));
+  }
+  CHECK(count.asked == asked);
+  for (int status = 0; status < status_count; ++status) {
+    CHECK(count.of(static_cast<Status>(status)) == static_cast<std::uint32_t>(status) + 1);
+  }
+  CHECK(count.fallbacks() == asked - count.of(Status::ok) - count.of(Status::limited));
 }
 
 TEST_CASE("the loop recovers from a start far off, in every direction") {

@@ -206,3 +206,51 @@ TEST_CASE("what a larger batch left behind does not reach a smaller one, not eve
   run(4);
   CHECK(run(1) == clean);
 }
+
+namespace {
+
+/// One batch forward and back: the gradient of a weighted sum of all outputs.
+template <class Net, class Pack>
+std::vector<double> gradient_of(const std::vector<double>& parameters, const std::vector<double>& x, int samples) {
+  using Scalar = typename Net::Scalar;
+  auto gradient = std::make_unique<NetworkGradient<Net, 13, Pack>>();
+  typename Net::Parameters loaded{}, result{};
+  for (std::size_t i = 0; i < loaded.size(); ++i) loaded[i] = static_cast<Scalar>(parameters[i]);
+  gradient->load(loaded);
+  for (int s = 0; s < samples; ++s) {
+    for (int k = 0; k < Net::inputs; ++k) {
+      gradient->input(s)[k] = static_cast<Scalar>(x[static_cast<std::size_t>(s * Net::inputs + k)]);
+    }
+  }
+  gradient->forward(samples);
+  for (int s = 0; s < samples; ++s) {
+    for (int k = 0; k < gradient->output_stride; ++k) {
+      gradient->output_delta(s)[k] = k < Net::outputs ? Scalar(0.25) * Scalar(s - 2 * k + 1) : Scalar(0);
+    }
+  }
+  gradient->backward(samples);
+  gradient->store_gradient(result);
+  return {result.begin(), result.end()};
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("in float on the vector unit as in double by plain loops", Net,
+                   Network<float, InputSize<5>, Dense<6>, Relu, Dense<17>, Relu, Dense<4>>,
+                   Network<float, InputSize<5>, Dense<9>, Gelu, DenseWithoutBias<7>, Tanh, Dense<3>, Softplus>,
+                   Network<float, InputSize<3>, Dense<16>, Square, Dense<2>, LeakyRelu>) {
+  std::mt19937_64 engine(93);
+  constexpr double float_tolerance = 2e-6;  // of the largest: sums of at most 17 products, three layers deep
+  for (const int samples : {1, 4, 7, 13}) {
+    CAPTURE(samples);
+    std::vector<double> parameters(static_cast<std::size_t>(Net::parameter_count)),
+        x(static_cast<std::size_t>(samples * Net::inputs));
+    fill_uniform(parameters, engine);
+    fill_uniform(x, engine);
+    for (double& v : parameters) v = static_cast<double>(static_cast<float>(v));
+    for (double& v : x) v = static_cast<double>(static_cast<float>(v));
+    const auto single = gradient_of<Net, pinnquad::NativePack<float>>(parameters, x, samples);
+    const auto expected = gradient_of<typename Net::template Rebind<double>, Packs3>(parameters, x, samples);
+    CHECK(gradient_error(single.data(), expected.data(), expected.size()) <= float_tolerance);
+  }
+}

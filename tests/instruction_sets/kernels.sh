@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# kernels.sh <aarch64 | avx2 | avx512> <repository> <Eigen's include folder> <doctest's include folder> <working folder>: the tests
+# of what runs on a vector unit, forward and back, for units that no preset compiles them for: NEON under emulation; AVX2 and
+# AVX-512 with the address and undefined-behaviour sanitizers, alignment among them. Returns 77 where a tool or the unit is
+# missing.
+set -euo pipefail
+machine=$1 root=$2 eigen=$3 doctest=$4 work=$5
+# doctest's folder alone: beside it may stand the headers of the host's C library
+rm -rf "$work"
+mkdir -p "$work/include"
+ln -s "$doctest/doctest" "$work/include/doctest"
+
+skip() { echo "skipped: $*"; exit 77; }
+# unoptimised, as the presets compile these tests: optimising kernels that are unrolled when compiled takes minutes
+flags=(-std=c++17 -O0 -DPINNQUAD_INLINE_AS_COMPILER_LIKES "-I$root/include" "-I$root/tests" "-I$work/include" -isystem "$eigen")
+sanitizers=(-g1 -fsanitize=address,undefined -fno-sanitize-recover=all)
+compiler=g++ emulator=env
+case $machine in
+  aarch64)
+    compiler=aarch64-linux-gnu-g++
+    emulator=$(command -v qemu-aarch64 || command -v qemu-aarch64-static) || skip "no qemu-aarch64"
+    flags+=(-static)
+    ;;
+  avx2)
+    grep -qw avx2 /proc/cpuinfo || skip "this machine has no AVX2"
+    flags+=(-march=x86-64-v3 "${sanitizers[@]}")
+    ;;
+  avx512)
+    grep -qw avx512vl /proc/cpuinfo || skip "this machine has no AVX-512"
+    flags+=(-march=x86-64-v4 "${sanitizers[@]}")
+    ;;
+esac
+command -v "$compiler" >/dev/null || skip "no $compiler"
+
+# every test of these rooms that names a pack or what runs on one
+mapfile -t sources < <(grep -lE 'Pack|JacobianPass' "$root"/tests/nn/*.cpp "$root"/tests/training/network_gradient.cpp)
+[ "${#sources[@]}" -ge 8 ] || { echo "failed: only ${#sources[@]} tests of kernels: ${sources[*]}"; exit 1; }
+objects=()
+for source in "$root/tests/main.cpp" "${sources[@]}"; do
+  objects+=("$work/$(basename "$source" .cpp).o")
+  "$compiler" "${flags[@]}" -c "$source" -o "${objects[-1]}"
+done
+"$compiler" "${flags[@]}" "${objects[@]}" -o "$work/kernels"
+"$emulator" "$work/kernels"
