@@ -14,9 +14,7 @@ import unittest
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scripts" / "lib"))
-import mutants as rules  # noqa: E402
-import mutation_judge  # noqa: E402
-import mutation_list  # noqa: E402
+from mutation import judge as judges, rules, survivors, tests, tree as trees  # noqa: E402
 
 
 def program():
@@ -145,7 +143,7 @@ class Verdicts(unittest.TestCase):
         self.mutant = rules.mutants_of(self.text, "core/f.hpp", "core")[0]
 
     def step(self, name, tests_digest="1"):
-        step = mutation_judge.Step(name, "source", {"include/pinnquad/core/f.hpp"}, f"{name}.o", "core")
+        step = tests.Step(name, "source", {"include/pinnquad/core/f.hpp"}, f"{name}.o", "core")
         step.tests_digest = tests_digest
         return step
 
@@ -165,51 +163,49 @@ class Verdicts(unittest.TestCase):
         self.assertFalse(results.find(self.mutant, self.text, [near, far, self.step("new")]))
         self.assertFalse(program().Results(self.work / "results.json", True).known)
 
-    def judge(self):
-        judge = mutation_judge.Judge(self.work, self.work, "dev", 1, "", lambda text: None)
-        header = judge.tree / "include/pinnquad/core/f.hpp"
+    def tree(self):
+        tree = trees.Tree(self.work, self.work, "dev", 1, None)
+        header = tree.folder / "include/pinnquad/core/f.hpp"
         header.parent.mkdir(parents=True)
         header.write_text(self.text)
-        (judge.build / "tests").mkdir(parents=True)
-        (judge.build / "tests/f.o").write_text("object")
-        judge.keep()
-        return judge, header
+        (tree.build / "tests").mkdir(parents=True)
+        (tree.build / "tests/f.o").write_text("object")
+        tree.keep()
+        return tree, header
 
     def test_copy_is_as_it_was(self):
-        judge, header = self.judge()
-        states = [os.stat(path) for path in (header, judge.build / "tests/f.o")]
+        tree, header = self.tree()
+        states = [os.stat(path) for path in (header, tree.build / "tests/f.o")]
         for error in (None, KeyboardInterrupt):
             try:
-                with judge.mutated(self.mutant):
+                with tree.mutated(self.mutant):
                     self.assertEqual(header.read_text(), self.mutant.applied(self.text))
-                    (judge.build / "tests/f.o").write_text("mutated")
-                    (judge.build / "tests/new.o").write_text("mutated")
+                    (tree.build / "tests/f.o").write_text("mutated")
+                    (tree.build / "tests/new.o").write_text("mutated")
                     if error:
                         raise error
             except KeyboardInterrupt:
                 pass
             self.assertEqual(header.read_text(), self.text)
-            self.assertEqual((judge.build / "tests/f.o").read_text(), "object")
-            self.assertFalse((judge.build / "tests/new.o").exists())
-            for state, path in zip(states, (header, judge.build / "tests/f.o")):
+            self.assertEqual((tree.build / "tests/f.o").read_text(), "object")
+            self.assertFalse((tree.build / "tests/new.o").exists())
+            for state, path in zip(states, (header, tree.build / "tests/f.o")):
                 self.assertEqual(os.stat(path).st_mtime_ns, state.st_mtime_ns)
 
     def test_nearest_test_first(self):
-        judge, _ = self.judge()
+        judge = judges.Judge(trees.Tree(self.work, self.work, "dev", 1, None), "", None)
         steps = []
         for name, room, build_s in (("g_test.cpp", "core", 1), ("f_test.cpp", "core", 9), ("a_test.cpp", "aero", 0.1),
                                     ("h_test.cpp", "core", 0.5)):
-            step = mutation_judge.Step(name, "source", {"include/pinnquad/core/f.hpp"}, f"tests/{name}.o", room)
-            step.build_s = build_s
-            steps.append(step)
-        judge.steps = steps + [mutation_judge.Step("blind", "source", set(), "tests/blind.o", "core")]
+            steps.append(tests.Step(name, "source", {"include/pinnquad/core/f.hpp"}, f"tests/{name}.o", room, build_s))
+        judge.steps = steps + [tests.Step("blind", "source", set(), "tests/blind.o", "core")]
         self.assertEqual([step.name for step in judge.seen_by("core/f.hpp")],
                          ["f_test.cpp", "h_test.cpp", "g_test.cpp", "a_test.cpp"])
 
     def test_time_limit_ends_what_was_started(self):
         begin = time.monotonic()
-        with self.assertRaises(mutation_judge.TimedOut):
-            mutation_judge.run(["bash", "-c", "sleep 60 & wait"], self.work, 0.1)
+        with self.assertRaises(trees.TimedOut):
+            trees.run(["bash", "-c", "sleep 60 & wait"], self.work, 0.1)
         self.assertLess(time.monotonic() - begin, 30)
 
 
@@ -222,18 +218,18 @@ class List(unittest.TestCase):
         entries = {mutant.key: verdict("survived" if place < 2 else "killed") for place, mutant in enumerate(found)}
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "survivors.md"
-            write = lambda: mutation_list.write_list(path, found, entries, mutation_list.Claims.read(path), by_key, 1)
+            write = lambda: survivors.write_list(path, found, entries, survivors.Claims.read(path), by_key, 1)
             with open(os.devnull, "w") as nowhere:
                 stdout, sys.stdout = sys.stdout, nowhere
                 try:
                     score, _ = write()
                     self.assertAlmostEqual(score, 100 * (len(found) - 2) / len(found))
                     claimed = path.read_text()
-                    first = mutation_list.entry(found[0])
+                    first = survivors.entry(found[0])
                     self.assertIn(first, claimed)
                     claimed = claimed.replace(first + "\n", "") + first + "\n"
                     path.write_text(claimed)
-                    with self.assertRaises(mutation_list.BadList):
+                    with self.assertRaises(survivors.BadList):
                         write()
                     path.write_text(claimed + "  Reason: a is never\n  negative\n")
                     for _ in range(2):

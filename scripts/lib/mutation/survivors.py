@@ -2,7 +2,7 @@
 """The table of a mutation run, and the list of its survivors, in which a reader claims that one is equivalent, and why."""
 import re
 
-from mutation_judge import HEADERS, write_whole
+from mutation.tree import HEADERS, write_whole
 
 SURVIVORS, CLAIMED = "## Survivors", "## Claimed equivalent"
 _ENTRY = re.compile(r"- `([0-9a-f]{10})`")
