@@ -204,7 +204,7 @@ class Verdicts(unittest.TestCase):
 
     def test_time_limit_ends_what_was_started(self):
         with self.assertRaises(trees.TimedOut):
-            trees.run(["bash", "-c", "sleep 60 & echo $! >child; wait"], self.work, 0.5)
+            trees.run(["bash", "-c", "set -m; sleep 60 & echo $! >child; wait"], self.work, 0.5)
         child = int((self.work / "child").read_text())
         for _ in range(100):
             try:

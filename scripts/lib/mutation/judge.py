@@ -4,6 +4,7 @@ import json
 import pathlib
 import re
 import shutil
+import signal
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -13,6 +14,11 @@ from mutation.tree import HEADERS, Failed, TimedOut, digest, end_all, run, write
 
 class LinkFailed(Exception):
     pass
+
+
+def by_clock(cpu_s):
+    """For what waits instead of computing."""
+    return 600 + 10 * cpu_s
 
 
 class Judge:
@@ -107,8 +113,7 @@ class Judge:
             for first in range(0, len(steps), self.tree.jobs):
                 batch = steps[first:first + self.tree.jobs]
                 targets = [step.target for step in batch if step.target]
-                limit_s = 60 + 8 * sum(step.build_s for step in batch)
-                verdict = self.build_mutant(targets, limit_s, batch) if targets else None
+                verdict = self.build_mutant(targets, batch) if targets else None
                 if verdict:
                     return verdict
                 with ThreadPoolExecutor(self.tree.jobs) as pool:
@@ -122,14 +127,18 @@ class Judge:
                         return verdict, step.name, [step]
         return "survived", "" if self.changed_code else "same object code in every test", steps
 
-    def build_mutant(self, targets, limit_s, batch):
+    def build_mutant(self, targets, batch):
         names = "build of " + ", ".join(step.name for step in batch)
+        limit_s = 60 + 8 * max(step.build_s for step in batch)
         try:
-            code, said = self.tree.ninja("-j", str(self.tree.jobs), *targets, limit_s=limit_s)
+            code, said = run(self.tree.confined(limit_s, "ninja", "-j", str(self.tree.jobs), *targets), self.tree.build,
+                             by_clock(limit_s))
         except TimedOut:
             return "time limit", names, batch
         if code == 0:
             return None
+        if "CPU time limit exceeded" in said:
+            return "time limit", names, batch
         failed = re.findall(r"^FAILED: (\S+)", said, re.MULTILINE)
         if any(path.endswith((".o", ".gch")) for path in failed):
             return "did not compile", names, batch
@@ -149,9 +158,9 @@ class Judge:
                 return self.ask_source(step, limit_s)
             name = re.sub(r"([.+*?^$()\[\]])", r"\\\1", step.name)
             pattern = f"^{name}$" if step.target else f"^{name}\\."
-            code, said = run(self.tree.confined("ctest", "--test-dir", str(self.tree.build), "-R", pattern, "-j",
-                                                str(self.tree.jobs), "--stop-on-failure", "--timeout", str(int(limit_s))),
-                             self.tree.build, limit_s + 900)
+            code, said = run(self.tree.confined(limit_s, "ctest", "--test-dir", str(self.tree.build), "-R", pattern, "-j",
+                                                str(self.tree.jobs), "--stop-on-failure"),
+                             self.tree.build, by_clock(limit_s))
         except TimedOut:
             return "time limit"
         if code == 0:
@@ -168,8 +177,9 @@ class Judge:
             code, _ = run([self.tree.compiler, *objects, "-pthread", "-o", str(folder / "test")], folder, 300)
             if code != 0:
                 raise LinkFailed
-            code, _ = run(self.tree.confined(str(folder / "test"), "--abort-after=1", "--out=/dev/null"), folder, limit_s)
-            return "survived" if code == 0 else "killed"
+            code, _ = run(self.tree.confined(limit_s, str(folder / "test"), "--abort-after=1", "--out=/dev/null"), folder,
+                          by_clock(limit_s))
+            return {0: "survived", -signal.SIGXCPU: "time limit", -signal.SIGKILL: "time limit"}.get(code, "killed")
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 

@@ -35,7 +35,7 @@ def started(command, cwd, **how):
         try:
             yield process
         except BaseException:
-            end_group(process.pid)
+            end_session(process.pid)
             raise
         finally:
             running.discard(process.pid)
@@ -43,12 +43,22 @@ def started(command, cwd, **how):
 
 def end_all():
     for pid in list(running):
-        end_group(pid)
+        end_session(pid)
 
 
-def end_group(pid):
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(pid, signal.SIGKILL)
+def end_session(leader):
+    """Ends all that a process started by started() has started: ninja gives each compiler a group of its own, so that only the
+    session says which they are."""
+    alive = True
+    while alive:
+        alive = False
+        for entry in os.listdir("/proc"):
+            with contextlib.suppress(OSError, ValueError, IndexError):
+                words = pathlib.Path("/proc", entry, "stat").read_text().rpartition(")")[2].split()
+                if int(words[3]) == leader and words[0] != "Z":
+                    os.kill(int(entry), signal.SIGKILL)
+                    alive = True
+        time.sleep(0.01 if alive else 0)
 
 
 def run(command, cwd, limit_s=None):
@@ -146,8 +156,8 @@ class Tree:
             (self.build / "build.ninja").unlink(missing_ok=True)
             raise Failed(f"cmake failed: {last_line(said)}")
 
-    def ninja(self, *arguments, limit_s=None):
-        return run(["ninja", "-C", str(self.build), *arguments], self.build, limit_s)
+    def ninja(self, *arguments):
+        return run(["ninja", "-C", str(self.build), *arguments], self.build)
 
     def ask(self, *arguments):
         code, said = self.ninja(*arguments)
@@ -180,10 +190,12 @@ class Tree:
     def compiler(self):
         return re.search(r"^CMAKE_CXX_COMPILER:\w+=(.+)$", self.cache, re.MULTILINE).group(1)
 
-    def confined(self, *command):
-        """A loop without end must not take the machine's memory or disk. Sanitizers need the address space."""
+    def confined(self, cpu_s, *command):
+        """A loop without end must not take the machine's time, memory or disk. CPU time, of each process, since the clock runs on
+        while others compute. Sanitizers need the address space."""
         memory = "" if "-fsanitize" in self.cache else f"ulimit -v {4 << 20}; "
-        return ["bash", "-c", memory + f"ulimit -c 0; ulimit -f {1 << 20}; exec \"$@\"", "confined", *command]
+        return ["bash", "-c", memory + f"ulimit -c 0; ulimit -f {1 << 20}; ulimit -t {int(cpu_s)}; exec \"$@\"", "confined",
+                *command]
 
     def walk_build(self):
         for folder, folders, names in os.walk(self.build):
