@@ -98,4 +98,9 @@ TEST_CASE("fewer than one cycle: NaN, no division by zero; as many as an int can
   CHECK(CyclicalAnnealing{0.1, std::numeric_limits<int>::max(), 0.5}.weight(7, 300) == 0.1);
 }
 
-TEST_CASE("no epochs at all: lambda_max, no division by zero") { CHECK(CyclicalAnnealing{}.weight(0, 0) == 0.1); }
+TEST_CASE("no epochs at all: lambda_max, no division by zero") {
+  // the period would be 0 for some of these
+  for (const int cycles : {1, 2, 5}) {
+    for (const int epochs : {0, -1, -7}) CHECK(CyclicalAnnealing{0.1, cycles, 0.5}.weight(0, epochs) == 0.1);
+  }
+}
