@@ -123,14 +123,13 @@ inline std::vector<Comparison> all_comparisons(const Study& study) {
   return list;
 }
 
-/// One pair and measure over further flights.
+/// One pair and measure over further flights. Trainings of one flight share its rows, so that they are no independent
+/// witnesses of what another flight would give: across flights, a flight's mean over its seeds is one pair.
 struct FlightsComparison {
   ModelPair pair{};
   std::size_t measure = 0;
   std::vector<Comparison> flights;
-  /// All of them, each divided by its flight's baseline mean; nothing if they are more than the exact test takes.
-  std::optional<pinnquad::PairedComparison> trainings;
-  pinnquad::PairedComparison of_means;  ///< one pair per flight: its mean over the seeds, divided likewise
+  pinnquad::PairedComparison of_means;  ///< each flight's mean, divided by its baseline's
 };
 
 inline std::optional<FlightsComparison> compare_flights(const Study& study, const ModelPair& pair,
@@ -138,22 +137,30 @@ inline std::optional<FlightsComparison> compare_flights(const Study& study, cons
   FlightsComparison all;
   all.pair = pair;
   all.measure = measure;
-  std::vector<double> candidate, baseline, candidate_means, baseline_means;
+  std::vector<double> candidate_means, baseline_means;
   for (const StudyFlight& flight : study.further_flights(pair.baseline)) {
     std::optional<Comparison> one = compare(study, pair, flight, measure, study.weights);
     if (!one || !(one->result.baseline_mean > 0)) continue;
-    for (std::size_t i = 0; i < one->paired.seeds.size(); ++i) {
-      candidate.push_back(one->paired.candidate[i] / one->result.baseline_mean);
-      baseline.push_back(one->paired.baseline[i] / one->result.baseline_mean);
-    }
     candidate_means.push_back(one->result.candidate_mean / one->result.baseline_mean);
     baseline_means.push_back(1);
     all.flights.push_back(std::move(*one));
   }
   if (all.flights.empty() || all.flights.size() > pinnquad::most_pairs) return std::nullopt;
-  if (candidate.size() <= pinnquad::most_pairs) all.trainings = pinnquad::compare_paired(candidate, baseline);
   all.of_means = pinnquad::compare_paired(candidate_means, baseline_means);
   return all;
+}
+
+/// The main comparison and its parts, where further flights were run: error and angles of 4 against 2, then errors.
+inline std::vector<FlightsComparison> main_comparisons(const Study& study) {
+  std::vector<FlightsComparison> list;
+  const auto add = [&](const ModelPair& pair, std::size_t measure) {
+    if (std::optional<FlightsComparison> all = compare_flights(study, pair, measure)) list.push_back(std::move(*all));
+  };
+  for (std::size_t measure = 0; measure < table3_measures.size(); ++measure) add({2, 4}, measure);
+  for (const ModelPair& pair : compared_pairs) {
+    if (pair.baseline != 2 || pair.candidate != 4) add(pair, 0);
+  }
+  return list;
 }
 
 }  // namespace programs

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "pinnquad/data/csv_table.hpp"
-#include "report/sections.hpp"
+#include "report/claims.hpp"
+#include "report/comparisons.hpp"
 
 namespace programs {
 namespace detail {
@@ -67,7 +68,6 @@ inline std::string comparisons_csv(const std::vector<Comparison>& comparisons,
     for (const Comparison& c : f.flights) {
       line(c.pair, c.measure, c.flight.name, std::to_string(c.flight.seed), c.result);
     }
-    if (f.trainings) line(f.pair, f.measure, "further flights, trainings", "", *f.trainings);
     line(f.pair, f.measure, "further flights, means", "", f.of_means);
   }
   return text;
@@ -79,7 +79,11 @@ inline std::string claims_csv(const JudgedClaims& claims) {
     std::string figures;
     for (const Evidence& e : judged.evidence) {
       figures += (figures.empty() ? "" : "; ") + e.what;
-      if (!e.from.empty()) figures += ": " + e.from + " to " + e.to + " (" + e.change + ")";
+      const ClaimColumns& columns = claim.columns;
+      if (!e.from.empty()) {
+        figures += std::string(": ") + columns.from + " " + e.from + ", " + columns.to + " " + e.to + ", " +
+                   columns.change + " " + e.change;
+      }
       if (!e.wins.empty()) figures += ", lower in " + e.wins + ", p = " + e.p_value;
       if (!e.paper.empty()) figures += ", the paper " + e.paper;
       figures += ": " + e.says;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SVG drawings that stand in an HTML page: lines, text, axes with ticks, traces.
+// SVG drawings that stand in an HTML page and take its colours: lines, text, axes with ticks, traces.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "report/html.hpp"
+#include "pictures/html_text.hpp"
+#include "report/numbers.hpp"
 
 namespace programs {
-namespace html {
+namespace drawing {
 
 /// A coordinate: a tenth of a unit is finer than the eye.
 inline std::string at(double value) {
@@ -20,9 +21,11 @@ inline std::string at(double value) {
   return text;
 }
 
-inline std::string svg(double width, double height, const std::string& content, const std::string& label) {
-  return "<svg viewBox=\"0 0 " + at(width) + " " + at(height) + "\" role=\"img\" aria-label=\"" + html_text(label) +
-         "\">\n" + content + "</svg>\n";
+/// `title` names it in a word or two, `description` says what it shows to who does not see it.
+inline std::string svg(double width, double height, const std::string& content, const std::string& title,
+                       const std::string& description) {
+  return "<svg viewBox=\"0 0 " + at(width) + " " + at(height) + "\" role=\"img\">\n<title>" + html_text(title) +
+         "</title>\n<desc>" + html_text(description) + "</desc>\n" + content + "</svg>\n";
 }
 
 inline std::string line(double x1, double y1, double x2, double y2, const std::string& kind) {
@@ -41,7 +44,7 @@ inline std::string path(const std::string& d, const std::string& kind) {
 
 /// Text in a drawing; `kind` holds the anchor: "start", "middle" or "end" among its words.
 inline std::string label(double x, double y, const std::string& content, const std::string& kind) {
-  return "<text x=\"" + at(x) + "\" y=\"" + at(y) + "\" class=\"" + kind + "\">" + content + "</text>\n";
+  return "<text x=\"" + at(x) + "\" y=\"" + at(y) + "\" class=\"" + kind + "\">" + html_text(content) + "</text>\n";
 }
 
 /// A linear axis from values to coordinates, with ticks at 1, 2 or 5 times a power of ten.
@@ -71,7 +74,7 @@ struct Axis {
   std::string text(double value, int wanted) const {
     const double by = step(wanted);
     const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(by) - 1e-9)));
-    return number(std::abs(value) < by / 2 ? 0 : value, decimals);
+    return shown::number(std::abs(value) < by / 2 ? 0 : value, decimals);
   }
 };
 
@@ -95,7 +98,7 @@ inline std::string vertical_axis(const Axis& y, double left, double right, int w
   const double middle = (y.from + y.to) / 2;
   if (name.empty()) return text;
   return text + "<text class=\"name middle\" transform=\"translate(" + at(left - 44) + " " + at(middle) +
-         ") rotate(-90)\">" + name + "</text>\n";
+         ") rotate(-90)\">" + html_text(name) + "</text>\n";
 }
 
 /// A polyline through the points, as the d of a path.
@@ -119,5 +122,5 @@ class Trace {
   bool open_ = false;
 };
 
-}  // namespace html
+}  // namespace drawing
 }  // namespace programs

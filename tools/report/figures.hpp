@@ -50,13 +50,15 @@ inline StudySeries read_study_series(const std::string& path) {
 
 /// Fig. 3: the weight of the physics term over the epochs, Eq. (6).
 inline std::string schedule_figure(const pinnquad::CyclicalAnnealing& schedule, int epochs) {
-  const html::Axis x{0, static_cast<double>(epochs), 70, 1030}, y{0, 1.15 * schedule.maximum, 190, 16};
-  html::Trace trace;
+  const drawing::Axis x{0, static_cast<double>(epochs), 70, 1030}, y{0, 1.15 * schedule.maximum, 190, 16};
+  drawing::Trace trace;
   for (int epoch = 0; epoch < epochs; ++epoch) trace.to(x(epoch), y(schedule.weight(epoch, epochs)));
-  return html::svg(1060, 236,
-                   html::vertical_axis(y, 70, 1030, 4, "weight &#955;") +
-                       html::horizontal_axis(x, 16, 190, 6, "epoch") + html::path(trace.d(), "first"),
-                   "weight of the physics term over the epochs");
+  return drawing::svg(1060, 236,
+                      drawing::vertical_axis(y, 70, 1030, 4, "weight λ") +
+                          drawing::horizontal_axis(x, 16, 190, 6, "epoch") + drawing::path(trace.d(), "first"),
+                      "Weight of the physics term",
+                      "The weight λ over the epochs of a training: " + std::to_string(schedule.cycles) +
+                          " cycles, each a rise to " + shown::number(schedule.maximum, 3) + " and a hold.");
 }
 
 namespace detail {
@@ -72,57 +74,70 @@ inline const char* bar_colour(int model) {
 }  // namespace detail
 
 /// Figs. 7 and 9: mean absolute errors as bars, deviations over the seeds as whiskers, the paper's values as diamonds.
-/// Models without rows leave an empty line.
-inline std::string errors_figure(const Study& study, const std::vector<int>& models) {
+/// Models without rows leave an empty line. The axis is that of the networks: the linearized model's bar, many times as
+/// long, is broken at its end and says its length.
+inline std::string errors_figure(const Study& study, const std::vector<int>& models, const std::string& title) {
   constexpr double row_height = 33, top = 8, left = 200, right = 1020;
   double most = 0;
+  const auto reach = [&most](int model, const PaperEntry& entry) {
+    if (model != 1) most = std::max(most, 1e3 * (entry.mean + entry.deviation));
+  };
+  std::string told;
   for (const int model : models) {
     const pinnquad::Summary ours = pinnquad::summarize(study.values(model, "mae"));
-    const PaperEntry& paper = paper_entry(model, 0);
-    most = std::max(most, 1e3 * (paper.mean + paper.deviation));
-    if (ours.count > 0) most = std::max(most, 1e3 * (ours.mean + (ours.count > 1 ? ours.deviation : 0)));
+    reach(model, paper_entry(model, 0));
+    if (ours.count > 0) reach(model, {ours.mean, ours.count > 1 ? ours.deviation : 0});
+    told += (told.empty() ? "" : "; ") + ("model " + std::to_string(model)) + " " +
+            (ours.count > 0 ? shown::number(1e3 * ours.mean, 3) : "not in this study");
   }
   const double bottom = top + row_height * static_cast<double>(models.size());
-  const html::Axis x{0, 1.04 * most, left, right};
-  std::string text = html::horizontal_axis(x, top, bottom, 8, "mean absolute error of the commands, 10&#8315;&#179;");
+  const drawing::Axis x{0, 1.04 * most, left, right};
+  std::string text = drawing::horizontal_axis(x, top, bottom, 8, "mean absolute error of the commands, 10⁻³");
+  const auto whisker = [&](double from, double to, double y) {
+    text += drawing::line(from, y, to, y, "deviation") + drawing::line(from, y - 4, from, y + 4, "deviation") +
+            drawing::line(to, y - 4, to, y + 4, "deviation");
+  };
+  const auto broken = [&](double length, double y, const std::string& kind) {
+    text += drawing::path("M" + drawing::at(right - 92) + " " + drawing::at(y + 12) + "l8 -24h6l-8 24z", "gap-mark") +
+            drawing::label(right - 4, y + 4, shown::number(length, 1), kind + " end");
+  };
   for (std::size_t i = 0; i < models.size(); ++i) {
     const int model = models[i];
     const double middle = top + row_height * (static_cast<double>(i) + 0.5);
     const pinnquad::Summary ours = pinnquad::summarize(study.values(model, "mae"));
-    text +=
-        html::label(16, middle, "M" + std::to_string(model), "title") +
-        html::label(58, middle, std::string(loss_words(model)) + (paper_model(model).batch_norm ? ", BN" : ""), "name");
+    const double length = 1e3 * ours.mean;
+    text += drawing::label(16, middle, "M" + std::to_string(model), "title") +
+            drawing::label(58, middle, model_words(model), "name");
     if (ours.count == 0) {
-      text += html::label(left + 8, middle, "not in this study", "small");
+      text += drawing::label(left + 8, middle, "not in this study", "small");
     } else {
       const bool vanilla = paper_model(model).term == PhysicsTerm::none;
-      text += html::rectangle(left, middle - 13, x(1e3 * ours.mean) - left, 17,
-                              std::string(detail::bar_colour(model)) + (vanilla ? " vanilla" : ""));
-      if (ours.count > 1) {
-        const double bar = middle - 4.5, from = x(1e3 * (ours.mean - ours.deviation)),
-                     to = x(1e3 * (ours.mean + ours.deviation));
-        text += html::line(from, bar, to, bar, "deviation") + html::line(from, bar - 4, from, bar + 4, "deviation") +
-                html::line(to, bar - 4, to, bar + 4, "deviation");
+      text += drawing::rectangle(left, middle - 13, std::min(x(length), right) - left, 17,
+                                 std::string(detail::bar_colour(model)) + (vanilla ? " vanilla" : ""));
+      if (length > x.most) broken(length, middle - 4.5, "on-bar");
+      if (ours.count > 1 && length <= x.most) {
+        whisker(x(length - 1e3 * ours.deviation), x(length + 1e3 * ours.deviation), middle - 4.5);
       }
     }
     const PaperEntry& paper = paper_entry(model, 0);
+    if (1e3 * paper.mean > x.most) continue;
     const double at_paper = x(1e3 * paper.mean), below = middle + 10;
-    text += html::line(x(1e3 * (paper.mean - paper.deviation)), below, x(1e3 * (paper.mean + paper.deviation)), below,
-                       "reference-line") +
-            html::path("M" + html::at(at_paper - 5) + " " + html::at(below) + "l5 -5l5 5l-5 5z", "reference");
+    text += drawing::line(x(1e3 * (paper.mean - paper.deviation)), below, x(1e3 * (paper.mean + paper.deviation)),
+                          below, "reference-line") +
+            drawing::path("M" + drawing::at(at_paper - 5) + " " + drawing::at(below) + "l5 -5l5 5l-5 5z", "reference");
   }
-  text += html::line(left, top, left, bottom, "axis");
-  return html::svg(1060, bottom + 44, text, "mean absolute errors by model");
+  text += drawing::line(left, top, left, bottom, "axis");
+  return drawing::svg(1060, bottom + 44, text, title, "Mean absolute errors of the commands, 10⁻³: " + told + ".");
 }
 
 /// Every seed's relative change of the mean absolute error, per pair; a stroke is the mean, a diamond the paper's.
 inline std::string changes_figure(const std::vector<Comparison>& comparisons) {
   constexpr double row_height = 32, top = 8, left = 200, right = 1020;
-  std::vector<const Comparison*> shown;
+  std::vector<const Comparison*> compared;
   double least = -5, most = 5;
   for (const Comparison& c : comparisons) {
     if (c.measure != 0 || !std::isfinite(c.result.relative_difference)) continue;
-    shown.push_back(&c);
+    compared.push_back(&c);
     std::vector<double> changes = c.relative_changes();
     if (const std::optional<double> paper = paper_change(c.pair, 0)) changes.push_back(*paper);
     for (const double change : changes) {
@@ -130,32 +145,37 @@ inline std::string changes_figure(const std::vector<Comparison>& comparisons) {
       most = std::max(most, 100 * change);
     }
   }
-  if (shown.empty()) return "";
+  if (compared.empty()) return "";
   const double margin = 0.04 * (most - least);
-  const double bottom = top + row_height * static_cast<double>(shown.size());
-  const html::Axis x{least - margin, most + margin, left, right};
-  std::string text = html::horizontal_axis(x, top, bottom, 8, "change of the mean absolute error, %") +
-                     html::line(x(0), top, x(0), bottom, "axis");
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const Comparison& c = *shown[i];
+  const double bottom = top + row_height * static_cast<double>(compared.size());
+  const drawing::Axis x{least - margin, most + margin, left, right};
+  std::string text = drawing::horizontal_axis(x, top, bottom, 8, "change of the mean absolute error, %") +
+                     drawing::line(x(0), top, x(0), bottom, "axis");
+  std::string told;
+  for (std::size_t i = 0; i < compared.size(); ++i) {
+    const Comparison& c = *compared[i];
+    told += (told.empty() ? "" : "; ") + ("model " + std::to_string(c.pair.candidate)) + " against " +
+            std::to_string(c.pair.baseline) + " " + shown::number(100 * c.result.relative_difference, 1, true) + " %";
     const double middle = top + row_height * (static_cast<double>(i) + 0.5);
-    html::Trace seeds;
+    drawing::Trace seeds;
     const std::vector<double> changes = c.relative_changes();
     for (std::size_t k = 0; k < changes.size(); ++k) {  // five levels keep near seeds apart
       seeds.dot(x(100 * changes[k]), middle + 3.2 * (static_cast<double>(k * 2 % 5) - 2));
     }
-    text +=
-        html::label(16, middle + 4,
-                    "M" + std::to_string(c.pair.candidate) + " against M" + std::to_string(c.pair.baseline), "title") +
-        html::label(left - 12, middle + 4, paper_model(c.pair.candidate).data, "small end") +
-        html::path(seeds.d(), "seed");
+    text += drawing::label(16, middle + 4,
+                           "M" + std::to_string(c.pair.candidate) + " against M" + std::to_string(c.pair.baseline),
+                           "title") +
+            drawing::label(left - 12, middle + 4, paper_model(c.pair.candidate).data, "small end") +
+            drawing::path(seeds.d(), "seed");
     const double mean = x(100 * c.result.relative_difference);
-    text += html::line(mean, middle - 12, mean, middle + 12, "mean");
+    text += drawing::line(mean, middle - 12, mean, middle + 12, "mean");
     if (const std::optional<double> paper = paper_change(c.pair, 0)) {
-      text += html::path("M" + html::at(x(100 * *paper) - 5) + " " + html::at(middle) + "l5 -5l5 5l-5 5z", "reference");
+      text += drawing::path("M" + drawing::at(x(100 * *paper) - 5) + " " + drawing::at(middle) + "l5 -5l5 5l-5 5z",
+                            "reference");
     }
   }
-  return html::svg(1060, bottom + 44, text, "relative change of the error by pair and seed");
+  return drawing::svg(1060, bottom + 44, text, "Relative change of the error by pair and seed",
+                      "Mean change of the mean absolute error: " + told + ".");
 }
 
 /// Fig. 8: signed command sum over angular acceleration in units of the target's spread; dots target, plus signs
@@ -164,19 +184,19 @@ inline std::string ellipses_figure(const std::vector<int>& models, const std::ve
   constexpr double panel = 300, gap = 50, left = 50, top = 38, range = 4.6;
   constexpr std::size_t most_points = 450;
   constexpr std::array<const char*, 3> rates = {"dp/dt", "dq/dt", "dr/dt"};
-  std::string text;
+  std::string text, told;
   for (std::size_t m = 0; m < models.size(); ++m) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const AxisSeries& s = series[m].axes[axis];
       const double x0 = left + static_cast<double>(axis) * (panel + gap),
                    y0 = top + static_cast<double>(m) * (panel + 92);
-      const html::Axis x{-range, range, x0, x0 + panel}, y{-range, range, y0 + panel, y0};
+      const drawing::Axis x{-range, range, x0, x0 + panel}, y{-range, range, y0 + panel, y0};
       const pinnquad::AxisSpread spread = pinnquad::axis_spread(s.angular_acceleration, s.target);
       const pinnquad::PhysicalConsistency c =
           pinnquad::physical_consistency(s.target, s.predicted, s.angular_acceleration);
-      text += html::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target spreads") +
-              html::vertical_axis(y, x0, x0 + panel, 5, "");
-      html::Trace target, predicted;
+      text += drawing::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target spreads") +
+              drawing::vertical_axis(y, x0, x0 + panel, 5, "");
+      drawing::Trace target, predicted;
       for (std::size_t i = 0; i < s.target.size(); i += s.target.size() / most_points + 1) {
         const double px = s.angular_acceleration[i] / spread.x;
         const double flown = s.target[i] / spread.y, said = s.predicted[i] / spread.y;
@@ -184,26 +204,31 @@ inline std::string ellipses_figure(const std::vector<int>& models, const std::ve
         if (std::abs(flown) <= range) target.dot(x(px), y(flown));
         if (std::abs(said) <= range) predicted.plus(x(px), y(said));
       }
-      text += html::path(target.d(), "cloud") + html::path(predicted.d(), "plus");
+      text += drawing::path(target.d(), "cloud") + drawing::path(predicted.d(), "plus");
+      told += (told.empty() ? "model " : "; model ") + std::to_string(models[m]) + " " + axis_names[axis] +
+              ": angle difference " + shown::number(c.angle_difference_deg, 2) + "°";
       const auto ellipse = [&](const pinnquad::ConfidenceEllipse& e, const std::string& kind) {
-        html::Trace outline, major;
+        drawing::Trace outline, major;
         for (const auto& p : pinnquad::ellipse_outline(e, 91)) outline.to(x(p[0]), y(p[1]));
         const auto tips = pinnquad::ellipse_outline(e, 3);
         major.to(x(tips[0][0]), y(tips[0][1]));
         major.to(x(tips[1][0]), y(tips[1][1]));
-        text += html::path(outline.d(), kind) + html::path(major.d(), kind + " dash");
+        text += drawing::path(outline.d(), kind) + drawing::path(major.d(), kind + " dash");
       };
       ellipse(c.target_standardized, "first");
       ellipse(c.predicted_standardized, "second");
-      text += html::label(x0, y0 - 10, "M" + std::to_string(models[m]) + ", " + axis_names[axis], "title") +
-              html::label(x0 + panel, y0 - 10,
-                          "angle difference " + html::number(c.angle_difference_deg, 2) + "&#176;, slope error " +
-                              html::number(100 * c.slope_error, 1) + " %",
-                          "small end");
+      text += drawing::label(x0, y0 - 10, "M" + std::to_string(models[m]) + ", " + axis_names[axis], "title") +
+              drawing::label(x0 + panel, y0 - 10,
+                             "angle difference " + shown::number(c.angle_difference_deg, 2) + "°, slope error " +
+                                 shown::number(100 * c.slope_error, 1) + " %",
+                             "small end");
     }
   }
-  return html::svg(1060, top + static_cast<double>(models.size()) * (panel + 92) - 40, text,
-                   "confidence ellipses of target and prediction");
+  return drawing::svg(
+      1060, top + static_cast<double>(models.size()) * (panel + 92) - 40, text,
+      "Confidence ellipses of target and prediction",
+      "Signed command sum over angular acceleration in roll, pitch and yaw, one row of panels per model; " + told +
+          ".");
 }
 
 /// Fig. 2: angular acceleration and signed sum of the flown commands over some seconds, each in its spread.
@@ -217,23 +242,25 @@ inline std::string correlation_figure(const StudySeries& series) {
     const AxisSeries& s = series.axes[axis];
     const pinnquad::AxisSpread spread = pinnquad::axis_spread(s.angular_acceleration, s.target);
     const double y0 = top + static_cast<double>(axis) * (height + gap);
-    const html::Axis x{series.time_s.front(), series.time_s[last], left, right}, y{-4, 4, y0 + height, y0};
-    html::Trace acceleration, sum;
+    const drawing::Axis x{series.time_s.front(), series.time_s[last], left, right}, y{-4, 4, y0 + height, y0};
+    drawing::Trace acceleration, sum;
     for (std::size_t i = 0; i <= last; ++i) {
       acceleration.to(x(series.time_s[i]), y(std::clamp(s.angular_acceleration[i] / spread.x, -4.0, 4.0)));
       sum.to(x(series.time_s[i]), y(std::clamp(s.target[i] / spread.y, -4.0, 4.0)));
     }
-    text += html::horizontal_axis(x, y0, y0 + height, 8, axis == 2 ? "time, s" : "", axis == 2) +
-            html::vertical_axis(y, left, right, 4, axis == 1 ? "in spreads" : "") +
-            html::path(acceleration.d(), "thick") + html::path(sum.d(), "thin") +
-            html::label(left, y0 - 8, std::string(axis_names[axis]) + ": " + rates[axis] + " and its command sum",
-                        "title") +
-            html::label(right, y0 - 8,
-                        "PCC " + html::number(pinnquad::pearson_correlation(s.angular_acceleration, s.target), 3) +
-                            " over the block",
-                        "small end");
+    text += drawing::horizontal_axis(x, y0, y0 + height, 8, axis == 2 ? "time, s" : "", axis == 2) +
+            drawing::vertical_axis(y, left, right, 4, axis == 1 ? "in spreads" : "") +
+            drawing::path(acceleration.d(), "thick") + drawing::path(sum.d(), "thin") +
+            drawing::label(left, y0 - 8, std::string(axis_names[axis]) + ": " + rates[axis] + " and its command sum",
+                           "title") +
+            drawing::label(right, y0 - 8,
+                           "PCC " + shown::number(pinnquad::pearson_correlation(s.angular_acceleration, s.target), 3) +
+                               " over the block",
+                           "small end");
   }
-  return html::svg(1060, top + 3 * (height + gap) + 14, text, "angular acceleration and signed command sums over time");
+  return drawing::svg(1060, top + 3 * (height + gap) + 14, text, "Angular acceleration and command sums",
+                      "Angular acceleration and signed command sum over time in roll, pitch and yaw, each in its "
+                      "spread; they rise and fall together.");
 }
 
 }  // namespace programs

@@ -11,6 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "pictures/html_text.hpp"
 #include "report/figures.hpp"
 #include "report/settings.hpp"
 
@@ -41,8 +44,9 @@ inline ReportInput read_report_input(const std::string& folder) {
   return input;
 }
 
-/// The pictures of the flights, where DIR/flights holds those that `fly --pictures` draws.
-inline std::string flight_pictures(const std::string& folder, std::string& left_out) {
+/// The pictures of the flights, where DIR/flights holds those that `fly --pictures` draws, as {name, caption, base64};
+/// the names of those that are not there go into `left_out`.
+inline nlohmann::json flight_pictures(const std::string& folder, std::vector<std::string>& left_out) {
   struct Picture {
     const char* ending;
     const char* name;
@@ -55,28 +59,28 @@ inline std::string flight_pictures(const std::string& folder, std::string& left_
        {"ground_effect.svg", "Fig. 5",
         "D2: thrust ratio of the ground effect models with what was flown; below, height and force over "
         "time with the split."},
-       {"wind.svg", "Fig. 6", "D3: drag and what the wind adds along the body&rsquo;s axes; below, the wind."}}};
+       {"wind.svg", "Fig. 6", "D3: drag and what the wind adds along the body’s axes; below, the wind."}}};
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder + "/flights", error))
     files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  std::string text;
+  nlohmann::json found = nlohmann::json::array();
   for (const Picture& picture : pictures) {
     const std::string ending = picture.ending;
-    bool found = false;
-    for (const std::filesystem::path& file : files) {
-      const std::string name = file.filename().string();
-      if (name.size() < ending.size() || name.compare(name.size() - ending.size(), ending.size(), ending) != 0)
-        continue;
-      text += html::figure(html::embedded_svg(pinnquad::file_text(file.string()), picture.name),
-                           html::tag("b", std::string(picture.name) + ".") + " " + picture.caption);
-      found = true;
-      break;
+    const auto file = std::find_if(files.begin(), files.end(), [&ending](const std::filesystem::path& path) {
+      const std::string name = path.filename().string();
+      return name.size() >= ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
+    });
+    if (file == files.end()) {
+      left_out.push_back(picture.name);
+    } else {
+      found.push_back({{"name", picture.name},
+                       {"caption", picture.caption},
+                       {"base64", base64(pinnquad::file_text(file->string()))}});
     }
-    if (!found) left_out += (left_out.empty() ? "" : ", ") + std::string(picture.name);
   }
-  return text;
+  return found;
 }
 
 }  // namespace detail

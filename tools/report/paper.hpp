@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 #include "report/rows.hpp"
 
@@ -33,20 +34,20 @@ struct PaperModel {
   bool batch_norm;
   PhysicsTerm term;
   const char* data;
-  const char* split;  ///< training / validation / test, % of the flight, as HTML
+  const char* split;  ///< training / validation / test, % of the flight, as text
 };
 
 inline constexpr std::array<PaperModel, study_models> table2 = {{
-    {1, "linearized model, Eq. (3)", false, PhysicsTerm::none, "D1", "&ndash; / &ndash; / 20"},
+    {1, "linearized model, Eq. (3)", false, PhysicsTerm::none, "D1", "– / – / 20"},
     {2, "vanilla", false, PhysicsTerm::none, "D1", "60 / 20 / 20"},
     {3, "physics-informed", false, PhysicsTerm::constant, "D1", "60 / 20 / 20"},
     {4, "physics-informed", false, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
     {5, "vanilla", true, PhysicsTerm::none, "D1", "60 / 20 / 20"},
     {6, "physics-informed", true, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
-    {7, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / &ndash; / 40"},
-    {8, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / &ndash; / 40"},
-    {9, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / &ndash; / 80"},
-    {10, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / &ndash; / 80"},
+    {7, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / – / 40"},
+    {8, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / – / 40"},
+    {9, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / – / 80"},
+    {10, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / – / 80"},
     {11, "vanilla", true, PhysicsTerm::none, "D2", "60 / 20 / 20"},
     {12, "physics-informed", true, PhysicsTerm::annealed, "D2", "60 / 20 / 20"},
     {13, "vanilla", true, PhysicsTerm::none, "D3", "60 / 20 / 20"},
@@ -63,6 +64,11 @@ inline const char* loss_words(int model) {
     case PhysicsTerm::none: break;
   }
   return "vanilla";
+}
+
+/// A model as a table or a drawing names it.
+inline std::string model_words(int model) {
+  return model == 1 ? "linearized" : std::string(loss_words(model)) + (paper_model(model).batch_norm ? ", BN" : "");
 }
 
 /// An entry of Table 3 in the units of rows.csv; the deviation is 0 for model 1, which has none.
@@ -105,6 +111,10 @@ struct ModelPair {
 
 inline constexpr std::array<ModelPair, 8> compared_pairs = {
     {{2, 4}, {2, 3}, {3, 4}, {5, 6}, {7, 8}, {9, 10}, {11, 12}, {13, 14}}};
+
+/// Sec. 5: epochs of a training, and trainings of each network; what a study runs if it is told nothing else.
+inline constexpr int paper_epochs = 300;
+inline constexpr int paper_seeds = 20;
 
 /// Sec. 5.4: seconds of one training of models 2 and 4 (300 epochs), PyTorch with CUDA on a laptop's RTX 3060.
 inline constexpr double paper_vanilla_s = 234;

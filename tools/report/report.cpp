@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The report of a study: DIR/report.html, table3.csv, comparisons.csv and claims.csv, from DIR/rows.csv, study.json and
-// series/. Everything it says of the study is computed from the rows.
+// The report of a study: DIR/report.html, report.json, table3.csv, comparisons.csv and claims.csv, from DIR/rows.csv,
+// study.json and series/. Everything it says of the study is computed from the rows.
 #include "report/report.hpp"
 
 #include <cstdio>
@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/console.hpp"
+#include "command_line/interrupt.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "report/csv.hpp"
 #include "report/input.hpp"
@@ -17,13 +19,15 @@
 
 namespace programs {
 
-void write_study_report(const std::string& folder) {
+bool write_study_report(const std::string& folder) {
   const detail::ReportInput input = detail::read_report_input(folder);
   const std::vector<Comparison> comparisons = all_comparisons(input.study);
-  const std::vector<FlightsComparison> flights = detail::main_comparisons(input.study);
+  const std::vector<FlightsComparison> flights = main_comparisons(input.study);
   const JudgedClaims claims = judge_claims(input.study);
+  const nlohmann::json figures = report_figures(input, comparisons, flights, claims);
   const std::vector<std::pair<std::string, std::string>> files = {
-      {"report.html", detail::report_page(input, comparisons, flights, claims)},
+      {"report.html", report_page(input, comparisons, figures)},
+      {"report.json", figures.dump(2) + "\n"},
       {"table3.csv", detail::table3_csv(input.study)},
       {"comparisons.csv", detail::comparisons_csv(comparisons, flights)},
       {"claims.csv", detail::claims_csv(claims)}};
@@ -33,12 +37,18 @@ void write_study_report(const std::string& folder) {
     open.back()->stream() << text;
     open.back()->close();
   }
+  if (interrupted()) return false;
   for (const auto& file : open) file->commit();
+  return true;
 }
 
-void report_study(const std::string& folder) {
-  write_study_report(folder);
+int report_study(const std::string& folder) {
+  if (!write_study_report(folder)) {
+    complain("report", "interrupted; nothing was written, the rows are in " + folder + "/rows.csv");
+    return exit_interrupted;
+  }
   std::printf("report      %s/report.html\n", folder.c_str());
+  return 0;
 }
 
 }  // namespace programs

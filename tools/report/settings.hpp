@@ -14,7 +14,6 @@
 
 #include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
-#include "report/html.hpp"
 #include "report/rows.hpp"
 
 namespace programs {
@@ -53,7 +52,7 @@ inline void read_planned_model(const nlohmann::json& model, StudySettings& setti
   for (const char* key : {"train_rows", "validation_rows", "test_rows"}) {
     if (!model.contains(key) || !model[key].is_number_unsigned()) return;
     const auto rows = model[key].get<std::uint64_t>();
-    split += (split.empty() ? "" : " / ") + (rows > 0 ? std::to_string(rows) : "&ndash;");
+    split += (split.empty() ? "" : " / ") + (rows > 0 ? std::to_string(rows) : "–");
   }
   settings.splits[number] = split;
 }
@@ -112,26 +111,24 @@ inline StudySettings read_study_settings(const std::string& path) {
 namespace detail {
 
 inline std::string json_text(const nlohmann::json& value) {
-  if (value.is_string()) return html_text(value.get<std::string>());
+  if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_null()) return "&ndash;";
+  if (value.is_null()) return "–";
   const bool flat = value.is_array() &&
                     std::all_of(value.begin(), value.end(), [](const nlohmann::json& v) { return v.is_primitive(); });
-  if (flat) {
-    std::string text;
-    for (const nlohmann::json& item : value) text += (text.empty() ? "" : ", ") + json_text(item);
-    return text;
-  }
-  return html_text(value.dump());
+  if (!flat) return value.dump();
+  std::string text;
+  for (const nlohmann::json& item : value) text += (text.empty() ? "" : ", ") + json_text(item);
+  return text;
 }
 
 inline std::string key_text(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
-  return html_text(key);
+  return key;
 }
 
 /// A list of objects as a table with the keys of all of them.
-inline std::string objects_table(const nlohmann::json& list) {
+inline nlohmann::json objects_table(const std::string& name, const nlohmann::json& list) {
   std::vector<std::string> keys;
   for (const nlohmann::json& object : list) {
     for (const auto& item : object.items()) {
@@ -142,23 +139,22 @@ inline std::string objects_table(const nlohmann::json& list) {
   std::stable_partition(keys.begin(), keys.end(), [](const std::string& key) { return key == "seed"; });
   std::stable_partition(keys.begin(), keys.end(),
                         [](const std::string& key) { return key == "name" || key == "model"; });
-  const auto kind = [&](const std::string& key) {
+  nlohmann::json head = nlohmann::json::array(), rows = nlohmann::json::array();
+  for (const std::string& key : keys) {
     const bool number = std::all_of(list.begin(), list.end(), [&](const nlohmann::json& object) {
       return !object.contains(key) || object[key].is_number();
     });
-    return std::string(number ? "n" : "");
-  };
-  std::vector<html::Cell> head;
-  for (const std::string& key : keys) head.push_back({key_text(key), kind(key)});
-  std::string body;
-  for (const nlohmann::json& object : list) {
-    std::vector<html::Cell> cells;
-    for (const std::string& key : keys) {
-      cells.push_back({object.contains(key) ? json_text(object[key]) : "", kind(key)});
-    }
-    body += html::row(cells);
+    head.push_back({{"text", key_text(key)}, {"number", number}});
   }
-  return html::table(html::row(head, "", true), body, "plain");
+  for (const nlohmann::json& object : list) {
+    nlohmann::json cells = nlohmann::json::array();
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      cells.push_back(
+          {{"text", object.contains(keys[i]) ? json_text(object[keys[i]]) : ""}, {"number", head[i]["number"]}});
+    }
+    rows.push_back({{"cells", cells}});
+  }
+  return {{"name", key_text(name)}, {"head", head}, {"rows", rows}};
 }
 
 inline bool lists_objects(const nlohmann::json& value) {
@@ -167,13 +163,13 @@ inline bool lists_objects(const nlohmann::json& value) {
 }
 
 /// Names and values of an object, nested ones in lines of their own.
-inline void settings_rows(const nlohmann::json& object, const std::string& prefix, std::string& body) {
+inline void add_values(const nlohmann::json& object, const std::string& prefix, nlohmann::json& values) {
   for (const auto& item : object.items()) {
     const std::string name = prefix + key_text(item.key());
     if (item.value().is_object()) {
-      settings_rows(item.value(), name + " &rsaquo; ", body);
+      add_values(item.value(), name + " › ", values);
     } else if (!lists_objects(item.value())) {
-      body += html::row({{name, "key"}, {json_text(item.value()), ""}});
+      values.push_back({{"name", name}, {"value", json_text(item.value())}});
     }
   }
 }
@@ -181,16 +177,13 @@ inline void settings_rows(const nlohmann::json& object, const std::string& prefi
 }  // namespace detail
 
 /// Everything in study.json: lists of objects as tables, the rest as names and values.
-inline std::string settings_section(const StudySettings& settings) {
-  std::string body;
-  detail::settings_rows(settings.all, "", body);
-  std::string text;
-  if (!body.empty()) text += html::table(html::row({{"setting", ""}, {"value", ""}}, "", true), body, "plain");
+inline nlohmann::json settings_tables(const StudySettings& settings) {
+  nlohmann::json values = nlohmann::json::array(), lists = nlohmann::json::array();
+  detail::add_values(settings.all, "", values);
   for (const auto& item : settings.all.items()) {
-    if (!detail::lists_objects(item.value())) continue;
-    text += html::tag("h3", detail::key_text(item.key())) + detail::objects_table(item.value());
+    if (detail::lists_objects(item.value())) lists.push_back(detail::objects_table(item.key(), item.value()));
   }
-  return text.empty() ? "<p>study.json is empty.</p>\n" : text;
+  return {{"values", values}, {"lists", lists}};
 }
 
 }  // namespace programs

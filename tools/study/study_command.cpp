@@ -17,6 +17,7 @@
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
+#include "report/paper.hpp"
 #include "report/report.hpp"
 #include "study/ablation.hpp"
 #include "study/campaign.hpp"
@@ -34,8 +35,8 @@ struct Options {
   std::string weights = "final";
   std::vector<std::string> parts;
   std::vector<std::string> variants;
-  int seeds = 20;
-  int epochs = 300;
+  int seeds = programs::paper_seeds;
+  int epochs = programs::paper_epochs;
   int flights = 4;
   std::uint64_t flight_seed = study::first_flight_seed;
   int patience = 0;
@@ -86,7 +87,7 @@ int run_campaign(const Options& options, const char* kind, std::vector<study::Co
                                       "/rows.csv, the report is missing; the same command goes on");
       return programs::exit_interrupted;
     }
-    programs::report_study(options.out);
+    return programs::report_study(options.out);
   }
   return code;
 }

@@ -24,6 +24,7 @@ class Page(HTMLParser):
     def __init__(self):
         super().__init__(convert_charrefs=True)
         self.open, self.ids, self.links, self.texts = [], [], [], []
+        self.drawings, self.named = 0, {"title": 0, "desc": 0}
 
     def start(self, tag, attributes, closed):
         require(tag not in ("script", "iframe", "object", "link"), f"the page holds a <{tag}>")
@@ -33,6 +34,11 @@ class Page(HTMLParser):
                 self.ids.append(value)
             if name in ("href", "src", "xlink:href", "srcset", "poster"):
                 self.links.append(value)
+        self.drawings += tag == "svg"
+        if tag in self.named and self.open[-1] == "svg":
+            self.named[tag] += 1
+        if tag == "img":
+            require(dict(attributes).get("alt"), "a picture has no words for who does not see it")
         if not closed and tag not in self.void:
             self.open.append(tag)
 
@@ -58,6 +64,8 @@ require(not page.open, f"never closed: {page.open}")
 require(len(set(page.ids)) == len(page.ids), "an id stands twice")
 for link in page.links:
     require(link.startswith("data:image/svg+xml;base64,") or (link.startswith("#") and link[1:] in page.ids), f"a link leaves the page or leads nowhere: {link[:60]}")
+require(page.drawings >= 4 and page.drawings == page.named["title"] == page.named["desc"], f"of {page.drawings} drawings {page.named} are named")
+require(text.startswith("<!DOCTYPE html>") and "{{" not in text, "the page is not what a browser takes for one")
 shown = re.sub(r'"data:[^"]*"', "", text)
 for word in ("http:", "https:", "url(", "@import"):
     require(word not in shown, f"the page refers to something outside: {word}")
@@ -101,6 +109,17 @@ for line in csv.DictReader(open(folder + "/comparisons.csv")):
     require(abs(float(line["rank_biserial"]) - effect) < 1e-12, f"{where}: effect size")
     require(not baseline or abs(float(line["relative_difference"]) - change) < 1e-9, f"{where}: change is {change}")
     checked += 1
+further = {(r["flight"], r["flight_seed"]) for r in rows}
+for line in csv.DictReader(open(folder + "/comparisons.csv")):
+    if not line["flight_seed"]:
+        require(int(line["pairs"]) <= len(further) - 1, "trainings of one flight are counted as independent pairs")
+said = json.load(open(folder + "/report.json"))
+verdicts = {line["id"]: line["verdict"] for line in csv.DictReader(open(folder + "/claims.csv"))}
+require({c["id"]: c["verdict"] for d in said["discussions"] for c in d["claims"]} == verdicts, "report.json and claims.csv differ")
+words = " ".join(page.texts)
+for row in said["table3"]:
+    for measure in row["measures"]:
+        require(measure["mean"] in words and measure["paper"] in words, f"report.json has what the page does not show: {measure}")
 settings = json.load(open(folder + "/study.json"))
 for line in csv.DictReader(open(folder + "/table3.csv")):
     model, measure = line["model"], line["measure"]

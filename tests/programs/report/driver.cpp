@@ -18,8 +18,7 @@ int main(int argument_count, char** arguments) {
       return 0;
     }
     if (command == "report") {
-      programs::write_study_report(arguments[2]);
-      return 0;
+      return programs::write_study_report(arguments[2]) ? 0 : 1;
     }
     std::fprintf(stderr, "report_driver make DIR SEEDS | report DIR\n");
   } catch (const std::exception& error) {

@@ -4,9 +4,9 @@
 #   report.sh <report_driver> <work folder>
 driver=$1
 check_script=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/check.py
-source "$(dirname "$0")/../common.sh" "$driver" - - "$2" - -
+source "$(dirname "$0")/../common.sh" "$driver" - "$2" - -
 
-outputs=(report.html table3.csv comparisons.csv claims.csv)
+outputs=(report.html report.json table3.csv comparisons.csv claims.csv)
 look() { # <folder>: from outside, where Python is
   if command -v python3 >/dev/null; then
     python3 "$check_script" "$1" || fail "the report of $1 is not what its rows say"
@@ -40,12 +40,42 @@ done
 grep -q '^2,4,mae,d1,1,8,8,0,0,.*,0\.0078125,1,better,' planted/comparisons.csv || fail "4 against 2: not p = 2^-7, effect size 1"
 grep -q '^7,8,mae,d1,1,8,0,0,8,.*,0\.0078125,-1,worse,' planted/comparisons.csv || fail "8 against 7: not p = 2^-7, effect size -1"
 grep -q '^2,4,mae,"further flights, means",,3,3,0,0,.*,0\.25,' planted/comparisons.csv || fail "the further flights are not three"
-grep -q '^2,4,mae,"further flights, trainings",,24,24,' planted/comparisons.csv || fail "the further trainings are not 24"
+[ "$(grep -c 'further flights' planted/comparisons.csv)" -eq 6 ] || fail "a line other than the flights' means is of further flights"
 grep -q '&lt;quadrotor&gt; &amp; Co' planted/report.html || fail "text of study.json is not escaped"
 grep -q 'Seeds vary the training, not the data' planted/report.html || fail "the page does not say what seeds vary"
 [ -z "$(find . -name '*.partial*')" ] || fail "a half-written file was left behind"
+grep -q 'class="box banner".*Smaller than the default study: 8 seeds of 20\.' planted/report.html || fail "no banner of 8 seeds"
+columns() { grep -A 2 "id=\"claim-$1\"" planted/report.html | grep -o '<thead>.*</thead>'; }
+columns 1.1 | grep -q '>network</th>.*>linearized</th>.*>factor</th><th class="n">paper</th>' || fail "claim 1.1 has not its own columns"
+columns 2.1 | grep -q '>baseline</th>.*>candidate</th>.*>change</th>.*>lower in</th>.*>p</th>' || fail "claim 2.1 is not paired"
+grep -q '^1\.1,.*: network 4\.[0-9]*e-3, linearized 10[0-9.]*e-3, factor 2[0-9.]* times' planted/claims.csv || fail "claim 1.1 in claims.csv"
 
-# 2. the suspect entries decide nothing: whatever models 3 and 10 have in pitch
+# 2. five seeds decide nothing, whichever way they lean; six do. A study of the default size has no banner
+"$driver" make five 5
+"$driver" report five
+[ "$(cut -d, -f3 five/claims.csv | sort -u | tr '\n' ' ')" = "undecided verdict " ] || fail "five seeds decide: $(verdicts five)"
+grep -q 'class="badge not"' five/report.html && fail "the page of five seeds has a claim that is not reproduced"
+look five
+"$driver" make six 6
+"$driver" report six
+verdict six 2.1 reproduced
+verdict six 4.1 "not reproduced"
+verdict six 4.2 "not reproduced"
+edit 'NR == 1 || $1 == 1 || ($1 != 8 && $4 <= 6) || $4 <= 5 { print }' # model 8 alone has five
+"$driver" report edited
+verdict edited 2.1 reproduced
+verdict edited 4.1 undecided
+verdict edited 4.2 undecided
+verdict edited 4.4 undecided
+verdict edited 5.2 "not reproduced"
+"$driver" make twenty 20
+"$driver" report twenty
+grep -q 'class="box banner"' twenty/report.html && fail "a banner on a study of the default size"
+edit '$5 == 300 && $1 == 13 { $5 = 12 } { print }'
+"$driver" report edited
+grep -q 'Smaller than the default study: 12 epochs of 300, 8 seeds of 20\.' edited/report.html || fail "no banner of 12 epochs"
+
+# 3. the suspect entries decide nothing: whatever models 3 and 10 have in pitch
 pitch=$(head -n 1 planted/rows.csv | tr ',' '\n' | grep -n '^angle_difference_deg_pitch$' | cut -d: -f1)
 for factor in 0.001 1000; do
   edit "NR > 1 && (\$1 == 3 || \$1 == 10) { \$$pitch *= $factor } { print }"
@@ -53,7 +83,7 @@ for factor in 0.001 1000; do
   [ "$(verdicts edited)" = "$(verdicts planted)" ] || fail "a suspect entry decides a claim"
 done
 
-# 3. an effect the other way round is found too
+# 4. an effect the other way round is found too
 edit 'NR > 1 && ($1 == 2 || $1 == 4) { $1 = 6 - $1 } { print }'
 "$driver" report edited
 verdict edited 2.1 "not reproduced"
@@ -61,7 +91,7 @@ verdict edited 2.2 "not reproduced"
 verdict edited 2.3 "not reproduced"
 look edited
 
-# 4. incomplete studies are reported as far as they go
+# 5. incomplete studies are reported as far as they go
 edit '$1 != 14 && !($1 == 6 && $4 == 3) { print }'
 "$driver" report edited
 verdict edited 5.2 "not judged"
@@ -101,12 +131,12 @@ echo '{}' >edited/study.json # nothing but the rows
 "$driver" report edited
 look edited
 
-# 5. bad input: one line, exit code 2, and what was there stays
+# 6. bad input: one line, exit code 2, and what was there stays
 refused() { # <pattern>: edited/ is refused
   cp planted/report.html edited/
   expect_line 2 "$1" "$driver" report edited
   cmp -s planted/report.html edited/report.html || fail "a refused study lost its report: $1"
-  for file in table3.csv comparisons.csv claims.csv; do rm -f "edited/$file"; done
+  for file in report.json table3.csv comparisons.csv claims.csv; do rm -f "edited/$file"; done
   [ -z "$(find edited -name '*.partial*')" ] || fail "a half-written file was left behind: $1"
 }
 edit 'NR == 1 { $7 = "wrong" } { print }' && refused 'rows\.csv:1: expected a column named mae'
@@ -125,11 +155,11 @@ edit '{ print }' && printf '{\n "a": 1,\n oops\n}\n' >edited/study.json && refus
 edit '{ print }' && echo '{"kind": "ablation"}' >edited/study.json && refused 'study\.json: expected a study of Table 2'
 edit '{ print }' && sed -i '5s/^[^,]*/soon/' edited/series/model4.csv && refused 'model4\.csv:5:1: .*time_s, found "soon"'
 expect_line 2 'absent/study\.json: expected a readable file' "$driver" report absent
-mkdir plain/claims.csv # the last of the four can't be written: none is
+mkdir plain/claims.csv # the last of the five can't be written: none is
 expect_line 2 'cannot write plain/claims\.csv: it is a folder' "$driver" report plain
 [ ! -e plain/report.html ] || fail "some of the files were written, others not"
 [ -z "$(find plain -name '*.partial*')" ] || fail "a half-written file was left behind"
-# a disk that is full for one of the four
+# a disk that is full for one of the five
 one_full() { # in a name space of its own: small/ is a disk of two pages
   mount -t tmpfs -o size=8k tmpfs small && head -c 4096 /dev/zero >small/filled && : >small/claims.csv
   head -c 4096 /dev/zero >small/filled_too 2>/dev/null
