@@ -31,6 +31,9 @@ using Predictions = std::vector<std::array<double, pinnquad::rotor_count>>;
 struct Judgement {
   pinnquad::PredictionErrors<pinnquad::rotor_count> errors;
   std::array<pinnquad::PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
+  /// Roll, pitch, yaw: see wrong_derivative_shares() (training/derivatives.hpp); NaN until it was asked.
+  std::array<double, 3> wrong_derivative_share = {pinnquad::not_a_number, pinnquad::not_a_number,
+                                                  pinnquad::not_a_number};
 };
 
 /// Signed command sum and angular acceleration about one axis, row by row.
@@ -237,10 +240,10 @@ inline void write_results(const std::string& path, const std::vector<Result>& re
   file.commit();
 }
 
-/// report.json: settings, every result, and what became of the best network (null if none was finished). A figure that is not
-/// finite is null.
+/// report.json: settings, every result, and what became of the best network (null if none was finished); `more` are further
+/// entries. A figure that is not finite is null.
 inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results,
-                         nlohmann::json verdict) {
+                         nlohmann::json verdict, const nlohmann::json& more = nlohmann::json::object()) {
   nlohmann::json rows = nlohmann::json::array();
   for (const Result& result : results) {
     nlohmann::json row = {{"model", result.model}, {"seed", result.seed}};
@@ -249,12 +252,12 @@ inline void write_report(const std::string& path, nlohmann::json settings, const
     row["training_s"] = result.training_s;
     rows.push_back(std::move(row));
   }
+  nlohmann::json report = {
+      {"settings", std::move(settings)}, {"results", std::move(rows)}, {"verdict", std::move(verdict)}};
+  report.update(more);
   pinnquad::AtomicFile file(path);
-  file.stream() << nlohmann::json{{"settings", std::move(settings)},
-                                  {"results", std::move(rows)},
-                                  {"verdict", std::move(verdict)}}
-                       .dump(2, ' ', false,
-                             nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
+  file.stream() << report.dump(2, ' ', false,
+                               nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
                 << "\n";
   file.commit();
 }
