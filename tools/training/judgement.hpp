@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
@@ -237,28 +235,6 @@ inline void write_results(const std::string& path, const std::vector<Result>& re
   }
   pinnquad::AtomicFile file(path);
   file.stream() << text;
-  file.commit();
-}
-
-/// report.json: settings, every result, and what became of the best network (null if none was finished); `more` are further
-/// entries. A figure that is not finite is null.
-inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results,
-                         nlohmann::json verdict, const nlohmann::json& more = nlohmann::json::object()) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const Result& result : results) {
-    nlohmann::json row = {{"model", result.model}, {"seed", result.seed}};
-    for (const Figure& figure : figures()) row[figure.name] = figure.of(result.test, figure.index);
-    row["validation_mae"] = result.validation_error;
-    row["training_s"] = result.training_s;
-    rows.push_back(std::move(row));
-  }
-  nlohmann::json report = {
-      {"settings", std::move(settings)}, {"results", std::move(rows)}, {"verdict", std::move(verdict)}};
-  report.update(more);
-  pinnquad::AtomicFile file(path);
-  file.stream() << report.dump(2, ' ', false,
-                               nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
-                << "\n";
   file.commit();
 }
 

@@ -32,6 +32,7 @@
 #include "training/model_predictions.hpp"
 #include "training/plots.hpp"
 #include "training/recipe.hpp"
+#include "training/training_report.hpp"
 
 namespace {
 
@@ -55,29 +56,15 @@ struct Options {
   bool allow_poor = false;  ///< export what is worse than the mean, marked as such
 };
 
-/// What was wrong but no reason to stop: told on stderr, and again in report.json.
-class Warnings {
- public:
-  void add(const std::string& text) {
-    std::fprintf(stderr, "train: warning: %s\n", text.c_str());
-    texts_.push_back(text);
-  }
-  const std::vector<std::string>& texts() const { return texts_; }
-
- private:
-  std::vector<std::string> texts_;
-};
-
 /// Warns of features that stand still in the training rows: they are exported, and flown only where they stood.
 template <class Features>
-void warn_of_still_features(const RowSet& training, Warnings& warnings) {
+void warn_of_still_features(const RowSet& training, programs::TrainingReport& report) {
   std::string names;
   for (const std::string& name : still_features<Features>(training)) names += (names.empty() ? "" : ", ") + name;
   if (names.empty()) return;
-  warnings.add(
-      names +
-      ": nothing changes in the training rows; the model will not know what it does, and answers only near the "
-      "value flown");
+  report.warn(names +
+              ": nothing changes in the training rows; the model will not know what it does, and answers only near the "
+              "value flown");
 }
 
 /// The pictures of the networks `shown` (indices of results), the best of each kind.
@@ -124,7 +111,7 @@ std::string four_digits(double value) {
 }
 
 /// Says how the best network stands beside the mean and linear regression. Why it must not be exported; empty if it may.
-std::string reason_against_export(const Options& options, const Verdict& verdict, Warnings& warnings) {
+std::string reason_against_export(const Options& options, const Verdict& verdict, programs::TrainingReport& report) {
   std::printf(
       "  best network on the test rows: R^2 %.4f, worst motor %.4f; linear regression on the same features: R^2 %.4f\n",
       verdict.test_r_squared, verdict.worst_motor_r_squared, verdict.linear_regression_r_squared);
@@ -134,15 +121,15 @@ std::string reason_against_export(const Options& options, const Verdict& verdict
       return "on the test rows the best network is worse than the mean of the commands (R^2 " +
              four_digits(verdict.test_r_squared) + ", worst motor " + four_digits(verdict.worst_motor_r_squared) + ")";
     }
-    warnings.add("NOT FOR FLIGHT: the best network is worse than the mean of the commands");
+    report.warn("NOT FOR FLIGHT: the best network is worse than the mean of the commands");
   } else if (!verdict.beats_linear_regression()) {
-    warnings.add("the best network does not beat linear regression on the same features (R^2 " +
-                 four_digits(verdict.test_r_squared) + " against " + four_digits(verdict.linear_regression_r_squared) +
-                 "): a linear map would fly as well");
+    report.warn("the best network does not beat linear regression on the same features (R^2 " +
+                four_digits(verdict.test_r_squared) + " against " + four_digits(verdict.linear_regression_r_squared) +
+                "): a linear map would fly as well");
   }
   if (verdict.has_poor_motor()) {
-    warnings.add("one motor's commands are predicted worse than by their mean (R^2 " +
-                 four_digits(verdict.worst_motor_r_squared) + " on the test rows)");
+    report.warn("one motor's commands are predicted worse than by their mean (R^2 " +
+                four_digits(verdict.worst_motor_r_squared) + " on the test rows)");
   }
   return {};
 }
@@ -162,59 +149,6 @@ void export_network(const Options& options, const programs::Training& training, 
   std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), block.size());
 }
 
-/// report.json, as far as it is known.
-class TrainingReport {
- public:
-  TrainingReport(std::string path, const Options& options, const programs::Recipe& recipe,
-                 const std::vector<programs::LossName>& losses, const ContextAirframe<GivenAirframe>& airframe,
-                 const Dataset& dataset, const RowSplit& split)
-      : path_(std::move(path)), settings_(recipe.settings) {
-    settings_.update({{"version", PINNQUAD_VERSION},
-                      {"recipe", recipe.name},
-                      {"airframe", airframe.airframe_name()},
-                      {"epochs", options.epochs},
-                      {"first_seed", options.seed},
-                      {"seeds", options.seeds}});
-    for (const programs::LossName& loss : losses) settings_["losses"][loss.key] = loss.words;
-    settings_.update(programs::described(dataset, split));
-  }
-
-  void judged(const std::vector<programs::Result>& results, const std::vector<programs::LossName>& losses,
-              std::size_t finished) {
-    settings_["finished"] = finished;
-    results_ = results;
-    more_["models"][programs::linear_name] = programs::figures_over_seeds(results, programs::linear_name);
-    for (const programs::LossName& loss : losses) {
-      more_["models"][loss.key] = programs::figures_over_seeds(results, loss.title);
-    }
-  }
-  void best(const programs::Result& result, const Verdict& verdict, bool may_be_exported) {
-    verdict_ = {{"model", result.model},
-                {"seed", result.seed},
-                {"r2", verdict.test_r_squared},
-                {"worst_motor_r2", verdict.worst_motor_r_squared},
-                {"linear_regression_r2", verdict.linear_regression_r_squared},
-                {"worse_than_mean", verdict.worse_than_mean()},
-                {"beats_linear_regression", verdict.beats_linear_regression()},
-                {"exported", may_be_exported}};
-  }
-  /// Writes the file, whole. `reason`: why nothing is exported; what was exported has none.
-  void write(bool exported, const std::string& reason, const std::string& header, const std::string& block,
-             const Warnings& warnings) {
-    more_["exported"] = exported;
-    more_["not_exported_because"] = exported ? nlohmann::json() : nlohmann::json(reason);
-    more_["header"] = exported ? nlohmann::json(header) : nlohmann::json();
-    more_["block"] = exported && !block.empty() ? nlohmann::json(block) : nlohmann::json();
-    more_["warnings"] = warnings.texts();
-    programs::write_report(path_, settings_, results_, verdict_, more_);
-  }
-
- private:
-  std::string path_;
-  nlohmann::json settings_, verdict_, more_;
-  std::vector<programs::Result> results_;
-};
-
 int train_judge_export(const Options& options, const programs::Recipe& recipe,
                        const std::vector<programs::LossName>& losses, const programs::NamedAirframe& given,
                        const Dataset& dataset) {
@@ -222,8 +156,6 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
   programs::require_varied_commands(options.flights, dataset, split.train, "training");
   programs::require_varied_commands(options.flights, dataset, split.validation, "validation");
   programs::require_varied_commands(options.flights, dataset, split.test, "test");
-  Warnings warnings;
-  warn_of_still_features<PaperFeatures>(split.train, warnings);
   programs::TrainingPlan plan{
       {given.name, given.value},
       !programs::is_airframe_file(options.airframe),
@@ -233,6 +165,8 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
       options.seed,
       options.seeds,
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency())};
+  programs::TrainingReport report(options.out + "/report.json", recipe, plan, dataset);
+  warn_of_still_features<PaperFeatures>(split.train, report);
   programs::print_split(dataset, split);
   std::printf("      network %s; %s, batch %d, %d epochs, %d seeds\n", recipe.network.c_str(), recipe.optimizer.c_str(),
               recipe.settings.at("batch").get<int>(), options.epochs, options.seeds);
@@ -251,8 +185,7 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
   const programs::LossName& exported_loss = programs::exported_loss(plan.losses);
   const std::optional<std::size_t> best = programs::best_of(results, exported_loss.title);
   const std::string folder = options.out + "/";
-  TrainingReport report(folder + "report.json", options, recipe, losses, plan.airframe, dataset, split);
-  report.judged(results, plan.losses, trainings.size());
+  report.judged(results, trainings.size());
   Verdict verdict;
   if (best) {
     verdict = verdict_on(results[*best].test.errors, regression_r_squared);
@@ -277,13 +210,13 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
     const bool none = programs::over_seeds(results, exported_loss.title, programs::figures().front()).empty();
     const std::string reason = std::string("no ") + exported_loss.title + " network " +
                                (none ? "was finished" : "predicts finite commands on the validation rows");
-    report.write(false, reason, "", "", warnings);
+    report.write_not_exported(reason);
     programs::complain("train", reason + "; nothing to export" + earlier_export(options));
     return programs::interrupted() ? programs::exit_interrupted : programs::exit_failed;
   }
-  const std::string reason = reason_against_export(options, verdict, warnings);
+  const std::string reason = reason_against_export(options, verdict, report);
   // before the export: a disk that is full then costs the export alone
-  report.write(false, reason.empty() ? "the export was not finished" : reason, "", "", warnings);
+  report.write_not_exported(reason.empty() ? "the export was not finished" : reason);
   if (reason.empty()) {
     std::printf("[4/5] export\n");
     Provenance from{programs::flight_names(dataset),
@@ -295,7 +228,7 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
                     verdict};
     from.sample_period_s = sample_period_s(split.train);
     export_network(options, trainings[*best - 1], split, from);  // results[0] is the linearized model
-    report.write(true, "", folder + "model.hpp", options.block, warnings);
+    report.write_exported(folder + "model.hpp", options.block);
   } else {
     programs::complain("train", "not exported: " + reason + "; more epochs or a better flight, or --allow-poor" +
                                     earlier_export(options));
