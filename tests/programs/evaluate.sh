@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-# evaluate judges a block as the training judged the network that it was written from, and refuses what is no block of its own.
+# evaluate judges a block or a header as the training judged the network that it was written from, and refuses what is neither.
 source "$(dirname "$0")/common.sh" "$@"
 
 "$pinnquad" fly --seed 3 --samples 3000 --out flight.csv >/dev/null
 mkdir a
-"$pinnquad" train --flight flight.csv --out a --seeds 2 --epochs 8 --block a/model.block --allow-poor >/dev/null 2>&1
+"$pinnquad" train --flight flight.csv --out a --seeds 2 --epochs 8 --block a/model.block --allow-poor >/dev/null 2>a.txt
 code=0
 "$pinnquad" evaluate a/model.block --flight flight.csv --rows test --json >judged.json || code=$?
 python3 - a/report.json judged.json "$code" <<'EOF'
@@ -18,11 +18,52 @@ assert judged["mean_absolute_error"] == row["mae"] and judged["rmse"] == row["rm
 for axis in "roll", "pitch", "yaw":
     assert judged["pair_violations"][axis] == row[f"sign_violation_share_{axis}"], axis
     assert judged["slope_error"][axis] == row[f"slope_error_{axis}"], axis
-    assert 0 <= judged["wrong_derivative_share"][axis] <= 1, axis
 assert judged["rows"] == 600 and judged["airframe"] == "paper_quadrotor", judged
 assert judged["golden_difference"] == 0, judged["golden_difference"]
 assert int(sys.argv[3]) == (1 if verdict["worse_than_mean"] else 0), sys.argv[3]
+
+# the report for scripts: its names, each figure over the seeds, and that of the exported network as evaluate has it
+axes = ["pitch", "roll", "yaw"]
+plain, by_axis = ["mean_absolute_error", "rmse", "r2"], ["wrong_derivative_share", "pair_violations", "slope_error"]
+assert sorted(report["models"]) == ["linearized", "physics_informed", "vanilla"], list(report["models"])
+exported = [r["seed"] for r in report["results"] if r["model"] == verdict["model"]].index(verdict["seed"])
+for model, seeds in {"linearized": 1, "vanilla": 2, "physics_informed": 2}.items():
+    figures = report["models"][model]
+    assert sorted(figures) == sorted(plain + by_axis), list(figures)
+    of_all = [(name, figures[name], judged[name]) for name in plain]
+    for name in by_axis:
+        assert sorted(figures[name]) == axes, name
+        of_all += [(name, figures[name][axis], judged[name][axis]) for axis in axes]
+    for name, figure, of_one in of_all:
+        assert sorted(figure) == ["deviation", "mean", "per_seed"], figure
+        each = figure["per_seed"]
+        assert len(each) == seeds and abs(figure["mean"] - sum(each) / seeds) <= 1e-12, (model, name, figure)
+        if seeds == 1:
+            assert figure["deviation"] is None, figure
+        else:
+            assert abs(figure["deviation"] - abs(each[0] - each[1]) / 2**0.5) <= 1e-12, figure
+        if model == "physics_informed":
+            assert abs(each[exported] - of_one) <= 1e-6, (name, each, of_one)
+for axis in axes:
+    assert report["models"]["linearized"]["wrong_derivative_share"][axis]["mean"] == 0, axis
+assert report["exported"] is True and report["header"] == "a/model.hpp" and report["block"] == "a/model.block"
+assert report["not_exported_because"] is None
 EOF
+# of the header the same, but for what it is called
+"$pinnquad" evaluate a/model.hpp --flight flight.csv --rows test --json >header.json || [ $? -eq "$code" ] || fail "another exit code for a header"
+diff <(grep -v '"model": ' judged.json) <(grep -v '"model": ' header.json) || fail "a header is judged otherwise than its block"
+# what was printed as a warning stands in the report
+sed -n 's/^train: warning: //p' a.txt >warnings.txt
+python3 - a/report.json warnings.txt <<'EOF'
+import json, sys
+warnings = json.load(open(sys.argv[1]))["warnings"]
+printed = open(sys.argv[2]).read().splitlines()
+assert warnings == printed, (warnings, printed)
+EOF
+
+# derivatives by another program: a header's numbers, features and network written down anew, differences in double
+python3 "$source_dir/tests/programs/judgement/wrong_derivatives.py" a/model.hpp flight.csv judged.json ||
+  fail "the share of wrong derivatives is another one by finite differences"
 "$pinnquad" evaluate a/model.block --flight flight.csv --rows test >table.txt || [ $? -eq "$code" ] || fail "another exit code without --json"
 grep -q 'Dense<25>' table.txt || fail "does not name the network: $(cat table.txt)"
 
@@ -50,6 +91,8 @@ grep -q '^evaluate: a/model.block: worse than the mean of the commands' stderr.t
 refused() { expect_line 2 "$1" "$pinnquad" evaluate "$2" --flight flight.csv; }
 refused 'none.block: expected a readable file, found none' none.block
 refused 'flight.csv: expected a model block, as pinnquad train --block writes it, found something else' flight.csv
+cp flight.csv flight.hpp
+refused 'flight.hpp: expected a header that pinnquad train exported, found something else' flight.hpp
 head -c 20000 a/model.block >cut.block
 refused 'cut.block: expected a model block of [0-9]* bytes, found 20000' cut.block
 head -c 30 a/model.block >short.block

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <csignal>
 
+#include <unistd.h>
+
 namespace programs {
 
 constexpr int exit_interrupted = 130;
@@ -16,7 +18,15 @@ extern "C" inline void on_interrupt(int signal) {
   interrupt_wanted.store(true);
   std::signal(signal, SIG_DFL);
 }
+extern "C" inline void end_interrupted(int /*signal*/) { ::_exit(exit_interrupted); }
 }  // namespace detail
+
+/// From here on Ctrl-C (or SIGTERM) ends the program with exit_interrupted, at once: for what writes nothing that could be half
+/// there.
+inline void end_at_interrupt() {
+  std::signal(SIGINT, detail::end_interrupted);
+  std::signal(SIGTERM, detail::end_interrupted);
+}
 
 /// From here on the first Ctrl-C (or SIGTERM) only sets a flag.
 inline void catch_interrupt() {

@@ -8,11 +8,13 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/progress_line.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/data/split_flights.hpp"
@@ -25,7 +27,17 @@ inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std
   const bool one = paths.size() == 1;
   pinnquad::Dataset dataset;
   std::vector<std::uint64_t> hashes;
+  const auto bytes_of = [](const std::string& path) {  // of what is no file, or a pipe: none
+    std::error_code ignored;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, ignored);
+    return ignored ? 0.0 : static_cast<double>(bytes);
+  };
+  double all_bytes = 0, bytes_read = 0;
+  for (const std::string& path : paths) all_bytes += bytes_of(path);
+  ProgressLine progress("reading " + std::to_string(paths.size()) + (one ? " flight" : " flights"));
   for (const std::string& path : paths) {
+    progress.update(all_bytes > 0 ? bytes_read / all_bytes : 0);
+    bytes_read += bytes_of(path);
     pinnquad::Flight flight = pinnquad::read_flight_csv(path, one ? minimum_rows : pinnquad::minimum_flight_rows);
     pinnquad::require_plausible(path, flight);
     const std::uint64_t hash = pinnquad::content_hash(flight);

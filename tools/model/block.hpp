@@ -109,13 +109,13 @@ inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, 
 
 }  // namespace detail
 
-/// Reads and checks a block. Throws InputError: no block, cut short, changed, of a newer version, or of a kind that only
+/// Checks the bytes of a block and takes them apart; `path` is for messages. Throws InputError: no block, cut short, changed, of a newer version, or of a kind that only
 /// compiled code runs (windows, further columns, an answer added to a formula).
-inline Block read_block(const std::string& path) {
+inline Block read_block(const std::string& path, const std::string& content) {
   using Header = pinnquad::ModelBlockHeader;
   Block block;
   block.path = path;
-  const detail::BlockBytes bytes(path, pinnquad::file_text(path));
+  const detail::BlockBytes bytes(path, content);
   const char* what = "a model block, as pinnquad train --block writes it";
   if (bytes.size() < Header::size + Header::checksum_size ||
       std::memcmp(bytes.at(0), pinnquad::model_block_magic.data(), pinnquad::model_block_magic.size()) != 0) {
@@ -173,5 +173,7 @@ inline Block read_block(const std::string& path) {
   if (!finite) bytes.refuse("numbers", "NaN or Inf");
   return block;
 }
+
+inline Block read_block(const std::string& path) { return read_block(path, pinnquad::file_text(path)); }
 
 }  // namespace programs

@@ -10,8 +10,8 @@
 
 #include "airframe/choice.hpp"
 #include "model/block.hpp"
-#include "model/run_time_network.hpp"
 #include "pinnquad/inference/features.hpp"
+#include "training/run_time_network.hpp"
 
 namespace programs {
 

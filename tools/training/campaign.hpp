@@ -1,92 +1,110 @@
 // SPDX-License-Identifier: MIT
-// Trains every kind of network from every seed, over the cores, with progress; Ctrl-C keeps what is finished.
+// Trains a network type under every loss that is asked for, from every seed, over the cores, with progress; Ctrl-C keeps what is
+// finished. The body of a recipe.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
+#include "pinnquad/loss/pearson_correlation.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
-#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/schedule/constant.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
+#include "training/best_recipe.hpp"
+#include "training/recipe.hpp"
 
 namespace programs {
 
-/// The paper's network and its two losses.
-using PaperNetwork = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::PaperFeatures::size>, pinnquad::Hidden<10, 25>,
-                                   pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
-using VanillaLoss = pinnquad::Mse;
-using PhysicsLoss = pinnquad::PaperLoss<pinnquad::CyclicalAnnealing>;
+/// Features and airframe of every recipe.
+using TrainingContext = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::GivenAirframe>;
+using TrainingRows =
+    pinnquad::TrainingData<float, pinnquad::PaperFeatures::size, pinnquad::OutputMap<pinnquad::CommandOutputs>::size>;
 
-enum class Kind { vanilla, physics_informed };
-
-inline const char* kind_name(Kind kind) { return kind == Kind::vanilla ? "vanilla" : "physics-informed"; }
-
-/// A finished training.
-struct Training {
-  Kind kind = Kind::vanilla;
-  std::uint64_t seed = 0;
-  PaperNetwork network{};
-  double training_s = 0;
-};
-
-/// One network, start to end. A seed gives initialisation and batch order, alike for both losses. False if interrupted.
-template <class Loss, class Context, class Data>
-bool train_one(const Context& context, const Data& data, int epochs, Training& training,
-               std::atomic<long>& epochs_done) {
-  using Trainer = pinnquad::Trainer<PaperNetwork, Loss, pinnquad::Adam, Context>;
+/// One network, start to end. A seed gives initialisation and batch order, alike for all losses. False if interrupted.
+template <class Network, class Loss, class Optimizer>
+bool train_one(const TrainingContext& context, const TrainingRows& data, const Loss& loss, const Optimizer& optimizer,
+               int epochs, std::atomic<long>& epochs_done, Training& training, Network& trained) {
+  using Trainer = pinnquad::Trainer<Network, Loss, Optimizer, TrainingContext, pinnquad::ShuffledBatches, batch_size>;
   const auto start = std::chrono::steady_clock::now();
   std::mt19937_64 engine(training.seed);
-  const auto network = pinnquad::initialised<PaperNetwork>(engine);
-  const auto trainer = std::make_unique<Trainer>(network, Loss{}, pinnquad::Adam{}, context);
+  const auto network = pinnquad::initialised<Network>(engine);
+  const auto trainer = std::make_unique<Trainer>(network, loss, optimizer, context);
   for (int epoch = 0; epoch < epochs; ++epoch) {
     if (interrupted()) return false;
     trainer->epoch(data, {epoch, epochs}, engine);
     epochs_done.fetch_add(1);
   }
-  training.network = trainer->network();
+  trained = trainer->network();
   training.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;
 }
 
-/// All trainings that were finished, in the order of kind and seed.
-template <class Context, class Data>
-std::vector<Training> train_all(const Context& context, const Data& data, int epochs, std::uint64_t first_seed,
-                                int seeds, unsigned threads) {
+template <class Axis>
+using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnquad::CyclicalAnnealing>;
+using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
+                                              PearsonTerm<pinnquad::Yaw>>;
+
+/// `Parts` is what differs between recipes: type Network; losses annealed(), constant(), pearson(); optimisers vanilla_optimizer()
+/// and informed_optimizer().
+template <class Parts>
+std::vector<Training> train_all(const TrainingPlan& plan) {
+  using Network = typename Parts::Network;
+  const auto context = pinnquad::make_context<TrainingContext>(plan.split.train, plan.airframe);
+  const auto data = pinnquad::standardised<float>(context, plan.split.train);
   std::vector<Training> jobs;
-  for (int i = 0; i < seeds; ++i) {
-    for (const Kind kind : {Kind::vanilla, Kind::physics_informed}) {
-      jobs.push_back({kind, first_seed + static_cast<std::uint64_t>(i), {}, 0});
+  for (int i = 0; i < plan.seeds; ++i) {
+    for (const LossName& loss : plan.losses) {
+      jobs.push_back({loss, plan.first_seed + static_cast<std::uint64_t>(i), 0, nullptr});
     }
   }
-  std::vector<char> finished(jobs.size(), 0);
   std::atomic<long> epochs_done{0};
-  const double all_epochs = static_cast<double>(jobs.size()) * epochs;
+  const double all_epochs = static_cast<double>(jobs.size()) * plan.epochs;
   run_parallel(
-      "training " + std::to_string(jobs.size()) + " networks", jobs.size(), threads,
+      "training " + std::to_string(jobs.size()) + " networks", jobs.size(), plan.threads,
       [&] { return static_cast<double>(epochs_done.load()) / all_epochs; },
       [&](std::size_t i) {
-        const bool done = jobs[i].kind == Kind::vanilla
-                              ? train_one<VanillaLoss>(context, data, epochs, jobs[i], epochs_done)
-                              : train_one<PhysicsLoss>(context, data, epochs, jobs[i], epochs_done);
-        finished[i] = done ? 1 : 0;
-        return done;
+        Training& job = jobs[i];
+        const auto network = std::make_unique<Network>();
+        const auto trained = [&](const auto& loss, const auto& optimizer) {
+          return train_one(context, data, loss, optimizer, plan.epochs, epochs_done, job, *network);
+        };
+        const std::string key = job.loss.key;
+        const bool done = key == "vanilla"           ? trained(pinnquad::Mse{}, Parts::vanilla_optimizer())
+                          : key == "constant_weight" ? trained(Parts::constant(), Parts::informed_optimizer())
+                          : key == "pearson"         ? trained(Parts::pearson(), Parts::informed_optimizer())
+                                                     : trained(Parts::annealed(), Parts::informed_optimizer());
+        if (!done) return false;
+        const auto model = pinnquad::make_trained_model(*network, context, plan.split.train);
+        using Model = std::decay_t<decltype(model)>;
+        job.network = std::make_shared<NetworkOfModel<Model>>(model, plan.library_airframe);
+        return true;
       });
 
   std::vector<Training> done;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (finished[i] != 0) done.push_back(jobs[i]);
+  for (const LossName& loss : plan.losses) {
+    for (const Training& job : jobs) {
+      if (job.network && job.loss.key == loss.key) done.push_back(job);
+    }
   }
-  std::stable_sort(done.begin(), done.end(), [](const Training& a, const Training& b) { return a.kind < b.kind; });
   return done;
+}
+
+/// "16 -> 10 x 25 ReLU -> 4, 6379 parameters": the words are the middle.
+template <class Network>
+std::string network_in_words(const std::string& hidden) {
+  return std::to_string(Network::inputs) + " -> " + hidden + " -> " + std::to_string(Network::outputs) + ", " +
+         std::to_string(Network::parameter_count) + " parameters";
 }
 
 }  // namespace programs

@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
@@ -31,6 +29,9 @@ using Predictions = std::vector<std::array<double, pinnquad::rotor_count>>;
 struct Judgement {
   pinnquad::PredictionErrors<pinnquad::rotor_count> errors;
   std::array<pinnquad::PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
+  /// Roll, pitch, yaw: see wrong_derivative_shares() (training/derivatives.hpp); NaN until it was asked.
+  std::array<double, 3> wrong_derivative_share = {pinnquad::not_a_number, pinnquad::not_a_number,
+                                                  pinnquad::not_a_number};
 };
 
 /// Signed command sum and angular acceleration about one axis, row by row.
@@ -234,28 +235,6 @@ inline void write_results(const std::string& path, const std::vector<Result>& re
   }
   pinnquad::AtomicFile file(path);
   file.stream() << text;
-  file.commit();
-}
-
-/// report.json: settings, every result, and what became of the best network (null if none was finished). A figure that is not
-/// finite is null.
-inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results,
-                         nlohmann::json verdict) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const Result& result : results) {
-    nlohmann::json row = {{"model", result.model}, {"seed", result.seed}};
-    for (const Figure& figure : figures()) row[figure.name] = figure.of(result.test, figure.index);
-    row["validation_mae"] = result.validation_error;
-    row["training_s"] = result.training_s;
-    rows.push_back(std::move(row));
-  }
-  pinnquad::AtomicFile file(path);
-  file.stream() << nlohmann::json{{"settings", std::move(settings)},
-                                  {"results", std::move(rows)},
-                                  {"verdict", std::move(verdict)}}
-                       .dump(2, ' ', false,
-                             nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
-                << "\n";
   file.commit();
 }
 

@@ -9,6 +9,7 @@
 
 #include "data/temporary_folder.hpp"
 #include "training/judgement.hpp"
+#include "training/training_report.hpp"
 
 namespace {
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A network that is known at run time alone: layers from the text of a description (inference/description.hpp), the sums in the
-// order of the portable kernel. For judging on the ground; what flies is compiled.
+// order of the portable kernel; and its derivatives. For judging on the ground; what flies is compiled.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <string>
@@ -25,6 +27,7 @@ template <class Scalar>
 struct Activation {
   const char* description;
   Scalar (*activate)(Scalar);
+  Scalar (*slope)(Scalar v);  ///< d activate / d v
 };
 
 namespace detail {
@@ -32,7 +35,11 @@ namespace detail {
 template <class Spec, class Scalar>
 Activation<Scalar> activation_of() {
   using Layer = typename Spec::template Bind<Scalar, 1>;
-  return {Spec::description, [](Scalar v) { return Layer::activate(v); }};
+  return {Spec::description, [](Scalar v) { return Layer::activate(v); },
+          [](Scalar v) {
+            return pinnquad::detail::scaled_by_slope<Layer>(pinnquad::slopes_from_input<Layer> ? v : Layer::activate(v),
+                                                            Scalar(1));
+          }};
 }
 
 }  // namespace detail
@@ -139,20 +146,41 @@ class RunTimeNetwork {
     for (const double parameter : parameters) parameters_.push_back(static_cast<Scalar>(parameter));
   }
 
-  std::vector<Scalar> forward(std::vector<Scalar> x) const {
+  std::vector<Scalar> forward(const std::vector<Scalar>& x) const {
+    std::vector<std::array<Scalar, 1>> values(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) values[i][0] = x[i];
+    values = pushed_forward(std::move(values));
+    std::vector<Scalar> y(values.size());
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = values[i][0];
+    return y;
+  }
+
+  /// The same with derivatives, exact, of the value that stands first in each entry: those of x in, those of y out. At the kink
+  /// of a ReLU it is the derivative from below, 0, as in nn/jacobian.hpp.
+  template <std::size_t Count>
+  std::vector<std::array<Scalar, Count>> pushed_forward(std::vector<std::array<Scalar, Count>> x) const {
     const Scalar* own = parameters_.data();
     for (const LayerSpec& layer : spec_.layers) {
       if (layer.size == 0) {
-        for (Scalar& v : x) v = activations<Scalar>()[layer.activation].activate(v);
+        const Activation<Scalar>& activation = activations<Scalar>()[layer.activation];
+        for (std::array<Scalar, Count>& entry : x) {
+          if constexpr (Count > 1) {
+            const Scalar slope = activation.slope(entry[0]);
+            for (std::size_t k = 1; k < Count; ++k) entry[k] *= slope;
+          }
+          entry[0] = activation.activate(entry[0]);
+        }
         continue;
       }
       const auto rows = static_cast<std::size_t>(layer.size);
       const Scalar* bias = own + rows * x.size();
-      std::vector<Scalar> y(rows, Scalar(0));
+      std::vector<std::array<Scalar, Count>> y(rows);
       for (std::size_t row = 0; row < rows; ++row) {
-        Scalar sum = layer.has_bias ? bias[row] : Scalar(0);
+        std::array<Scalar, Count> sum{};
+        if (layer.has_bias) sum[0] = bias[row];
         for (std::size_t column = 0; column < x.size(); ++column) {
-          sum = pinnquad::multiply_add(own[row * x.size() + column], x[column], sum);
+          const Scalar weight = own[row * x.size() + column];
+          for (std::size_t k = 0; k < Count; ++k) sum[k] = pinnquad::multiply_add(weight, x[column][k], sum[k]);
         }
         y[row] = sum;
       }

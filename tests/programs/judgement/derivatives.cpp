@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// The derivatives by which a wrong sign is counted, against finite differences of the library's own network in double and against
+// Eq. (2) and (3) by hand.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "pinnquad/dynamics/airframes/crazyflie.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/trained_model.hpp"
+#include "training/derivatives.hpp"
+#include "training/model_figures.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+/// Rows in flight, each entry within a usual range.
+std::vector<Sample> samples(std::size_t count, std::mt19937_64& engine) {
+  std::uniform_real_distribution<double> any(-1, 1);
+  std::vector<Sample> rows(count);
+  for (Sample& row : rows) {
+    for (int i = 0; i < 3; ++i) {
+      row.linear_acceleration_m_s2[i] = 5 * any(engine);
+      row.angular_acceleration_rad_s2[i] = 20 * any(engine);
+      row.velocity_m_s[i] = 4 * any(engine);
+      row.body_rates_rad_s[i] = 3 * any(engine);
+    }
+    row.roll_rad = 0.5 * any(engine);
+    row.pitch_rad = 0.5 * any(engine);
+    row.yaw_rad = 3 * any(engine);
+    row.commands = {0.5, 0.5, 0.5, 0.5};
+  }
+  return rows;
+}
+
+/// The model's commands by its own arithmetic, in double.
+template <class Network, class Outputs>
+void check_against_differences(const char* what) {
+  CAPTURE(what);
+  using Context = pinnquad::Context<PaperFeatures, Crazyflie, Outputs>;
+  std::mt19937_64 engine(7);
+  TrainedModel<Network, Context> model;
+  model.network = initialised<Network>(engine);
+  TrainedModel<typename Network::template Rebind<double>, Context> wide;
+  std::uniform_real_distribution<double> spread(0.5, 3);
+  for (std::size_t i = 0; i < model.input.mean.size(); ++i) {
+    wide.input.spread[i] = model.input.spread[i] = static_cast<float>(spread(engine));
+    wide.input.mean[i] = model.input.mean[i] = static_cast<float>(spread(engine) - 1);
+  }
+  for (std::size_t i = 0; i < model.output.mean.size(); ++i) {
+    wide.output.spread[i] = model.output.spread[i] = static_cast<float>(spread(engine));
+    wide.output.mean[i] = model.output.mean[i] = static_cast<float>(3 + spread(engine));
+  }
+  for (std::size_t i = 0; i < model.network.parameters.size(); ++i) {
+    wide.network.parameters[i] = model.network.parameters[i];
+  }
+  const std::array<std::array<double, rotor_count>, 3> signs = {
+      model.template signs<Roll>(), model.template signs<Pitch>(), model.template signs<Yaw>()};
+  const auto derivatives = programs::derivatives_of(model);
+  int both_signs[2] = {0, 0};
+  for (const Sample& row : samples(50, engine)) {
+    const programs::AxisDerivatives found = derivatives(row);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      CAPTURE(axis);
+      // small: a kink of ReLU in between is not to be expected
+      constexpr double step = 1e-6;
+      auto above = sample_features<PaperFeatures, double>(row), below = above;
+      above[3 + axis] += step;  // wdot_x, wdot_y, wdot_z stand behind v_dot
+      below[3 + axis] -= step;
+      const double slope =
+          (signed_sum(signs[axis], wide.predict(above)) - signed_sum(signs[axis], wide.predict(below))) / (2 * step);
+      CHECK(found[axis] == doctest::Approx(slope).epsilon(1e-5).scale(1e-3));
+      ++both_signs[slope < 0 ? 1 : 0];
+    }
+  }
+  CHECK(both_signs[0] > 10);
+  CHECK(both_signs[1] > 10);
+}
+
+template <class Activation>
+using Net = Mlp<float, InputSize<16>, Hidden<3, 12>, OutputSize<4>, Activation>;
+
+}  // namespace
+
+TEST_CASE("derivatives of a network are its finite differences") {
+  check_against_differences<Net<Tanh>, CommandOutputs>("tanh");
+  check_against_differences<Net<Gelu>, CommandOutputs>("gelu");
+  check_against_differences<Net<Relu>, CommandOutputs>("ReLU");
+  check_against_differences<Net<Tanh>, RotorSpeedOutputs>("tanh, rotor speeds");
+}
+
+TEST_CASE("model 1 commands J / (lever x thrust) per angular acceleration") {
+  constexpr Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
+  const ContextAirframe<GivenAirframe> given("paper", airframe);
+  const programs::LinearDerivatives derivatives(given);
+  std::mt19937_64 engine(3);
+  for (const Sample& row : samples(5, engine)) {
+    const Site<double> site = paper_site<double>();
+    const double scale =
+        standard_atmosphere_density_kg_m3(site.elevation_m + row.altitude_m) / standard_air_density_kg_m3<double>;
+    const double thrust_N = scale * airframe.max_rotor_thrust_N();
+    const programs::AxisDerivatives found = derivatives(row);
+    CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
+    CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));
+    CHECK(found[2] == doctest::Approx(airframe.inertia_kg_m2[2] / (scale * airframe.max_rotor_torque_N_m())));
+  }
+}
+
+TEST_CASE("the share counts rows below 0; what is not finite is told") {
+  std::mt19937_64 engine(3);
+  Flight flight;
+  for (const Sample& sample : samples(4, engine)) flight.push_back(sample);
+  const RowSet rows(flight, {0, 4});
+  int row = 0;
+  const auto shares = programs::wrong_derivative_shares(rows, [&row](const Sample&) {
+    ++row;
+    return programs::AxisDerivatives{row == 2 ? -1e-9 : 0.0, row < 4 ? -2.0 : 1.0, row == 1 ? std::nan("") : 1.0};
+  });
+  CHECK(shares[0] == 0.25);
+  CHECK(shares[1] == 0.75);
+  CHECK(std::isnan(shares[2]));
+  CHECK(
+      std::isnan(programs::wrong_derivative_shares({}, [](const Sample&) { return programs::AxisDerivatives{}; })[0]));
+}
+
+TEST_CASE("figures over seeds: mean, deviation and each; null where one is not finite") {
+  std::vector<programs::Result> results(4);
+  const double errors[] = {0.1, 0.2, 0.6};
+  for (std::size_t i = 0; i < 3; ++i) {
+    results[i].model = "a";
+    results[i].test.errors.mean.mean_absolute = errors[i];
+    results[i].test.wrong_derivative_share = {0.5, 0.25 * static_cast<double>(i), std::nan("")};
+  }
+  results[3].model = "b";
+  results[3].test.errors.mean.mean_absolute = 7;
+  // as a reader of the file has it
+  const nlohmann::json a = nlohmann::json::parse(programs::figures_over_seeds(results, "a").dump());
+  CHECK(a["mean_absolute_error"]["mean"] == doctest::Approx(0.3));
+  CHECK(a["mean_absolute_error"]["deviation"] == doctest::Approx(std::sqrt(0.07)));
+  CHECK(a["mean_absolute_error"]["per_seed"] == nlohmann::json({0.1, 0.2, 0.6}));
+  CHECK(a["wrong_derivative_share"]["roll"]["deviation"] == 0);
+  CHECK(a["wrong_derivative_share"]["pitch"]["mean"] == 0.25);
+  CHECK(a["wrong_derivative_share"]["yaw"]["mean"].is_null());
+  CHECK(a["wrong_derivative_share"]["yaw"]["per_seed"][1].is_null());
+  const nlohmann::json b = nlohmann::json::parse(programs::figures_over_seeds(results, "b").dump());
+  CHECK(b["mean_absolute_error"]["mean"] == 7);
+  CHECK(b["mean_absolute_error"]["deviation"].is_null());
+}

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+# Recipes and losses by name: what is trained is what the report says, and what it was trained with is exported and judged.
+source "$(dirname "$0")/common.sh" "$@"
+
+"$pinnquad" fly --seed 3 --samples 2500 --out flight.csv >/dev/null
+train() { "$pinnquad" train --flight flight.csv --seeds 1 --epochs 3 --threads 1 --allow-poor "$@" >/dev/null 2>stderr.txt; }
+train --out default
+train --out paper --recipe paper --loss physics_informed --loss vanilla
+train --out best --recipe best
+train --out small --recipe small --loss pearson,constant_weight --block small/model.block
+figures() { sed 's/,[^,]*$//' "$1/results.csv"; } # the last column is a time
+diff <(figures default) <(figures paper) || fail "the default is not the paper's recipe with its two losses"
+cmp default/model.hpp paper/model.hpp || fail "the order in which losses are named changes the export"
+! diff -q <(figures default) <(figures best) >/dev/null || fail "the recipes paper and best train alike"
+
+"$pinnquad" evaluate small/model.hpp --flight flight.csv --rows test --json >small.json || [ $? -eq 1 ]
+"$pinnquad" evaluate small/model.block --flight flight.csv --rows test --json >block.json || [ $? -eq 1 ]
+diff <(grep -v '"model": ' small.json) <(grep -v '"model": ' block.json) || fail "header and block of one network are judged otherwise"
+python3 - <<'PYTHON'
+import json
+read = lambda folder: json.load(open(folder + "/report.json"))
+paper, best, small = (read(folder) for folder in ("paper", "best", "small"))
+assert list(map(lambda r: r["settings"]["recipe"], (paper, best, small))) == ["paper", "best", "small"]
+assert paper["settings"]["network"] == best["settings"]["network"] == "10 x 25 ReLU", paper["settings"]
+assert paper["settings"]["learning_rate"] == 1e-3 and paper["settings"]["learning_rate_schedule"] == "constant"
+for report in best, small:
+    settings = report["settings"]
+    assert settings["learning_rate"] == 3e-3 and "cosine" in settings["learning_rate_schedule"], settings
+    assert settings["weight_decay"] == {"vanilla": 1e-4, "physics_informed": 3e-4}, settings
+assert small["settings"]["network"] == "2 x 32 ReLU"
+assert sorted(small["models"]) == ["constant_weight", "linearized", "pearson"], list(small["models"])
+assert sorted(small["settings"]["losses"]) == ["constant_weight", "pearson"]
+assert sorted(paper["models"]) == sorted(best["models"]) == ["linearized", "physics_informed", "vanilla"]
+# the loss named first in the list of losses is the one that is exported where physics_informed was not asked for
+assert small["verdict"]["model"] == "constant weight", small["verdict"]
+judged = json.load(open("small.json"))
+assert "Dense<32>" in judged["answer"] and judged["answer"].count("Dense<") == 3, judged["answer"]
+assert abs(small["models"]["constant_weight"]["rmse"]["mean"] - judged["rmse"]) <= 1e-6
+for axis in "roll", "pitch", "yaw":
+    a, b = small["models"]["constant_weight"]["wrong_derivative_share"][axis], judged["wrong_derivative_share"][axis]
+    assert abs(a["mean"] - b) <= 1e-6, (axis, a, b)
+PYTHON
+grep -q 'constant weight' small/model.hpp || fail "the header does not say its loss: $(grep -n loss small/model.hpp)"
+
+mkdir out
+refused() { expect_line 2 "$1" "$pinnquad" train --flight flight.csv --out out --epochs 1 --seeds 1 "${@:2}"; }
+refused "^train: no recipe named 'worst'; known: paper, best, small$" --recipe worst
+refused "^train: --loss: no loss named 'mse'; known: vanilla, physics_informed, constant_weight, pearson$" --loss vanilla,mse
+[ -z "$(ls -A out)" ] || fail "something was left in the output folder: $(ls -A out)"
+"$pinnquad" train --help >help.txt
+for word in paper best small vanilla physics_informed constant_weight pearson 130; do grep -q "$word" help.txt || fail "help does not name $word"; done

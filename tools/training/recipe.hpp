@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// How `train` trains: a network, an optimiser and what each loss is made of, compiled. All recipes stand in `recipes()`; each is a
+// translation unit of its own, recipe_<name>.cpp, in a few lines of types (training/campaign.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/training/context_airframe.hpp"
+#include "training/losses.hpp"
+#include "training/trained_network.hpp"
+
+namespace programs {
+
+/// What is to be trained, on what.
+struct TrainingPlan {
+  pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;
+  bool library_airframe = false;  ///< see NetworkOfModel
+  const pinnquad::RowSplit& split;
+  std::vector<LossName> losses;
+  int epochs = 0;
+  std::uint64_t first_seed = 1;
+  int seeds = 1;
+  unsigned threads = 1;
+};
+
+/// A finished training.
+struct Training {
+  LossName loss{};
+  std::uint64_t seed = 0;
+  double training_s = 0;
+  std::shared_ptr<const TrainedNetwork> network;
+};
+
+struct Recipe {
+  const char* name;
+  const char* summary;      ///< for --help
+  std::string network;      ///< "16 -> 10 x 25 ReLU -> 4, 6379 parameters"
+  std::string optimizer;    ///< "Adam"
+  nlohmann::json settings;  ///< the facts, for report.json
+  /// All trainings that were finished, in the order of loss and seed; Ctrl-C keeps what is finished.
+  std::vector<Training> (*train)(const TrainingPlan&);
+};
+
+Recipe paper_recipe();
+Recipe best_recipe();
+Recipe small_recipe();
+
+/// The first is the default.
+inline constexpr std::array<Recipe (*)(), 3> recipes = {paper_recipe, best_recipe, small_recipe};
+
+/// Throws std::invalid_argument, one line, for a name that is none.
+inline Recipe chosen_recipe(const std::string& name) {
+  std::string known;
+  for (const auto& make : recipes) {
+    Recipe recipe = make();
+    if (name == recipe.name) return recipe;
+    known += (known.empty() ? "" : ", ") + std::string(recipe.name);
+  }
+  throw std::invalid_argument("no recipe named '" + name + "'; known: " + known);
+}
+
+}  // namespace programs

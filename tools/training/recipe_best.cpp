@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// The recipe `best`: the network without batch norm and the training that did best in the study's search (training/best_recipe.hpp).
+#include "training/best_parts.hpp"
+
+namespace programs {
+
+Recipe best_recipe() {
+  using Network = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::PaperFeatures::size>, pinnquad::Hidden<10, 25>,
+                                pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
+  constexpr const char* hidden = "10 x 25 ReLU";
+  return {"best",
+          "10 x 25 ReLU, as the study trains: Adam with cosine decay, each loss with the weight decay that suits it",
+          network_in_words<Network>(hidden),
+          best::optimizer_name,
+          best::settings(hidden),
+          train_all<best::Parts<Network>>};
+}
+
+}  // namespace programs

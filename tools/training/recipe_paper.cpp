@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// The recipe `paper`: the network and the losses of the paper (Sec. 5.2), the library's defaults where it is silent.
+#include "training/campaign.hpp"
+
+namespace programs {
+
+namespace {
+
+struct Paper {
+  using Network = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::PaperFeatures::size>, pinnquad::Hidden<10, 25>,
+                                pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
+  static pinnquad::Adam vanilla_optimizer() { return {}; }
+  static pinnquad::Adam informed_optimizer() { return {}; }
+  static pinnquad::PaperLoss<pinnquad::CyclicalAnnealing> annealed() { return {}; }
+  static PearsonLoss pearson() { return {}; }
+  static pinnquad::PaperLoss<pinnquad::Constant> constant() {
+    pinnquad::PaperLoss<pinnquad::Constant> loss;
+    std::apply([](auto&... term) { ((term.schedule = {pinnquad::CyclicalAnnealing{}.maximum}), ...); }, loss.terms);
+    return loss;
+  }
+};
+
+}  // namespace
+
+Recipe paper_recipe() {
+  const pinnquad::Adam adam;
+  const pinnquad::CyclicalAnnealing annealing;
+  return {"paper",
+          "10 x 25 ReLU, Adam at a constant rate: the paper's (default)",
+          network_in_words<Paper::Network>("10 x 25 ReLU"),
+          "Adam",
+          {{"network", "10 x 25 ReLU"},
+           {"batch", batch_size},
+           {"optimizer", "Adam, coupled weight decay"},
+           {"learning_rate", adam.learning_rate},
+           {"learning_rate_schedule", "constant"},
+           {"weight_decay", adam.weight_decay},
+           {"lambda_max", annealing.maximum},
+           {"cycles", annealing.cycles},
+           {"hold", annealing.hold},
+           {"step_gain", pinnquad::TanhStep{}.gain}},
+          train_all<Paper>};
+}
+
+}  // namespace programs

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// A trained network, its type erased: what judging and exporting ask of it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "airframe/names.hpp"
+#include "pinnquad/data/atomic_file.hpp"
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/training/trained_model.hpp"
+#include "training/derivatives.hpp"
+#include "training/model_predictions.hpp"
+
+namespace programs {
+
+class TrainedNetwork {
+ public:
+  virtual ~TrainedNetwork() = default;
+  virtual Predictions predictions(const pinnquad::RowSet& rows) const = 0;
+  /// See wrong_derivative_shares().
+  virtual std::array<double, 3> wrong_derivatives(const pinnquad::RowSet& rows) const = 0;
+  /// Writes `struct <name>` into a header. Golden vectors are taken of the training rows.
+  virtual void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
+                            const pinnquad::Provenance& provenance) const = 0;
+  virtual std::vector<unsigned char> block(const pinnquad::RowSet& training,
+                                           const pinnquad::Provenance& provenance) const = 0;
+  /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per sample:
+  /// v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4).
+  virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
+};
+
+namespace detail {
+
+/// Evenly spaced training rows: inside the envelope by construction.
+template <class Model>
+std::vector<typename Model::FeatureVector> golden_features(const pinnquad::RowSet& rows) {
+  constexpr std::size_t golden_count = 8;
+  std::vector<typename Model::FeatureVector> golden;
+  for (std::size_t i = 0; i < golden_count; ++i) {
+    const std::size_t row = i * (rows.size() - 1) / (golden_count - 1);
+    golden.push_back(pinnquad::sample_features<typename Model::Features, typename Model::Scalar>(rows[row]));
+  }
+  return golden;
+}
+
+}  // namespace detail
+
+/// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by name, which an
+/// export names by its type.
+template <class Model>
+class NetworkOfModel : public TrainedNetwork {
+ public:
+  NetworkOfModel(const Model& model, bool library_airframe) : model_(model), library_airframe_(library_airframe) {}
+
+  Predictions predictions(const pinnquad::RowSet& rows) const override { return network_predictions(model_, rows); }
+  std::array<double, 3> wrong_derivatives(const pinnquad::RowSet& rows) const override {
+    return wrong_derivative_shares(rows, derivatives_of(model_));
+  }
+  void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
+                    const pinnquad::Provenance& provenance) const override {
+    with_exported([&](const auto& model) {
+      pinnquad::write_model_header(path, name, model, detail::golden_features<Model>(training), provenance);
+    });
+  }
+  std::vector<unsigned char> block(const pinnquad::RowSet& training,
+                                   const pinnquad::Provenance& provenance) const override {
+    std::vector<unsigned char> bytes;
+    with_exported([&](const auto& model) {
+      bytes = pinnquad::model_block(model, detail::golden_features<Model>(training), provenance);
+    });
+    return bytes;
+  }
+  void write_replay(const std::string& path, const pinnquad::RowSet& rows) const override {
+    using Inputs = pinnquad::MotionInputs<typename Model::Scalar>;
+    pinnquad::AtomicFile file(path);
+    file.stream() << "pinnquad-replay 1 " << rows.size() << " 24\n";
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const pinnquad::Sample& sample = rows[row];
+      const Inputs in = pinnquad::SampleInputs<Inputs>::from(sample);
+      const auto predicted = model_.predict(sample);
+      std::string line;
+      const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + pinnquad::number_text(value); };
+      for (const auto* vector :
+           {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s, &in.body_rates_rad_s}) {
+        for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
+      }
+      for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z}) add(static_cast<double>(v));
+      for (const auto u : predicted) add(static_cast<double>(u));
+      for (const double u : sample.commands) add(u);
+      file.stream() << line << '\n';
+    }
+    file.commit();
+  }
+
+ private:
+  /// Calls `use` with the model of the airframe's own type, or of the value.
+  template <class Use>
+  void with_exported(const Use& use) const {
+    if (!library_airframe_) return use(model_);
+    with_airframe(model_.airframe_name(), [&](auto tag) {
+      using Context = pinnquad::Context<typename Model::Features, typename decltype(tag)::type>;
+      pinnquad::TrainedModel<typename Model::Network, Context> named;
+      named.network = model_.network;
+      named.input = model_.input;
+      named.output = model_.output;
+      named.envelope_lower = model_.envelope_lower;
+      named.envelope_upper = model_.envelope_upper;
+      use(named);
+    });
+  }
+
+  Model model_;
+  bool library_airframe_;
+};
+
+}  // namespace programs
