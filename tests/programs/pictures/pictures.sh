@@ -27,8 +27,8 @@ rising() {
 }
 # plot <picture> <id>: what gnuplot drew as that curve
 plot() { sed -n "/<g id=\"gnuplot_plot_$2\"/,/<g id=\"gnuplot_plot_/p" "$1" | sed '$d'; }
-# colour: the first of a curve that is read, as "r g b"
-colour() { sed -n 's/.*\(stroke\|fill\|color\) *= *["'"'"']rgb( *\([0-9]*\), *\([0-9]*\), *\([0-9]*\)).*/\2 \3 \4/p' | awk 'NR == 1'; }
+# colour: of the curve that is read, not of its name in the key, as "r g b"
+colour() { sed -n '/<g transform/d; s/.*\(stroke\|fill\|color\) *= *["'"'"']rgb( *\([0-9]*\), *\([0-9]*\), *\([0-9]*\)).*/\2 \3 \4/p' | awk 'NR == 1'; }
 # stands_out <picture> <id> <what>: 3:1 against white, as graphical objects need
 stands_out() {
   plot "$1" "$2" | colour >colour.txt
