@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -13,10 +14,12 @@
 #include "flight/axis_motion.hpp"
 #include "flight/trace.hpp"
 #include "pictures/gnuplot.hpp"
+#include "pictures/viridis.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
+#include "pinnquad/simulation/switchable_quadrotor.hpp"
 
 namespace programs {
 
@@ -61,21 +64,25 @@ inline std::string shaded_split(const std::vector<double>& time_s, bool named) {
   return out.str();
 }
 
-/// The palette of plot_trajectory at a share of its range.
-inline std::string speed_colour(double share) {
-  struct Stop {
-    double at, red, green, blue;
-  };
-  constexpr std::array<Stop, 4> stops = {
-      {{0, 0x2b, 0x3a, 0x8c}, {0.3, 0x2a, 0x9d, 0x8f}, {0.6, 0xe9, 0xb4, 0x4c}, {1, 0xb3, 0x26, 0x1e}}};
-  std::size_t i = 1;
-  while (i + 1 < stops.size() && share > stops[i].at) ++i;
-  const Stop &a = stops[i - 1], &b = stops[i];
-  const double part = (share - a.at) / (b.at - a.at);
-  char text[16];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", static_cast<unsigned>(a.red + part * (b.red - a.red)),
-                static_cast<unsigned>(a.green + part * (b.green - a.green)),
-                static_cast<unsigned>(a.blue + part * (b.blue - a.blue)));
+/// The ends of an axis, whole steps around the flight, so that a wall stands where its axis says.
+struct Wall {
+  double least = 0, most = 0;
+};
+template <class Get>
+Wall wall(const std::vector<TraceRow>& trace, const Get& get) {
+  double least = get(trace.front()), most = least;
+  for (const TraceRow& row : trace) {
+    least = std::min(least, get(row));
+    most = std::max(most, get(row));
+  }
+  const double step_m = most - least > 40 ? 10 : (most - least > 4 ? 1 : 0.1);
+  const Wall ends{step_m * std::floor(least / step_m), step_m * std::ceil(most / step_m)};
+  return ends.least < ends.most ? ends : Wall{ends.least, ends.least + step_m};
+}
+
+inline std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
   return text;
 }
 
@@ -83,10 +90,11 @@ inline std::string no_labels() { return "unset label\n"; }
 
 }  // namespace detail
 
-/// Fig. 4 (d): the flown path in space, coloured by speed in steps of half a metre per second.
+/// Fig. 4 (d): the flown path in space, coloured by speed in steps of half a metre per second, with its shadows on the
+/// floor and on the two walls behind, its start and its end.
 inline bool plot_trajectory(const std::string& svg, const std::vector<TraceRow>& trace) {
   constexpr double step_m_s = 0.5;
-  const std::size_t stride = detail::stride_for(trace.size(), 5000);
+  const std::size_t stride = detail::stride_for(trace.size(), 4000);
   double fastest_m_s = 0;
   for (const TraceRow& row : trace) fastest_m_s = row.speed_m_s > fastest_m_s ? row.speed_m_s : fastest_m_s;
   const int steps = static_cast<int>(fastest_m_s / step_m_s) + 1;
@@ -94,40 +102,61 @@ inline bool plot_trajectory(const std::string& svg, const std::vector<TraceRow>&
     return static_cast<int>((trace[i].speed_m_s + trace[i + stride].speed_m_s) / 2 / step_m_s);
   };
   std::ostringstream out;
+  const auto place = [&out](const TraceRow& row) {
+    char line[96];
+    std::snprintf(line, sizeof line, "%.2f %.2f %.3f\n", row.position_m[1], row.position_m[0], row.height_m);
+    out << line;
+  };
   for (int step = 0; step < steps; ++step) {          // one line per colour, broken where another begins: a small file
     out << "$speed" << step << " << EOD\n0 0 NaN\n";  // a colour that nobody flew is no error
-    const auto place = [&](std::size_t i) {
-      const TraceRow& row = trace[i];
-      char line[96];
-      std::snprintf(line, sizeof line, "%.2f %.2f %.3f\n", row.position_m[1], row.position_m[0], row.height_m);
-      out << line;
-    };
     bool open = false;
     for (std::size_t i = 0; i + stride < trace.size(); i += stride) {
       const bool here = step_of(i) == step;
       if (here && !open) {
         out << '\n';
-        place(i);
+        place(trace[i]);
       }
-      if (here) place(i + stride);
+      if (here) place(trace[i + stride]);
       open = here;
     }
     out << "EOD\n";
   }
-  out << "set palette maxcolors " << steps << " defined (0 '#2b3a8c', 0.3 '#2a9d8f', 0.6 '#e9b44c', 1 '#b3261e')\n"
+  out << "$path << EOD\n";
+  for (std::size_t i = 0; i < trace.size(); i += stride) place(trace[i]);
+  out << "EOD\n$shadow << EOD\n";
+  for (std::size_t i = 0; i < trace.size(); i += detail::stride_for(trace.size(), 1500)) place(trace[i]);
+  out << "EOD\n$start << EOD\n";
+  place(trace.front());
+  out << "EOD\n$end << EOD\n";
+  place(trace.back());
+  const detail::Wall east = detail::wall(trace, [](const TraceRow& row) { return row.position_m[1]; });
+  const detail::Wall north = detail::wall(trace, [](const TraceRow& row) { return row.position_m[0]; });
+  out << "EOD\nset palette maxcolors " << steps << ' ' << viridis_palette() << '\n'
       << "set cbrange [0:" << steps * step_m_s << "]\nset cbtics 1 scale 0.5\nset cblabel 'speed, m/s' offset 0.3,0\n"
       << "set colorbox user origin 0.915,0.24 size 0.02,0.52\n"
       << "set xlabel 'east, m' offset 0,-0.8\nset ylabel 'north, m' offset 1.2,-0.8\n"
       << "set zlabel 'height, m' rotate offset 0.5,0\nset xtics offset -0.3,-0.4\nset ytics offset 0.6,-0.3\n"
-      << "set xyplane at 0\nset zrange [0:*]\nset view 62,35,1.0,1.08\nset origin -0.03,-0.01\nset size 0.99,1.02\n"
-      << "set border 4095 lc rgb '#c8c8c8'\nset tics tc rgb '#303030'\nset grid x y z lc rgb '#e4e4e4'\nunset "
-         "key\nsplot ";
+      << "set xrange [" << east.least << ':' << east.most << "]\nset yrange [" << north.least << ':' << north.most
+      << "]\nset xyplane at 0\nset zrange [0:*]\nset view 62,35,1.0,1.08\nset origin -0.03,-0.01\n"
+      << "set size 0.99,1.02\nset border 4095 lc rgb '#c8c8c8'\nset tics tc rgb '#303030'\n"
+      << "set grid x y z lc rgb '#e4e4e4'\nset key at screen 0.98,0.985 right top horizontal samplen 1.5\nsplot ";
+  out << "$shadow using 1:2:(0) with lines lw 0.8 lc rgb '#b9bfc6' t 'shadows on floor and walls', "
+      << "$shadow using (" << east.least << "):2:3 with lines lw 0.8 lc rgb '#d3d7db' notitle, "
+      << "$shadow using 1:(" << north.most << "):3 with lines lw 0.8 lc rgb '#d3d7db' notitle, "
+      << "$path using 1:2:3 with lines lw 2.2 lc rgb '#737d88' notitle";  // an edge: yellow is faint on white
   for (int step = 0; step < steps; ++step) {
-    out << (step > 0 ? ", " : "") << "$speed" << step << " using 1:2:3 with lines lw 1.1 lc rgb '"
-        << detail::speed_colour((step + 0.5) / steps) << "'";
+    out << ", $speed" << step << " using 1:2:3 with lines lw 1.3 lc rgb '"
+        << viridis_colour(steps > 1 ? step / (steps - 1.0) : 0) << "' notitle";
   }
-  out << ", NaN with lines lc palette\n";  // for the colour box
-  return draw_svg(svg, 900, 640, out.str());
+  out << ", $start using 1:2:3 with points pt 7 ps 1.3 lc rgb '#d1541a' t 'start'"
+      << ", $end using 1:2:3 with points pt 5 ps 1.2 lc rgb '#101010' t 'end'"
+      << ", NaN with lines lc palette notitle\n";  // for the colour box
+  return draw_svg(svg,
+                  {900, 640, "The flown path in space, coloured by speed",
+                   "North, east and height in metres; the colour is the speed, 0 to " + detail::rounded(fastest_m_s) +
+                       " m/s. Grey: the path's shadows on the floor and two walls. A dot marks the start, a square the "
+                       "end."},
+                  out.str());
 }
 
 /// Fig. 2: angular acceleration and signed command sum over some seconds, and over each other with their PCC.
@@ -177,7 +206,7 @@ inline bool plot_correlation(const std::string& svg, const pinnquad::Flight& fli
         << "stats $series using 3 nooutput\nm = 1.1*(abs(STATS_min) > STATS_max ? abs(STATS_min) : STATS_max)\n"
         << "set y2range [-m:m]\nset xtics 2\nset xrange [" << flight[first].time_s << ":" << flight[last - 1].time_s
         << "]\n"
-        << "plot $series using 1:2 w l lw 3.2 lc rgb '#8fbce6', $series using 1:3 axes x1y2 w l lw 1.2 lc rgb "
+        << "plot $series using 1:2 w l lw 3.2 lc rgb '#4f93cf', $series using 1:3 axes x1y2 w l lw 1.2 lc rgb "
            "'#d1541a'\n"
         << detail::panel(0.755, 0.975, top, bottom);
     char label[120];
@@ -192,7 +221,11 @@ inline bool plot_correlation(const std::string& svg, const pinnquad::Flight& fli
         << "plot $cloud w l lw 2.2 lc rgb '#4f7cac'\n";
   }
   out << "unset multiplot\n";
-  return draw_svg(svg, 1100, 860, out.str());
+  return draw_svg(svg,
+                  {1100, 860, "Angular acceleration and signed command sum, by axis",
+                   "Left: both over some seconds for roll, pitch and yaw, acceleration in blue, command sum in orange. "
+                   "Right: over each other, with the Pearson correlation of all rows."},
+                  out.str());
 }
 
 /// Fig. 5: both ratio curves with what was flown on them; below, height and force of the ground effect over time, with
@@ -241,7 +274,12 @@ inline bool plot_ground_effect(const std::string& svg, const std::vector<TraceRo
       << "set format x '%g'\nset xlabel 'time, s' offset 0,0.4\nset ylabel 'ground effect, N'\nset autoscale y\nset "
          "ytics autofreq\n"
       << "plot $series using 1:3 w l lw 1.3 lc rgb '#d1541a'\nunset multiplot\n";
-  return draw_svg(svg, 1000, 760, out.str());
+  return draw_svg(svg,
+                  {1000, 760, "Ground effect: thrust ratio over height, height and force over time",
+                   "Above: thrust in over thrust out of ground effect by Cheeseman and Bennett and by Conyers over the "
+                   "height in rotor radii, with what was flown. Below: height in metres and force in newton over time, "
+                   "with the blocks for training, validation and test."},
+                  out.str());
 }
 
 /// Fig. 6: drag as in still air and what the wind adds to it, along the body's axes; below, the wind, with the split.
@@ -274,7 +312,12 @@ inline bool plot_wind(const std::string& svg, const std::vector<TraceRow>& trace
   out << detail::panel(0.085, 0.975, top, 0.075) << detail::shaded_split(time_s, true)
       << "set format x '%g'\nset xlabel 'time, s' offset 0,0.4\nset ylabel 'wind north, m/s' offset 1,0\nset ytics 1\n"
       << "plot $series using 1:8 w l lw 1.5 lc rgb '#2a8f4f'\nunset multiplot\n";
-  return draw_svg(svg, 1000, 900, out.str());
+  return draw_svg(svg,
+                  {1000, 900, "Drag and what the wind adds to it, by body axis, and the wind over time",
+                   "Three panels: force in newton along the body's x, y and z over time, in blue the drag as in still "
+                   "air, in orange what the wind adds. Below: the wind towards north in m/s, with the blocks for "
+                   "training, validation and test."},
+                  out.str());
 }
 
 /// The files that draw_flight may write.

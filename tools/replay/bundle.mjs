@@ -22,7 +22,11 @@ const script = buildSync({
   charset: 'utf8',
   legalComments: 'none', // the licence is in the page as a whole, for its reader
 }).outputFiles[0].text;
-const style = transformSync(readFileSync(join(source, 'style.css'), 'utf8'), {
+const palette = join(source, '../../pictures/page.css'); // shared with the report
+const sheets = [palette, join(source, 'style.css'), join(source, 'small_screens.css')].map((sheet) =>
+  readFileSync(sheet, 'utf8'),
+);
+const style = transformSync(sheets.join('\n'), {
   loader: 'css',
   minify: true,
   legalComments: 'none',

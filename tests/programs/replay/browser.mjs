@@ -2,89 +2,31 @@
 // Opens a replay page in headless Chromium, without a network, and uses it as a person would: plays, drags, presses
 // keys. What it shows is compared with the flight's own rows, which did not go through the page.
 //   node browser.mjs <chromium> <page.html> <rows.csv> <title> <folder for screenshots>
-import { readFileSync, writeFileSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
-
-import { Chromium, readPng } from './chromium.mjs';
-
-const [program, page, csv, title, folder] = process.argv.slice(2);
-const rows = readFileSync(csv, 'utf8')
-  .trim()
-  .split('\n')
-  .slice(1)
-  .map((line) => {
-    const [t, north, east, down, vNorth, vEast, vDown, w, x, y, z, ...commands] = line.split(',').map(Number);
-    return { t, north, east, down, velocity: [vNorth, vEast, vDown], q: [w, x, y, z], commands };
-  });
-
-let failures = 0;
-let checks = 0;
-function check(what, good, detail = '') {
-  ++checks;
-  if (good) return;
-  ++failures;
-  console.error(`FAILED: ${what}${detail === '' ? '' : `: ${detail}`}`);
-}
-const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
-const sleep = (seconds) => new Promise((wake) => setTimeout(wake, 1000 * seconds));
-
-const complaints = [];
-const requests = [];
-const url = pathToFileURL(resolve(page)).href;
-const chromium = new Chromium(program);
-chromium.on((method, p) => {
-  if (method === 'Runtime.exceptionThrown')
-    complaints.push(p.exceptionDetails.exception?.description ?? p.exceptionDetails.text);
-  if (method === 'Runtime.consoleAPICalled' && ['error', 'assert'].includes(p.type))
-    complaints.push(p.args.map((a) => a.value ?? a.description).join(' '));
-  if (method === 'Log.entryAdded' && p.entry.level === 'error') complaints.push(`${p.entry.text} ${p.entry.url ?? ''}`);
-  if (method === 'Network.requestWillBeSent') requests.push(p.request.url);
-  if (method === 'Network.webSocketCreated') requests.push(p.url);
-});
-
-const evaluate = (expression) => chromium.evaluate(expression);
-const figure = async (id) =>
-  Number((await evaluate(`document.getElementById('${id}').textContent`)).replace('\u2212', '-'));
-/** Two frames on, whatever was asked for has been drawn. */
-const drawn = () =>
-  evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))');
-async function press(key, code = key, modifiers = 0) {
-  for (const type of ['keyDown', 'keyUp'])
-    await chromium.send('Input.dispatchKeyEvent', { type, key, code, modifiers });
-  await drawn();
-}
-async function mouse(type, x, y, button = 'left') {
-  await chromium.send('Input.dispatchMouseEvent', {
-    type,
-    x,
-    y,
-    button,
-    buttons: type === 'mouseReleased' ? 0 : 1,
-    clickCount: 1,
-  });
-}
-async function click(selector, share = 0.5) {
-  const box = await evaluate(`document.querySelector('${selector}').getBoundingClientRect().toJSON()`);
-  const [x, y] = [box.x + share * box.width, box.y + box.height / 2];
-  await mouse('mouseMoved', x, y);
-  await mouse('mousePressed', x, y);
-  await mouse('mouseReleased', x, y);
-  await drawn();
-}
-const slide = async (time) => {
-  await evaluate(
-    `{ const s = document.getElementById('slider'); s.value = ${time}; s.dispatchEvent(new Event('input')); }`,
-  );
-  await drawn();
-};
-async function screenshot(name) {
-  const file = Buffer.from((await chromium.send('Page.captureScreenshot', { format: 'png' })).data, 'base64');
-  writeFileSync(join(folder, name), file);
-  return readPng(file);
-}
-const cameraPlace = () => evaluate('replay.camera.camera.position.toArray()');
-const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
+import { rampColour } from '../../../tools/replay/src/ramp.js';
+import {
+  cameraPlace,
+  check,
+  chromium,
+  click,
+  complaints,
+  count,
+  distance,
+  drawn,
+  evaluate,
+  figure,
+  luminance,
+  mouse,
+  near,
+  press,
+  requests,
+  rows,
+  screenshot,
+  sleep,
+  slide,
+  title,
+  url,
+} from './opened_page.mjs';
+import { axisIsTrue, phoneWorks, schemesWork } from './small_screens.mjs';
 
 /** Body axis in the world, by the rotation matrix of the quaternion. */
 function bodyAxis([w, x, y, z], axis) {
@@ -133,6 +75,22 @@ async function timeAdvances(seconds) {
     await sleep(0.1);
   }
   return false;
+}
+
+/** From slow to fast the colours only get lighter, in the ramp and in the legend as the screen shows it. */
+async function colourTellsSpeed() {
+  const ramp = Array.from({ length: 257 }, (_, i) => luminance(rampColour(i / 256)));
+  const falls = (values) => values.findIndex((value, i) => i > 0 && value < values[i - 1]);
+  check('the ramp only gets lighter', falls(ramp) === -1 && ramp[0] < 0.03 && ramp[256] > 0.7, `at ${falls(ramp)}`);
+  const picture = await screenshot('replay.png');
+  const box = await evaluate('document.getElementById("ramp").getBoundingClientRect().toJSON()');
+  const y = Math.round(box.y + box.height / 2);
+  const legend = [];
+  for (let x = Math.ceil(box.x) + 6; x < box.x + box.width - 6; x += 4) {
+    const at = picture.channels * (y * picture.width + x);
+    legend.push(luminance([...picture.pixels.subarray(at, at + 3)]));
+  }
+  check('the legend only gets lighter', falls(legend) === -1 && legend.at(-1) > legend[0] + 0.5, legend.join(' '));
 }
 
 async function timePasses() {
@@ -308,8 +266,8 @@ async function cameraObeys() {
 
 async function restWorks() {
   await chromium.send('Emulation.setDeviceMetricsOverride', {
-    width: 700,
-    height: 480,
+    width: 1000,
+    height: 700,
     deviceScaleFactor: 2,
     mobile: false,
   });
@@ -317,9 +275,9 @@ async function restWorks() {
   await drawn();
   check(
     'the canvas takes the new size',
-    (await evaluate('[replay.renderer.domElement.width, replay.renderer.domElement.height].join()')) === '1400,960',
+    (await evaluate('[replay.renderer.domElement.width, replay.renderer.domElement.height].join()')) === '2000,1400',
   );
-  check('the aspect too', near(await evaluate('replay.camera.camera.aspect'), 700 / 480, 1e-6));
+  check('the aspect too', near(await evaluate('replay.camera.camera.aspect'), 1000 / 700, 1e-6));
   await press('?', 'Slash');
   check(
     '? shows keys and licence',
@@ -340,9 +298,13 @@ const begin = Date.now();
 try {
   await pageOpens();
   await timePasses();
+  await axisIsTrue('1280 x 800');
+  await colourTellsSpeed();
   await posesAreTheFlights();
   await picturesShowIt();
   await cameraObeys();
+  await phoneWorks();
+  await schemesWork();
   await restWorks();
 } catch (error) {
   check('the test ran to its end', false, error.message);
@@ -351,6 +313,6 @@ try {
   await chromium.close();
 }
 console.log(
-  `browser: ${checks - failures} of ${checks} checks passed in ${((Date.now() - begin) / 1000).toFixed(1)} s`,
+  `browser: ${count.checks - count.failures} of ${count.checks} checks passed in ${((Date.now() - begin) / 1000).toFixed(1)} s`,
 );
-process.exitCode = failures === 0 ? 0 : 1;
+process.exitCode = count.failures === 0 ? 0 : 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The figures and dials over the view.
 import { eulerDegrees } from './flight.js';
-import { rampColour, rampGradient } from './ramp.js';
+import { rampGradient } from './ramp.js';
 import { isAtLimit } from './vehicle.js';
 
 const byId = (id) => document.getElementById(id);
@@ -68,26 +68,19 @@ export class Instruments {
           y1: 0,
           x2: x * 0.62,
           y2: y * 0.5,
-          stroke: rotor.x_m > 0 ? '#ff9d2e' : '#dfe6ef',
-          'stroke-width': 3,
-          'stroke-linecap': 'round',
-          opacity: 0.8,
+          class: rotor.x_m > 0 ? 'arm front' : 'arm',
         },
         map,
       );
     }
-    svg('path', { d: 'M0 -17L-6 -6H6Z', fill: '#ff9d2e' }, map);
-    svg('circle', { r: 7, fill: '#26313f', stroke: '#94b0d6', 'stroke-width': 1 }, map);
+    svg('path', { d: 'M0 -17L-6 -6H6Z', class: 'nose' }, map);
+    svg('circle', { r: 7, class: 'hub' }, map);
     return this.flight.rotors.map((rotor, i) => {
       const [x, y] = place(rotor);
       const height = 42;
       const base = y + height / 2 - 3;
-      svg(
-        'rect',
-        { x: x - 7, y: base - height, width: 14, height, rx: 3, fill: '#94b0d626', stroke: '#94b0d655' },
-        map,
-      );
-      const fill = svg('rect', { x: x - 7, y: base, width: 14, height: 0, rx: 3, fill: '#57d0ff' }, map);
+      svg('rect', { x: x - 7, y: base - height, width: 14, height, rx: 3, class: 'whole' }, map);
+      const fill = svg('rect', { x: x - 7, y: base, width: 14, height: 0, rx: 3, class: 'command' }, map);
       const side = x > 0 ? 1 : -1;
       const turn = rotor.spin > 0 ? '\u21ba' : '\u21bb';
       svg('text', { x: x + side * 17, y: base - height + 8, class: 'name' }, map, `${i + 1} ${turn}`);
@@ -110,42 +103,8 @@ export class Instruments {
       const command = state.commands[i];
       bar.fill.setAttribute('y', bar.base - bar.height * command);
       bar.fill.setAttribute('height', bar.height * command);
-      bar.fill.setAttribute('fill', isAtLimit(command) ? '#ff4256' : '#57d0ff');
+      bar.fill.classList.toggle('limit', isAtLimit(command));
       bar.number.textContent = command.toFixed(2);
     });
-  }
-}
-
-/** Altitude over time, coloured by speed: the slider's background. */
-export function drawProfile(flight, speedEnd) {
-  const canvas = byId('profile');
-  const ratio = window.devicePixelRatio || 1;
-  const width = (canvas.width = Math.max(1, Math.round(canvas.clientWidth * ratio)));
-  const height = (canvas.height = Math.max(1, Math.round(canvas.clientHeight * ratio)));
-  const pen = canvas.getContext('2d');
-  let lowest = Infinity;
-  let highest = -Infinity;
-  for (let row = 0; row < flight.rows; ++row) {
-    lowest = Math.min(lowest, flight.altitude(row));
-    highest = Math.max(highest, flight.altitude(row));
-  }
-  const range = Math.max(highest - lowest, 1);
-  pen.fillStyle = '#94b0d61a';
-  pen.fillRect(0, 0, width, height);
-  for (let x = 0; x < width; ++x) {
-    const [first, last] = [x, x + 1].map((edge) =>
-      flight.rowAt(flight.begin + ((flight.end - flight.begin) * edge) / width),
-    );
-    let [altitude, speed] = [0, 0];
-    for (let row = first; row <= last; ++row) {
-      altitude += flight.altitude(row) / (last - first + 1);
-      speed += flight.speeds[row] / (last - first + 1);
-    }
-    const top = height * (0.88 - 0.72 * ((altitude - lowest) / range));
-    const colour = rampColour(speed / speedEnd).map(Math.round);
-    pen.fillStyle = `rgba(${colour}, 0.42)`;
-    pen.fillRect(x, top, 1, height - top);
-    pen.fillStyle = `rgb(${colour})`;
-    pen.fillRect(x, top - ratio, 1, 2 * ratio);
   }
 }

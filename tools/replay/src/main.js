@@ -4,9 +4,10 @@ import { Box3, Matrix4, Group, Scene, Vector3, WebGLRenderer } from 'three';
 
 import { Camera, cameraModes } from './camera.js';
 import { Flight } from './flight.js';
-import { drawProfile, Instruments } from './instruments.js';
+import { Instruments } from './instruments.js';
 import { scaleEnd } from './ramp.js';
 import { buildGround, buildLight, buildNorthMark, buildSky, Plumb } from './surroundings.js';
+import { Timeline } from './timeline.js';
 import { Trail, trailModes } from './trail.js';
 import { Vehicle } from './vehicle.js';
 
@@ -25,9 +26,9 @@ class Replay {
     this.rate = 1;
     this.stale = true;
     const scale = scaleEnd(flight.maxSpeed);
-    this.speedEnd = scale.end;
 
     const canvas = byId('view');
+    this.canvas = canvas;
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.scene = new Scene();
     // NED is turned into the page's axes once, here: x east, y up, z south. All below it stays NED.
@@ -49,6 +50,7 @@ class Replay {
     const bounds = new Box3().setFromArray(flight.positions).applyMatrix4(this.world.matrixWorld);
     this.camera = new Camera(canvas, bounds, -flight.groundZ, this.vehicle.span);
     this.instruments = new Instruments(flight, scale);
+    this.timeline = new Timeline(flight, scale.end, (time) => this.seek(time));
     this.#connect();
     this.resize();
     let last = null;
@@ -93,13 +95,16 @@ class Replay {
     this.#showControls();
   }
 
+  /** The canvas has the room that the layout leaves it: the window, or what is beside the panels of a small screen. */
   resize() {
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const width = Math.max(1, this.canvas.clientWidth);
+    const height = Math.max(1, this.canvas.clientHeight);
     this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(window.innerWidth, window.innerHeight, false);
-    this.camera.resize(window.innerWidth, window.innerHeight);
-    this.trail.resize(window.innerWidth, window.innerHeight, ratio);
-    drawProfile(this.flight, this.speedEnd);
+    this.renderer.setSize(width, height, false);
+    this.camera.resize(width, height);
+    this.trail.resize(width, height, ratio);
+    this.timeline.draw();
     this.stale = true;
   }
 
@@ -116,19 +121,15 @@ class Replay {
     if (!moved && !this.stale) return; // a standing picture costs nothing
     this.stale = false;
     this.vehicle.show(state, this.time);
-    this.vehicle.keepVisible(this.camera.metresPerPixel(place, window.innerHeight));
+    this.vehicle.keepVisible(this.camera.metresPerPixel(place, this.canvas.clientHeight));
     this.trail.show(this.time);
     this.plumb.show(state.position, this.vehicle.model.scale.x);
     this.instruments.show(state, this.time);
-    byId('slider').value = this.time;
+    this.timeline.show(this.time);
     this.renderer.render(this.scene, this.camera.camera);
   }
 
   #connect() {
-    const slider = byId('slider');
-    slider.min = this.flight.begin;
-    slider.max = this.flight.end;
-    slider.addEventListener('input', () => this.seek(Number(slider.value)));
     byId('play').addEventListener('click', () => this.#toggle());
     byId('trail').addEventListener('click', () => this.#nextTrail());
     byId('about').addEventListener('click', () => byId('help').showModal());
@@ -144,6 +145,9 @@ class Replay {
     this.rateButtons = rates.map((rate) => choice('rates', `${rate}×`, 'Speed (↑ ↓)', () => this.setRate(rate)));
     this.cameraButtons = cameraModes.map((mode) => choice('cameras', mode, 'Camera (C)', () => this.setCamera(mode)));
     window.addEventListener('resize', () => this.resize());
+    const sizes = new ResizeObserver(() => this.resize()); // also where only the panels have moved
+    sizes.observe(this.canvas);
+    sizes.observe(byId('profile'));
     byId('view').addEventListener('webglcontextrestored', () => {
       this.stale = true;
     });

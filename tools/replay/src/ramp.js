@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Speed as a colour: the trail, the profile and the legend share this one ramp. Its stops brighten and turn from cold
-// to warm, so that fast parts stand out on the dark ground.
+// Speed as a colour: the trail, the profile and the legend share this one ramp, viridis (Smith, van der Walt and
+// Firing, matplotlib, CC0), whose lightness rises evenly from slow to fast. The pictures have the same anchors
+// (tools/pictures/viridis.hpp).
 
 const stops = [
-  [52, 88, 224],
-  [28, 160, 222],
-  [66, 204, 150],
-  [242, 201, 76],
-  [255, 128, 60],
-  [255, 66, 86],
+  [68, 1, 84],
+  [72, 40, 120],
+  [62, 74, 137],
+  [49, 104, 142],
+  [38, 130, 142],
+  [31, 158, 137],
+  [53, 183, 121],
+  [109, 205, 89],
+  [180, 222, 44],
+  [253, 231, 37],
 ];
 
 /** Colour at `share` of the range (0 to 1) as [r, g, b], each 0 to 255. */

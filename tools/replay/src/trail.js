@@ -42,7 +42,8 @@ const fragmentShader = `
     float flown = age < 0.0 ? 0.0 : 1.0 - smoothstep(0.55 * tail, tail, age);
     float opacity = max(0.95 * flown, rest) * smoothstep(1.0, 0.55, abs(vSide));
     if (opacity < 0.004) discard;
-    gl_FragColor = vec4(vColour, opacity);
+    float edge = smoothstep(0.35, 0.7, abs(vSide)); // a pale edge: the ramp's slow end is as dark as the ground
+    gl_FragColor = vec4(mix(vColour, vec3(0.86, 0.90, 0.95), 0.45 * edge), opacity);
   }`;
 
 /** What the trail shows: seconds behind the vehicle, and how visible the rest of the path is. */
@@ -86,7 +87,7 @@ export class Trail {
     geometry.setIndex(new BufferAttribute(index, 1));
     this.uniforms = {
       resolution: { value: new Vector2(1, 1) },
-      width: { value: 4 },
+      width: { value: 5 },
       now: { value: 0 },
       tail: { value: 30 },
       rest: { value: 0 },
@@ -119,6 +120,6 @@ export class Trail {
 
   resize(width, height, pixelRatio) {
     this.uniforms.resolution.value.set(width * pixelRatio, height * pixelRatio);
-    this.uniforms.width.value = 4 * pixelRatio;
+    this.uniforms.width.value = 5 * pixelRatio;
   }
 }

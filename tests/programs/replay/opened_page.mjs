@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The page that the browser test has open: its flight's own rows, what one can do to it, what it says, and the checks.
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+import { Chromium, readPng } from './chromium.mjs';
+
+const [program, page, csv, givenTitle, folder] = process.argv.slice(2);
+export const rows = readFileSync(csv, 'utf8')
+  .trim()
+  .split('\n')
+  .slice(1)
+  .map((line) => {
+    const [t, north, east, down, vNorth, vEast, vDown, w, x, y, z, ...commands] = line.split(',').map(Number);
+    return { t, north, east, down, velocity: [vNorth, vEast, vDown], q: [w, x, y, z], commands };
+  });
+
+export const title = givenTitle;
+export const count = { checks: 0, failures: 0 };
+export function check(what, good, detail = '') {
+  ++count.checks;
+  if (good) return;
+  ++count.failures;
+  console.error(`FAILED: ${what}${detail === '' ? '' : `: ${detail}`}`);
+}
+export const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
+export const sleep = (seconds) => new Promise((wake) => setTimeout(wake, 1000 * seconds));
+
+export const complaints = [];
+export const requests = [];
+export const url = pathToFileURL(resolve(page)).href;
+export const chromium = new Chromium(program);
+chromium.on((method, p) => {
+  if (method === 'Runtime.exceptionThrown')
+    complaints.push(p.exceptionDetails.exception?.description ?? p.exceptionDetails.text);
+  if (method === 'Runtime.consoleAPICalled' && ['error', 'assert'].includes(p.type))
+    complaints.push(p.args.map((a) => a.value ?? a.description).join(' '));
+  if (method === 'Log.entryAdded' && p.entry.level === 'error') complaints.push(`${p.entry.text} ${p.entry.url ?? ''}`);
+  if (method === 'Network.requestWillBeSent') requests.push(p.request.url);
+  if (method === 'Network.webSocketCreated') requests.push(p.url);
+});
+
+export const evaluate = (expression) => chromium.evaluate(expression);
+export const figure = async (id) =>
+  Number((await evaluate(`document.getElementById('${id}').textContent`)).replace('\u2212', '-'));
+/** Two frames on, whatever was asked for has been drawn. */
+export const drawn = () =>
+  evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))');
+export async function press(key, code = key, modifiers = 0) {
+  for (const type of ['keyDown', 'keyUp'])
+    await chromium.send('Input.dispatchKeyEvent', { type, key, code, modifiers });
+  await drawn();
+}
+export async function mouse(type, x, y, button = 'left') {
+  await chromium.send('Input.dispatchMouseEvent', {
+    type,
+    x,
+    y,
+    button,
+    buttons: type === 'mouseReleased' ? 0 : 1,
+    clickCount: 1,
+  });
+}
+export async function click(selector, share = 0.5) {
+  const box = await evaluate(`document.querySelector('${selector}').getBoundingClientRect().toJSON()`);
+  const [x, y] = [box.x + share * box.width, box.y + box.height / 2];
+  await mouse('mouseMoved', x, y);
+  await mouse('mousePressed', x, y);
+  await mouse('mouseReleased', x, y);
+  await drawn();
+}
+export const slide = async (time) => {
+  await evaluate(
+    `{ const s = document.getElementById('slider'); s.value = ${time}; s.dispatchEvent(new Event('input')); }`,
+  );
+  await drawn();
+};
+export async function screenshot(name) {
+  const file = Buffer.from((await chromium.send('Page.captureScreenshot', { format: 'png' })).data, 'base64');
+  writeFileSync(join(folder, name), file);
+  return readPng(file);
+}
+export const cameraPlace = () => evaluate('replay.camera.camera.position.toArray()');
+export const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
+
+/** Relative luminance of sRGB, 0 to 255 (WCAG 2.2). */
+export function luminance(colour) {
+  const [r, g, b] = colour.map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
