@@ -32,7 +32,7 @@ struct SpeedModel : DemoQuadModel {
 };
 
 /// Float rounding through eleven layers, of a column's largest entry.
-constexpr double float_tolerance = 2e-5;
+constexpr double float_tolerance = 1e-5;
 /// What the step of the differences leaves.
 constexpr double double_tolerance = 2.8e-9;
 

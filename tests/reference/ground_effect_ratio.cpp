@@ -11,7 +11,7 @@
 
 TEST_CASE("the ground effect table, both models") {
   // float32 in the simulator; Cheeseman-Bennett's pole at 0.25 multiplies the rounding of Z/R by 2 * 0.25 / (x - 0.25)
-  const double table_tolerance = 8e-9;
+  const double table_tolerance = 8e-9, plain_tolerance = 1.7e-8;  // the plain formula's radius is no float32
   const pinnquad::test::ReferenceTable table("ground_effect_ratio.csv");
   const auto airframe = pinnquad::ReferenceQuadrotor15::value<double>();
   pinnquad::test::Statistics cheeseman_bennett, conyers;
@@ -33,7 +33,7 @@ TEST_CASE("the ground effect table, both models") {
     CHECK(c <= table_tolerance);
     CHECK(std::fabs(plain::cheeseman_bennett(x) / table.at(row, "ratio_cheeseman_bennett") - 1.0) / pole <=
           table_tolerance);
-    CHECK(std::fabs(plain::conyers(x, 690.0, 114.3) / table.at(row, "ratio_conyers") - 1.0) <= table_tolerance);
+    CHECK(std::fabs(plain::conyers(x, 690.0, 114.3) / table.at(row, "ratio_conyers") - 1.0) <= plain_tolerance);
   }
   cheeseman_bennett.print("ground_effect_ratio.csv", "Cheeseman-Bennett");
   conyers.print("ground_effect_ratio.csv", "Conyers");

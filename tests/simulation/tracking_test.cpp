@@ -128,7 +128,7 @@ TEST_CASE("where the network declines the fallback flies, and is counted by Stat
   // the eight's own speed is above 4 m/s for a tenth of a period or more, around each crossing
   int fast = 0;
   for (int tick = 0; tick < 15000; ++tick) fast += course().sample(0.002 * tick).velocity_m_s.norm() > 4 ? 1 : 0;
-  CHECK(std::abs(static_cast<int>(slow_only.fallback.fallbacks()) - fast) <= 150);  // flown a little late and slower
+  CHECK(std::abs(static_cast<int>(slow_only.fallback.fallbacks()) - fast) <= 20);  // flown a little late and slower
   CHECK(slow_only.rmse_m < 0.05);
 }
 

@@ -192,9 +192,9 @@ class Tree:
 
     def confined(self, cpu_s, *command):
         """A loop without end must not take the machine's time, memory or disk. CPU time, of each process, since the clock runs on
-        while others compute. Sanitizers need the address space."""
+        while others compute. Sanitizers need the address space; a test of the data room makes a file of 8 GiB that is a hole."""
         memory = "" if "-fsanitize" in self.cache else f"ulimit -v {4 << 20}; "
-        return ["bash", "-c", memory + f"ulimit -c 0; ulimit -f {1 << 20}; ulimit -t {int(cpu_s)}; exec \"$@\"", "confined",
+        return ["bash", "-c", memory + f"ulimit -c 0; ulimit -f {9 << 20}; ulimit -t {int(cpu_s)}; exec \"$@\"", "confined",
                 *command]
 
     def walk_build(self):
