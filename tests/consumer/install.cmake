@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.22)
 
 file(REMOVE_RECURSE "${PREFIX}" "${TREES}")
 set(hidden "")
-foreach(package IN ITEMS doctest CLI11 nlohmann_json tomlplusplus benchmark Threads Torch Python pybind11)
+foreach(package IN ITEMS doctest CLI11 nlohmann_json tomlplusplus kainjow_mustache benchmark Threads Torch Python pybind11)
   list(APPEND hidden "-DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON")
 endforeach()
 
@@ -21,8 +21,8 @@ endmacro()
 
 run("configuring with Eigen alone" "${CMAKE_COMMAND}" -S "${SOURCE_DIR}" -B "${TREES}/eigen_alone" -G "${GENERATOR}"
   "-DCMAKE_CXX_COMPILER=${COMPILER}" ${hidden})
-if(NOT said MATCHES "\n-- pinnquad: not built: the tests \\(no doctest\\), the program pinnquad \\(no CLI11, nlohmann_json, tomlplusplus\\), the benchmarks \\(no benchmark\\);[^\n]*\n")
-  message(FATAL_ERROR "configured without doctest, CLI11, nlohmann_json, tomlplusplus and benchmark, and no line says what is off:\n${said}")
+if(NOT said MATCHES "\n-- pinnquad: not built: the tests \\(no doctest\\), the program pinnquad \\(no CLI11, nlohmann_json, tomlplusplus, kainjow_mustache\\), the benchmarks \\(no benchmark\\);[^\n]*\n")
+  message(FATAL_ERROR "configured without doctest, CLI11, nlohmann_json, tomlplusplus, kainjow_mustache and benchmark, and no line says what is off:\n${said}")
 endif()
 run("the installation" "${CMAKE_COMMAND}" --install "${TREES}/eigen_alone" --prefix "${PREFIX}")
 run("the installation of the tree with tests" "${CMAKE_COMMAND}" --install "${BUILD_DIR}" --prefix "${TREES}/prefix")

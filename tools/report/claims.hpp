@@ -132,14 +132,15 @@ inline std::vector<Claim> paper_claims() {
   };
 }
 
-/// All claims with their verdicts. Below six seeds there is neither a yes nor a no.
-inline JudgedClaims judge_claims(const Study& study) {
+/// All claims with their verdicts. Below six seeds there is neither a yes nor a no. A step for each.
+inline JudgedClaims judge_claims(const Study& study, const Step& step) {
   JudgedClaims list;
   for (Claim& claim : paper_claims()) {
     Judged judged = claim.judge(study);
     const bool too_few = judged.seeds < fewest_seeds;
     if (too_few && judged.verdict != Verdict::not_judged) judged.verdict = Verdict::undecided;
     list.emplace_back(std::move(claim), std::move(judged));
+    step();
   }
   return list;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -112,12 +113,16 @@ inline std::optional<Comparison> compare(const Study& study, const ModelPair& pa
   return compare(study, pair, flight, measure, study.weights);
 }
 
-/// Every pair and measure that the rows allow, in the order of `compared_pairs`.
-inline std::vector<Comparison> all_comparisons(const Study& study) {
+/// Called when a piece of the work is done: with hundreds of seeds the exact test takes seconds.
+using Step = std::function<void()>;
+
+/// Every pair and measure that the rows allow, in the order of `compared_pairs`; a step for each.
+inline std::vector<Comparison> all_comparisons(const Study& study, const Step& step) {
   std::vector<Comparison> list;
   for (const ModelPair& pair : compared_pairs) {
     for (std::size_t measure = 0; measure < table3_measures.size(); ++measure) {
       if (std::optional<Comparison> comparison = compare(study, pair, measure)) list.push_back(std::move(*comparison));
+      step();
     }
   }
   return list;
@@ -150,11 +155,13 @@ inline std::optional<FlightsComparison> compare_flights(const Study& study, cons
   return all;
 }
 
-/// The main comparison and its parts, where further flights were run: error and angles of 4 against 2, then errors.
-inline std::vector<FlightsComparison> main_comparisons(const Study& study) {
+/// The main comparison and its parts, where further flights were run: error and angles of 4 against 2, then errors. A
+/// step for each.
+inline std::vector<FlightsComparison> main_comparisons(const Study& study, const Step& step) {
   std::vector<FlightsComparison> list;
   const auto add = [&](const ModelPair& pair, std::size_t measure) {
     if (std::optional<FlightsComparison> all = compare_flights(study, pair, measure)) list.push_back(std::move(*all));
+    step();
   };
   for (std::size_t measure = 0; measure < table3_measures.size(); ++measure) add({2, 4}, measure);
   for (const ModelPair& pair : compared_pairs) {

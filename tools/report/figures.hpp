@@ -58,12 +58,13 @@ inline std::string schedule_figure(const pinnquad::CyclicalAnnealing& schedule, 
                           drawing::horizontal_axis(x, 16, 190, 6, "epoch") + drawing::path(trace.d(), "first"),
                       "Weight of the physics term",
                       "The weight λ over the epochs of a training: " + std::to_string(schedule.cycles) +
-                          " cycles, each a rise to " + shown::number(schedule.maximum, 3) + " and a hold.");
+                          " cycles, each a hold at " + shown::number(schedule.maximum, 3) + " and a fall to 0.");
 }
 
 namespace detail {
 
 inline const char* bar_colour(int model) {
+  if (model == 1) return "grey";
   if (model <= 4) return "red";
   if (model <= 6) return "green";
   if (model <= 8) return "yellow";
@@ -97,9 +98,10 @@ inline std::string errors_figure(const Study& study, const std::vector<int>& mod
     text += drawing::line(from, y, to, y, "deviation") + drawing::line(from, y - 4, from, y + 4, "deviation") +
             drawing::line(to, y - 4, to, y + 4, "deviation");
   };
-  const auto broken = [&](double length, double y, const std::string& kind) {
-    text += drawing::path("M" + drawing::at(right - 92) + " " + drawing::at(y + 12) + "l8 -24h6l-8 24z", "gap-mark") +
-            drawing::label(right - 4, y + 4, shown::number(length, 1), kind + " end");
+  const auto broken = [&](double length, double paper, double y) {
+    text += drawing::path("M" + drawing::at(right - 190) + " " + drawing::at(y + 12) + "l8 -24h6l-8 24z", "gap-mark") +
+            drawing::label(right - 6, y + 4, shown::number(length, 1) + "; the paper " + shown::number(paper, 1),
+                           "on-bar end");
   };
   for (std::size_t i = 0; i < models.size(); ++i) {
     const int model = models[i];
@@ -111,10 +113,10 @@ inline std::string errors_figure(const Study& study, const std::vector<int>& mod
     if (ours.count == 0) {
       text += drawing::label(left + 8, middle, "not in this study", "small");
     } else {
-      const bool vanilla = paper_model(model).term == PhysicsTerm::none;
+      const bool vanilla = model != 1 && paper_model(model).term == PhysicsTerm::none;
       text += drawing::rectangle(left, middle - 13, std::min(x(length), right) - left, 17,
                                  std::string(detail::bar_colour(model)) + (vanilla ? " vanilla" : ""));
-      if (length > x.most) broken(length, middle - 4.5, "on-bar");
+      if (length > x.most) broken(length, 1e3 * paper_entry(model, 0).mean, middle - 4.5);
       if (ours.count > 1 && length <= x.most) {
         whisker(x(length - 1e3 * ours.deviation), x(length + 1e3 * ours.deviation), middle - 4.5);
       }
@@ -132,7 +134,7 @@ inline std::string errors_figure(const Study& study, const std::vector<int>& mod
 
 /// Every seed's relative change of the mean absolute error, per pair; a stroke is the mean, a diamond the paper's.
 inline std::string changes_figure(const std::vector<Comparison>& comparisons) {
-  constexpr double row_height = 32, top = 8, left = 200, right = 1020;
+  constexpr double row_height = 32, top = 8, left = 250, right = 1020;
   std::vector<const Comparison*> compared;
   double least = -5, most = 5;
   for (const Comparison& c : comparisons) {
@@ -219,7 +221,7 @@ inline std::string ellipses_figure(const std::vector<int>& models, const std::ve
       ellipse(c.predicted_standardized, "second");
       text += drawing::label(x0, y0 - 10, "M" + std::to_string(models[m]) + ", " + axis_names[axis], "title") +
               drawing::label(x0 + panel, y0 - 10,
-                             "angle difference " + shown::number(c.angle_difference_deg, 2) + "°, slope error " +
+                             "Δm " + shown::number(c.angle_difference_deg, 2) + "°, slope error " +
                                  shown::number(100 * c.slope_error, 1) + " %",
                              "small end");
     }

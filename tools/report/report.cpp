@@ -3,6 +3,7 @@
 // study.json and series/. Everything it says of the study is computed from the rows.
 #include "report/report.hpp"
 
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <ostream>
@@ -12,6 +13,7 @@
 
 #include "command_line/console.hpp"
 #include "command_line/interrupt.hpp"
+#include "command_line/progress_line.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "report/csv.hpp"
 #include "report/input.hpp"
@@ -21,9 +23,16 @@ namespace programs {
 
 bool write_study_report(const std::string& folder) {
   const detail::ReportInput input = detail::read_report_input(folder);
-  const std::vector<Comparison> comparisons = all_comparisons(input.study);
-  const std::vector<FlightsComparison> flights = main_comparisons(input.study);
-  const JudgedClaims claims = judge_claims(input.study);
+  const std::size_t steps =
+      (compared_pairs.size() + 1) * table3_measures.size() + compared_pairs.size() - 1 + paper_claims().size();
+  std::size_t done = 0;
+  ProgressLine progress("report");
+  const auto step = [&] { progress.update(static_cast<double>(++done) / static_cast<double>(steps)); };
+  const std::vector<Comparison> comparisons = all_comparisons(input.study, step);
+  const std::vector<FlightsComparison> flights = main_comparisons(input.study, step);
+  const JudgedClaims claims = judge_claims(input.study, step);
+  progress.clear();
+  if (interrupted()) return false;
   const nlohmann::json figures = report_figures(input, comparisons, flights, claims);
   const std::vector<std::pair<std::string, std::string>> files = {
       {"report.html", report_page(input, comparisons, figures)},

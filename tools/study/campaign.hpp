@@ -16,6 +16,7 @@
 #include "command_line/folders.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
+#include "command_line/progress_line.hpp"
 #include "study/configuration.hpp"
 #include "study/rows.hpp"
 
@@ -62,10 +63,14 @@ inline std::vector<Job> jobs_of_shard(const std::vector<Job>& jobs, const Shard&
 inline Flights fly_all(const Plan& plan) {
   Flights flights;
   for (const Contender& contender : plan.contenders) {
-    for (const std::uint64_t seed : flight_seeds(plan, contender)) {
-      const programs::StudyFlight id{contender.flight, seed};
-      if (flights.count(id) == 0 && !programs::interrupted()) flights[id] = flown(id);
-    }
+    for (const std::uint64_t seed : flight_seeds(plan, contender)) flights[{contender.flight, seed}];
+  }
+  programs::ProgressLine progress("flying " + std::to_string(flights.size()) + " flights");
+  double done = 0;
+  for (auto& [id, flight] : flights) {
+    if (programs::interrupted()) break;
+    flight = flown(id);
+    progress.update(++done / static_cast<double>(flights.size()));
   }
   return flights;
 }

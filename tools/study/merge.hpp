@@ -128,8 +128,8 @@ inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
 
 }  // namespace detail
 
-/// Joins the parts `paths` with what `out` holds already; `out` itself may be among them. Exit code: 0, or 1 if trainings
-/// are missing. Throws InputError, OutputError; std::invalid_argument for parts of different studies and for two different
+/// Joins the parts `paths` with what `out` holds already; `out` itself may be among them. Exit code: 0, 1 if trainings
+/// are missing, or that of an interrupt, which leaves `out` as it was. Throws InputError, OutputError; std::invalid_argument for parts of different studies and for two different
 /// rows of one training.
 inline int merge(const std::vector<std::string>& paths, const std::string& out) {
   std::vector<detail::Part> parts;
@@ -184,6 +184,10 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
     } else if (missing == nullptr) {
       missing = &id;
     }
+  }
+  if (programs::interrupted()) {
+    programs::complain("study", "merge: interrupted; nothing was written");
+    return programs::exit_interrupted;
   }
   for (std::size_t i = 0; i < named; ++i) {
     for (const auto& entry : std::filesystem::directory_iterator(parts[i].path + "/series", error)) {

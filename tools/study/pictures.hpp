@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command_line/folders.hpp"
+#include "command_line/progress_line.hpp"
 #include "flight/pictures.hpp"
 #include "flight/trace.hpp"
 #include "study/flights.hpp"
@@ -20,6 +21,8 @@ inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
   using namespace pinnquad;
   const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();
   bool drawn = true;
+  programs::ProgressLine progress("drawing the flights");
+  double done = 0;
   programs::each_flight([&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
     if (!drawn) return;
@@ -33,6 +36,7 @@ inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
     programs::make_folders(into);
     drawn = programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
                                   std::is_same_v<PaperFlight, WindyFlight>);
+    progress.update(++done / 3);
   });
   return drawn;
 }

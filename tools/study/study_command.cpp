@@ -103,8 +103,8 @@ std::shared_ptr<Options> training_options(CLI::App& line, int flights, const cha
 }
 
 constexpr const char* exit_codes =
-    "Exit codes: 0; 1 a merge of parts that are not all there; 2 bad input or a file that can't be read or written; "
-    "130 interrupted.";
+    "Exit codes: 0 all trainings are there, whatever the verdicts; 1 (merge) some are missing; 2 bad input or a file "
+    "that can't be read or written; 130 interrupted: the same command goes on.";
 
 programs::Command paper_command(CLI::App& parent) {
   CLI::App* line =
@@ -138,8 +138,14 @@ programs::Command merge_command(CLI::App& parent) {
   const auto options = std::make_shared<Options>();
   line->add_option("parts", options->parts, "folders to join")->type_name("DIR...")->required();
   programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
-  line->footer(exit_codes);
-  return {line, [options] { return study::merge(options->parts, options->out); }};
+  line->footer(
+      "Exit codes: 0 all trainings are there; 1 some are missing; 2 bad input, parts of different studies, or a file "
+      "that "
+      "can't be read or written; 130 interrupted.");
+  return {line, [options] {
+            programs::catch_interrupt();
+            return study::merge(options->parts, options->out);
+          }};
 }
 
 }  // namespace

@@ -52,17 +52,18 @@ inline std::vector<std::size_t> doubled_ranks(const std::vector<double>& sorted)
 inline double signed_rank_cdf(const std::vector<std::size_t>& ranks, std::size_t w) {
   std::size_t total = 0;
   for (const std::size_t rank : ranks) total += rank;
-  std::vector<double> probability(total + 1, 0.0);
+  const std::size_t most = std::min(w, total);  // what lies above is in no sum
+  std::vector<double> probability(most + 1, 0.0);
   probability[0] = 1;
   std::size_t reached = 0;
   for (const std::size_t rank : ranks) {
     reached += rank;
-    for (std::size_t s = reached + 1; s-- > 0;) {
+    for (std::size_t s = std::min(reached, most) + 1; s-- > 0;) {
       probability[s] = (probability[s] + (s >= rank ? probability[s - rank] : 0.0)) / 2;
     }
   }
   double sum = 0;
-  for (std::size_t s = 0; s <= std::min(w, total); ++s) sum += probability[s];
+  for (const double p : probability) sum += p;
   return sum;
 }
 
