@@ -4,7 +4,7 @@ source "$(dirname "$0")/common.sh" "$@"
 
 "$pinnquad" fly --seed 1 --samples 2400 --out flight.csv >/dev/null
 mkdir out
-# More work than any machine does before the first line of progress (2 s), in pieces small enough for any.
+# More work than any machine does before the first line of progress (5 s), in pieces small enough for any.
 setsid "$pinnquad" train --flight flight.csv --out out --seeds 500 --epochs 30 --threads 2 >stdout.txt 2>stderr.txt &
 pid=$!
 # one percent is ten trainings' worth of epochs on two threads: some are finished then

@@ -40,8 +40,13 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_description(const CLI::App* app) const override {
     return wrapped(CLI::Formatter::make_description(app), width) + "\n";
   }
-  std::string make_option_desc(const CLI::Option* option) const override {
-    return wrapped(CLI::Formatter::make_option_desc(option), width - name_column);
+  /// The name and what it takes; the description behind it, after two spaces at least, or below.
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    std::string name = make_option_name(option, is_positional) + make_option_opts(option);
+    if (name.size() + 3 == name_column) name += ' ';
+    std::stringstream out;
+    CLI::detail::format_help(out, name, wrapped(make_option_desc(option), width - name_column), name_column);
+    return out.str();
   }
   std::string make_subcommand(const CLI::App* command) const override {
     std::stringstream out;

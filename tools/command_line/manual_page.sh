@@ -23,17 +23,19 @@ as_roff() {
     /^$/ { part = "text"; next }
     /^Usage: / { print ".PP"; print ".B " roff(substr($0, 8)); next }
     part == "Commands:" { next }
-    part != "text" && /^  [^ ]/ {
+    part ~ /^(Arguments|Options):/ && /^  [^ ]/ {
       hidden = /^  (-h,--help|--version)  /
       if (hidden) next
       text = substr($0, 3)
+      sub(/ +$/, "", text)
       at = match(text, /  +/)
       print ".TP"
       print ".B " roff(at ? substr(text, 1, at - 1) : text)
       if (at) say(substr(text, at + RLENGTH))
       next
     }
-    part != "text" && hidden { next }
+    part ~ /^(Arguments|Options):/ && hidden { next }
+    part ~ /^(Arguments|Options):/ && /^ +[a-z0-9]+: / { print ".br" }
     /^Examples:/ { print ".PP"; print "Examples:"; print ".nf"; part = "examples"; next }
     part == "examples" && !/^ / { print ".fi"; part = "text"; print ".PP" }
     /^Exit codes:/ { print ".PP" }

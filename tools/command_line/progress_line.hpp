@@ -21,12 +21,12 @@ class ProgressLine {
 
   /// `share` of the job done, 0..1.
   void update(double share) {
-    constexpr double terminal_interval_s = 0.1, plain_start_s = 2.0, plain_interval_s = 5.0;
+    constexpr double terminal_interval_s = 0.1, plain_interval_s = 5.0;
     const double now_s = elapsed_s();
     if (share < 1 && now_s < next_s_) return;
     if (!terminal_ && share >= 1) return;  // the summary says so
-    if (!terminal_ && now_s < plain_start_s) return;
     next_s_ = now_s + (terminal_ ? terminal_interval_s : plain_interval_s);
+    if (!terminal_ && now_s < plain_interval_s) return;
     char left[32] = "";  // nobody knows before something is done
     if (share > 0) std::snprintf(left, sizeof left, ", %.0f s left", now_s * (1 - share) / share);
     std::fprintf(stderr, "%s%s: %3.0f %%%s%s", terminal_ ? "\r" : "", job_.c_str(), 100 * share, left,
