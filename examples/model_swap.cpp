@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A new model while the vehicle flies: the control thread never waits, locks or allocates; another thread loads a model
-// block into the slot that is not in use, tests it, and publishes it with one atomic pointer.
+// A new model while the vehicle flies: the control thread never waits, locks or allocates; another thread opens a model
+// block in the slot that is not in use, tests it, and publishes it with one atomic pointer (flight_stacks/model_slots.hpp).
 //   exit code 0: every prediction was that of one whole model, all good blocks flew, no bad one did
 #include <atomic>
 #include <chrono>
@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "flight_stacks/model_slots.hpp"
 #include "models/demo_quadrotor.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 
@@ -18,46 +19,15 @@ namespace {
 
 using namespace pinnquad;
 using Clock = std::chrono::steady_clock;
-using Inverse = InverseDynamics<LoadedModel<DemoQuadModel>>;  // weights of its own, the vector unit's kernel
+using View = ModelView<DemoQuadModel>;
+using Inverse = InverseDynamics<View>;
+using Slots = flight_stacks::ModelSlots<Inverse>;  // says how the old slot is known to be free
 
-/// Two slots for one control thread and one thread that loads.
-/// How the old slot is known to be free: the control thread says, at the start of each tick, which slot it took, and a
-/// thread's loads of one atomic never go back in time. Once it has said the new one, it will not read the old one
-/// again, and all that it read there lies before what it said.
-class ModelSlots {
- public:
-  explicit ModelSlots(const Inverse& first) : slots_{first, first} {}
-
-  /// Control thread, once per tick: the model of this tick. No loop, no lock, no heap.
-  const Inverse& take() noexcept {
-    const Inverse* current = published_.load(std::memory_order_acquire);  // its weights were written before
-    taken_.store(current, std::memory_order_release);                     // reads of the other slot lie before this
-    return *current;
-  }
-
-  /// Loading thread. Puts a model that passes its self test in the place of the one that flies; else says why not, and
-  /// all stays as it was. Waits for the control thread's next tick if it has not yet taken the model published last.
-  Status replace(const void* block, std::size_t length) {
-    ModelView<DemoQuadModel> view;
-    const Status opened = ModelView<DemoQuadModel>::open(block, length, view);
-    if (opened != Status::ok) return opened;
-    const Inverse* current = published_.load(std::memory_order_relaxed);  // only this thread writes it
-    while (taken_.load(std::memory_order_acquire) != current)
-      std::this_thread::sleep_for(std::chrono::microseconds(50));
-    Inverse& free = current == &slots_[0] ? slots_[1] : slots_[0];
-    if (staging_.load(view) != Status::ok) return Status::block_corrupt;
-    free = Inverse(staging_);  // by way of this thread's stack: 35 kB
-    const Status tested = self_test(free);
-    if (tested == Status::ok) published_.store(&free, std::memory_order_release);
-    return tested;
-  }
-
- private:
-  Inverse slots_[2];
-  LoadedModel<DemoQuadModel> staging_;
-  std::atomic<const Inverse*> published_{&slots_[0]};
-  std::atomic<const Inverse*> taken_{&slots_[0]};
-};
+/// Loading thread: waits for the control thread's next tick if it has not yet taken the model published last.
+Status replace(Slots& slots, const std::vector<unsigned char>& block) {
+  while (!slots.settled()) std::this_thread::sleep_for(std::chrono::microseconds(50));
+  return slots.offer(block.data(), block.size());
+}
 
 /// The demonstration's model after a training that went on: here, its weights moved by a thousandth each.
 std::vector<unsigned char> block_of_a_second_model() {
@@ -74,14 +44,12 @@ std::vector<unsigned char> block_of_a_second_model() {
 using Answers = std::array<Commands<float>, DemoQuadModel::golden_features.size()>;
 
 Answers answers_of(const std::vector<unsigned char>& block) {
-  ModelView<DemoQuadModel> view;
-  LoadedModel<DemoQuadModel> loaded;
+  View view;
   Answers answers{};
-  const bool sound =
-      ModelView<DemoQuadModel>::open(block.data(), block.size(), view) == Status::ok && loaded.load(view) == Status::ok;
-  const auto inverse = std::make_unique<Inverse>(loaded);
+  const bool sound = View::open(block.data(), block.size(), view) == Status::ok;
+  const Inverse inverse(view);
   for (std::size_t i = 0; sound && i < answers.size(); ++i) {
-    if (inverse->predict_features(DemoQuadModel::golden_features[i].data(), answers[i]) != Status::ok) break;
+    if (inverse.predict_features(DemoQuadModel::golden_features[i].data(), answers[i]) != Status::ok) break;
   }
   return answers;
 }
@@ -93,10 +61,10 @@ struct Counts {
 };
 
 /// 2 kHz: one model per tick, several predictions of it, each compared with what models A and B answer, bit for bit.
-void control(ModelSlots& slots, const Answers& a, const Answers& b, Counts& counts) {
+void control(Slots& slots, const Answers& a, const Answers& b, Counts& counts) {
   auto next = Clock::now();
   while (!counts.over.load(std::memory_order_relaxed)) {
-    const Inverse& inverse = slots.take();
+    const Inverse& inverse = *slots.take();
     for (std::size_t k = 0; k < 8 * a.size(); ++k) {
       const std::size_t i = k % a.size();
       Commands<float> u{};
@@ -125,11 +93,8 @@ int main() {
     if (a[i] == Commands<float>{} || a[i] == b[i]) return std::puts("the two models can't be told apart"), 1;
   }
 
-  ModelView<DemoQuadModel> view;
-  LoadedModel<DemoQuadModel> first;
-  if (ModelView<DemoQuadModel>::open(block_a.data(), block_a.size(), view) != Status::ok) return 1;
-  if (first.load(view) != Status::ok) return 1;
-  const auto slots = std::make_unique<ModelSlots>(Inverse(first));
+  const auto slots = std::make_unique<Slots>(TrainingGuard{});
+  if (replace(*slots, block_a) != Status::ok) return 1;
 
   // broken ones: a flipped bit, a cut, and a weight that is wrong under a checksum that is right
   std::vector<unsigned char> flipped = block_a, wrong = block_b;
@@ -144,10 +109,10 @@ int main() {
   int swaps = 0, refused = 0, faults = 0;
   for (const auto end = Clock::now() + std::chrono::milliseconds(800); Clock::now() < end || swaps < 10; ++swaps) {
     const std::vector<unsigned char>& good = swaps % 2 == 0 ? block_b : block_a;
-    if (slots->replace(good.data(), good.size()) != Status::ok) ++faults;
-    const bool all_refused = slots->replace(flipped.data(), flipped.size()) == Status::block_corrupt &&
-                             slots->replace(cut.data(), cut.size()) == Status::block_truncated &&
-                             slots->replace(wrong.data(), wrong.size()) == Status::self_test_failed;
+    if (replace(*slots, good) != Status::ok) ++faults;
+    const bool all_refused = replace(*slots, flipped) == Status::block_corrupt &&
+                             replace(*slots, cut) == Status::block_truncated &&
+                             replace(*slots, wrong) == Status::self_test_failed;
     all_refused ? refused += 3 : ++faults;
   }
   counts.over = true;

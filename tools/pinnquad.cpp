@@ -24,9 +24,13 @@ int run(int argument_count, char** arguments, std::string& name) {
       programs::report_command(program),   programs::evaluate_command(program), programs::block_command(program),
       programs::airframe_command(program), programs::new_command(program)};
   program.footer(
+      "Examples:\n"
+      "  pinnquad fly d1 --seed 1 --out d1.csv                    a simulated flight\n"
+      "  pinnquad train --flight d1.csv --out my_model            my_model/model.hpp flies\n"
+      "  pinnquad --config options.toml train                     options from a file\n"
       "pinnquad COMMAND --help says more.\n"
-      "Exit codes: 0; 1 it ran, but the answer is no; 2 bad input or a file that can't be read or written; 130 "
-      "interrupted.");
+      "Exit codes: 0 good; 1 it ran, but the answer is no; 2 bad input or a file that can't be read or written; 3 "
+      "undecided; 130 interrupted. Each command says which of them it has.");
   if (const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name)) return *code;
   return programs::run_chosen(commands);
 }

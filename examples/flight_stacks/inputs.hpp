@@ -45,16 +45,6 @@ struct LocalState {
   pinnquad::Vector3<float> velocity_m_s = pinnquad::Vector3<float>::Zero();
 };
 
-/// Where to go, NED. A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
-struct SetPoint {
-  pinnquad::Vector3<float> position_m = pinnquad::Vector3<float>::Zero();
-  pinnquad::Vector3<float> velocity_m_s = pinnquad::Vector3<float>::Zero();
-  pinnquad::Vector3<float> acceleration_m_s2 = pinnquad::Vector3<float>::Zero();  ///< without gravity: zero in hover
-  pinnquad::Vector3<float> jerk_m_s3 = pinnquad::Vector3<float>::Zero();
-  float yaw_rad = 0;
-  float yaw_rate_rad_s = 0;
-};
-
 /// What no estimator or pilot means: their overflow would be infinity.
 inline constexpr float most_plausible = 1e6f;
 

@@ -89,8 +89,9 @@ class NeuralController {
     return local_.accept(time_us, state,
                          position == pinnquad::Status::ok ? check_sample(state.velocity_m_s) : position);
   }
-  /// `not_finite` if it asks for no position, no velocity and no acceleration.
-  pinnquad::Status set_point(std::uint64_t time_us, const SetPoint& wanted) noexcept {
+  /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point. `not_finite` if it asks for no
+  /// position, no velocity and no acceleration.
+  pinnquad::Status set_point(std::uint64_t time_us, const pinnquad::TrajectoryPoint<float>& wanted) noexcept {
     pinnquad::Status checked = pinnquad::Status::not_finite;
     for (const auto* v : {&wanted.position_m, &wanted.velocity_m_s, &wanted.acceleration_m_s2, &wanted.jerk_m_s3}) {
       for (int i = 0; i < 3; ++i) {
@@ -186,7 +187,7 @@ class NeuralController {
       }
       return held_;
     }
-    const SetPoint& wanted = set_point_.value();
+    const pinnquad::TrajectoryPoint<float>& wanted = set_point_.value();
     for (int i = 0; i < 3; ++i) {
       const bool place = pinnquad::is_finite(wanted.position_m[i]);
       point.position_m[i] = place ? wanted.position_m[i] : now.position_m[i];
@@ -240,7 +241,7 @@ class NeuralController {
   Input<pinnquad::Vector3<float>> rates_;
   Input<pinnquad::Quaternion<float>> attitude_;
   Input<LocalState> local_;
-  Input<SetPoint> set_point_;
+  Input<pinnquad::TrajectoryPoint<float>> set_point_;
   pinnquad::TrajectoryPoint<float> held_;
   bool holding_ = false;
   pinnquad::Commands<float> last_commands_{};

@@ -98,8 +98,14 @@ class NeuralControl {
     return controller_.local(m.timestamp_sample, {{m.x, m.y, m.z}, {m.vx, m.vy, m.vz}});
   }
   pinnquad::Status take(const TrajectorySetpoint& m) noexcept {
-    return controller_.set_point(m.timestamp, {vector(m.position), vector(m.velocity), vector(m.acceleration),
-                                               vector(m.jerk), m.yaw, m.yawspeed});
+    pinnquad::TrajectoryPoint<float> wanted;
+    wanted.position_m = vector(m.position);
+    wanted.velocity_m_s = vector(m.velocity);
+    wanted.acceleration_m_s2 = vector(m.acceleration);
+    wanted.jerk_m_s3 = vector(m.jerk);
+    wanted.yaw_rad = m.yaw;
+    wanted.yaw_rate_rad_s = m.yawspeed;
+    return controller_.set_point(m.timestamp, wanted);
   }
 
   /// One tick, after the messages. False: the module has no commands, nothing is to be published to the motors, and

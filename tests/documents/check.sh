@@ -77,8 +77,8 @@ check_simple_command() {
     pinnquad | */pinnquad) # the command, and that of a command
       program=pinnquad
       for word in "${words[@]:1:2}"; do
-        help_of "$program" | grep -q '^Subcommands:' && [[ $word != -* ]] || break
-        help_of "$program" | sed '1,/^Subcommands:/d' | grep -qE "^  $word( |$)" || { fault "$line" "$program has no command $word"; return 0; }
+        help_of "$program" | grep -q '^Commands:' && [[ $word != -* ]] || break
+        help_of "$program" | sed '1,/^Commands:/d' | grep -qE "^  $word( |$)" || { fault "$line" "$program has no command $word"; return 0; }
         program+=" $word"
       done
       ;;

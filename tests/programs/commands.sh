@@ -4,19 +4,26 @@ source "$(dirname "$0")/common.sh" "$@"
 
 number() { sed -n "s/^#define PINNQUAD_VERSION_$1 \([0-9]*\)$/\1/p" "$source_dir/include/pinnquad/version.hpp"; }
 version="pinnquad $(number MAJOR).$(number MINOR).$(number PATCH)"
-commands=("" fly train study evaluate block airframe "airframe list" "airframe check" "airframe convert" "study paper" "study ablation" "study merge" report)
+commands=("" fly train study evaluate block airframe "airframe list" "airframe check" "airframe convert" new "study paper" "study ablation" "study merge" report)
 for command in "${commands[@]}"; do
   # shellcheck disable=SC2086 # several words
   "$pinnquad" $command --help >help.txt 2>stderr.txt || fail "pinnquad $command --help: exit code $?"
   [ ! -s stderr.txt ] || fail "pinnquad $command --help speaks on stderr"
   grep -qE '^Exit codes: 0' help.txt || fail "pinnquad $command --help does not name its exit codes"
-  grep -qE '(^|[^0-9])2 bad input' help.txt || fail "pinnquad $command --help does not say what 2 is"
+  tr '\n' ' ' <help.txt | grep -qE '[^0-9]2 bad input' || fail "pinnquad $command --help does not say what 2 is"
+  ! grep -nE '^([^ ]| {20}).{80}' help.txt || fail "pinnquad $command --help is wider than a terminal"
   # shellcheck disable=SC2086
   [ "$("$pinnquad" $command --version)" = "$version" ] || fail "pinnquad $command --version"
 done
-for command in fly train study report evaluate block airframe; do
+for command in fly train study report evaluate block airframe new; do
   "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
 done
+
+for command in "" fly evaluate block airframe "airframe list" "airframe check" "airframe convert" new "study paper"; do
+  # shellcheck disable=SC2086
+  "$pinnquad" $command --help | grep -A1 '^Examples:$' | grep -qE "^  (pinnquad|cmake) " || fail "pinnquad $command --help has no example"
+done
+"$pinnquad" train --help | grep -qE '^  --flight FILE\.csv \.\.\. \(needed\)$' || fail "train --help says of --flight: $("$pinnquad" train --help | grep -e --flight)"
 
 # completion, as bash asks for it
 complete_words() { # <what the last word may become> <word>...
@@ -36,12 +43,27 @@ complete_words '--models' study paper --mo
 complete_words '--config' train --seeds 3 --conf
 complete_words '' fly d1 --out 'fi'
 
-# the manual page has a section for every command
+# the manual page: its sections, every command, every option of a command once
 if command -v help2man >/dev/null; then
-  bash "$source_dir/tools/command_line/manual_page.sh" "$pinnquad" "$work/pinnquad.1"
-  for section in 'NAME' 'PINNQUAD FLY' 'PINNQUAD STUDY MERGE' 'PINNQUAD AIRFRAME CONVERT'; do
+  bash "$source_dir/tools/command_line/manual_page.sh" "$pinnquad" pinnquad.1
+  for section in NAME SYNOPSIS DESCRIPTION OPTIONS EXAMPLES COMMANDS 'OPTIONS FROM A FILE' FILES 'EXIT STATUS'; do
     grep -qE "^\.SH \"?$section\"?$" pinnquad.1 || fail "the manual page has no section $section"
   done
+  for command in "${commands[@]:1}"; do
+    sed -n "/^\.SS \"pinnquad $command\"$/,/^\.S[HS]/p" pinnquad.1 | sed 's/\\-/-/g' >part.txt
+    [ -s part.txt ] || fail "the manual page has no $command"
+    # shellcheck disable=SC2086
+    "$pinnquad" $command --help | grep -oE '^  --[a-z-]+' | grep -vx -e '  --version' >options.txt || true
+    while read -r option; do
+      [ "$(grep -cE "^\.B ${option#  }( |$)" part.txt)" -eq 1 ] || fail "the manual page says of $command $option: $(cat part.txt)"
+    done <options.txt
+    grep -q '^Exit codes: 0' part.txt || fail "the manual page does not say when $command fails"
+  done
+  ! grep -nE '^(Usage|Commands|Arguments|Options):|^Subcommands' pinnquad.1 || fail "pieces of --help in the manual page"
+  if command -v man >/dev/null; then
+    LC_ALL=C MANWIDTH=80 man --warnings -l pinnquad.1 2>warnings.txt >page.txt || fail "man does not show the page: $(cat warnings.txt)"
+    [ ! -s warnings.txt ] || fail "the manual page: $(cat warnings.txt)"
+  fi
 fi
 
 expect_line 2 '^pinnquad: expected a command: fly, train, study, report' "$pinnquad"

@@ -100,3 +100,12 @@ interrupted() { # <arguments>: two seconds into minutes of flight
 interrupted d1 --samples 10000000 --out out/f.csv --record-sticks out/s.csv
 interrupted d1 --statistics 10000 --out out/table.csv
 [ -z "$(ls -A out)" ] || fail "something was left in the output folder: $(ls -A out)"
+
+# on a terminal each part of the work shows how far it is
+if command -v script >/dev/null && command -v gnuplot >/dev/null; then
+  mkdir progress
+  script -qec "'$pinnquad' fly --samples 400 --out progress/f.csv --pictures progress" terminal.txt >/dev/null
+  for part in 'flying:' 'writing progress/f.csv:' 'drawing 2 pictures:'; do
+    grep -qE "$part +[0-9]+ %, [0-9]+ s left" terminal.txt || fail "a terminal sees no progress of $part $(cat -v terminal.txt)"
+  done
+fi

@@ -16,6 +16,7 @@ fly() { run_it "$pinnquad" fly "$@"; }
 train() { run_it "$pinnquad" train "$@"; }
 study() { run_it "$pinnquad" study "$@"; }
 report() { run_it "$pinnquad" report "$@"; }
+new() { run_it "$pinnquad" new "$@"; }
 pinnquad() { run_it "$pinnquad" "$@"; }
 fly_export() { run_it "$fly_export" "$@"; }
 demo() { run_it "$source_dir/scripts/demo" "$@"; }
@@ -47,7 +48,7 @@ expect() {
   "$@" >stdout.txt 2>stderr.txt || actual=$?
   sed -i '/^train: warning: /d' stderr.txt # of a poor network: one epoch makes no other
   for word in "$@"; do
-    case $word in fly | train | study | report | pinnquad | fly_export | demo) program=$word && break ;; esac
+    case $word in fly | train | study | report | new | pinnquad | fly_export | demo) program=$word && break ;; esac
   done
   [ "$actual" -eq "$code" ] || problem "exit code $actual instead of $code"
   lines=$(wc -l <stderr.txt)
@@ -329,6 +330,27 @@ hostile_study() {
   for surroundings in closed_stdout full_stdout; do expect 2 nothing $surroundings study --help; done
 }
 
+hostile_new() {
+  for path in '' . in in/short.csv in/short.csv/x /dev/null /dev/null/x /proc/x run/fifo run/dangling run/loop "run/$(printf 'n%.0s' {1..256})"; do
+    left_alone new "$path"
+  done
+  for text in '' ' ' 3rd $'\xc2\x9b31m' 'a b' 'a;b' ü $'a\nb' 'a::b' '");int x("' '{{name}}' "$(printf '9%.0s' {1..3000})"; do refused new run/o --name "$text"; done
+  for text in '' ' ' $'d1\n' $'\xff' x.toml in/short.csv; do refused new run/o --airframe "$text"; done
+  for path in "${unreadable[@]}" in/sticks.csv; do left_alone new run/o --model "$path"; done
+  for name in ' ' 'a b' "it's" '"' '*' '$(touch x)' ';' 'flüg ✈' $'\xff\xfe' $'line\nend' $'\e[31m' '%s%n' '\'; do accepted new "run/$name"; done
+  mkdir run/o
+  mkfifo run/o/fifo
+  expect 2 nothing new run/o
+  fresh
+  for disk in full_disk full_disk_signal; do
+    blocks=1
+    expect 2 nothing $disk new run/o/deep
+    [ ! -e run/o ] || problem "left $(find run/o)"
+  done
+  for surroundings in closed_stdout full_stdout; do expect 2 files $surroundings new run/o && [ -s run/o/main.cpp ] || problem "nothing was written" && fresh; done
+  expect 2 nothing few_files new run/o
+}
+
 hostile_demo() { # refused before anything is built
   for option in --seeds --epochs --seed; do each_value whole_numbers demo --out run/o $option; done
   for words in '--seeds 0' '--seeds 501' '--epochs 0' '--epochs 100001' '--seed' '--no-such-option' 'x' '--log in/flight.csv' \
@@ -361,6 +383,7 @@ else
   hostile_fly
   hostile_train
   hostile_study
+  hostile_new
   hostile_demo
 fi
 count

@@ -24,6 +24,8 @@ using namespace pinnquad;
 
 constexpr const char* exit_codes = "Exit codes: 0; 2 bad input or a file that can't be read or written.";
 
+std::string footer(const std::string& examples) { return "Examples:\n" + examples + exit_codes; }
+
 struct Options {
   std::string airframe;
   std::string out;
@@ -72,25 +74,26 @@ int convert(const Options& options) {
 
 programs::Command programs::airframe_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("airframe", "Lists, checks and converts airframes");
-  line->footer(exit_codes);
+  line->footer(
+      footer("  pinnquad airframe list\n"
+             "  pinnquad airframe convert racer_5_inch --out mine.toml      to begin one's own\n"
+             "  pinnquad airframe check mine.toml\n"));
   const auto options = std::make_shared<Options>();
   const std::string known = "a file, or one of: " + airframe_names();
 
   CLI::App* list =
       line->add_subcommand("list", "The airframes that the program knows, and where their values are from");
-  list->footer(exit_codes);
+  list->footer(footer("  pinnquad airframe list\n"));
   CLI::App* one = line->add_subcommand("check", "Says what an airframe is, or what is wrong with its file");
-  one->footer(exit_codes);
+  one->footer(footer("  pinnquad airframe check mine.toml\n"));
   add_path(*one, "airframe", options->airframe, "NAME|FILE.toml", known)->required();
   CLI::App* other = line->add_subcommand("convert", "Writes an airframe as a file (.toml) or as a C++ struct (.hpp)");
   add_path(*other, "airframe", options->airframe, "NAME|FILE.toml", known)->required();
   add_path(*other, "--out", options->out, "FILE.toml|FILE.hpp", "what to write; its ending says as what")->required();
-  other->add_option("--name", options->struct_name, "name of the struct")->capture_default_str();
+  other->add_option("--name", options->struct_name, "name of the struct")->type_name("NAME")->capture_default_str();
   other->footer(
-      std::string("Examples:\n"
-                  "  pinnquad airframe convert racer_5_inch --out mine.toml      to begin a file of one's own\n"
-                  "  pinnquad airframe convert mine.toml --out mine.hpp --name MyQuadrotor\n") +
-      exit_codes);
+      footer("  pinnquad airframe convert racer_5_inch --out mine.toml      to begin one's own\n"
+             "  pinnquad airframe convert mine.toml --out mine.hpp --name MyQuadrotor\n"));
   const std::vector<Command> commands = {{list,
                                           [] {
                                             list_airframes();

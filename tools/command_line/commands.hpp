@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
+#include "command_line/help.hpp"
 #include "command_line/options.hpp"
 #include "command_line/settings_file.hpp"
 
@@ -25,10 +27,15 @@ inline const CLI::App& chosen_command(const CLI::App& program) {
   return *command;
 }
 
-/// --version of the program and all its commands.
-inline void add_version(CLI::App& command, const std::string& text) {
-  command.set_version_flag("--version", text);
-  for (CLI::App* part : command.get_subcommands({})) add_version(*part, text);
+/// --version, and the look of --help, of the program and all its commands.
+inline void complete(CLI::App& command, const std::string& version) {
+  command.set_version_flag("--version", version, "Print the version and exit");
+  command.get_help_ptr()->description("Print this help and exit");
+  command.formatter(std::make_shared<HelpFormatter>());
+  for (CLI::App* part : command.get_subcommands({})) {
+    part->group("Commands");
+    complete(*part, version);
+  }
 }
 
 /// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command does not
@@ -64,11 +71,13 @@ inline int run_chosen(const std::vector<Command>& commands) {
 /// Adds --version and --config to a program whose commands are complete, and parses. Empty to go on; else the exit code. `name`
 /// becomes that of the command as soon as it is known: messages name it.
 inline std::optional<int> choose_command(CLI::App& program, int argument_count, char** arguments, std::string& name) {
-  detail::add_version(program, program.get_name() + " " + PINNQUAD_VERSION);
+  detail::complete(program, program.get_name() + " " + PINNQUAD_VERSION);
   program
       .add_option_function<std::string>(
           "--config", [&program](const std::string& path) { take_settings(program, path); },
-          "options from a file: a table per command, such as [fly]; what stands on the command line goes first")
+          "options from a file: a table per command, such as [fly], an entry per option, such as seed = 3; what stands "
+          "on "
+          "the command line goes first")
       ->type_name("FILE.toml");
   program.require_subcommand(0, 1);
   program.allow_extras();

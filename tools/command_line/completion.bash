@@ -6,12 +6,12 @@ _pinnquad() {
   local program=${COMP_WORDS[0]} current=${COMP_WORDS[COMP_CWORD]} help commands word
   local -a chosen=()
   help=$("$program" --help 2>/dev/null) || return 0
-  commands=$(sed '1,/^Subcommands:/d' <<<"$help" | awk '/^  [a-z]/ { print $1 } /^[^ ]/ { exit }')
+  commands=$(sed '1,/^Commands:/d' <<<"$help" | awk '/^  [a-z]/ { print $1 } /^[^ ]/ { exit }')
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     grep -qxF -- "$word" <<<"$commands" || continue
     chosen+=("$word")
     help=$("$program" "${chosen[@]}" --help 2>/dev/null) || return 0
-    commands=$(sed '1,/^Subcommands:/d' <<<"$help" | awk '/^  [a-z]/ { print $1 } /^[^ ]/ { exit }')
+    commands=$(sed '1,/^Commands:/d' <<<"$help" | awk '/^  [a-z]/ { print $1 } /^[^ ]/ { exit }')
   done
   if [[ $current == -* ]]; then
     commands=$(grep -oE '^  (-[a-z],)?--[a-z-]+' <<<"$help" | grep -oE -- '--[a-z-]+')

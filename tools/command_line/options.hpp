@@ -79,7 +79,7 @@ inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vecto
     }
     paths = texts;
   };
-  return app.add_option_function<std::vector<std::string>>(name, take, description)->type_name(kind + " ...");
+  return app.add_option_function<std::vector<std::string>>(name, take, description)->type_name(kind);
 }
 
 /// Adds --version and parses. Empty to go on; else the exit code: --help and --version have been printed, or one line

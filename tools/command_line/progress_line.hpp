@@ -27,8 +27,9 @@ class ProgressLine {
     if (!terminal_ && share >= 1) return;  // the summary says so
     next_s_ = now_s + (terminal_ ? terminal_interval_s : plain_interval_s);
     if (!terminal_ && now_s < plain_interval_s) return;
-    const double left_s = share > 0 ? now_s * (1 - share) / share : 0;
-    std::fprintf(stderr, "%s%s: %3.0f %%, %.0f s left%s", terminal_ ? "\r" : "", job_.c_str(), 100 * share, left_s,
+    char left[32] = "";  // nobody knows before something is done
+    if (share > 0) std::snprintf(left, sizeof left, ", %.0f s left", now_s * (1 - share) / share);
+    std::fprintf(stderr, "%s%s: %3.0f %%%s%s", terminal_ ? "\r" : "", job_.c_str(), 100 * share, left,
                  terminal_ ? "   " : "\n");
     std::fflush(stderr);
     shown_ = terminal_;

@@ -84,9 +84,9 @@ void make_folder(const std::string& path) {
 
 /// A flight with all choices made, whatever its vehicle.
 template <class PaperFlight>
-class Campaign {
+class ChosenFlight {
  public:
-  Campaign(const Options& options, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect)
+  ChosenFlight(const Options& options, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect)
       : options_(options),
         name_(airframe.name),
         ground_effect_(ground_effect),
@@ -126,7 +126,7 @@ class Campaign {
       programs::complain("fly", why_it_ended(recorded.report));
       return programs::exit_failed;
     }
-    if (!options_.out.empty()) write_flight_csv(options_.out, recorded.flight);
+    write_flight(recorded.flight);
     if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
     if (!options_.replay.empty()) replay.write(options_.replay);
     print_summary(recorded);
@@ -140,6 +140,17 @@ class Campaign {
   }
 
  private:
+  /// The flight as CSV, if it is asked for: the first output, so that after Ctrl-C nothing was written.
+  void write_flight(const Flight& flight) const {
+    if (options_.out.empty()) return;
+    programs::ProgressLine progress("writing " + printable(options_.out));
+    const auto rows = static_cast<double>(flight.size());
+    write_flight_csv(options_.out, flight, [&](std::size_t written) {
+      if (programs::interrupted()) throw Interrupted{};
+      progress.update(static_cast<double>(written) / rows);
+    });
+  }
+
   /// An airframe that the controller can't hold up here is refused before it flies.
   void require_thrust() const {
     const double hover = hover_command(vehicle_, plan_.start_m);
@@ -284,12 +295,12 @@ int fly_chosen(const Options& options) {
   require_separate_files(options);
   int code = programs::exit_bad_input;
   with_all_choices(options, [&](auto tag, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect) {
-    Campaign<typename decltype(tag)::type> campaign(options, airframe, ground_effect);
+    ChosenFlight<typename decltype(tag)::type> chosen(options, airframe, ground_effect);
     for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_writable(file);
     if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);
     if (!options.pictures.empty()) make_folder(options.pictures);
     programs::catch_interrupt();
-    code = campaign.run();
+    code = chosen.run();
   });
   return code;
 }
@@ -316,12 +327,14 @@ void add_options(CLI::App& app, Options& options) {
   add_number(app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
              "rows to record, one every 0.05 s (default: d1 15000, d2 6000, d3 5000; with --sticks as long as these)");
   app.add_option("--airframe", options.airframe,
-                 "a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
+                 "what flies: a file (examples/airframes), or one of: " + programs::airframe_names())
+      ->type_name("NAME|FILE.toml")
       ->capture_default_str();
   add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0,
              "fastest the pilot flies, m/s (default: d1, d3 8, d2 4)");
   app.add_option("--ground-effect", options.ground_effect,
-                 "none, cheeseman-bennett or conyers (default: d2 conyers, else none)");
+                 "none, cheeseman-bennett or conyers (default: d2 conyers, else none)")
+      ->type_name("MODEL");
   add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
   add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");
   add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0, "up to this much more latency, uniform, row by row, ms");

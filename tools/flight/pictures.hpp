@@ -7,10 +7,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "command_line/progress_line.hpp"
 #include "flight/axis_motion.hpp"
 #include "flight/trace.hpp"
 #include "pictures/gnuplot.hpp"
@@ -325,15 +327,25 @@ inline constexpr std::array<const char*, 4> flight_picture_names = {"trajectory.
                                                                     "ground_effect.svg", "wind.svg"};
 
 /// All of them into a folder that is there: trajectory.svg, correlation.svg, ground_effect.svg where there is one, wind.svg
-/// if `windy`. False, after one line on stderr, where gnuplot is missing or failed.
+/// if `windy`. False, after one line on stderr, where gnuplot is missing or
+/// failed; without that line after Ctrl-C.
 inline bool draw_flight(const std::string& folder, const pinnquad::Flight& flight, const std::vector<TraceRow>& trace,
                         const pinnquad::Airframe<double>& airframe, pinnquad::GroundEffectModel ground_effect,
                         bool windy) {
-  return plot_trajectory(folder + "/trajectory.svg", trace) &&
-         plot_correlation(folder + "/correlation.svg", flight, airframe) &&
-         (ground_effect == pinnquad::GroundEffectModel::none ||
-          plot_ground_effect(folder + "/ground_effect.svg", trace, airframe)) &&
-         (!windy || plot_wind(folder + "/wind.svg", trace));
+  const std::string start = folder + "/";
+  std::vector<std::function<bool()>> pictures = {
+      [&] { return plot_trajectory(start + "trajectory.svg", trace); },
+      [&] { return plot_correlation(start + "correlation.svg", flight, airframe); }};
+  if (ground_effect != pinnquad::GroundEffectModel::none) {
+    pictures.emplace_back([&] { return plot_ground_effect(start + "ground_effect.svg", trace, airframe); });
+  }
+  if (windy) pictures.emplace_back([&] { return plot_wind(start + "wind.svg", trace); });
+  ProgressLine progress("drawing " + std::to_string(pictures.size()) + " pictures");
+  for (std::size_t drawn = 0; drawn < pictures.size();) {
+    if (interrupted() || !pictures[drawn]()) return false;
+    progress.update(static_cast<double>(++drawn) / static_cast<double>(pictures.size()));
+  }
+  return true;
 }
 
 }  // namespace programs

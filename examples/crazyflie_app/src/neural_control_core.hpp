@@ -76,7 +76,7 @@ class NeuralControl {
       if (s.mode[i] == crazyflie_mode_abs) position[i] = s.position[i];
       if (s.mode[i] == crazyflie_mode_disable) velocity[i] = none;
     }
-    flight_stacks::SetPoint wanted;
+    pinnquad::TrajectoryPoint<float> wanted;
     wanted.position_m = ned(position);
     wanted.velocity_m_s = ned(velocity);
     wanted.acceleration_m_s2 = ned(s.acceleration);

@@ -75,9 +75,11 @@ inline std::vector<ColumnName> extra_columns_in(const std::string& path) {
 }
 
 /// Writes a flight with its extra columns; the file appears whole or not at all. `read_flight_csv` gives the same bits back.
+/// `after_row(rows_written)` is called after each row; if it throws, there is no file.
 /// Throws OutputError if the file cannot be written, or if the flight could not be read back: a value that is not
 /// finite, time that does not increase.
-inline void write_flight_csv(const std::string& path, const Flight& flight) {
+template <class Observer>
+void write_flight_csv(const std::string& path, const Flight& flight, const Observer& after_row) {
   const std::vector<std::string> columns = detail::flight_columns(flight.columns());
   CsvWriter writer(path, columns);
   std::vector<double> values(columns.size());
@@ -96,8 +98,12 @@ inline void write_flight_csv(const std::string& path, const Flight& flight) {
       throw OutputError(path, "time does not increase at sample " + std::to_string(i));
     }
     writer.row(values.data(), values.size());
+    after_row(i + 1);
   }
   writer.commit();
+}
+inline void write_flight_csv(const std::string& path, const Flight& flight) {
+  write_flight_csv(path, flight, [](std::size_t) {});
 }
 
 }  // namespace pinnquad
