@@ -139,8 +139,8 @@ inline bool plot_trajectory(const std::string& svg, const std::vector<TraceRow>&
       << "set xrange [" << east.least << ':' << east.most << "]\nset yrange [" << north.least << ':' << north.most
       << "]\nset xyplane at 0\nset zrange [0:*]\nset view 62,35,1.0,1.08\nset origin -0.03,-0.01\n"
       << "set size 0.99,1.02\nset border 4095 lc rgb '#c8c8c8'\nset tics tc rgb '#303030'\n"
-      << "set grid x y z lc rgb '#e4e4e4'\nset key at screen 0.98,0.985 right top horizontal samplen 1.5\nsplot ";
-  out << "$shadow using 1:2:(0) with lines lw 0.8 lc rgb '#b9bfc6' t 'shadows on floor and walls', "
+      << "set grid x y z lc rgb '#e4e4e4'\nset key at screen 0.98,0.985 right top horizontal samplen 1.5\nsplot "
+      << "$shadow using 1:2:(0) with lines lw 0.8 lc rgb '#b9bfc6' t 'shadows on floor and walls', "
       << "$shadow using (" << east.least << "):2:3 with lines lw 0.8 lc rgb '#d3d7db' notitle, "
       << "$shadow using 1:(" << north.most << "):3 with lines lw 0.8 lc rgb '#d3d7db' notitle, "
       << "$path using 1:2:3 with lines lw 2.2 lc rgb '#737d88' notitle";  // an edge: yellow is faint on white

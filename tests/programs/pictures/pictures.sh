@@ -5,6 +5,7 @@
 #   pictures.sh <pictures_driver> <source folder> <work folder>
 source "$(dirname "$0")/../common.sh" "$1" "$2" "$3" - -
 driver=$1
+project=$2
 if ! command -v gnuplot >/dev/null; then
   echo "skipped: no gnuplot (Debian: gnuplot-nox)"
   exit 77
@@ -56,9 +57,9 @@ rising box.txt 16 "the colour box"
 paste -d' ' lines.txt box.txt | awk '
   { for (c = 1; c <= 3; ++c) if (($c - $(c + 3)) ^ 2 > 1) { print "step " NR; bad = 1 } } END { exit bad }' ||
   fail "the box does not explain the path's colours"
-sed -n 's/^ *\[\([0-9]*\), \([0-9]*\), \([0-9]*\)\],$/\1 \2 \3/p' "$source_dir/tools/replay/src/ramp.js" >page.txt
+sed -n 's/^ *\[\([0-9]*\), \([0-9]*\), \([0-9]*\)\],$/\1 \2 \3/p' "$project/tools/replay/src/ramp.js" >page.txt
 rising page.txt 8 "the replay page"
-tr -d ' \n' <"$source_dir/tools/pictures/viridis.hpp" | grep -oE '\{[0-9]+,[0-9]+,[0-9]+\}' | tr -d '{}' | tr ',' ' ' >pictures.txt
+tr -d ' \n' <"$project/tools/pictures/viridis.hpp" | grep -oE '\{[0-9]+,[0-9]+,[0-9]+\}' | tr -d '{}' | tr ',' ' ' >pictures.txt
 cmp page.txt pictures.txt || fail "the pictures and the replay page colour speed differently"
 
 # where the path is: two ends, three shadows; that on the floor is an ellipse about as wide as the box allows
