@@ -133,7 +133,7 @@ inline bool plot_trajectory(const std::string& svg, const std::vector<TraceRow>&
   place(trace.back());
   const detail::Wall east = detail::wall(trace, [](const TraceRow& row) { return row.position_m[1]; });
   const detail::Wall north = detail::wall(trace, [](const TraceRow& row) { return row.position_m[0]; });
-  out << "EOD\nset palette maxcolors " << steps << ' ' << viridis_palette() << '\n'
+  out << "EOD\nset palette " << viridis_palette(steps) << '\n'
       << "set cbrange [0:" << steps * step_m_s << "]\nset cbtics 1 scale 0.5\nset cblabel 'speed, m/s' offset 0.3,0\n"
       << "set colorbox user origin 0.915,0.24 size 0.02,0.52\n"
       << "set xlabel 'east, m' offset 0,-0.8\nset ylabel 'north, m' offset 1.2,-0.8\n"
@@ -141,14 +141,13 @@ inline bool plot_trajectory(const std::string& svg, const std::vector<TraceRow>&
       << "set xrange [" << east.least << ':' << east.most << "]\nset yrange [" << north.least << ':' << north.most
       << "]\nset xyplane at 0\nset zrange [0:*]\nset view 62,35,1.0,1.08\nset origin -0.03,-0.01\n"
       << "set size 0.99,1.02\nset border 4095 lc rgb '#c8c8c8'\nset tics tc rgb '#303030'\n"
-      << "set grid x y z lc rgb '#e4e4e4'\nset key at screen 0.98,0.985 right top horizontal samplen 1.5\nsplot ";
-  out << "$shadow using 1:2:(0) with lines lw 0.8 lc rgb '#b9bfc6' t 'shadows on floor and walls', "
+      << "set grid x y z lc rgb '#e4e4e4'\nset key at screen 0.98,0.985 right top horizontal samplen 1.5\nsplot "
+      << "$shadow using 1:2:(0) with lines lw 0.8 lc rgb '#b9bfc6' t 'shadows on floor and walls', "
       << "$shadow using (" << east.least << "):2:3 with lines lw 0.8 lc rgb '#d3d7db' notitle, "
       << "$shadow using 1:(" << north.most << "):3 with lines lw 0.8 lc rgb '#d3d7db' notitle, "
       << "$path using 1:2:3 with lines lw 2.2 lc rgb '#737d88' notitle";  // an edge: yellow is faint on white
   for (int step = 0; step < steps; ++step) {
-    out << ", $speed" << step << " using 1:2:3 with lines lw 1.3 lc rgb '"
-        << viridis_colour(steps > 1 ? step / (steps - 1.0) : 0) << "' notitle";
+    out << ", $speed" << step << " using 1:2:3 with lines lw 1.3 lc rgb '" << viridis_step(step, steps) << "' notitle";
   }
   out << ", $start using 1:2:3 with points pt 7 ps 1.3 lc rgb '#d1541a' t 'start'"
       << ", $end using 1:2:3 with points pt 5 ps 1.2 lc rgb '#101010' t 'end'"

@@ -38,12 +38,15 @@ inline std::string viridis_colour(double share) {
   return text;
 }
 
-/// The same as gnuplot's palette.
-inline std::string viridis_palette() {
-  std::string text;
-  for (std::size_t i = 0; i < viridis.size(); ++i) {
-    text += (i == 0 ? "defined (" : ", ") + std::to_string(i) + " '" +
-            viridis_colour(static_cast<double>(i) / (viridis.size() - 1)) + "'";
+/// The colour of one of `steps` equal parts of the range: the ends of viridis are the first and the last.
+inline std::string viridis_step(int step, int steps) { return viridis_colour(steps > 1 ? step / (steps - 1.0) : 0); }
+
+/// gnuplot's palette of these steps. Each is given from end to end: `maxcolors` would choose colours of its own.
+inline std::string viridis_palette(int steps) {
+  std::string text = "defined (";
+  for (int step = 0; step < steps; ++step) {
+    const std::string colour = " '" + viridis_step(step, steps) + "'";
+    text += (step > 0 ? ", " : "") + std::to_string(step) + colour + ", " + std::to_string(step + 1) + colour;
   }
   return text + ")";
 }

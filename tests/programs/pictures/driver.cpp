@@ -13,8 +13,8 @@
 
 namespace {
 
-/// Circles that climb while the speed rises from 0 to 8 m/s.
-std::vector<programs::TraceRow> spiral() {
+/// Circles that climb while the speed rises from 0.
+std::vector<programs::TraceRow> spiral(double fastest_m_s) {
   constexpr int rows = 1600;
   std::vector<programs::TraceRow> trace;
   for (int i = 0; i < rows; ++i) {
@@ -23,7 +23,7 @@ std::vector<programs::TraceRow> spiral() {
     row.time_s = 0.05 * i;
     row.position_m = {12 * std::cos(turn), 7 + 17 * std::sin(turn), -3 - 20 * share};
     row.height_m = -row.position_m[2];
-    row.speed_m_s = 8 * share;
+    row.speed_m_s = fastest_m_s * share;
     trace.push_back(row);
   }
   return trace;
@@ -59,7 +59,8 @@ bool draw(const std::string& folder) {
   for (pinnquad::PhysicalConsistency& axis : judged.axes) {
     axis = pinnquad::physical_consistency(series.target, series.predicted, series.angular_acceleration);
   }
-  return programs::plot_trajectory(folder + "/trajectory.svg", spiral()) &&
+  return programs::plot_trajectory(folder + "/trajectory.svg", spiral(8)) &&
+         programs::plot_trajectory(folder + "/slow_trajectory.svg", spiral(3)) &&
          programs::plot_errors(folder + "/errors.svg",
                                results(models, {{0.0549, 0.0549}, {0.0082, 0.0078}, {0.0072, 0.0074}}), models) &&
          programs::plot_errors(folder + "/even_errors.svg",

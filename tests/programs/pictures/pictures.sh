@@ -5,6 +5,7 @@
 #   pictures.sh <pictures_driver> <source folder> <work folder>
 source "$(dirname "$0")/../common.sh" "$1" "$2" "$3" - -
 driver=$1
+project=$2
 if ! command -v gnuplot >/dev/null; then
   echo "skipped: no gnuplot (Debian: gnuplot-nox)"
   exit 77
@@ -48,17 +49,19 @@ for picture in *.svg; do
 done
 grep -q '^<desc>.*a &amp; b' ellipses.svg || fail "the description of ellipses.svg lost a model's name"
 
-# speed: sixteen steps of half a metre per second, as lines and as the box that explains them
-for ((step = 0; step < 16; ++step)); do plot trajectory.svg $((step + 5)) | colour; done >lines.txt
-rising lines.txt 16 "the path"
-sed -n "s/.*<polygon fill = 'rgb( *\([0-9]*\), *\([0-9]*\), *\([0-9]*\))'.*/\1 \2 \3/p" trajectory.svg | uniq >box.txt
-rising box.txt 16 "the colour box"
-paste -d' ' lines.txt box.txt | awk '
-  { for (c = 1; c <= 3; ++c) if (($c - $(c + 3)) ^ 2 > 1) { print "step " NR; bad = 1 } } END { exit bad }' ||
-  fail "the box does not explain the path's colours"
-sed -n 's/^ *\[\([0-9]*\), \([0-9]*\), \([0-9]*\)\],$/\1 \2 \3/p' "$source_dir/tools/replay/src/ramp.js" >page.txt
+# speed_steps <picture> <steps>: half a metre per second each, as lines and as the box that explains them
+speed_steps() {
+  local step
+  for ((step = 0; step < $2; ++step)); do plot "$1" $((step + 5)) | colour; done >lines.txt
+  rising lines.txt "$2" "the path in $1"
+  sed -n "s/.*<polygon fill = 'rgb( *\([0-9]*\), *\([0-9]*\), *\([0-9]*\))'.*/\1 \2 \3/p" "$1" | uniq >box.txt
+  cmp lines.txt box.txt || fail "the box in $1 does not explain the path's colours: $(tr '\n' ',' <box.txt)"
+}
+speed_steps trajectory.svg 16
+speed_steps slow_trajectory.svg 6
+sed -n 's/^ *\[\([0-9]*\), \([0-9]*\), \([0-9]*\)\],$/\1 \2 \3/p' "$project/tools/replay/src/ramp.js" >page.txt
 rising page.txt 8 "the replay page"
-tr -d ' \n' <"$source_dir/tools/pictures/viridis.hpp" | grep -oE '\{[0-9]+,[0-9]+,[0-9]+\}' | tr -d '{}' | tr ',' ' ' >pictures.txt
+tr -d ' \n' <"$project/tools/pictures/viridis.hpp" | grep -oE '\{[0-9]+,[0-9]+,[0-9]+\}' | tr -d '{}' | tr ',' ' ' >pictures.txt
 cmp page.txt pictures.txt || fail "the pictures and the replay page colour speed differently"
 
 # where the path is: two ends, three shadows; that on the floor is an ellipse about as wide as the box allows
