@@ -9,6 +9,7 @@
 #include "support/plain_dynamics.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
+#include "support/uneven_airframe.hpp"
 
 using pinnquad::CheesemanBennettRotorGroundEffect;
 using pinnquad::ConyersRotorGroundEffect;
@@ -78,6 +79,36 @@ TEST_CASE_TEMPLATE("each rotor's height is its hub's, by rotating the hub into t
     CHECK(std::fabs(static_cast<double>(w.torque_N_m[0]) - roll) <= tolerance);
     CHECK(std::fabs(static_cast<double>(w.torque_N_m[1]) - pitch) <= tolerance);
     CHECK(w.torque_N_m[2] == Scalar(0));
+  }
+}
+
+TEST_CASE_TEMPLATE("a rotor above or below the centre of gravity, and one that is tilted: at its hub, along its axis",
+                   Scalar, float, double) {
+  const auto airframe = pinnquad::test::uneven_airframe<Scalar>();
+  RandomStates random(131);
+  for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
+    auto c = hovering<Scalar>(random.scalar<Scalar>(0.6, 1.5), Scalar(0));
+    for (Scalar& thrust : c.rotor_thrust_N) thrust = random.scalar<Scalar>(0.0, 8.0);
+    c.attitude = random.attitude<Scalar>();
+    Vector3<double> force = Vector3<double>::Zero(), torque = Vector3<double>::Zero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& hub = airframe.rotors[i];
+      const Vector3<Scalar> arm(hub.x_m, hub.y_m, hub.z_m), axis(hub.axis[0], hub.axis[1], hub.axis[2]);
+      const auto in_world = [&](const Vector3<Scalar>& v) {
+        return static_cast<double>(pinnquad::body_to_world<Scalar>(c.attitude, v)[2]);
+      };
+      const double height_m = static_cast<double>(c.height_above_ground_m) - in_world(arm);
+      const double lift = (plain::cheeseman_bennett(height_m / 0.1143) - 1.0) * std::fabs(in_world(axis)) *
+                          static_cast<double>(c.rotor_thrust_N[i]);
+      const Vector3<double> pull = axis.template cast<double>() * lift;
+      force += pull;
+      torque += pinnquad::cross<double>(arm.template cast<double>(), pull);
+    }
+    const auto w = CheesemanBennettRotorGroundEffect{}.wrench(c, airframe);
+    const double tolerance = rounding<Scalar>(1000);  // the ratio is steep where a hub is low
+    CHECK(pinnquad::test::distance(w.force_N, force) <= tolerance);
+    CHECK(pinnquad::test::distance(w.torque_N_m, torque) <= tolerance);
+    CHECK(pinnquad::test::norm(force) > 0);
   }
 }
 

@@ -244,7 +244,7 @@ void keeps(const std::string& kept) {
   CHECK(left.back() == canary);
   CHECK(y.back() == canary);
   // of a layer's largest value: sums of some forty products, after layers that passed their own rounding on
-  const double tolerance = rounding<Scalar>(10);
+  const double tolerance = rounding<Scalar>(9);
   const auto largest = [&](std::size_t first, std::size_t end) {
     double result = 0;
     for (; first < end; ++first) result = std::fmax(result, std::fabs(static_cast<double>(expected[first])));

@@ -33,13 +33,14 @@ TEST_CASE("the independent simulator's flights are flights") {
   }
 }
 
+namespace {
+std::string real_logs() { return pinnquad::test::reference_folder() + "/flight_logs/nanobench_subset_50hz.csv"; }
+}  // namespace
+
 /// Crazyflie, 50 Hz, eleven flights one after the other; the file's body acceleration is R^T a_world (its README).
-TEST_CASE("real logs are flights, one by one and end to end; in degrees they are none") {
-  const std::string path = pinnquad::test::reference_folder() + "/flight_logs/nanobench_subset_50hz.csv";
-  if (!std::ifstream(path)) {
-    MESSAGE("skipped: no real logs, " << path << " does not exist");
-    return;
-  }
+TEST_CASE("real logs are flights, one by one and end to end; in degrees they are none" *
+          doctest::skip(!std::ifstream(real_logs()))) {
+  const std::string path = real_logs();
   const pinnquad::CsvTable table =
       pinnquad::read_csv(path, {"t",  "abx", "aby",  "abz",   "dwx", "dwy", "dwz", "vbx", "vby", "vbz", "wx",
                                 "wy", "wz",  "roll", "pitch", "yaw", "pz",  "u1",  "u2",  "u3",  "u4"});

@@ -25,6 +25,7 @@ class Judge:
     def __init__(self, tree, only, say):
         self.tree, self.tests, self.say = tree, Tests(tree, only), say
         self.steps, self.active = [], {}  # active: see is_compiled
+        self.record = tree.work / "unmutated.json"
 
     def prepare(self):
         """Copies, builds, finds the steps, and sees each pass once: what fails unmutated can't judge."""
@@ -44,26 +45,38 @@ class Judge:
     # --- without a mutant
 
     def see_pass(self, steps):
-        """Each step once without a mutant, unless it passed before with the same files."""
-        record = self.tree.work / "unmutated.json"
-        before = json.loads(record.read_text()) if record.exists() else {}
+        """Each step once without a mutant, but folders only when a mutant asks for them: they compile for minutes."""
         parts_alone, self.steps = {}, []
         for number, step in enumerate(steps, 1):
-            known = before.get(step.name)
-            if known is None or known["digest"] != step.digest:
-                known = {"digest": step.digest, **self.try_unmutated(step, parts_alone)}
-                before[step.name] = known
-                write_whole(record, json.dumps(before, indent=0))
-                self.say(f"  without a mutant, {number} of {len(steps)}: {step.name}: {known['says']}, {known['run_s']:.1f} s")
-            step.run_s = known["run_s"]
+            if step.kind == "folder":
+                self.steps.append(step)
+                continue
+            says = self.see_step(step, parts_alone, f"{number} of {len(steps)}")
             if step.kind == "source":
-                parts_alone[step.target] = known["says"] == "passes"
-            if known["says"] == "fails":
-                raise Failed(f"{step.name} fails without any mutant ({known['why']})")
+                parts_alone[step.target] = says == "passes"
             # a program whose sources all run alone says nothing more as a whole
             whole = step.kind == "program" and step.parts and all(parts_alone.get(part) for part in step.parts)
-            if known["says"] == "passes" and not whole:
+            if says == "passes" and not whole:
                 self.steps.append(step)
+
+    def see_folders(self, mutant):
+        for step in [step for step in self.seen_by(mutant.path) if step.kind == "folder"]:
+            if self.see_step(step, {}, "a folder") != "passes":
+                self.steps.remove(step)
+
+    def see_step(self, step, parts_alone, which):
+        """What it says without a mutant: as before, where its files are the same."""
+        before = json.loads(self.record.read_text()) if self.record.exists() else {}
+        known = before.get(step.name)
+        if known is None or known["digest"] != step.digest:
+            known = {"digest": step.digest, **self.try_unmutated(step, parts_alone)}
+            before[step.name] = known
+            write_whole(self.record, json.dumps(before, indent=0))
+            self.say(f"  without a mutant, {which}: {step.name}: {known['says']}, {known['run_s']:.1f} s")
+        step.run_s = known["run_s"]
+        if known["says"] == "fails":
+            raise Failed(f"{step.name} fails without any mutant ({known['why']})")
+        return known["says"]
 
     def try_unmutated(self, step, parts_alone):
         if step.kind == "program" and step.parts and all(parts_alone.get(part) for part in step.parts):
@@ -107,6 +120,7 @@ class Judge:
     def judge(self, mutant):
         """(verdict, what there is to say of it, steps that it rests on): survived, killed, "did not compile" or
         "time limit"."""
+        self.see_folders(mutant)
         steps = self.seen_by(mutant.path)
         self.changed_code = False
         with self.tree.mutated(mutant):
