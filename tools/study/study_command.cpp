@@ -140,8 +140,7 @@ programs::Command merge_command(CLI::App& parent) {
   programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
   line->footer(
       "Exit codes: 0 all trainings are there; 1 some are missing; 2 bad input, parts of different studies, or a file "
-      "that "
-      "can't be read or written; 130 interrupted.");
+      "that can't be read or written; 130 interrupted, nothing written.");
   return {line, [options] {
             programs::catch_interrupt();
             return study::merge(options->parts, options->out);

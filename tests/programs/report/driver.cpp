@@ -2,10 +2,13 @@
 // Makes a synthetic study, and writes the report of a study as pinnquad report does:
 //   report_driver make DIR SEEDS
 //   report_driver report DIR
+//   report_driver interrupt DIR       the same, and Ctrl-C comes before the first row is read
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
 
+#include "command_line/interrupt.hpp"
 #include "report/report.hpp"
 #include "synthetic_study.hpp"
 
@@ -17,10 +20,12 @@ int main(int argument_count, char** arguments) {
       synthetic::write_study(arguments[2], std::stoull(arguments[3]));
       return 0;
     }
-    if (command == "report") {
-      return programs::write_study_report(arguments[2]) ? 0 : 1;
+    if (command == "report" || command == "interrupt") {
+      programs::catch_interrupt();
+      if (command == "interrupt") std::raise(SIGINT);
+      return programs::report_study(arguments[2]);
     }
-    std::fprintf(stderr, "report_driver make DIR SEEDS | report DIR\n");
+    std::fprintf(stderr, "report_driver make DIR SEEDS | report DIR | interrupt DIR\n");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "report: %s\n", error.what());
   }

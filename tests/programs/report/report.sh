@@ -155,6 +155,11 @@ edit '{ print }' && printf '{\n "a": 1,\n oops\n}\n' >edited/study.json && refus
 edit '{ print }' && echo '{"kind": "ablation"}' >edited/study.json && refused 'study\.json: expected a study of Table 2'
 edit '{ print }' && sed -i '5s/^[^,]*/soon/' edited/series/model4.csv && refused 'model4\.csv:5:1: .*time_s, found "soon"'
 expect_line 2 'absent/study\.json: expected a readable file' "$driver" report absent
+edit '{ print }' # Ctrl-C before the work is done
+echo before >edited/report.html
+expect_line 130 '^report: interrupted; nothing was written, the rows are in edited/rows\.csv$' "$driver" interrupt edited
+[ "$(cat edited/report.html)" = before ] || fail "an interrupted report was written"
+[ -z "$(find edited -name '*.partial*')" ] || fail "a half-written file was left behind"
 mkdir plain/claims.csv # the last of the five can't be written: none is
 expect_line 2 'cannot write plain/claims\.csv: it is a folder' "$driver" report plain
 [ ! -e plain/report.html ] || fail "some of the files were written, others not"
