@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trains a network type under every loss that is asked for, from every seed, over the cores, with progress; Ctrl-C keeps what is
-// finished. The body of a recipe.
+// Trains a network type under every loss that is asked for, from every seed, over the cores, with progress; Ctrl-C
+// keeps what is finished. The body of a recipe.
 #pragma once
 
 #include <algorithm>
@@ -55,8 +55,8 @@ using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnq
 using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
                                               PearsonTerm<pinnquad::Yaw>>;
 
-/// `Parts` is what differs between recipes: type Network; losses annealed(), constant(), pearson(); optimisers vanilla_optimizer()
-/// and informed_optimizer().
+/// `Parts` is what differs between recipes: type Network; losses annealed(), constant(), pearson(); optimisers
+/// vanilla_optimizer() and informed_optimizer().
 template <class Parts>
 std::vector<Training> train_all(const TrainingPlan& plan) {
   using Network = typename Parts::Network;
