@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -80,10 +81,11 @@ std::vector<Training> train_all(const TrainingPlan& plan) {
           return train_one(context, data, loss, optimizer, plan.epochs, epochs_done, job, *network);
         };
         const std::string key = job.loss.key;
-        const bool done = key == "vanilla"           ? trained(pinnquad::Mse{}, Parts::vanilla_optimizer())
-                          : key == "constant_weight" ? trained(Parts::constant(), Parts::informed_optimizer())
-                          : key == "pearson"         ? trained(Parts::pearson(), Parts::informed_optimizer())
-                                                     : trained(Parts::annealed(), Parts::informed_optimizer());
+        const bool done = key == "vanilla"            ? trained(pinnquad::Mse{}, Parts::vanilla_optimizer())
+                          : key == "physics_informed" ? trained(Parts::annealed(), Parts::informed_optimizer())
+                          : key == "constant_weight"  ? trained(Parts::constant(), Parts::informed_optimizer())
+                          : key == "pearson"          ? trained(Parts::pearson(), Parts::informed_optimizer())
+                                                      : throw std::logic_error("no such loss: " + key);
         if (!done) return false;
         const auto model = pinnquad::make_trained_model(*network, context, plan.split.train);
         using Model = std::decay_t<decltype(model)>;
