@@ -49,3 +49,19 @@ interrupted_drawing '2 of 2 trainings were finished and kept' "$pinnquad" train 
   --block exported/model.block --allow-poor
 for file in results.csv report.json model.hpp replay.txt model.block; do [ -s "exported/$file" ] || fail "$file was lost to a picture"; done
 [ -z "$(find pictures exported -name '*.partial*')" ] || fail "a half-written file was left behind"
+
+# evaluate writes nothing that could be half there: it ends at once, however long the flight
+awk -F, -v OFS=, 'NR == 1 { print; next } { row[NR] = $0; t[NR] = $1 }
+  END { step = t[3] - t[2]; for (copy = 0; copy < 80; ++copy) for (i = 2; i <= NR; ++i) { $0 = row[i]; $1 = step * n++; print } }' \
+  flight.csv >long.csv
+setsid "$pinnquad" evaluate exported/model.hpp --flight long.csv --json >stdout.txt 2>stderr.txt &
+pid=$!
+sleep 0.5
+for ((again = 0; again < 20; ++again)); do # a signal that comes before the program listens is lost
+  kill -INT "$pid" 2>/dev/null || break
+  sleep 0.1
+done
+code=0
+wait "$pid" || code=$?
+[ "$code" -eq 130 ] || fail "exit code $code of an interrupted evaluate; said: $(cat stderr.txt)"
+[ ! -s stdout.txt ] || fail "an interrupted evaluate printed figures: $(head -n 3 stdout.txt)"

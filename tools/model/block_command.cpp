@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes an exported header as a model block, from its text: the bytes that its training would have written (deploy/weight_file.hpp).
+// Writes an exported header as a model block, from its text: the bytes that its training would have written
+// (deploy/weight_file.hpp).
 //   pinnquad block my_model/model.hpp --out weights.block
 #include "model/block_command.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Judges a model, a block or an exported header, on recorded flights: the network is put together at run time, from what the model
-// says of itself.
+// Judges a model, a block or an exported header, on recorded flights: the network is put together at run time, from
+// what the model says of itself.
 //   pinnquad evaluate my_model/model.hpp --flight flight.csv --json
 #include "model/evaluate_command.hpp"
 
@@ -152,7 +152,8 @@ Evaluation evaluated(const programs::Block& block, const programs::Identity& ide
   return result;
 }
 
-/// The rows to judge: all of the flights, or of each (of the last one, where there are more than two) those that `train` tests on.
+/// The rows to judge: all of the flights, or of each (of the last one, where there are more than two) those that
+/// `train` tests on.
 RowSet chosen_rows(const Options& options, const Dataset& dataset) {
   if (options.rows == "test") {
     return dataset.size() < 3 ? split_each_flight(dataset).test : split_by_flight(dataset).test;

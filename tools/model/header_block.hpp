@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An exported header as a model block, from its text: the bytes that its training would have written (deploy/weight_file.hpp).
+// An exported header as a model block, from its text: the bytes that its training would have written
+// (deploy/weight_file.hpp).
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Losses and optimisers of the recipes that train as the study does (training/best_recipe.hpp), for a network of any size.
+// Losses and optimisers of the recipes that train as the study does (training/best_recipe.hpp), for a network of any
+// size.
 #pragma once
 
 #include "training/best_recipe.hpp"

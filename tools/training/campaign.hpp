@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trains a network type under every loss that is asked for, from every seed, over the cores, with progress; Ctrl-C keeps what is
-// finished. The body of a recipe.
+// Trains a network type under every loss that is asked for, from every seed, over the cores, with progress; Ctrl-C
+// keeps what is finished. The body of a recipe.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -55,8 +56,8 @@ using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnq
 using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
                                               PearsonTerm<pinnquad::Yaw>>;
 
-/// `Parts` is what differs between recipes: type Network; losses annealed(), constant(), pearson(); optimisers vanilla_optimizer()
-/// and informed_optimizer().
+/// `Parts` is what differs between recipes: type Network; losses annealed(), constant(), pearson(); optimisers
+/// vanilla_optimizer() and informed_optimizer().
 template <class Parts>
 std::vector<Training> train_all(const TrainingPlan& plan) {
   using Network = typename Parts::Network;
@@ -80,10 +81,11 @@ std::vector<Training> train_all(const TrainingPlan& plan) {
           return train_one(context, data, loss, optimizer, plan.epochs, epochs_done, job, *network);
         };
         const std::string key = job.loss.key;
-        const bool done = key == "vanilla"           ? trained(pinnquad::Mse{}, Parts::vanilla_optimizer())
-                          : key == "constant_weight" ? trained(Parts::constant(), Parts::informed_optimizer())
-                          : key == "pearson"         ? trained(Parts::pearson(), Parts::informed_optimizer())
-                                                     : trained(Parts::annealed(), Parts::informed_optimizer());
+        const bool done = key == "vanilla"            ? trained(pinnquad::Mse{}, Parts::vanilla_optimizer())
+                          : key == "physics_informed" ? trained(Parts::annealed(), Parts::informed_optimizer())
+                          : key == "constant_weight"  ? trained(Parts::constant(), Parts::informed_optimizer())
+                          : key == "pearson"          ? trained(Parts::pearson(), Parts::informed_optimizer())
+                                                      : throw std::logic_error("no such loss: " + key);
         if (!done) return false;
         const auto model = pinnquad::make_trained_model(*network, context, plan.split.train);
         using Model = std::decay_t<decltype(model)>;

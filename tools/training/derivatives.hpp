@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Does a model command more torque where more angular acceleration is asked for? The derivative of the signed command sum about
-// each axis by the angular acceleration about it, row by row: above 0 for any vehicle that turns the way it is told to.
+// Does a model command more torque where more angular acceleration is asked for? The derivative of the signed command
+// sum about each axis by the angular acceleration about it, row by row: above 0 for any vehicle that turns the way it
+// is told to.
 #pragma once
 
 #include <array>
@@ -23,8 +24,8 @@ namespace programs {
 /// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, in 1 / (rad/s^2).
 using AxisDerivatives = std::array<double, 3>;
 
-/// Share of rows in which the derivative is negative, per axis; NaN where it is not finite in a row, or there are no rows.
-/// `derivatives_of(sample)` gives a row's AxisDerivatives.
+/// Share of rows in which the derivative is negative, per axis; NaN where it is not finite in a row, or there are no
+/// rows. `derivatives_of(sample)` gives a row's AxisDerivatives.
 template <class DerivativesOf>
 std::array<double, 3> wrong_derivative_shares(const pinnquad::RowSet& rows, const DerivativesOf& derivatives_of) {
   std::array<double, 3> wrong{};

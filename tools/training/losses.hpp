@@ -24,8 +24,8 @@ inline constexpr std::array<LossName, 4> loss_names = {
 inline constexpr const LossName& vanilla = loss_names[0];
 inline constexpr const LossName& physics_informed = loss_names[1];
 
-/// The losses of that name, each once, in the order of the list above. Throws std::invalid_argument, one line, for a name that is
-/// none.
+/// The losses of that name, each once, in the order of the list above. Throws std::invalid_argument, one line, for a
+/// name that is none.
 inline std::vector<LossName> chosen_losses(const std::vector<std::string>& names) {
   std::vector<LossName> chosen;
   std::string known;

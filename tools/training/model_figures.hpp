@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The figures of a model that scripts read, by their names: of one model (`pinnquad evaluate --json`), and of a kind of model
-// over its seeds (`report.json` of `pinnquad train`). What is not finite is null.
+// The figures of a model that scripts read, by their names: of one model (`pinnquad evaluate --json`), and of a kind of
+// model over its seeds (`report.json` of `pinnquad train`). What is not finite is null.
 #pragma once
 
 #include <array>
@@ -57,7 +57,8 @@ inline nlohmann::json figures_of_model(const Judgement& judged) {
       [&](const ModelFigure& figure, std::size_t axis) { return nlohmann::json(figure.of(judged, axis)); });
 }
 
-/// Of all results of a kind of model: {"mean": .., "deviation": .., "per_seed": [..]}. The deviation of fewer than two is null.
+/// Of all results of a kind of model: {"mean": .., "deviation": .., "per_seed": [..]}. The deviation of fewer than two
+/// is null.
 inline nlohmann::json figures_over_seeds(const std::vector<Result>& results, const std::string& model) {
   return detail::each_model_figure([&](const ModelFigure& figure, std::size_t axis) {
     std::vector<double> values;

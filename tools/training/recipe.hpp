@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How `train` trains: a network, an optimiser and what each loss is made of, compiled. All recipes stand in `recipes()`; each is a
-// translation unit of its own, recipe_<name>.cpp, in a few lines of types (training/campaign.hpp).
+// How `train` trains: a network, an optimiser and what each loss is made of, compiled. All recipes stand in
+// `recipes`; each is a translation unit of its own, recipe_<name>.cpp, in a few lines of types
+// (training/campaign.hpp).
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The recipe `best`: the network without batch norm and the training that did best in the study's search (training/best_recipe.hpp).
+// The recipe `best`: the network without batch norm and the training that did best in the study's search
+// (training/best_recipe.hpp).
 #include "training/best_parts.hpp"
 
 namespace programs {

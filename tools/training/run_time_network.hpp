@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A network that is known at run time alone: layers from the text of a description (inference/description.hpp), the sums in the
-// order of the portable kernel; and its derivatives. For judging on the ground; what flies is compiled.
+// A network that is known at run time alone: layers from the text of a description (inference/description.hpp), the
+// sums in the order of the portable kernel; and its derivatives. For judging on the ground; what flies is compiled.
 #pragma once
 
 #include <algorithm>
@@ -155,8 +155,8 @@ class RunTimeNetwork {
     return y;
   }
 
-  /// The same with derivatives, exact, of the value that stands first in each entry: those of x in, those of y out. At the kink
-  /// of a ReLU it is the derivative from below, 0, as in nn/jacobian.hpp.
+  /// The same with derivatives, exact, of the value that stands first in each entry: those of x in, those of y out. At
+  /// the kink of a ReLU it is the derivative from below, 0, as in nn/jacobian.hpp.
   template <std::size_t Count>
   std::vector<std::array<Scalar, Count>> pushed_forward(std::vector<std::array<Scalar, Count>> x) const {
     const Scalar* own = parameters_.data();

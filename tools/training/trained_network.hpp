@@ -27,8 +27,8 @@ class TrainedNetwork {
                             const pinnquad::Provenance& provenance) const = 0;
   virtual std::vector<unsigned char> block(const pinnquad::RowSet& training,
                                            const pinnquad::Provenance& provenance) const = 0;
-  /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per sample:
-  /// v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4).
+  /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
+  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4).
   virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
 };
 
@@ -48,8 +48,8 @@ std::vector<typename Model::FeatureVector> golden_features(const pinnquad::RowSe
 
 }  // namespace detail
 
-/// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by name, which an
-/// export names by its type.
+/// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
+/// name, which an export names by its type.
 template <class Model>
 class NetworkOfModel : public TrainedNetwork {
  public:

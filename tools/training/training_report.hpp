@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// report.json of a training: its settings, every result, the figures of each kind of model, what became of the best network, and
-// all warnings.
+// report.json of a training: its settings, every result, the figures of each kind of model, what became of the best
+// network, and all warnings.
 #pragma once
 
 #include <cstdio>
@@ -20,8 +20,8 @@
 
 namespace programs {
 
-/// report.json: settings, every result, and what became of the best network (null if none was finished); `more` are further
-/// entries. A figure that is not finite is null.
+/// report.json: settings, every result, and what became of the best network (null if none was finished); `more` are
+/// further entries. A figure that is not finite is null.
 inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results,
                          nlohmann::json verdict, const nlohmann::json& more = nlohmann::json::object()) {
   nlohmann::json rows = nlohmann::json::array();

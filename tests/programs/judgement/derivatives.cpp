@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The derivatives by which a wrong sign is counted, against finite differences of the library's own network in double and against
-// Eq. (2) and (3) by hand.
+// The derivatives by which a wrong sign is counted, against finite differences of the library's own network in double
+// and against Eq. (2) and (3) by hand.
 #include <doctest/doctest.h>
 
 #include <cmath>
