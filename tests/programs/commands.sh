@@ -37,6 +37,8 @@ complete_words() { # <what the last word may become> <word>...
 # shellcheck source=../../tools/command_line/completion.bash
 source "$source_dir/tools/command_line/completion.bash"
 complete_words 'fly' f
+complete_words 'new' n
+complete_words '--airframe' new x --air
 complete_words 'paper' study p
 complete_words '--samples' fly d1 --sam
 complete_words '--models' study paper --mo
