@@ -37,6 +37,8 @@ complete_words() { # <what the last word may become> <word>...
 # shellcheck source=../../tools/command_line/completion.bash
 source "$source_dir/tools/command_line/completion.bash"
 complete_words 'fly' f
+complete_words 'new' n
+complete_words '--airframe' new x --air
 complete_words 'paper' study p
 complete_words '--samples' fly d1 --sam
 complete_words '--models' study paper --mo
@@ -73,6 +75,9 @@ expect_line 2 '^study: expected a command: paper, ablation, merge ' "$pinnquad" 
 expect_line 2 "^study: no command named 'news'; known: paper, ablation, merge" "$pinnquad" study news
 expect_line 2 '^fly: The following argument was not expected: train' "$pinnquad" fly d1 train --out f.csv
 expect_line 2 '^fly: The following argument was not expected: --epochs' "$pinnquad" fly d1 --out f.csv --epochs
+expect_line 2 '^study: The following argument was not expected: ablation' "$pinnquad" study paper --out o ablation
+[ ! -e o ] || fail "a study was begun"
+expect_line 2 '^airframe: The following argument was not expected: check' "$pinnquad" airframe list check
 expect_line 2 '^train: --flight is required' "$pinnquad" train --seeds 1
 expect_line 2 '^report: dir is required' "$pinnquad" report
 

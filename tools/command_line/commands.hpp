@@ -27,11 +27,12 @@ inline const CLI::App& chosen_command(const CLI::App& program) {
   return *command;
 }
 
-/// --version, and the look of --help, of the program and all its commands.
+/// --version, the look of --help, and one command at a time, for the program and all its commands.
 inline void complete(CLI::App& command, const std::string& version) {
   command.set_version_flag("--version", version, "Print the version and exit");
   command.get_help_ptr()->description("Print this help and exit");
   command.formatter(std::make_shared<HelpFormatter>());
+  command.require_subcommand(0, 1);  // `study paper ablation` is a word too many
   for (CLI::App* part : command.get_subcommands({})) {
     part->group("Commands");
     complete(*part, version);
@@ -79,7 +80,6 @@ inline std::optional<int> choose_command(CLI::App& program, int argument_count, 
           "on "
           "the command line goes first")
       ->type_name("FILE.toml");
-  program.require_subcommand(0, 1);
   program.allow_extras();
   for (CLI::App* command : program.get_subcommands({})) {
     command->preparse_callback([&name, command](std::size_t /*words*/) { name = command->get_name(); });

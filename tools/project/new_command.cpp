@@ -148,7 +148,7 @@ Filling filling(const Options& options) {
   return places;
 }
 
-/// Makes a folder that holds nothing; takes it away again, with those above it that it made, unless it is kept.
+/// Makes a folder that holds nothing; takes it away again, with those above it that it made, if nothing came into it.
 class EmptyFolder {
  public:
   /// Throws OutputError, one line.
@@ -169,8 +169,6 @@ class EmptyFolder {
     for (const fs::path& folder : made_) fs::remove(folder, ignored);
   }
 
-  void keep() { made_.clear(); }
-
  private:
   fs::path path_;
   std::vector<fs::path> made_;  ///< the innermost first
@@ -178,7 +176,7 @@ class EmptyFolder {
 
 int write_project(const Options& options) {
   const Filling places = filling(options);
-  EmptyFolder folder(options.folder);
+  const EmptyFolder folder(options.folder);
   std::vector<std::unique_ptr<AtomicFile>> files;
   for (const programs::TemplateFile& file : programs::project_template()) {
     std::string text = file.text;
@@ -188,7 +186,6 @@ int write_project(const Options& options) {
   }
   for (const auto& file : files) file->close();
   for (const auto& file : files) file->commit();
-  folder.keep();
   const std::string shown = printable(options.folder);
   std::printf(
       "%s: CMakeLists.txt, model.hpp (what is trained: edit it), main.cpp\n"

@@ -5,13 +5,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "command_line/options.hpp"
+
 namespace study {
 
-/// A whole number of at most 9 digits. False if the text is none.
+/// A whole number of at most 9 digits, no zero before it. False if the text is none.
 inline bool parse_natural(const std::string& text, int& value) {
-  if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos) return false;
-  value = std::stoi(text);
-  return true;
+  constexpr int most = 999999999;
+  return programs::parse_decimal(text, 0, most, value);
 }
 
 /// Part `index` of `count`, from 1: "2/8".
