@@ -179,6 +179,18 @@ TEST_CASE("angles of less than a degree are found too: the range has no say") {
   CHECK(sway(1, degrees).find(":2:11: expected radians per second") != std::string::npos);
 }
 
+TEST_CASE(
+    "the motion is looked at over a fifth of a second: a sway of twice that is seen, which comes back in two fifths") {
+  Flight flight = some_flight();
+  constexpr double per_s = 2 * 3.141592653589793 / 0.4;
+  for (Sample& s : flight) {
+    s.roll_rad = degrees * 0.01 * std::cos(per_s * s.time_s);
+    s.pitch_rad = s.yaw_rad = 0;
+    s.body_rates_rad_s = Vector3<double>(-0.01 * per_s * std::sin(per_s * s.time_s), 0, 0);
+  }
+  CHECK(refusal(flight).find(":2:14: expected radians in column roll, found degrees") != std::string::npos);
+}
+
 TEST_CASE("line and column are those of the file, whatever its columns' order") {
   const pinnquad_test::TemporaryFolder folder;
   std::string text = "\xef\xbb\xbfnote,u4,";

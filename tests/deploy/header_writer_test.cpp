@@ -137,6 +137,21 @@ TEST_CASE("weights, scalers, envelope and golden vectors are in the header, bit 
   }
 }
 
+TEST_CASE("a header is laid out as the project's own are: each member two spaces in, no line with blanks at its end") {
+  std::istringstream header(written(some_model(1), {Model::FeatureVector{}, Model::FeatureVector{}}));
+  int members = 0;
+  for (std::string line; std::getline(header, line);) {
+    CAPTURE(line);
+    const std::size_t at = line.find("static constexpr ");
+    if (at != std::string::npos) {
+      CHECK(at == 2);
+      ++members;
+    }
+    CHECK((line.empty() || line.back() != ' '));
+  }
+  CHECK(members > 20);
+}
+
 TEST_CASE("provenance is told, and no text can break out of its string") {
   Provenance from;
   from.training_data = "flight \"one\"\\\n.csv";

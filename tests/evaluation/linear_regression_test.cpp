@@ -89,6 +89,21 @@ TEST_CASE("features that stand still, repeat others or are sums of others do no 
   }
 }
 
+TEST_CASE("a column is constant where it moves by less than 1e-12 of its mean") {
+  const auto rank = [](double share) {
+    X x;
+    Y y;
+    for (int i = 0; i < 100; ++i) {
+      const double sign = i % 2 == 0 ? 1 : -1;
+      x.push_back({8 * (1 + share * sign), 0, 0});
+      y.push_back({sign, 0});
+    }
+    return fit_linear_regression(x, y).rank;
+  };
+  CHECK(rank(1.3e-12) == 1);
+  CHECK(rank(0.7e-12) == 0);
+}
+
 TEST_CASE("without anything to learn from the mean is predicted") {
   const auto fit = fit_linear_regression(X(4, {1, 2, 3}), Y{{1, 0}, {2, 0}, {3, 0}, {4, 0}});
   CHECK(fit.rank == 0);

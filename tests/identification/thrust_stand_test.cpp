@@ -36,6 +36,13 @@ double squared_error(const std::vector<ThrustStandRow>& rows, double most_N, dou
 }
 }  // namespace
 
+TEST_CASE("a row begins with a motor that is told nothing and gives nothing") {
+  const ThrustStandRow row;
+  CHECK(row.command == 0);
+  CHECK(row.thrust_N == 0);
+  CHECK(row.torque_N_m == 0);
+}
+
 TEST_CASE("without noise the truth comes back") {
   for (const double curve : {0.0, 0.3, 0.85, 1.0}) {
     ThrustStandFit fit;

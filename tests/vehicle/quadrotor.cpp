@@ -644,7 +644,7 @@ TEST_CASE_TEMPLATE("where the air has no answer the step is refused, at its star
 
 TEST_CASE_TEMPLATE("a clock that a step does not move, or that no float can tell, is refused", Scalar, float, double) {
   const Bare<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
-  for (const double time_s : {1e300, -1e300, 1e15, 2e12}) {
+  for (const double time_s : {1e300, -1e300, 1e15, 1.1e12}) {
     CAPTURE(time_s);
     VehicleState<Scalar> state;
     state.time_s = time_s;
