@@ -16,6 +16,8 @@ programs::Command programs::report_command(CLI::App& program) {
   const auto folder = std::make_shared<std::string>();
   add_path(*line, "dir", *folder, "DIR", "folder of a study")->required();
   line->footer(
+      "Examples:\n"
+      "  pinnquad study paper --seeds 20 --out study && pinnquad report study\n"
       "Exit codes: 0 written, whatever its verdicts; 2 bad input or a file that can't be read or written; 130 "
       "interrupted, nothing written.");
   return {line, [folder] {

@@ -136,7 +136,7 @@ programs::Command ablation_command(CLI::App& parent) {
 programs::Command merge_command(CLI::App& parent) {
   CLI::App* line = parent.add_subcommand("merge", "Joins the folders of a study's shards into one");
   const auto options = std::make_shared<Options>();
-  line->add_option("parts", options->parts, "folders to join")->type_name("DIR...")->required();
+  line->add_option("parts", options->parts, "folders to join")->type_name("DIR")->required();
   programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
   line->footer(
       "Exit codes: 0 all trainings are there; 1 some are missing; 2 bad input, parts of different studies, or a file "

@@ -285,6 +285,10 @@ void add_options(CLI::App& app, Options& options) {
   using programs::add_number;
   using programs::add_path;
   app.footer(
+      "Examples:\n"
+      "  pinnquad train --flight d1.csv --out my_model\n"
+      "  pinnquad train --flight a.csv --flight b.csv --flight c.csv --airframe mine.toml --recipe best\n"
+      "  pinnquad train --flight d1.csv --recipe small --block weights.block\n"
       "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
       "commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"

@@ -9,6 +9,7 @@
 #include "airframe/names.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/deploy/golden_features.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "training/derivatives.hpp"
@@ -32,22 +33,6 @@ class TrainedNetwork {
   virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
 };
 
-namespace detail {
-
-/// Evenly spaced training rows: inside the envelope by construction.
-template <class Model>
-std::vector<typename Model::FeatureVector> golden_features(const pinnquad::RowSet& rows) {
-  constexpr std::size_t golden_count = 8;
-  std::vector<typename Model::FeatureVector> golden;
-  for (std::size_t i = 0; i < golden_count; ++i) {
-    const std::size_t row = i * (rows.size() - 1) / (golden_count - 1);
-    golden.push_back(pinnquad::sample_features<typename Model::Features, typename Model::Scalar>(rows[row]));
-  }
-  return golden;
-}
-
-}  // namespace detail
-
 /// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
 /// name, which an export names by its type.
 template <class Model>
@@ -62,14 +47,14 @@ class NetworkOfModel : public TrainedNetwork {
   void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                     const pinnquad::Provenance& provenance) const override {
     with_exported([&](const auto& model) {
-      pinnquad::write_model_header(path, name, model, detail::golden_features<Model>(training), provenance);
+      pinnquad::write_model_header(path, name, model, pinnquad::golden_features<Model>(training), provenance);
     });
   }
   std::vector<unsigned char> block(const pinnquad::RowSet& training,
                                    const pinnquad::Provenance& provenance) const override {
     std::vector<unsigned char> bytes;
     with_exported([&](const auto& model) {
-      bytes = pinnquad::model_block(model, detail::golden_features<Model>(training), provenance);
+      bytes = pinnquad::model_block(model, pinnquad::golden_features<Model>(training), provenance);
     });
     return bytes;
   }
