@@ -82,7 +82,6 @@ inline std::optional<int> choose_command(CLI::App& program, int argument_count, 
       ->type_name("FILE.toml");
   program.allow_extras();
   for (CLI::App* command : program.get_subcommands({})) {
-    command->require_subcommand(0, 1);  // `study paper ablation` is one word too many
     command->preparse_callback([&name, command](std::size_t /*words*/) { name = command->get_name(); });
   }
   try {
