@@ -34,7 +34,8 @@ constexpr Quantity quantities[] = {{"density", &Differences::density, 2.8e-8},
                                    {"linear acceleration", &Differences::acceleration, 3.4e-7},
                                    {"angular acceleration", &Differences::angular, 7.8e-7}};
 
-/// Cheeseman-Bennett's pole at Z/R = 0.25 multiplies the rounding of Z/R by 2 * 0.25 / (Z/R - 0.25): 400 in the row at 0.2512.
+/// Cheeseman-Bennett's pole at Z/R = 0.25 multiplies the rounding of Z/R by 2 * 0.25 / (Z/R - 0.25): by 400 in the row
+/// at 0.2512.
 constexpr double pole_tolerance = 6.8e-9;
 
 /// The simulator's rotors use the float32 diameter, its ground effect the float32 radius in mm times a float32 0.001.

@@ -9,6 +9,7 @@ import pathlib
 import sys
 import tempfile
 import time
+import types
 import unittest
 
 sys.dont_write_bytecode = True
@@ -201,6 +202,26 @@ class Verdicts(unittest.TestCase):
         judge.steps = steps + [tests.Step("blind", "source", set(), "tests/blind.o", "core")]
         self.assertEqual([step.name for step in judge.seen_by("core/f.hpp")],
                          ["f_test.cpp", "h_test.cpp", "g_test.cpp", "a_test.cpp"])
+
+    def test_a_folder_sees_what_its_scripts_compile(self):
+        (self.work / "tests/boards").mkdir(parents=True)
+        (self.work / "tests/boards/run.sh").write_text('g++ "$root"/tests/nn/*.cpp "$root/tests/main.cpp"\n')
+        stub = types.SimpleNamespace(folder=self.work, digests=dict.fromkeys(
+            ("tests/boards/run.sh", "tests/nn/a.cpp", "tests/nn/a.hpp", "tests/main.cpp", "tests/core/b.cpp"), ""))
+        self.assertEqual(tests.Tests(stub, "").compiled_by({"tests/boards/run.sh"}), {"tests/nn/a.cpp"})
+
+    def test_a_folder_waits_for_a_mutant_that_asks_for_it(self):
+        folder = tests.Step("boards", "folder", {"include/pinnquad/core/f.hpp"})
+        folder.digest = "1"
+        judge = judges.Judge(types.SimpleNamespace(work=self.work), "", lambda text: None)
+        asked = []
+        judge.try_unmutated = lambda step, _: asked.append(step.name) or {"says": "is skipped", "run_s": 0.0}
+        judge.see_pass([folder])
+        self.assertEqual(([step.name for step in judge.steps], asked), (["boards"], []))
+        judge.see_folders(self.mutant)
+        self.assertEqual((judge.steps, asked), ([], ["boards"]))
+        judge.see_pass([folder])  # known by now
+        self.assertEqual((judge.steps, asked), ([], ["boards"]))
 
     def test_time_limit_ends_what_was_started(self):
         with self.assertRaises(trees.TimedOut):

@@ -48,7 +48,7 @@ class Judge:
         """Each step once without a mutant, but folders only when a mutant asks for them: they compile for minutes."""
         parts_alone, self.steps = {}, []
         for number, step in enumerate(steps, 1):
-            if step.kind == "folder":
+            if step.kind == "folder" and not self.known(step):
                 self.steps.append(step)
                 continue
             says = self.see_step(step, parts_alone, f"{number} of {len(steps)}")
@@ -66,17 +66,22 @@ class Judge:
 
     def see_step(self, step, parts_alone, which):
         """What it says without a mutant: as before, where its files are the same."""
-        before = json.loads(self.record.read_text()) if self.record.exists() else {}
-        known = before.get(step.name)
-        if known is None or known["digest"] != step.digest:
+        known = self.known(step)
+        if not known:
             known = {"digest": step.digest, **self.try_unmutated(step, parts_alone)}
-            before[step.name] = known
-            write_whole(self.record, json.dumps(before, indent=0))
+            write_whole(self.record, json.dumps({**self.all_known(), step.name: known}, indent=0))
             self.say(f"  without a mutant, {which}: {step.name}: {known['says']}, {known['run_s']:.1f} s")
         step.run_s = known["run_s"]
         if known["says"] == "fails":
             raise Failed(f"{step.name} fails without any mutant ({known['why']})")
         return known["says"]
+
+    def all_known(self):
+        return json.loads(self.record.read_text()) if self.record.exists() else {}
+
+    def known(self, step):
+        entry = self.all_known().get(step.name)
+        return entry if entry and entry["digest"] == step.digest else None
 
     def try_unmutated(self, step, parts_alone):
         if step.kind == "program" and step.parts and all(parts_alone.get(part) for part in step.parts):

@@ -2,6 +2,7 @@
 """Which tests see a file, read from the compilers' dependency files (ninja -t deps). A test is a step as small as it gets: one
 source of a doctest program linked alone, a whole program where a source needs the others, the cases of one source of
 tests/compile_fail, and, for what no program of this build includes, a folder whose tests compile for other machines."""
+import fnmatch
 import functools
 import json
 import os
@@ -129,12 +130,19 @@ class Tests:
         for group, sources in sorted(groups.items()):
             yield Step(group, "compile_fail", self.reached(sources))
 
+    def compiled_by(self, names):
+        """Tests of other folders that scripts among the files compile: "$root"/tests/nn/*.cpp."""
+        texts = [(self.tree.folder / name).read_text() for name in names if name.endswith(".sh")]
+        patterns = [pattern for text in texts for pattern in re.findall(r'"\$root"/(tests/[\w./*]+\.cpp)', text)]
+        return {name for pattern in patterns for name in fnmatch.filter(self.tree.digests, pattern)}
+
     def folder_steps(self, programs):
         """For headers that no program sees: the tests of a folder whose sources reach them."""
         blind = {name for name in self.tree.digests if name.startswith(HEADERS) and name.endswith(".hpp")}
         blind -= set().union(*(step.sees for step in programs))
         for folder in OTHER_MACHINES:
             own = {name for name in self.tree.digests if os.path.dirname(name) == f"tests/{folder}"}
+            own |= self.compiled_by(own)
             unseen = self.reached(own) & blind
             if unseen and any(name.startswith(f"{folder}.") for name in self.commands):
                 yield Step(folder, "folder", own | unseen)
