@@ -7,27 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "logs/csv_line.hpp"
 #include "pinnquad/data/csv_table.hpp"
 #include "report/claims.hpp"
 #include "report/comparisons.hpp"
 
 namespace programs {
 namespace detail {
-
-/// A field of CSV: quoted where it holds what separates fields.
-inline std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-/// One line of CSV.
-inline std::string csv_line(const std::vector<std::string>& fields) {
-  std::string line;
-  for (const std::string& field : fields) line += (line.empty() ? "" : ",") + csv_field(field);
-  return line + "\n";
-}
 
 inline std::string table3_csv(const Study& study) {
   using pinnquad::number_text;

@@ -167,7 +167,7 @@ inline std::string changes_figure(const std::vector<Comparison>& comparisons) {
     text += drawing::label(16, middle + 4,
                            "M" + std::to_string(c.pair.candidate) + " against M" + std::to_string(c.pair.baseline),
                            "title") +
-            drawing::label(left - 12, middle + 4, paper_model(c.pair.candidate).data, "small end") +
+            drawing::label(left - 12, middle + 4, data_words(paper_model(c.pair.candidate).data), "small end") +
             drawing::path(seeds.d(), "seed");
     const double mean = x(100 * c.result.relative_difference);
     text += drawing::line(mean, middle - 12, mean, middle + 12, "mean");

@@ -25,34 +25,65 @@ inline constexpr std::array<Measure, 4> table3_measures = {{{"mae", "mean absolu
                                                             {"angle_difference_deg_pitch", "angle, pitch", "deg", 1},
                                                             {"angle_difference_deg_yaw", "angle, yaw", "deg", 1}}};
 
+enum class Structure { linearized, vanilla, physics_informed };
 enum class PhysicsTerm { none, constant, annealed };
+/// A flight, and which share of it trains and tests.
+enum class PaperData { d1, d1_test_40, d1_test_80, d2, d3 };
 
 /// A line of Table 2. docs/paper.md, deviation 16: models 7-10 are printed alike; the caption of Fig. 7 tells them apart.
 struct PaperModel {
   int id;
-  const char* network;
+  Structure structure;
   bool batch_norm;
   PhysicsTerm term;
-  const char* data;
-  const char* split;  ///< training / validation / test, % of the flight, as text
+  PaperData data;
 };
 
+// clang-format off
 inline constexpr std::array<PaperModel, study_models> table2 = {{
-    {1, "linearized model, Eq. (3)", false, PhysicsTerm::none, "D1", "– / – / 20"},
-    {2, "vanilla", false, PhysicsTerm::none, "D1", "60 / 20 / 20"},
-    {3, "physics-informed", false, PhysicsTerm::constant, "D1", "60 / 20 / 20"},
-    {4, "physics-informed", false, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
-    {5, "vanilla", true, PhysicsTerm::none, "D1", "60 / 20 / 20"},
-    {6, "physics-informed", true, PhysicsTerm::annealed, "D1", "60 / 20 / 20"},
-    {7, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / – / 40"},
-    {8, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / – / 40"},
-    {9, "vanilla", true, PhysicsTerm::none, "D1, reduced", "20 / – / 80"},
-    {10, "physics-informed", true, PhysicsTerm::annealed, "D1, reduced", "20 / – / 80"},
-    {11, "vanilla", true, PhysicsTerm::none, "D2", "60 / 20 / 20"},
-    {12, "physics-informed", true, PhysicsTerm::annealed, "D2", "60 / 20 / 20"},
-    {13, "vanilla", true, PhysicsTerm::none, "D3", "60 / 20 / 20"},
-    {14, "physics-informed", true, PhysicsTerm::annealed, "D3", "60 / 20 / 20"},
+    // ID  structure                batch norm  physics term           data set
+    { 1, Structure::linearized,       false, PhysicsTerm::none,     PaperData::d1},
+    { 2, Structure::vanilla,          false, PhysicsTerm::none,     PaperData::d1},
+    { 3, Structure::physics_informed, false, PhysicsTerm::constant, PaperData::d1},
+    { 4, Structure::physics_informed, false, PhysicsTerm::annealed, PaperData::d1},
+    { 5, Structure::vanilla,          true,  PhysicsTerm::none,     PaperData::d1},
+    { 6, Structure::physics_informed, true,  PhysicsTerm::annealed, PaperData::d1},
+    { 7, Structure::vanilla,          true,  PhysicsTerm::none,     PaperData::d1_test_40},
+    { 8, Structure::physics_informed, true,  PhysicsTerm::annealed, PaperData::d1_test_40},
+    { 9, Structure::vanilla,          true,  PhysicsTerm::none,     PaperData::d1_test_80},
+    {10, Structure::physics_informed, true,  PhysicsTerm::annealed, PaperData::d1_test_80},
+    {11, Structure::vanilla,          true,  PhysicsTerm::none,     PaperData::d2},
+    {12, Structure::physics_informed, true,  PhysicsTerm::annealed, PaperData::d2},
+    {13, Structure::vanilla,          true,  PhysicsTerm::none,     PaperData::d3},
+    {14, Structure::physics_informed, true,  PhysicsTerm::annealed, PaperData::d3},
 }};
+// clang-format on
+
+/// As Table 2 calls them.
+inline const char* structure_words(Structure structure) {
+  switch (structure) {
+    case Structure::linearized: return "linearized model, Eq. (3)";
+    case Structure::vanilla: return "vanilla";
+    case Structure::physics_informed: break;
+  }
+  return "physics-informed";
+}
+inline const char* data_words(PaperData data) {
+  switch (data) {
+    case PaperData::d1: return "D1";
+    case PaperData::d2: return "D2";
+    case PaperData::d3: return "D3";
+    case PaperData::d1_test_40:
+    case PaperData::d1_test_80: break;
+  }
+  return "D1, reduced";
+}
+/// Training / validation / test, % of the flight.
+inline const char* split_words(const PaperModel& model) {
+  if (model.structure == Structure::linearized) return "– / – / 20";
+  if (model.data == PaperData::d1_test_40) return "20 / – / 40";
+  return model.data == PaperData::d1_test_80 ? "20 / – / 80" : "60 / 20 / 20";
+}
 
 inline const PaperModel& paper_model(int id) { return table2[static_cast<std::size_t>(id - 1)]; }
 

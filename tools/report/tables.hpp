@@ -88,11 +88,11 @@ inline nlohmann::json table2_rows(const Study& study, const StudySettings& setti
     if (run) flight = study.first.at(model.id).name + ", seed " + std::to_string(study.first.at(model.id).seed);
     const auto split = settings.splits.find(model.id);
     rows.push_back({{"model", model.id},
-                    {"network", model.network},
+                    {"network", structure_words(model.structure)},
                     {"batch_norm", of_network(model.batch_norm ? "with" : "without")},
                     {"term", model.term == PhysicsTerm::none ? "–" : loss_words(model.id)},
-                    {"data", model.data},
-                    {"split", split != settings.splits.end() ? split->second : std::string(model.split)},
+                    {"data", data_words(model.data)},
+                    {"split", split != settings.splits.end() ? split->second : std::string(split_words(model))},
                     {"flight", flight},
                     {"seeds", network || !run ? std::to_string(trainings.size()) : "–"},
                     {"epochs", of_network(epochs_text)},

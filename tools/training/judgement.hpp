@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "logs/csv_line.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
@@ -223,15 +224,17 @@ inline void print_paired(const std::vector<Result>& results, const std::string& 
 
 /// results.csv: one row per finished training, whole or not at all.
 inline void write_results(const std::string& path, const std::vector<Result>& results) {
-  std::string text = "model,seed";
+  using pinnquad::number_text;
   const std::vector<Figure> list = figures();
-  for (const Figure& figure : list) text += "," + figure.name;
-  text += ",validation_mae,training_s\n";
+  std::vector<std::string> cells = {"model", "seed"};
+  for (const Figure& figure : list) cells.push_back(figure.name);
+  cells.insert(cells.end(), {"validation_mae", "training_s"});
+  std::string text = csv_line(cells);
   for (const Result& result : results) {
-    text += result.model + "," + std::to_string(result.seed);
-    for (const Figure& figure : list) text += "," + pinnquad::number_text(figure.of(result.test, figure.index));
-    text += "," + pinnquad::number_text(result.validation_error);
-    text += "," + pinnquad::number_text(result.training_s) + "\n";
+    cells = {result.model, std::to_string(result.seed)};
+    for (const Figure& figure : list) cells.push_back(number_text(figure.of(result.test, figure.index)));
+    cells.insert(cells.end(), {number_text(result.validation_error), number_text(result.training_s)});
+    text += csv_line(cells);
   }
   pinnquad::AtomicFile file(path);
   file.stream() << text;

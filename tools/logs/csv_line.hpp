@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// A line of a CSV file that holds text beside numbers; tables of numbers alone: pinnquad/data/csv_table.hpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pinnquad/data/csv_cells.hpp"
+
+namespace programs {
+
+/// The cells with their line's end, in quotation marks where they need them (RFC 4180).
+inline std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) line += (i > 0 ? "," : "") + pinnquad::detail::csv_cell(cells[i]);
+  return line + "\n";
+}
+
+}  // namespace programs
