@@ -35,7 +35,7 @@ refused() { # <pattern> <sed program>: of the header
 expect_line 2 'none.hpp: expected a readable file, found none' "$pinnquad" block none.hpp --out changed.block
 expect_line 2 'flight.csv: expected a header that pinnquad train exported' "$pinnquad" block flight.csv --out changed.block
 expect_line 2 'same file; it would be overwritten' "$pinnquad" block model.hpp --out ./model.hpp
-refused 'changed.hpp:[0-9]+: expected format 2 or 3, found 4' 's/format_version = 3/format_version = 4/'
+refused 'changed.hpp:[0-9]+: expected format 2 to 3, found 4' 's/format_version = 3/format_version = 4/'
 refused 'changed.hpp:[0-9]+: expected records that are known, found `moon`' 's/"answer", "commands"/"moon", "commands"/'
 refused 'changed.hpp:49: expected numbers in `command_lower`, found `low`' 's/command_lower = 0.0/command_lower = low/'
 refused 'changed.hpp: expected `answer` in an exported header, found none' '/ answer = /d'

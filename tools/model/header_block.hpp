@@ -183,9 +183,10 @@ std::vector<unsigned char> records_of(const HeaderFile& header, const HeaderTerm
 
 inline HeaderTerms terms_of(const HeaderFile& header) {
   const auto format = static_cast<int>(header.number("format_version"));
-  constexpr int oldest = 2, newest = 3;
-  if (format < oldest || format > newest) {
-    header.refuse("format_version", "format 2 or 3", std::to_string(format));
+  constexpr int oldest = 2;  // format 1 does not check its own names
+  if (format < oldest || format > pinnquad::model_format_version) {
+    header.refuse("format_version", "format 2 to " + std::to_string(pinnquad::model_format_version),
+                  std::to_string(format));
   }
   return format == oldest ? implied_terms(header) : stated_terms(header);
 }
