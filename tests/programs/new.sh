@@ -11,7 +11,7 @@ pinnquad new a/b/my_training --airframe mine.toml --name MyModel >said.txt
 project=a/b/my_training
 [ "$(ls -A $project)" = "$(printf '%s\n' CMakeLists.txt main.cpp model.hpp)" ] || fail "wrote: $(ls -A $project)"
 ! grep -rn '{{\|}};$' --include=CMakeLists.txt --include=main.cpp $project || fail "a place of the template is empty"
-grep -q "cmake -S $project -B $project/build" said.txt || fail "does not say how to build: $(cat said.txt)"
+grep -q "cmake -G Ninja -S $project -B $project/build" said.txt || fail "does not say how to build: $(cat said.txt)"
 
 sed -i 's/Hidden<10, 25>/Hidden<2, 16>/; s/, Relu>;/, Tanh>;/; s/epochs = 300/epochs = 60/
   s/^using MyLoss = .*/using MyLoss = Mse;/; s/^using MyOptimizer = .*/using MyOptimizer = Scheduled<AdamW, CosineDecay>;/' $project/model.hpp

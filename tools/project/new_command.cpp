@@ -189,7 +189,7 @@ int write_project(const Options& options) {
   const std::string shown = printable(options.folder);
   std::printf(
       "%s: CMakeLists.txt, model.hpp (what is trained: edit it), main.cpp\n"
-      "  cmake -S %s -B %s/build && cmake --build %s/build\n"
+      "  cmake -G Ninja -S %s -B %s/build && cmake --build %s/build\n"
       "  %s/build/train flight.csv trained.hpp\n",
       shown.c_str(), shown.c_str(), shown.c_str(), shown.c_str(), shown.c_str());
   return 0;
@@ -213,7 +213,7 @@ programs::Command programs::new_command(CLI::App& program) {
       "Examples:\n"
       "  pinnquad new my_training --airframe mine.toml\n"
       "  pinnquad new my_training --model my_model/model.hpp --name MyModel\n"
-      "  cmake -S my_training -B my_training/build && cmake --build my_training/build\n"
+      "  cmake -G Ninja -S my_training -B my_training/build && cmake --build my_training/build\n"
       "  my_training/build/train flight.csv trained.hpp\n"
       "CMake finds an installed pinnquad whose program is in the PATH, or by -DCMAKE_PREFIX_PATH=PREFIX.\n"
       "Exit codes: 0; 2 bad input, a folder that is not empty, or a file that can't be read or written.");
