@@ -49,16 +49,20 @@ void check_against_differences(const char* what) {
   model.network = initialised<Network>(engine);
   TrainedModel<typename Network::template Rebind<double>, Context> wide;
   std::uniform_real_distribution<double> spread(0.5, 3);
+  const auto set = [](float& value, double& same, double to) {
+    value = static_cast<float>(to);
+    same = static_cast<double>(value);
+  };
   for (std::size_t i = 0; i < model.input.mean.size(); ++i) {
-    wide.input.spread[i] = model.input.spread[i] = static_cast<float>(spread(engine));
-    wide.input.mean[i] = model.input.mean[i] = static_cast<float>(spread(engine) - 1);
+    set(model.input.spread[i], wide.input.spread[i], spread(engine));
+    set(model.input.mean[i], wide.input.mean[i], spread(engine) - 1);
   }
   for (std::size_t i = 0; i < model.output.mean.size(); ++i) {
-    wide.output.spread[i] = model.output.spread[i] = static_cast<float>(spread(engine));
-    wide.output.mean[i] = model.output.mean[i] = static_cast<float>(3 + spread(engine));
+    set(model.output.spread[i], wide.output.spread[i], spread(engine));
+    set(model.output.mean[i], wide.output.mean[i], 3 + spread(engine));
   }
   for (std::size_t i = 0; i < model.network.parameters.size(); ++i) {
-    wide.network.parameters[i] = model.network.parameters[i];
+    wide.network.parameters[i] = static_cast<double>(model.network.parameters[i]);
   }
   const std::array<std::array<double, rotor_count>, 3> signs = {
       model.template signs<Roll>(), model.template signs<Pitch>(), model.template signs<Yaw>()};
