@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # evaluate judges a block or a header as the training judged the network that it was written from, and refuses what is neither.
 source "$(dirname "$0")/common.sh" "$@"
+command -v python3 >/dev/null || { echo "skipped: no python3 to read the reports"; exit 77; }
 
 "$pinnquad" fly --seed 3 --samples 3000 --out flight.csv >/dev/null
 mkdir a

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Recipes and losses by name: what is trained is what the report says, and what it was trained with is exported and judged.
 source "$(dirname "$0")/common.sh" "$@"
+command -v python3 >/dev/null || { echo "skipped: no python3 to read the reports"; exit 77; }
 
 "$pinnquad" fly --seed 3 --samples 2500 --out flight.csv >/dev/null
 train() { "$pinnquad" train --flight flight.csv --seeds 1 --epochs 3 --threads 1 --allow-poor "$@" >/dev/null 2>stderr.txt; }

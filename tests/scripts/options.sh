@@ -12,6 +12,7 @@ fail() {
 }
 export CDPATH=$PWD
 for script in scripts/test scripts/demo scripts/bare_machine scripts/models scripts/mutation; do
+  if [ "$script" = scripts/mutation ] && [ ! -x /usr/bin/python3 ]; then continue; fi # its interpreter
   help=$("$script" --help) || fail "$script --help: exit code $?"
   codes=$(sed -n '/^Exit code/,$p' <<<"$help")
   for code in 0 1 2 130; do
