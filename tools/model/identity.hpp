@@ -41,17 +41,8 @@ std::uint64_t shape_hash_of(const std::string& answer, const NamedAirframe& airf
   using Map = pinnquad::OutputMap<Outputs>;
   pinnquad::detail::Fnv1a fnv;
   fnv.absorb_text(answer);
-  fnv.absorb_text(pinnquad::model_frame);
-  for (const char* name : Features::names) fnv.absorb_text(name);
-  for (const char* unit : Features::units) fnv.absorb_text(unit);
-  for (const char* name : Map::names) fnv.absorb_text(name);
-  for (std::size_t i = 0; i < (pinnquad::detail::one_unit(Map::units) ? 1 : Map::units.size()); ++i) {
-    fnv.absorb_text(Map::units[i]);
-  }
-  fnv.absorb_text(pinnquad::printable(airframe.name));
-  for (const pinnquad::TorqueSigns& rotor : pinnquad::motor_torque_signs(airframe.value)) {
-    for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
-  }
+  pinnquad::detail::absorb_shape(fnv, Features::names, Features::units, Map::names, Map::units,
+                                 pinnquad::printable(airframe.name), pinnquad::motor_torque_signs(airframe.value));
   return fnv.hash;
 }
 

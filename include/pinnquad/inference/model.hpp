@@ -96,7 +96,7 @@ struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_typ
 /// All texts are one.
 template <class Texts>
 constexpr bool one_unit(const Texts& texts) noexcept {
-  for (const char* text : texts) {
+  for (const auto& text : texts) {
     if (!same_text(text, texts[0])) return false;
   }
   return true;

@@ -94,23 +94,32 @@ struct ModelBlockLayout {
 };
 
 namespace detail {
-/// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
-template <class Shape>
-constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
-                                      const std::array<TorqueSigns, rotor_count>& signs) noexcept {
-  Fnv1a fnv;
-  absorb_description<typename Shape::Network>(fnv);
+/// What a shape says behind its answer; texts of any kind.
+template <class Names, class Units, class OutputNames, class OutputUnits>
+constexpr void absorb_shape(Fnv1a& fnv, const Names& names, const Units& units, const OutputNames& output_names,
+                            const OutputUnits& output_units, std::string_view vehicle_name,
+                            const std::array<TorqueSigns, rotor_count>& signs) noexcept {
   fnv.absorb_text(model_frame);
-  for (const char* name : Shape::Features::names) fnv.absorb_text(name);
-  for (const char* unit : Shape::Features::units) fnv.absorb_text(unit);
-  using Map = OutputMap<typename Shape::Outputs>;
-  for (const char* name : Map::names) fnv.absorb_text(name);
+  for (const auto& name : names) fnv.absorb_text(name);
+  for (const auto& unit : units) fnv.absorb_text(unit);
+  for (const auto& name : output_names) fnv.absorb_text(name);
   // one unit for all is said once
-  for (std::size_t i = 0; i < (one_unit(Map::units) ? 1 : Map::units.size()); ++i) fnv.absorb_text(Map::units[i]);
+  const std::size_t said = output_units.size() > 1 && one_unit(output_units) ? 1 : output_units.size();
+  for (std::size_t i = 0; i < said; ++i) fnv.absorb_text(output_units[i]);
   fnv.absorb_text(vehicle_name);
   for (const TorqueSigns& rotor : signs) {
     for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
   }
+}
+
+/// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
+template <class Shape>
+constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
+                                      const std::array<TorqueSigns, rotor_count>& signs) noexcept {
+  using Map = OutputMap<typename Shape::Outputs>;
+  Fnv1a fnv;
+  absorb_description<typename Shape::Network>(fnv);
+  absorb_shape(fnv, Shape::Features::names, Shape::Features::units, Map::names, Map::units, vehicle_name, signs);
   return fnv.hash;
 }
 }  // namespace detail
