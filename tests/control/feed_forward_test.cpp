@@ -18,7 +18,7 @@ struct NowhereTrained : test::SmallModel {
   static constexpr std::array<float, 16> envelope_upper{};
 };
 
-using Answering = InverseDynamics<test::SmallModel, Guard<>>;
+using Answering = InverseDynamics<test::SmallModel, Guard<FiniteInputs, FiniteOutputs>>;
 using Declining = InverseDynamics<NowhereTrained>;
 
 constexpr Commands<double> earlier = {0.11, 0.22, 0.33, 0.44};
