@@ -19,6 +19,7 @@ import {
   near,
   press,
   requests,
+  resize,
   rows,
   screenshot,
   sleep,
@@ -48,12 +49,7 @@ async function pageOpens() {
     downloadThroughput: 0,
     uploadThroughput: 0,
   });
-  await chromium.send('Emulation.setDeviceMetricsOverride', {
-    width: 1280,
-    height: 800,
-    deviceScaleFactor: 1,
-    mobile: false,
-  });
+  await resize(1280, 800, { deviceScaleFactor: 1 });
   await chromium.send('Page.navigate', { url });
   let opened = false;
   for (let i = 0; i < 100 && !opened && complaints.length === 0; ++i) {
@@ -265,12 +261,7 @@ async function cameraObeys() {
 }
 
 async function restWorks() {
-  await chromium.send('Emulation.setDeviceMetricsOverride', {
-    width: 1000,
-    height: 700,
-    deviceScaleFactor: 2,
-    mobile: false,
-  });
+  await resize(1000, 700);
   await sleep(0.3);
   await drawn();
   check(

@@ -47,6 +47,9 @@ export const figure = async (id) =>
 /** Two frames on, whatever was asked for has been drawn. */
 export const drawn = () =>
   evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))');
+/** The window is of this size, on a screen of two dots a pixel unless said otherwise. */
+export const resize = (width, height, { mobile = false, deviceScaleFactor = 2 } = {}) =>
+  chromium.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor, mobile });
 export async function press(key, code = key, modifiers = 0) {
   for (const type of ['keyDown', 'keyUp'])
     await chromium.send('Input.dispatchKeyEvent', { type, key, code, modifiers });

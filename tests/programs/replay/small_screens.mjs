@@ -11,6 +11,7 @@ import {
   figure,
   luminance,
   near,
+  resize,
   rows,
   screenshot,
   sleep,
@@ -71,7 +72,7 @@ export async function phoneWorks() {
     [844, 390],
   ]) {
     const where = `${width} x ${height}`;
-    await chromium.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 2, mobile: true });
+    await resize(width, height, { mobile: true });
     await sleep(0.3);
     await drawn();
     const panels = ['head', 'telemetry', 'rotors', 'legend', 'bar'];
@@ -97,12 +98,7 @@ export async function phoneWorks() {
     await axisIsTrue(where);
     await screenshot(`replay_${width}.png`);
   }
-  await chromium.send('Emulation.setDeviceMetricsOverride', {
-    width: 390,
-    height: 844,
-    deviceScaleFactor: 2,
-    mobile: true,
-  });
+  await resize(390, 844, { mobile: true });
   await sleep(0.3);
   await evaluate('replay.setCamera("follow")');
   await drawn();
