@@ -96,7 +96,7 @@ inline DegreesFound find_degrees_by_motion(const Flight& flight) {
     }
   }
   if (!(residual[best][best_rates] < explained * rates)) return found;
-  for (std::size_t i = 0; i < 3; ++i) found.angle[i] = (best >> i & 1u) != 0;
+  found.angle = {(best & 1u) != 0, (best & 2u) != 0, (best & 4u) != 0};
   found.body_rates = best_rates == 1;
   return found;
 }

@@ -79,11 +79,11 @@ class FlightInputs<WindowInputs<Tap, Scalar, Window>> {
     if (!taps_.read(row, read)) return false;
     const double present_s = time_of(row);
     std::size_t first = row, last = row;
-    while (first > rows_.rows.begin && time_of(first) > present_s + Window::earliest_s + Window::tolerance_s &&
+    while (first > rows_.rows.begin && time_of(first) > present_s + Window::earliest_s &&
            detail::follows<Window>(time_of(first - 1), time_of(first))) {
       --first;
     }
-    while (last + 1 < rows_.rows.end && time_of(last) < present_s + Window::latest_s - Window::tolerance_s &&
+    while (last + 1 < rows_.rows.end && time_of(last) < present_s + Window::latest_s &&
            detail::follows<Window>(time_of(last), time_of(last + 1))) {
       ++last;
     }

@@ -31,10 +31,12 @@ struct LinearRegression {
 
 namespace detail {
 
-/// Gauss-Jordan on the symmetric matrix of moments, one feature after another, the one that varies most beside those before
-/// it first. Features that those before explain up to `threshold` of their variance are left out. The number taken.
+/// Gauss-Jordan on the symmetric matrix of moments, of which only the features' rows are needed: one feature after another, the
+/// one that varies most beside those before it first. Features that those before explain up to `threshold` of their variance are
+/// left out. The number taken.
 template <std::size_t InputCount, std::size_t Size>
-int sweep(std::array<std::array<double, Size>, Size>& moments, std::array<bool, InputCount>& taken, double threshold) {
+int sweep(std::array<std::array<double, Size>, InputCount>& moments, std::array<bool, InputCount>& taken,
+          double threshold) {
   for (int rank = 0;; ++rank) {
     std::size_t pivot = InputCount;
     for (std::size_t i = 0; i < InputCount; ++i) {
@@ -46,7 +48,7 @@ int sweep(std::array<std::array<double, Size>, Size>& moments, std::array<bool, 
     const double diagonal = moments[pivot][pivot];
     moments[pivot][pivot] = 1;
     for (double& value : moments[pivot]) value /= diagonal;
-    for (std::size_t i = 0; i < Size; ++i) {
+    for (std::size_t i = 0; i < InputCount; ++i) {
       if (i == pivot) continue;
       const double factor = moments[i][pivot];
       moments[i][pivot] = 0;
@@ -86,11 +88,11 @@ LinearRegression<InputCount, OutputCount> fit_linear_regression(
     spread[i] = std::sqrt(squares / rows);
     if (!(spread[i] > rounding * std::abs(mean[i]))) spread[i] = 0;
   }
-  std::array<std::array<double, size>, size> moments{};
+  std::array<std::array<double, size>, InputCount> moments{};
   for (std::size_t row = 0; row < features.size(); ++row) {
     std::array<double, size> z{};
     for (std::size_t i = 0; i < size; ++i) z[i] = spread[i] > 0 ? (value(row, i) - mean[i]) / spread[i] : 0;
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = 0; i < InputCount; ++i) {
       for (std::size_t j = 0; j < size; ++j) moments[i][j] += z[i] * z[j] / rows;
     }
   }
