@@ -13,6 +13,7 @@
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/help.hpp"
+#include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "command_line/settings_file.hpp"
 
@@ -44,10 +45,8 @@ inline void complete(CLI::App& command, const std::string& version) {
 inline void require_command(const CLI::App& program) {
   const CLI::App& command = chosen_command(program);
   const std::vector<std::string> unknown = program.remaining();
-  std::string known;
-  for (const CLI::App* part : command.get_subcommands([](const CLI::App*) { return true; })) {
-    known += (known.empty() ? "" : ", ") + part->get_name();
-  }
+  const std::string known = listed(command.get_subcommands([](const CLI::App*) { return true; }),
+                                   [](const CLI::App* part) { return part->get_name(); });
   if (known.empty()) {
     if (!unknown.empty()) throw CLI::ExtrasError(command.get_name(), unknown);
     return;

@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/listed.hpp"
 #include "command_line/progress_line.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/plausibility.hpp"
@@ -74,9 +75,7 @@ inline void require_varied_commands(const std::vector<std::string>& paths, const
 
 /// "a.csv", or "a.csv, b.csv, c.csv".
 inline std::string flight_names(const std::vector<const pinnquad::Flight*>& flights) {
-  std::string names;
-  for (const pinnquad::Flight* flight : flights) names += (names.empty() ? "" : ", ") + flight->name;
-  return names;
+  return listed(flights, [](const pinnquad::Flight* flight) { return flight->name; });
 }
 inline std::string flight_names(const pinnquad::RowSet& rows) {
   std::vector<const pinnquad::Flight*> flights;

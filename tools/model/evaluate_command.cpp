@@ -42,17 +42,6 @@ struct Options {
 
 using Airframe = ContextAirframe<GivenAirframe>;
 
-/// Of a block's vectors, each as long as the scaler says.
-template <class Scalar, int Size>
-Scaler<Scalar, Size> scaler_of(const std::vector<double>& mean, const std::vector<double>& spread) {
-  Scaler<Scalar, Size> result;
-  for (std::size_t i = 0; i < result.mean.size(); ++i) {
-    result.mean[i] = static_cast<Scalar>(mean[i]);
-    result.spread[i] = static_cast<Scalar>(spread[i]);
-  }
-  return result;
-}
-
 /// A block's network between its scalers, in the block's scalar.
 template <class Features, class Outputs, class Scalar>
 class RunTimeModel {
@@ -62,8 +51,9 @@ class RunTimeModel {
   RunTimeModel(const programs::Block& block, const programs::Identity& identity)
       : network_(identity.network, block.parameters),
         airframe_(identity.airframe.name, identity.airframe.value),
-        input_(scaler_of<Scalar, Features::size>(block.input_mean, block.input_spread)),
-        output_(scaler_of<Scalar, OutputMap<Outputs>::size>(block.output_mean, block.output_spread)) {}
+        input_(programs::scaler_of<Scaler<Scalar, Features::size>>(block.input_mean, block.input_spread)),
+        output_(programs::scaler_of<Scaler<Scalar, OutputMap<Outputs>::size>>(block.output_mean, block.output_spread)) {
+  }
 
   Commands<Scalar> predict(const FeatureVector& x) const {
     std::vector<Scalar> standardised(x.size());
@@ -127,9 +117,11 @@ Evaluation evaluated(const programs::Block& block, const programs::Identity& ide
     result.predictions.push_back(
         {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]), static_cast<double>(u[3])});
   }
-  const programs::NetworkDerivatives<Features, Outputs> derivatives(
-      identity.network, block.parameters, scaler_of<double, Features::size>(block.input_mean, block.input_spread),
-      scaler_of<double, OutputMap<Outputs>::size>(block.output_mean, block.output_spread),
+  using Derivatives = programs::NetworkDerivatives<Features, Outputs>;
+  const Derivatives derivatives(
+      identity.network, block.parameters,
+      programs::scaler_of<typename Derivatives::InputScaler>(block.input_mean, block.input_spread),
+      programs::scaler_of<typename Derivatives::OutputScaler>(block.output_mean, block.output_spread),
       Airframe(identity.airframe.name, identity.airframe.value));
   result.wrong_derivatives = programs::wrong_derivative_shares(rows, [&](const Sample& sample) {
     advance();

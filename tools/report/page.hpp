@@ -12,6 +12,7 @@
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
+#include "command_line/listed.hpp"
 #include "pictures/html_text.hpp"
 #include "report/figures.hpp"
 #include "report/gaps.hpp"
@@ -44,8 +45,7 @@ inline nlohmann::json figures_words(const ReportInput& input, std::uint64_t epoc
     left_out.emplace_back("Fig. 2 over some seconds and Fig. 8 (no series/model2.csv, series/model4.csv)");
   }
   nlohmann::json flights = flight_pictures(input.folder, left_out);
-  std::string names;
-  for (const std::string& name : left_out) names += (names.empty() ? "" : ", ") + name;
+  const std::string names = listed(left_out);
   return {{"cycles", annealing.cycles},
           {"hold", shown::number(annealing.hold, 2)},
           {"lambda_max", shown::number(annealing.maximum, 3)},
@@ -107,10 +107,7 @@ inline nlohmann::json report_figures(const detail::ReportInput& input, const std
   std::size_t tests = comparisons.size();
   for (const FlightsComparison& f : flights) tests += f.flights.size() + 1;
   const auto count = [&claims](Verdict verdict) { return count_verdicts(claims, verdict); };
-  std::string smaller;
-  for (const std::string& less : smaller_than_default(study, input.settings)) {
-    smaller += (smaller.empty() ? "" : ", ") + less;
-  }
+  const std::string smaller = listed(smaller_than_default(study, input.settings));
   const nlohmann::json patience = input.settings.all.value("patience", nlohmann::json());
   return {{"rows", study.rows.size()},
           {"seeds", study.expected.size()},

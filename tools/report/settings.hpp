@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/listed.hpp"
 #include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "report/rows.hpp"
@@ -117,9 +118,7 @@ inline std::string json_text(const nlohmann::json& value) {
   const bool flat = value.is_array() &&
                     std::all_of(value.begin(), value.end(), [](const nlohmann::json& v) { return v.is_primitive(); });
   if (!flat) return value.dump();
-  std::string text;
-  for (const nlohmann::json& item : value) text += (text.empty() ? "" : ", ") + json_text(item);
-  return text;
+  return listed(value, [](const nlohmann::json& item) { return json_text(item); });
 }
 
 inline std::string key_text(std::string key) {

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/listed.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "report/claims.hpp"
 #include "report/comparisons.hpp"
@@ -80,8 +81,7 @@ inline nlohmann::json table2_rows(const Study& study, const StudySettings& setti
     const std::vector<const StudyRow*> trainings = study.trainings(model.id);
     std::set<std::uint64_t> epochs;
     for (const StudyRow* row : trainings) epochs.insert(row->epochs);
-    std::string epochs_text;
-    for (const std::uint64_t count : epochs) epochs_text += (epochs_text.empty() ? "" : ", ") + std::to_string(count);
+    const std::string epochs_text = listed(epochs, [](std::uint64_t count) { return std::to_string(count); });
     const bool network = model.id > 1, run = study.has(model.id);
     const auto of_network = [network](const std::string& text) { return network ? text : std::string("–"); };
     std::string flight = "not run";

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "pinnquad/loss/pearson_correlation.hpp"
 #include "pinnquad/training/adam_w.hpp"
 #include "study/contender.hpp"
@@ -110,9 +111,8 @@ std::vector<Contender> chosen_variants(const std::vector<std::string>& names) {
   }
   for (const std::string& name : names) {
     if (std::any_of(all.begin(), all.end(), [&name](const Contender& c) { return c.id == name; })) continue;
-    std::string known;
-    for (const Contender& contender : all) known += (known.empty() ? "" : ", ") + contender.id;
-    throw std::invalid_argument("--variants: no variant '" + name + "'; known: " + known);
+    throw std::invalid_argument("--variants: no variant '" + name + "'; known: " +
+                                programs::listed(all, [](const Contender& contender) { return contender.id; }));
   }
   return result;
 }

@@ -46,26 +46,21 @@ struct CyclicLambda {
 
 /// Data set: which flight, which features, which share of the rows trains, validates and tests, in contiguous blocks.
 /// `chooses_weights`: its validation rows may choose between the weights of a training's epochs.
-struct D1 {
+template <class FlightType, class FeatureSet>
+struct WholeFlight {
+  static constexpr bool chooses_weights = true;
+  using Flight = FlightType;
+  using Features = FeatureSet;
+  static constexpr pinnquad::SplitShares shares{};
+};
+struct D1 : WholeFlight<pinnquad::AgileFlight, pinnquad::PaperFeatures> {
   static constexpr const char* name = "D1";
-  static constexpr bool chooses_weights = true;
-  using Flight = pinnquad::AgileFlight;
-  using Features = pinnquad::PaperFeatures;
-  static constexpr pinnquad::SplitShares shares{};
 };
-struct D2 {
+struct D2 : WholeFlight<pinnquad::NearGroundFlight, pinnquad::PaperFeaturesWithAltitude> {
   static constexpr const char* name = "D2";
-  static constexpr bool chooses_weights = true;
-  using Flight = pinnquad::NearGroundFlight;
-  using Features = pinnquad::PaperFeaturesWithAltitude;
-  static constexpr pinnquad::SplitShares shares{};
 };
-struct D3 {
+struct D3 : WholeFlight<pinnquad::WindyFlight, pinnquad::PaperFeatures> {
   static constexpr const char* name = "D3";
-  static constexpr bool chooses_weights = true;
-  using Flight = pinnquad::WindyFlight;
-  using Features = pinnquad::PaperFeatures;
-  static constexpr pinnquad::SplitShares shares{};
 };
 /// docs/paper.md, deviation 16, Fig. 7: the first 20 % of D1 train, the last 40 % test; what lies between is judged as
 /// validation, and chooses nothing.

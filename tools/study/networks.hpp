@@ -7,6 +7,7 @@
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "study/models.hpp"
+#include "training/paper_network.hpp"
 
 namespace study {
 
@@ -15,8 +16,7 @@ template <class Features, class BatchNormChoice>
 struct NetworkOf;
 template <class Features>
 struct NetworkOf<Features, Without> {
-  using type = pinnquad::Mlp<float, pinnquad::InputSize<Features::size>, pinnquad::Hidden<10, 25>,
-                             pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
+  using type = programs::PaperNetwork<Features>;
 };
 template <class Features>
 struct NetworkOf<Features, With> {

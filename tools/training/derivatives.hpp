@@ -40,6 +40,18 @@ std::array<double, 3> wrong_derivative_shares(const pinnquad::RowSet& rows, cons
   return wrong;
 }
 
+/// A scaler of numbers of another scalar, or of a list as long as the scaler.
+template <class Scaler, class Numbers>
+Scaler scaler_of(const Numbers& mean, const Numbers& spread) {
+  using Scalar = typename decltype(Scaler::mean)::value_type;
+  Scaler result;
+  for (std::size_t i = 0; i < result.mean.size(); ++i) {
+    result.mean[i] = static_cast<Scalar>(mean[i]);
+    result.spread[i] = static_cast<Scalar>(spread[i]);
+  }
+  return result;
+}
+
 /// Of a network between its scalers, exact, worked out in double whatever the network's own scalar is.
 template <class Features, class Outputs>
 class NetworkDerivatives {
@@ -104,17 +116,10 @@ class NetworkDerivatives {
 template <class Model>
 auto derivatives_of(const Model& model) {
   using Derivatives = NetworkDerivatives<typename Model::Features, typename Model::Outputs>;
-  const auto cast = [](const auto& from, auto to) {
-    for (std::size_t i = 0; i < to.mean.size(); ++i) {
-      to.mean[i] = static_cast<double>(from.mean[i]);
-      to.spread[i] = static_cast<double>(from.spread[i]);
-    }
-    return to;
-  };
   const std::vector<double> parameters(model.network.parameters.begin(), model.network.parameters.end());
   return Derivatives(*parse_network(pinnquad::detail::description_text<typename Model::Network>()), parameters,
-                     cast(model.input, typename Derivatives::InputScaler{}),
-                     cast(model.output, typename Derivatives::OutputScaler{}),
+                     scaler_of<typename Derivatives::InputScaler>(model.input.mean, model.input.spread),
+                     scaler_of<typename Derivatives::OutputScaler>(model.output.mean, model.output.spread),
                      pinnquad::ContextAirframe<pinnquad::GivenAirframe>(std::string(model.airframe_name()),
                                                                         model.template airframe<double>()));
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
+
 namespace programs {
 
 struct LossName {
@@ -28,8 +30,7 @@ inline constexpr const LossName& physics_informed = loss_names[1];
 /// name that is none.
 inline std::vector<LossName> chosen_losses(const std::vector<std::string>& names) {
   std::vector<LossName> chosen;
-  std::string known;
-  for (const LossName& loss : loss_names) known += (known.empty() ? "" : ", ") + std::string(loss.key);
+  const std::string known = listed(loss_names, [](const LossName& loss) { return loss.key; });
   for (const std::string& name : names) {
     bool found = false;
     for (const LossName& loss : loss_names) found = found || name == loss.key;

@@ -3,10 +3,8 @@
 #pragma once
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/dynamics/site.hpp"
-#include "pinnquad/evaluation/linear_regression.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {
@@ -30,23 +28,6 @@ inline Predictions linear_predictions(const pinnquad::Airframe<double>& airframe
   for (std::size_t row = 0; row < rows.size(); ++row) {
     result.push_back(linear_prediction(airframe, rotors, rows[row]));
   }
-  return result;
-}
-
-/// Linear regression of the commands on the features, fitted on the training rows, on a set of rows.
-template <class Features>
-Predictions regression_predictions(const pinnquad::RowSet& training, const pinnquad::RowSet& rows) {
-  std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
-  Predictions commands;
-  pinnquad::each_features<Features, double>(training,
-                                            [&](const pinnquad::Flight& flight, std::size_t row, const auto& x) {
-                                              features.push_back(x);
-                                              commands.push_back(flight[row].commands);
-                                            });
-  const auto regression = pinnquad::fit_linear_regression(features, commands);
-  Predictions result;
-  pinnquad::each_features<Features, double>(
-      rows, [&](const pinnquad::Flight&, std::size_t, const auto& x) { result.push_back(regression.predict(x)); });
   return result;
 }
 

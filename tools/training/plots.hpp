@@ -10,19 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "pictures/gnuplot.hpp"
 #include "pinnquad/evaluation/confidence_ellipse.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {
-
-namespace detail {
-inline std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-}  // namespace detail
 
 /// Fig. 8: signed command sum over angular acceleration, standardised by the target's spread; dots target, plus signs
 /// prediction, 3-sigma ellipses with their major axis. One row of panels per model.
@@ -76,7 +69,7 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
   return draw_svg(
       svg,
       {1200, 60 + 370 * rows, "Signed command sum over angular acceleration, by model and axis",
-       "A row of panels per model (" + detail::listed(models) +
+       "A row of panels per model (" + listed(models) +
            "): roll, pitch and yaw, in the target's spreads. Dots: target; plus signs: prediction; each with "
            "its 3-sigma ellipse and major axis. The closer the two ellipses, the better."},
       out.str());
@@ -130,14 +123,13 @@ inline bool plot_errors(const std::string& svg, const std::vector<Result>& resul
   } else {
     out << "set multiplot layout 1,2\n";
     panel("all models", bars);
-    panel("without " + detail::listed(large) + ": scale of its own", small);
+    panel("without " + listed(large) + ": scale of its own", small);
     out << "unset multiplot\n";
   }
-  return draw_svg(
-      svg,
-      {small.empty() ? 700 : 1000, 420, "Mean absolute error of the commands by model",
-       "Mean and deviation over the seeds, in thousandths of the command range: " + detail::listed(values) + "."},
-      out.str());
+  return draw_svg(svg,
+                  {small.empty() ? 700 : 1000, 420, "Mean absolute error of the commands by model",
+                   "Mean and deviation over the seeds, in thousandths of the command range: " + listed(values) + "."},
+                  out.str());
 }
 
 /// Commands of one rotor over some seconds of the test flight: flown and predicted.
@@ -159,11 +151,10 @@ inline bool plot_prediction(const std::string& svg, const std::vector<double>& t
         << models[m] << "'";
   }
   out << '\n';
-  return draw_svg(
-      svg,
-      {1200, 420, "Command of rotor 1 over time, flown and predicted",
-       "Some seconds of the test flight: the command as flown and as predicted by " + detail::listed(models) + "."},
-      out.str());
+  return draw_svg(svg,
+                  {1200, 420, "Command of rotor 1 over time, flown and predicted",
+                   "Some seconds of the test flight: the command as flown and as predicted by " + listed(models) + "."},
+                  out.str());
 }
 
 }  // namespace programs

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/listed.hpp"
 #include "pinnquad/data/split_flights.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "training/losses.hpp"
@@ -59,12 +60,11 @@ inline constexpr std::array<Recipe (*)(), 3> recipes = {paper_recipe, best_recip
 
 /// Throws std::invalid_argument, one line, for a name that is none.
 inline Recipe chosen_recipe(const std::string& name) {
-  std::string known;
   for (const auto& make : recipes) {
     Recipe recipe = make();
     if (name == recipe.name) return recipe;
-    known += (known.empty() ? "" : ", ") + std::string(recipe.name);
   }
+  const std::string known = listed(recipes, [](const auto& make) { return make().name; });
   throw std::invalid_argument("no recipe named '" + name + "'; known: " + known);
 }
 

@@ -2,12 +2,12 @@
 // The recipe `best`: the network without batch norm and the training that did best in the study's search
 // (training/best_recipe.hpp).
 #include "training/best_parts.hpp"
+#include "training/paper_network.hpp"
 
 namespace programs {
 
 Recipe best_recipe() {
-  using Network = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::PaperFeatures::size>, pinnquad::Hidden<10, 25>,
-                                pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
+  using Network = PaperNetwork<pinnquad::PaperFeatures>;
   constexpr const char* hidden = "10 x 25 ReLU";
   return {"best",
           "10 x 25 ReLU, as the study trains: Adam with cosine decay, each loss with the weight decay that suits it",

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
 // The recipe `paper`: the network and the losses of the paper (Sec. 5.2), the library's defaults where it is silent.
 #include "training/campaign.hpp"
+#include "training/paper_network.hpp"
 
 namespace programs {
 
 namespace {
 
 struct Paper {
-  using Network = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::PaperFeatures::size>, pinnquad::Hidden<10, 25>,
-                                pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
+  using Network = PaperNetwork<pinnquad::PaperFeatures>;
   static pinnquad::Adam vanilla_optimizer() { return {}; }
   static pinnquad::Adam informed_optimizer() { return {}; }
   static pinnquad::PaperLoss<pinnquad::CyclicalAnnealing> annealed() { return {}; }
   static PearsonLoss pearson() { return {}; }
   static pinnquad::PaperLoss<pinnquad::Constant> constant() {
-    pinnquad::PaperLoss<pinnquad::Constant> loss;
-    std::apply([](auto&... term) { ((term.schedule = {pinnquad::CyclicalAnnealing{}.maximum}), ...); }, loss.terms);
-    return loss;
+    return best::with_schedule(pinnquad::PaperLoss<pinnquad::Constant>{},
+                               pinnquad::Constant{pinnquad::CyclicalAnnealing{}.maximum});
   }
 };
 

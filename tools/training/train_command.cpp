@@ -21,11 +21,13 @@
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
+#include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "logs/training_flights.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/evaluation/model_errors.hpp"
 #include "training/judge_all.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
@@ -59,8 +61,7 @@ struct Options {
 /// Warns of features that stand still in the training rows: they are exported, and flown only where they stood.
 template <class Features>
 void warn_of_still_features(const RowSet& training, programs::TrainingReport& report) {
-  std::string names;
-  for (const std::string& name : still_features<Features>(training)) names += (names.empty() ? "" : ", ") + name;
+  const std::string names = programs::listed(still_features<Features>(training));
   if (names.empty()) return;
   report.warn(names +
               ": nothing changes in the training rows; the model will not know what it does, and answers only near the "
@@ -96,12 +97,12 @@ void draw(const ContextAirframe<GivenAirframe>& airframe, const std::string& fol
 
 /// "; of an earlier training: ..." with the files an export would have replaced; nothing where there are none.
 std::string earlier_export(const Options& options) {
-  std::string names;
+  std::vector<std::string> there;
   for (const std::string& path : {options.out + "/model.hpp", options.out + "/replay.txt", options.block}) {
     std::error_code ignored;
-    if (!path.empty() && std::filesystem::exists(path, ignored)) names += (names.empty() ? "" : ", ") + path;
+    if (!path.empty() && std::filesystem::exists(path, ignored)) there.push_back(path);
   }
-  return names.empty() ? names : "; of an earlier training: " + names;
+  return there.empty() ? "" : "; of an earlier training: " + programs::listed(there);
 }
 
 std::string four_digits(double value) {
@@ -179,8 +180,7 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
   std::fflush(stdout);
   std::vector<programs::Predictions> predictions;
   const std::vector<programs::Result> results = programs::judge_all(plan, trainings, predictions);
-  const auto regression = programs::regression_predictions<PaperFeatures>(split.train, split.test);
-  const double regression_r_squared = programs::judge(plan.airframe, split.test, regression).errors.mean.r_squared;
+  const double regression_r_squared = linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared;
 
   const programs::LossName& exported_loss = programs::exported_loss(plan.losses);
   const std::optional<std::size_t> best = programs::best_of(results, exported_loss.title);
@@ -303,13 +303,13 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, pictures and the exported header")
       ->default_str(options.out);
-  std::string recipes, losses;
+  std::string recipes;
   for (const auto& make : programs::recipes) {
     const programs::Recipe recipe = make();
     recipes += std::string(recipes.empty() ? "" : "; ") + recipe.name + ": " + recipe.summary;
   }
-  for (const programs::LossName& loss : programs::loss_names)
-    losses += (losses.empty() ? "" : ", ") + std::string(loss.key);
+  const std::string losses =
+      programs::listed(programs::loss_names, [](const programs::LossName& loss) { return loss.key; });
   app.add_option("--recipe", options.recipe, "network and optimiser. " + recipes)->capture_default_str();
   app.add_option("--loss", options.losses, "what to train under, any of: " + losses)
       ->delimiter(',')

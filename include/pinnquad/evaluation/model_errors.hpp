@@ -37,11 +37,10 @@ PredictionErrors<rotor_count> model_errors(const Model& model, const RowSet& row
       rows, [&model](const typename Model::FeatureVector& x) { return model.predict(x); });
 }
 
-/// The verdict on a model by rows that it was not trained on, beside linear regression on the same features that was fitted to
-/// the rows that it was trained on. Throws std::invalid_argument where no row of one of them has features.
-template <class Model>
-Verdict verdict_on(const Model& model, const RowSet& training, const RowSet& test) {
-  using Features = typename Model::Features;
+/// The errors on `test` of linear regression on a feature set, fitted to `training`. Throws std::invalid_argument where no row of
+/// one of them has features.
+template <class Features>
+PredictionErrors<rotor_count> linear_regression_errors(const RowSet& training, const RowSet& test) {
   std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
   std::vector<std::array<double, rotor_count>> commands;
   each_features<Features, double>(training, [&](const Flight& flight, std::size_t row, const auto& x) {
@@ -49,7 +48,14 @@ Verdict verdict_on(const Model& model, const RowSet& training, const RowSet& tes
     commands.push_back(flight[row].commands);
   });
   const auto regression = fit_linear_regression(features, commands);
-  const auto bar = detail::errors_on<Features, double>(test, [&](const auto& x) { return regression.predict(x); });
+  return detail::errors_on<Features, double>(test, [&](const auto& x) { return regression.predict(x); });
+}
+
+/// The verdict on a model by rows that it was not trained on, beside linear regression on the same features that was fitted to
+/// the rows that it was trained on. Throws std::invalid_argument where no row of one of them has features.
+template <class Model>
+Verdict verdict_on(const Model& model, const RowSet& training, const RowSet& test) {
+  const auto bar = linear_regression_errors<typename Model::Features>(training, test);
   return verdict_on(model_errors(model, test), bar.mean.r_squared);
 }
 
