@@ -149,6 +149,20 @@ TEST_CASE("the near-ground pilot: the same engine state, the same set points") {
   CHECK(differs);
 }
 
+TEST_CASE("far inside the box no leg is turned back: neither its size nor the room to brake has a say") {
+  NearGroundStyle style, other;
+  style.farthest_m = 1e5;
+  other.farthest_m = 2e5;
+  other.braking_m = 10 * style.braking_m;
+  Pilot pilot(std::mt19937_64(8), style, ground_z_m), same(std::mt19937_64(8), other, ground_z_m);
+  IdealVehicle vehicle, follower;
+  for (int i = 0; i < 100000; ++i) {
+    vehicle.fly(pilot(vehicle.state, i * tick_s));
+    follower.fly(same(follower.state, i * tick_s));
+    REQUIRE(vehicle.state.position_m == follower.state.position_m);
+  }
+}
+
 TEST_CASE("a seed's first take-off and first leg are the same whatever the number of legs") {
   NearGroundStyle one, five;
   one.max_legs = 1;
