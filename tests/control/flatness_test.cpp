@@ -115,3 +115,21 @@ TEST_CASE("what has no attitude has a Status, and the output is left alone") {
   }
   CHECK(motion.specific_thrust_m_s2 == 42);
 }
+
+TEST_CASE("body axes of what is not finite: a Status, and the axes are left alone") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const Matrix<double, 3, 3> before = Matrix<double, 3, 3>::Constant(42);
+  Matrix<double, 3, 3> axes = before;
+  const Vector3<double> lift(0, 0, -gravity);
+  for (const double bad : {nan, infinity, -infinity}) {
+    CAPTURE(bad);
+    for (int i = 0; i < 3; ++i) {
+      Vector3<double> force = lift;
+      force[i] = bad;
+      CHECK(body_axes(force, Heading<double>{0, 1}, axes) == Status::not_finite);
+    }
+    CHECK(body_axes(lift, Heading<double>{bad, 1}, axes) == Status::not_finite);
+    CHECK(body_axes(lift, Heading<double>{0, bad}, axes) == Status::not_finite);
+  }
+  CHECK(axes == before);
+}

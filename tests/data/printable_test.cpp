@@ -42,9 +42,11 @@ TEST_CASE("nothing ends the line, steers a terminal or turns the direction of wr
   CHECK(printable("\xc2\x85") == "?");      // next line
   CHECK(printable("\xe2\x80\xa8") == "?");  // line separator
   CHECK(printable("x\xe2\x80\xae"
-                  "cba") == "x?cba");                  // right-to-left override
-  CHECK(printable("\xe2\x81\xa6") == "?");             // isolate
-  CHECK(printable("\xe2\x80\xa6") == "\xe2\x80\xa6");  // an ellipsis is a letter as any
+                  "cba") == "x?cba");                          // right-to-left override
+  CHECK(printable("\xe2\x81\xa6") == "?");                     // isolate
+  CHECK(printable("\xd8\x9c") == "?");                         // Arabic letter mark
+  CHECK(printable("\xd8\x9b\xd8\x9d") == "\xd8\x9b\xd8\x9d");  // its neighbours are letters as any
+  CHECK(printable("\xe2\x80\xa6") == "\xe2\x80\xa6");          // an ellipsis is a letter as any
 }
 
 TEST_CASE("a message about a file is one line whatever the file is called") {

@@ -57,6 +57,13 @@ TEST_CASE("halves round up") {
   CHECK(split.validation.end == 7);
 }
 
+TEST_CASE("without a share of the test block the validation block ends with the rows, whatever the shares' rounding") {
+  constexpr std::size_t rows = 4000000000;
+  const DatasetSplit split = split_contiguous(rows, {0.5, 0.5 - 9e-10, 0});
+  CHECK(split.validation.end == rows);
+  CHECK(split.test.size() == 0);
+}
+
 TEST_CASE("every block with a share needs two rows") {
   CHECK_THROWS_WITH_AS(split_contiguous(0),
                        "split: expected at least 2 rows for the training block, found 0 of 0 rows in all",

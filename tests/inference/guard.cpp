@@ -378,6 +378,25 @@ TEST_CASE("agreement: what is compared is what would be written, clipped") {
   CHECK(clipped);
 }
 
+namespace {
+
+constexpr std::array<float, 16> with_last(std::array<float, 16> values, float last) {
+  values[15] = last;
+  return values;
+}
+
+/// Its envelope ends at cos psi = 0.5.
+struct NeverNorth : SmallModel {
+  static constexpr std::array<float, 16> envelope_upper = with_last(SmallModel::envelope_upper, 0.5F);
+};
+
+template <class Model>
+double half_width_of(std::size_t i) {
+  return (static_cast<double>(Model::envelope_upper[i]) - static_cast<double>(Model::envelope_lower[i])) / 2;
+}
+
+}  // namespace
+
 TEST_CASE("the report says how far outside which feature lies, in half-widths") {
   const InverseDynamics<SmallModel> inverse;
   RandomStates random(189);
@@ -393,10 +412,7 @@ TEST_CASE("the report says how far outside which feature lies, in half-widths") 
   CHECK(report.cause == Status::ok);
   CHECK_FALSE(report.fallback_asked);
 
-  const auto half_width = [](std::size_t i) {
-    return (static_cast<double>(SmallModel::envelope_upper[i]) - static_cast<double>(SmallModel::envelope_lower[i])) /
-           2;
-  };
+  const auto half_width = [](std::size_t i) { return half_width_of<SmallModel>(i); };
   constexpr double tolerance = 1e-5;  // float differences of numbers up to 300
   inputs.velocity_m_s[1] = -30.0F;    // feature 7
   inputs.body_rates_rad_s[2] = 5.0F;  // feature 11
@@ -413,6 +429,12 @@ TEST_CASE("the report says how far outside which feature lies, in half-widths") 
   inputs.body_rates_rad_s[2] = 100.0F;
   CHECK(inverse.predict(inputs, commands, report) == Status::outside_envelope);
   CHECK(report.worst_feature == 11);
+
+  // the last feature, cos psi, too
+  const InverseDynamics<NeverNorth> southward;
+  CHECK(southward.predict({}, commands, report) == Status::outside_envelope);
+  CHECK(report.worst_feature == 15);
+  CHECK(std::fabs(static_cast<double>(report.excess[15]) - 0.5 / half_width_of<NeverNorth>(15)) <= tolerance);
 
   inputs.body_rates_rad_s[2] = not_a_number;  // refused before there are features
   CHECK(inverse.predict(inputs, commands, report) == Status::not_finite);

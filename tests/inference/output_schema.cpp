@@ -3,12 +3,16 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/inference/features.hpp"
+#include "pinnquad/inference/model.hpp"
 #include "pinnquad/inference/pipeline.hpp"
+#include "pinnquad/inference/wrench_outputs.hpp"
 #include "support/tolerances.hpp"
 
 using pinnquad::CommandOutputs;
@@ -133,4 +137,36 @@ TEST_CASE("what is an output schema") {
   CHECK(is_output_schema<RotorSpeedOutputs>);
   CHECK_FALSE(is_output_schema<PaperQuadrotor>);
   CHECK_FALSE(is_output_schema<int>);
+}
+
+namespace {
+
+/// What a header says of its outputs where they all have one unit.
+template <class Schema, const char* const& Unit>
+struct OneUnit {
+  using Outputs = Schema;
+  static constexpr const char* output_unit = Unit;
+};
+constexpr const char* newton = "N";
+constexpr const char* share = "1";
+
+}  // namespace
+
+TEST_CASE("one unit stands for all outputs only where they have one") {
+  CHECK(pinnquad::detail::same_output_units<OneUnit<CommandOutputs, share>>());
+  CHECK_FALSE(pinnquad::detail::same_output_units<OneUnit<CommandOutputs, newton>>());
+  CHECK(std::string(pinnquad::OutputMap<pinnquad::WrenchOutputs>::units[0]) == newton);
+  CHECK_FALSE(pinnquad::detail::same_output_units<OneUnit<pinnquad::WrenchOutputs, newton>>());
+}
+
+TEST_CASE("signs of another shape are other signs") {
+  const std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs = {
+      {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
+  CHECK(pinnquad::detail::same_signs(signs, signs));
+  CHECK_FALSE(pinnquad::detail::same_signs(std::array<pinnquad::TorqueSigns, 3>{}, signs));
+  const std::array<std::array<int, 4>, 4> longer = {{{-1, 1, 1, 0}, {1, -1, 1, 0}, {1, 1, -1, 0}, {-1, -1, -1, 0}}};
+  CHECK_FALSE(pinnquad::detail::same_signs(longer, signs));
+  std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> turned = signs;
+  turned[3][2] = 1;
+  CHECK_FALSE(pinnquad::detail::same_signs(turned, signs));
 }

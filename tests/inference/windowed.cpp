@@ -81,6 +81,7 @@ TEST_CASE("names tell the tap, units repeat, the angular acceleration is the pre
   CHECK(std::string(About::names[32]) == "vdot_bx[-2]");
   CHECK(std::string(About::names[48]) == "vdot_bx[+1]");
   CHECK(std::string(About::names[64]) == "vdot_bx[+2]");
+  CHECK(std::string(Windowed<PaperFeatures, 13, Period>::names[10 * 16]) == "vdot_bx[-10]");
   CHECK(std::string(Windowed<PaperFeatures, 13, Period>::names[12 * 16]) == "vdot_bx[-12]");
   CHECK(Past::Window::offset_s(2) == doctest::Approx(-0.06));
   CHECK(About::Window::offset_s(3) == doctest::Approx(0.04));
@@ -180,6 +181,23 @@ TEST_CASE("a time that comes twice counts once, with what came last") {
   CHECK(same<double>(history.inputs().others[0], line<double>(30)));
 }
 
+TEST_CASE("between samples of which one cannot be read there is none") {
+  const std::array<double, 3> times_s = {0, 0.02, 0.04};
+  for (int unreadable = 0; unreadable < 3; ++unreadable) {
+    CAPTURE(unreadable);
+    const auto read = [&](int i, MotionInputs<double>& inputs) {
+      if (i == unreadable) return false;
+      inputs = line<double>(times_s[std::size_t(i)]);
+      return true;
+    };
+    const auto time_of = [&](int i) { return times_s[std::size_t(i)]; };
+    MotionInputs<double> found;
+    CHECK(detail::read_at<double, Past::Window>(0.01, 0, 2, 2, time_of, read, found) == (unreadable == 2));
+    CHECK(detail::read_at<double, Past::Window>(0.03, 0, 2, 2, time_of, read, found) == (unreadable == 0));
+    CHECK(detail::read_at<double, Past::Window>(0.02, 0, 2, 2, time_of, read, found) == (unreadable != 1));
+  }
+}
+
 TEST_CASE("bad inputs and a bad time are refused and leave no trace") {
   InputHistory<Past, double> history, spared;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -195,6 +213,7 @@ TEST_CASE("bad inputs and a bad time are refused and leave no trace") {
   bad.attitude.w = 7;
   CHECK(history.take(bad, 0.07) == Status::not_unit_quaternion);
   CHECK(history.take(line<double>(1), nan) == Status::not_finite);
+  CHECK(Past::check(history.inputs()) == Status::warming_up);  // the taps are those of another instant
   CHECK(history.take(line<double>(1), std::numeric_limits<double>::infinity()) == Status::not_finite);
   CHECK(history.take(line<double>(4), 0.08) == Status::ok);
   CHECK(spared.take(line<double>(4), 0.08) == Status::ok);

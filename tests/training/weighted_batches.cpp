@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -35,6 +36,30 @@ TEST_CASE("a row comes as often as its weight says, to less than one") {
   // a number of times is one of two neighbours: its mean's deviation is at most 0.5 / sqrt(epochs)
   for (std::size_t i = 0; i < weights.size(); ++i) {
     CHECK(std::abs(drawn[i] / epochs - 10 * weights[i] / sum) < 5 * 0.5 / std::sqrt(double(epochs)));
+  }
+}
+
+namespace {
+/// The largest number a draw can have.
+struct Largest {
+  using result_type = std::uint64_t;
+  static constexpr std::uint64_t min() { return 0; }
+  static constexpr std::uint64_t max() { return ~std::uint64_t{0}; }
+  std::uint64_t operator()() const { return max(); }
+};
+}  // namespace
+
+TEST_CASE("where the sum of weights is rounded down, what is left to draw is the last row") {
+  Largest engine;
+  for (std::size_t rows = 3; rows < 200; ++rows) {
+    std::vector<double> weights(rows, 0.1);
+    weights[0] = 0.3;
+    std::vector<int> order(rows);
+    WeightedBatches(weights).arrange(order, engine);
+    for (const int row : order) {
+      REQUIRE(row >= 0);
+      REQUIRE(row < static_cast<int>(rows));
+    }
   }
 }
 
