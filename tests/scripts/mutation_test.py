@@ -223,6 +223,14 @@ class Verdicts(unittest.TestCase):
         judge.see_pass([folder])  # known by now
         self.assertEqual((judge.steps, asked), ([], ["boards"]))
 
+    def test_cases_of_a_compiler_are_asked_alone(self):
+        judge = judges.Judge.__new__(judges.Judge)
+        judge.tree = types.SimpleNamespace(jobs=2)
+        steps = [types.SimpleNamespace(kind=kind)
+                 for kind in ("source", "source", "source", "compile_fail", "compile_fail", "program", "folder")]
+        self.assertEqual([[step.kind for step in batch] for batch in judge.batches(steps)],
+                         [["source", "source"], ["source"], ["compile_fail"], ["compile_fail"], ["program", "folder"]])
+
     def test_time_limit_ends_what_was_started(self):
         with self.assertRaises(trees.TimedOut):
             trees.run(["bash", "-c", "set -m; sleep 60 & echo $! >child; wait"], self.work, 0.5)

@@ -129,8 +129,7 @@ class Judge:
         steps = self.seen_by(mutant.path)
         self.changed_code = False
         with self.tree.mutated(mutant):
-            for first in range(0, len(steps), self.tree.jobs):
-                batch = steps[first:first + self.tree.jobs]
+            for batch in self.batches(steps):
                 targets = [step.target for step in batch if step.target]
                 verdict = self.build_mutant(targets, batch) if targets else None
                 if verdict:
@@ -145,6 +144,17 @@ class Judge:
                     if verdict not in ("survived", "skipped"):
                         return verdict, step.name, [step]
         return "survived", "" if self.changed_code else "same object code in every test", steps
+
+    def batches(self, steps):
+        """Steps to ask at once, in their order. Those of compile_fail, alone: each precompiles the same header first."""
+        batch = []
+        for step in steps:
+            if batch and (len(batch) == self.tree.jobs or "compile_fail" in (step.kind, batch[-1].kind)):
+                yield batch
+                batch = []
+            batch.append(step)
+        if batch:
+            yield batch
 
     def build_mutant(self, targets, batch):
         names = "build of " + ", ".join(step.name for step in batch)
