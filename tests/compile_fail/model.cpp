@@ -22,6 +22,7 @@
 // CASE TOO_FEW_PARAMETERS: pinnquad: the exported parameters do not have the network's length
 // CASE ENVELOPE_LENGTH: pinnquad: the envelope does not have the length of the feature set
 // CASE SCALER_LENGTH: pinnquad: a scaler does not have the length of what it scales
+// CASE INPUT_SCALER_LENGTH: pinnquad: a scaler does not have the length of what it scales
 // CASE NO_GOLDEN_VECTORS: pinnquad: the model has no golden vectors
 // CASE GOLDEN_LENGTH: pinnquad: a golden vector does not have the length
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
@@ -145,6 +146,8 @@ struct Changed : DescribedModel {
   static constexpr std::array<float, 15> envelope_upper{};
 #elif defined(SCALER_LENGTH)
   static constexpr pinnquad::Scaler<float, 3> output{};
+#elif defined(INPUT_SCALER_LENGTH)
+  static constexpr pinnquad::Scaler<float, 17> input{};
 #elif defined(NO_GOLDEN_VECTORS)
   static constexpr std::array<std::array<float, 16>, 0> golden_features{};
   static constexpr std::array<std::array<float, 4>, 0> golden_commands{};
