@@ -11,6 +11,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -59,8 +60,9 @@ class Table {
  public:
   static constexpr std::size_t no_text = static_cast<std::size_t>(-1);
 
-  Table(const std::string& path, const LogSelection& selection)
-      : path_(path), selection_(selection), records_(path), bytes_(std::filesystem::file_size(path)) {
+  Table(const std::string& path, const LogSelection& selection) : path_(path), selection_(selection), records_(path) {
+    std::error_code ignored;
+    bytes_ = std::filesystem::file_size(path, ignored);
     read_header();
     first_text_.assign(names_.size(), no_text);
     for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -121,7 +123,7 @@ class Table {
   static bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r") == std::string_view::npos; }
 
   void report() {
-    if (bytes_ > 0) selection_.on_progress(static_cast<double>(records_.bytes()) / static_cast<double>(bytes_));
+    if (bytes_ > 0) selection_.report(static_cast<double>(records_.bytes()) / static_cast<double>(bytes_));
   }
 
   void split() {
@@ -135,7 +137,8 @@ class Table {
   void read_header() {
     constexpr std::size_t most_columns = 10000;
     if (!records_.next(record_) || is_blank(record_)) {
-      throw pinnquad::InputError(path_, 1, 0, "a header that names the columns", "none");
+      throw pinnquad::InputError(path_, 1, 0, "a header that names the columns",
+                                 records_.bytes() == bytes_ ? "an empty file" : "an empty line");
     }
     refuse_other_separators();
     split();
@@ -185,7 +188,7 @@ class Table {
   }
 
   [[noreturn]] void refuse_length() {
-    const bool twice = cells_.size() + 1 >= 2 * names_.size() && names_.size() > 1;
+    const bool twice = cells_.size() == 2 * names_.size() || (cells_.size() > names_.size() + 3 && names_.size() > 3);
     throw pinnquad::InputError(path_, records_.line(), std::min(cells_.size(), names_.size()) + 1,
                                std::to_string(names_.size()) + " cells as in the header",
                                std::to_string(cells_.size()) + (twice ? " (are there decimal commas?)" : ""));
@@ -202,7 +205,7 @@ class Table {
   std::string path_;
   const LogSelection& selection_;
   pinnquad::detail::CsvRecords records_;
-  std::uintmax_t bytes_;
+  std::uintmax_t bytes_ = 0;
   std::string_view record_;
   std::string unquoted_;
   std::vector<std::string_view> cells_;

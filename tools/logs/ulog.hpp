@@ -43,7 +43,7 @@ class Reader {
   void progress(std::uint64_t bytes) {
     if (bytes < next_progress_) return;
     next_progress_ = bytes + progress_step;
-    selection_.on_progress(static_cast<double>(bytes) / static_cast<double>(file_size_));
+    selection_.report(static_cast<double>(bytes) / static_cast<double>(file_size_));
   }
 
   bool fits(const Message& message) const {
