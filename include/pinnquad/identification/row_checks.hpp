@@ -22,7 +22,8 @@ inline std::size_t count(const RowMask& rows) noexcept {
 }
 
 /// A command at `lowest` or `highest`, to a thousandth, or at its own extreme where that was held for `held_rows` rows somewhere (a
-/// limit of the mapping or the mixer below 1): the motor may have been asked for more than the log shows.
+/// limit of the mapping or the mixer below 1): the motor may have been asked for more than the log shows. To be asked of commands as
+/// they were logged: a mean over rows is hardly ever at the limit.
 inline RowMask saturated_rows(const Flight& flight, double lowest = 0, double highest = 1, std::size_t held_rows = 5) {
   constexpr double close = 1e-3;
   RowMask mask(flight.size(), false);
@@ -55,12 +56,14 @@ struct GroundRules {
   double held_share = 0.3;    ///< of the weight that the ground must bear at least
   double smoothing_s = 0.25;  ///< over which forces are averaged
   double margin_s = 0.5;      ///< before and after a contact
+  double fastest_m_s = 1;     ///< on the ground, by an estimate that drifts; not looked at where velocity is absent (0)
   double shortest_air_s = 2;  ///< between two contacts; a shorter hop counts as ground
 };
 
 /// Rows where something else than the rotors bears the vehicle: the specific force along z is what the commands make in the air
 /// (the median ratio of rows with 60 % or more of the usual high collective) and, on the ground, what it bears; a vehicle that
-/// stands with idle motors reads the same 9.81 m/s^2 as one that hovers. Needs no land detector and no height.
+/// stands with idle motors reads the same 9.81 m/s^2 as one that hovers. There the whole force is the weight, and the speed low:
+/// what air bears in a fast descent is neither. Needs no land detector and no height.
 /// Limits: commands whose thrust is strongly curved (rotor speed) need `held_share` of 0.5; spool-up just before lift-off is only
 /// covered by `margin_s`; a log of which less than a fiftieth is in the air has no usual collective.
 inline RowMask grounded_rows(const Flight& flight, double period_s, const GroundRules& rules = {}) {
@@ -68,10 +71,13 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
   const std::size_t rows = flight.size();
   RowMask mask(rows, false);
   if (rows == 0) return mask;
-  std::vector<double> collective(rows), upward(rows);
+  std::vector<double> collective(rows), upward(rows), force(rows), speed(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     for (const double u : flight[row].commands) collective[row] += u;
-    upward[row] = -specific_force_m_s2(flight[row])[2];
+    const Vector3<double> measured = specific_force_m_s2(flight[row]);
+    upward[row] = -measured[2];
+    force[row] = measured.norm();
+    speed[row] = flight[row].velocity_m_s.norm();
   }
   std::vector<double> sorted = collective;
   std::sort(sorted.begin(), sorted.end());
@@ -83,12 +89,21 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
   if (ratios.empty()) return RowMask(rows, true);
   const double made = detail::median_of(ratios);
   const auto half = static_cast<std::size_t>(rules.smoothing_s / (2 * period_s));
-  std::vector<double> sums(rows + 1, 0.0);
-  for (std::size_t row = 0; row < rows; ++row) sums[row + 1] = sums[row] + upward[row] - made * collective[row];
+  const auto averaged = [&](std::vector<double> series) {
+    std::vector<double> sums(rows + 1, 0.0);
+    for (std::size_t row = 0; row < rows; ++row) sums[row + 1] = sums[row] + series[row];
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::size_t begin = row > half ? row - half : 0, end = std::min(rows, row + half + 1);
+      series[row] = (sums[end] - sums[begin]) / static_cast<double>(end - begin);
+    }
+    return series;
+  };
+  for (std::size_t row = 0; row < rows; ++row) upward[row] -= made * collective[row];
+  const std::vector<double> borne = averaged(upward), whole = averaged(force), moving = averaged(speed);
+  constexpr double weight = standard_gravity_m_s2<double>;
   for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t begin = row > half ? row - half : 0, end = std::min(rows, row + half + 1);
-    const double borne = (sums[end] - sums[begin]) / static_cast<double>(end - begin);
-    mask[row] = borne > rules.held_share * standard_gravity_m_s2<double>;
+    mask[row] = borne[row] > rules.held_share * weight && std::abs(whole[row] - weight) < 0.3 * weight &&
+                moving[row] < rules.fastest_m_s;
   }
   const auto margin = static_cast<std::size_t>(rules.margin_s / period_s);
   const auto shortest = static_cast<std::size_t>(rules.shortest_air_s / period_s);
