@@ -130,29 +130,51 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
   return mask;
 }
 
+namespace detail {
+/// What outlier_rows() looks at: accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign does not
+/// jump, for near a pitch of 90 degrees roll and yaw do; each with the spread that counts at least.
+struct JudgedColumn {
+  std::vector<double> values;
+  double smallest_scale;
+};
+inline std::vector<JudgedColumn> judged_columns(const Flight& flight) {
+  constexpr double smallest_scale_of_q = 0.02;
+  std::vector<JudgedColumn> columns;
+  for (const std::size_t field : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16}) {
+    columns.push_back({column_of(flight, field), column_plausibility[field].smallest_scale / 2});
+  }
+  const std::size_t first = columns.size();
+  columns.resize(first + 4, {{}, smallest_scale_of_q});
+  Quaternion<double> last;
+  for (const Sample& sample : flight) {
+    Quaternion<double> q = attitude(sample);
+    if (q.w * last.w + q.x * last.x + q.y * last.y + q.z * last.z < 0) q = {-q.w, -q.x, -q.y, -q.z};
+    last = q;
+    const std::array<double, 4> parts = {q.w, q.x, q.y, q.z};
+    for (std::size_t i = 0; i < parts.size(); ++i) columns[first + i].values.push_back(parts[i]);
+  }
+  return columns;
+}
+}  // namespace detail
+
 /// Rows with a value of a measured column that none of its neighbours comes near: further from the median of seven rows
 /// than `spreads` robust spreads of such distances (and of half of what plausibility.hpp calls the smallest scale), with both
-/// neighbours not half as far. Angles are unwrapped first; time and commands, which may jump, are not judged.
+/// neighbours not half as far. Time and commands, which may jump, are not judged.
 /// Limits: two wrong rows in succession are taken for motion.
 inline RowMask outlier_rows(const Flight& flight, double spreads = 12) {
-  constexpr std::size_t around = 3, first_angle = 13, last_angle = 15, first_measured = 1, last_measured = 16;
-  constexpr double normal = 1.4826, turn = 6.283185307179586;
+  constexpr std::size_t around = 3;
+  constexpr double normal = 1.4826;
   RowMask mask(flight.size(), false);
   if (flight.size() < 2 * around + 1) return mask;
-  for (std::size_t field = first_measured; field <= last_measured; ++field) {
-    std::vector<double> values = detail::column_of(flight, field);
-    if (field >= first_angle && field <= last_angle) {
-      for (std::size_t row = 1; row < values.size(); ++row) {
-        values[row] -= turn * std::round((values[row] - values[row - 1]) / turn);
-      }
-    }
+  for (const detail::JudgedColumn& column : detail::judged_columns(flight)) {
+    const std::vector<double>& values = column.values;
     std::vector<double> distance(values.size(), 0.0);
     for (std::size_t row = 0; row < values.size(); ++row) {
       const std::size_t begin = std::min(row > around ? row - around : 0, values.size() - (2 * around + 1));
       const auto from = values.begin() + static_cast<std::ptrdiff_t>(begin);
       distance[row] = std::abs(values[row] - detail::median_of({from, from + (2 * around + 1)}));
     }
-    const double scale = std::max(normal * detail::median_of(distance), column_plausibility[field].smallest_scale / 2);
+    const double scale = std::max(normal * detail::median_of(distance), column.smallest_scale);
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (!(distance[row] > spreads * scale)) continue;
       const double before = row > 0 ? std::abs(values[row - 1] - values[row]) : distance[row];
