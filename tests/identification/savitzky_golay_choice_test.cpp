@@ -56,10 +56,11 @@ TEST_CASE("noisy waves: within a factor of the best order and window, its noise 
           CAPTURE(derivative);
           const Wave one = wave(frequency_Hz, noise, period_s, 7, derivative);
           const auto choice = choose_savitzky_golay(one.measured, {{0, one.measured.size()}}, period_s, derivative);
-          CHECK(choice.noise == doctest::Approx(noise).epsilon(0.05));
+          CHECK(std::abs(choice.noise / noise - 1) < 0.06);
           CHECK(choice.bandwidth_Hz > frequency_Hz);
           const double got = error_inside(one, period_s, choice.filter, derivative);
-          CHECK(choice.expected_error == doctest::Approx(got).epsilon(0.5));
+          CHECK(choice.expected_error / got > 0.6);
+          CHECK(choice.expected_error / got < 1.7);
           double best = std::numeric_limits<double>::infinity();
           for (const int order : {2, 4}) {
             for (int half = order / 2; half <= 100; half += 1 + half / 6) {

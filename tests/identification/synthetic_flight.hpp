@@ -39,16 +39,19 @@ inline Flight synthetic_flight(const SyntheticVehicle& vehicle = {}) {
   Flight flight;
   const auto rows = static_cast<int>(vehicle.duration_s / vehicle.period_s);
   for (int row = 0; row < rows; ++row) {
-    // manoeuvres: a rate wanted per axis that changes now and then, and a loop that follows it
+    // manoeuvres: a rate wanted per axis that changes now and then, and a loop that follows it and levels
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (row % static_cast<int>(0.3 / vehicle.period_s) == 0)
         wanted[axis] = (axis == 2 ? 0.3 : 1.0) * standard_normal(engine);
     }
+    const EulerAngles<double> angles = to_euler(q);
     const double collective = 0.49 + 0.05 * std::sin(1.7 * row * vehicle.period_s) + 0.02 * standard_normal(engine);
     for (std::size_t i = 0; i < 4; ++i) {
       command[i] = collective;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double loop = (axis == 2 ? 0.15 : 0.05) * (wanted[axis] - rates[static_cast<Eigen::Index>(axis)]);
+        const double tilt = axis == 0 ? angles.roll_rad : (axis == 1 ? angles.pitch_rad : 0);
+        const double loop =
+            (axis == 2 ? 0.15 : 0.05) * (wanted[axis] - 2 * tilt - rates[static_cast<Eigen::Index>(axis)]);
         command[i] += signs[axis][i] * loop;
       }
       command[i] = std::clamp(command[i] + 0.005 * standard_normal(engine), 0.0, 1.0);
@@ -67,7 +70,6 @@ inline Flight synthetic_flight(const SyntheticVehicle& vehicle = {}) {
       sample.angular_acceleration_rad_s2[static_cast<Eigen::Index>(axis)] =
           turning(axis) + vehicle.acceleration_noise_rad_s2 * standard_normal(engine);
     }
-    const EulerAngles<double> angles = to_euler(q);
     sample.roll_rad = angles.roll_rad;
     sample.pitch_rad = angles.pitch_rad;
     sample.yaw_rad = angles.yaw_rad;

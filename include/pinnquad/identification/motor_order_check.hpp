@@ -75,6 +75,7 @@ inline OrderMoments order_moments(const std::vector<LagSeries>& segments) {
   }
   OrderMoments result;
   for (std::size_t i = 0; i < rotor_count; ++i) {
+    if (!(moments[1 + i][1 + i] > 1e-12 * whole[1 + i][1 + i])) continue;  // stands still: rounding is no motion
     for (std::size_t j = 0; j < rotor_count; ++j) result.commands[i][j] = moments[1 + i][1 + j];
     for (std::size_t axis = 0; axis < 3; ++axis) result.with_motion[axis][i] = moments[1 + i][8 + axis];
   }
