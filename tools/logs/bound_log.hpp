@@ -71,12 +71,8 @@ inline std::vector<const LogColumn*> columns_in(const LogTopic& topic, const std
     }
     if (!why) return {};
     if (const LogText* text = topic.text(one.name)) {
-      for (std::size_t row = 0; row < text->values.size(); ++row) {
-        double ignored = 0;
-        if (text->values[row].empty() || pinnquad::parse_number(text->values[row], ignored)) continue;
-        throw wrong_cell(topic, row, one.name, "a number in column " + one.name,
-                         pinnquad::quoted_cell(text->values[row]));
-      }
+      throw wrong_cell(topic, text->first_text, one.name, "a number in column " + one.name,
+                       pinnquad::quoted_cell(text->values[text->first_text]));
     }
     std::vector<std::string> known;
     for (const LogColumn& column : topic.columns) known.push_back(column.name);
@@ -88,18 +84,19 @@ inline std::vector<const LogColumn*> columns_in(const LogTopic& topic, const std
   return found;
 }
 
+/// By the source's own column, or the topic's clock, or the one that [time] names for a table.
 inline std::vector<double> times_of(const LogTopic& topic, const Source& source, const Mapping& mapping) {
-  if (source.time_column.empty()) {
-    if (!has_number(topic.time_s)) {
-      throw pinnquad::InputError(mapping.file, source.place.line, source.place.column,
-                                 "a table [time] that names the clock of " + topic.file, "none");
-    }
-    return topic.time_s;
+  const bool own = !source.time_column.empty();
+  if (!own && has_number(topic.time_s)) return topic.time_s;
+  if (!own && mapping.time_column.name.empty()) {
+    throw pinnquad::InputError(mapping.file, source.place.line, source.place.column,
+                               "a table [time] that names the clock of " + topic.file, "none");
   }
-  const std::vector<const LogColumn*> column =
-      columns_in(topic, {{source.time_column, source.place}}, mapping.file, true);
+  const NamedColumn clock = own ? NamedColumn{source.time_column, source.place} : mapping.time_column;
+  const std::vector<const LogColumn*> column = columns_in(topic, {clock}, mapping.file, true);
+  const double ticks_per_s = std::round(1 / (own ? source.time_in_s : mapping.time_in_s));
   std::vector<double> time_s = column[0]->values;
-  for (double& t : time_s) t *= source.time_in_s;
+  for (double& t : time_s) t /= ticks_per_s;
   return time_s;
 }
 

@@ -76,7 +76,7 @@ struct Mapping {
   std::string file;  ///< for messages
   std::string about;
   std::string airframe;  ///< where none is given
-  std::string time_column;
+  NamedColumn time_column;  ///< of a table, which has no clock of its own
   double time_in_s = 1;
 
   std::string flight_column;      ///< labels that part a table into flights

@@ -60,6 +60,11 @@ std::vector<NamedColumn> columns_of(TomlTable& table, const char* key, std::size
   return columns;
 }
 
+NamedColumn named(TomlTable& table, const char* key) {
+  const toml::node& node = table.required(key, a_name);
+  return {table.as_text(node, a_name), place_of(node)};
+}
+
 std::array<pinnquad::Corner, pinnquad::rotor_count> motor_order_of(TomlTable& table) {
   constexpr std::array<const char*, 4> corners = {"front_right", "rear_left", "front_left", "rear_right"};
   const std::string expected =
@@ -216,12 +221,12 @@ void read_extras(const std::string& path, TomlTable& root, Mapping& mapping) {
 
 void read_rules(const std::string& path, TomlTable& root, Mapping& mapping) {
   with_table(path, root, "time", [&](TomlTable& table) {
-    mapping.time_column = table.text("column", a_name);
+    mapping.time_column = named(table, "column");
     mapping.time_in_s = unit_of(table, "unit", Dimension::time);
   });
   with_table(path, root, "flights", [&](TomlTable& table) {
-    mapping.flight_column = table.text("column", a_name, "");
-    mapping.trajectory_column = table.text("trajectory_column", a_name, "");
+    if (table.optional("column")) mapping.flight_column = named(table, "column");
+    if (table.optional("trajectory_column")) mapping.trajectory_column = named(table, "trajectory_column");
     mapping.trajectory = table.text("trajectory", "a pattern such as \"*_(*)_*\"", "");
     if (!mapping.trajectory.empty() && !is_name_pattern(mapping.trajectory)) {
       const toml::node& node = table.required("trajectory", "");
