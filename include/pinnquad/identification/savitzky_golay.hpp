@@ -67,8 +67,8 @@ inline std::vector<std::vector<double>> gram_polynomials(int order, int half_win
   return basis;
 }
 
-/// Derivatives, each by row, of the polynomials of gram_polynomials() at `position` rows from the centre. A polynomial of degree
-/// k is known by any k + 1 of its rows; with the monomials' recursion in place of those rows nothing is lost to cancellation.
+/// The polynomials of gram_polynomials(), or their first or second derivative, at `position` rows from the centre: by the same
+/// recursion, whose factors are sums over the window's rows.
 inline std::vector<double> gram_derivatives(const std::vector<std::vector<double>>& basis, int half_window,
                                             double position, int derivative) {
   const std::size_t rows = basis[0].size(), degrees = basis.size();
@@ -123,8 +123,7 @@ inline std::vector<double> savitzky_golay_weights(const SavitzkyGolay& filter, i
 }
 
 /// The d-th derivative, 1/s^d, of each row of a segment that has no gap and no NaN. A segment shorter than the window gets a
-/// window of its own length (an even number of rows: all but one at the far end) and an order that fits it; rows that not even a
-/// straight line fits are NaN. Throws std::invalid_argument for a filter or a period that is none.
+/// window that fits into it, and an order that fits the window; one row has no derivative: NaN. Throws std::invalid_argument for a filter or a period that is none.
 inline std::vector<double> savitzky_golay(const std::vector<double>& segment, double period_s,
                                           const SavitzkyGolay& filter, int derivative) {
   detail::require_savitzky_golay(filter, derivative);
