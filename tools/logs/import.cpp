@@ -83,7 +83,9 @@ class Import {
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double done = static_cast<double>(i), all = static_cast<double>(places.size());
       selection.prefix = places[i].prefix;
-      selection.on_progress = [&](double share) { request_.on_progress("reading " + places[i].name, (done + share) / all); };
+      selection.on_progress = [&](double share) {
+        request_.on_progress("reading " + places[i].name, (done + share) / all);
+      };
       FlightLog log = read_log(places[i].path, selection);
       for (const std::string& warning : log.warnings) dataset_.warnings.push_back(warning);
       for (LogPart& part : parts_of(std::move(log), places[i].name, mapping_)) take(part, places[i]);
@@ -105,7 +107,8 @@ class Import {
       steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
                  "one time a row: no time, a second row of one time and stale first rows are left out");
       if (report.out_of_order > 0) {
-        dataset_.warnings.push_back(pinnquad::printable(signal.topic->file) + ": " + std::to_string(report.out_of_order) +
+        dataset_.warnings.push_back(pinnquad::printable(signal.topic->file) + ": " +
+                                    std::to_string(report.out_of_order) +
                                     " rows were not in time's order and were sorted");
       }
       if (report.same_time > 0) {
@@ -141,8 +144,10 @@ class Import {
     LogRows log_rows = rows_of_log(std::move(rows), bound, mapping_, part.log.source);
     for (const std::string& told : log_rows.told) tell(told);
     const std::size_t whole = all - log_rows.incomplete;
-    steps_.add("incomplete rows", all, whole, "a cell without a number, a gap in a topic, rebuilt commands beyond 0..1");
-    steps_.add("ends of derivatives", whole, log_rows.flight.size(), "Savitzky-Golay windows that reach beyond the rows");
+    steps_.add("incomplete rows", all, whole,
+               "a cell without a number, a gap in a topic, rebuilt commands beyond 0..1");
+    steps_.add("ends of derivatives", whole, log_rows.flight.size(),
+               "Savitzky-Golay windows that reach beyond the rows");
     const RowMask out = grounded(log_rows, mapping_);
     Passage passage;
     passage.name = part.name;
@@ -162,7 +167,9 @@ class Import {
   }
 
   void settle_absent() {
-    const auto lacks = [](const std::vector<bool>& has) { return std::find(has.begin(), has.end(), false) != has.end(); };
+    const auto lacks = [](const std::vector<bool>& has) {
+      return std::find(has.begin(), has.end(), false) != has.end();
+    };
     if (lacks(has_velocity_)) dataset_.absent.push_back("velocity");
     if (lacks(has_altitude_)) dataset_.absent.push_back("altitude");
     for (Passage& passage : passages_) {
@@ -190,7 +197,8 @@ class Import {
       const pinnquad::CommandLag lag = pinnquad::estimate_command_lag(segments, *period_s_);
       if (!lag.warning.empty()) dataset_.warnings.push_back("lag: " + lag.warning);
       lag_s = lag.found ? lag.lag_s : 0;
-      told = lag.found ? "estimated, confidence " + pinnquad::number_text(std::round(lag.confidence * 100) / 100) : "none found";
+      told = lag.found ? "estimated, confidence " + pinnquad::number_text(std::round(lag.confidence * 100) / 100)
+                       : "none found";
     }
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
     for (Passage& passage : passages_) {
@@ -199,7 +207,8 @@ class Import {
       }
     }
     steps_.add("lag", before, rows_in(passages_),
-               pinnquad::number_text(std::round(dataset_.lag_removed_s * 1e4) / 10) + " ms from command to motion removed, " + told);
+               pinnquad::number_text(std::round(dataset_.lag_removed_s * 1e4) / 10) +
+                   " ms from command to motion removed, " + told);
   }
 
   template <class Rule>
@@ -219,7 +228,9 @@ class Import {
     const auto text = [](double value) { return pinnquad::number_text(value); };
     drop("idle", "all four commands below " + text(mapping_.idle_below),
          [this](const pinnquad::Sample& sample) { return is_idle(sample, mapping_); });
-    drop("saturated", "a command at its limit: " + text(mapping_.saturated_below) + " or less, " + text(mapping_.saturated_above) + " or more",
+    drop("saturated",
+         "a command at its limit: " + text(mapping_.saturated_below) + " or less, " + text(mapping_.saturated_above) +
+             " or more",
          [this](const pinnquad::Sample& sample) { return is_saturated(sample, mapping_); });
   }
 
@@ -238,16 +249,20 @@ class Import {
         dataset_.sources.push_back(passage.source);
       }
     }
-    steps_.add("short flights", before, dataset_.flights.rows(), "fewer than " + std::to_string(minimum_rows) + " rows");
+    steps_.add("short flights", before, dataset_.flights.rows(),
+               "fewer than " + std::to_string(minimum_rows) + " rows");
     dataset_.sample_period_s = *period_s_;
     for (const std::string& told : told_) dataset_.notes.push_back(told);
     if (dataset_.flights.size() > 0) return;
     const ImportStep* worst = &dataset_.steps.front();
     for (const ImportStep& step : dataset_.steps) {
-      if (step.rows_before - std::min(step.rows_before, step.rows_after) > worst->rows_before - std::min(worst->rows_before, worst->rows_after)) worst = &step;
+      if (step.rows_before - std::min(step.rows_before, step.rows_after) >
+          worst->rows_before - std::min(worst->rows_before, worst->rows_after))
+        worst = &step;
     }
-    throw pinnquad::InputError(request_.logs.front(), 0, 0, "a flight of at least " + std::to_string(minimum_rows) + " rows",
-                               std::to_string(longest) + "; most were lost to '" + worst->name + "' (" + worst->told + ")");
+    throw pinnquad::InputError(
+        request_.logs.front(), 0, 0, "a flight of at least " + std::to_string(minimum_rows) + " rows",
+        std::to_string(longest) + "; most were lost to '" + worst->name + "' (" + worst->told + ")");
   }
 
   void name_flight(pinnquad::Flight& flight, const std::string& name, int part) const {
@@ -262,7 +277,9 @@ class Import {
   static void require_plausible_flight(const pinnquad::Flight& flight, const std::string& source) {
     const auto found = pinnquad::find_implausible(flight);
     if (!found) return;
-    throw pinnquad::InputError(source, 0, 0, found->expected, found->found + " at " + pinnquad::number_text(flight[found->row].time_s) + " s of flight " + flight.name);
+    throw pinnquad::InputError(
+        source, 0, 0, found->expected,
+        found->found + " at " + pinnquad::number_text(flight[found->row].time_s) + " s of flight " + flight.name);
   }
 
   const ImportRequest& request_;

@@ -43,7 +43,8 @@ inline std::vector<LogPlace> logs_at(const std::string& path, const LogSelection
   if (error) throw pinnquad::InputError(path, 0, 0, "a readable folder", "none (" + error.message() + ")");
   std::sort(files.begin(), files.end());
   std::vector<LogPlace> places;
-  for (const std::string& file : files) places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
+  for (const std::string& file : files)
+    places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
   if (!places.empty()) return places;
   for (const std::string& log : ulog2csv::logs_of(ulog2csv::files_of(path), selection)) {
     places.push_back({path, log, pinnquad::printable(log)});
@@ -68,9 +69,10 @@ inline const LogText& labels_of(const LogTopic& topic, const NamedColumn& wanted
   std::vector<std::string> known;
   for (const LogText& text : topic.texts) known.push_back(text.name);
   for (const LogColumn& column : topic.columns) known.push_back(column.name);
-  throw pinnquad::InputError(mapping.file, wanted.place.line, wanted.place.column,
-                             "a column of " + topic_words(topic.name, topic.instance) + " in " + topic.file,
-                             "`" + pinnquad::printable(wanted.name) + "`, which it has not; " + nearest_names(wanted.name, known));
+  throw pinnquad::InputError(
+      mapping.file, wanted.place.line, wanted.place.column,
+      "a column of " + topic_words(topic.name, topic.instance) + " in " + topic.file,
+      "`" + pinnquad::printable(wanted.name) + "`, which it has not; " + nearest_names(wanted.name, known));
 }
 
 inline LogTopic rows_of(const LogTopic& topic, const std::vector<std::size_t>& rows) {

@@ -75,12 +75,12 @@ struct Mapping {
   std::string name;  ///< of a ready one; else its file
   std::string file;  ///< for messages
   std::string about;
-  std::string airframe;  ///< where none is given
+  std::string airframe;     ///< where none is given
   NamedColumn time_column;  ///< of a table, which has no clock of its own
   double time_in_s = 1;
 
-  std::string flight_column;      ///< labels that part a table into flights
-  std::string trajectory_column;  ///< labels that name what was flown
+  NamedColumn flight_column;      ///< labels that part a table into flights
+  NamedColumn trajectory_column;  ///< labels that name what was flown
   std::string trajectory;  ///< pattern of a flight's name, "*_(*)_*": what stands in brackets is the trajectory's
   double split_gap_s = 5;  ///< a longer pause parts two flights
 
