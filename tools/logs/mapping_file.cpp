@@ -189,6 +189,7 @@ void read_extras(const std::string& path, TomlTable& root, Mapping& mapping) {
   for (const toml::table* node : tables_of(root, "extra")) {
     TomlTable table(path, *node, mapping_key);
     ExtraSource extra;
+    extra.source.quantity = Quantity::extra;
     read_place(table, *node, extra.source);
     extra.name = table.text("name", a_name);
     extra.unit = table.text("unit", a_name);
