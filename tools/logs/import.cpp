@@ -2,6 +2,7 @@
 #include "logs/import.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -17,7 +18,14 @@
 #include "logs/read_log.hpp"
 #include "logs/row_rules.hpp"
 #include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/identification/attitude_convention.hpp"
+#include "pinnquad/identification/clock_checks.hpp"
 #include "pinnquad/identification/command_lag.hpp"
+#include "pinnquad/identification/frozen_signal.hpp"
+#include "pinnquad/identification/motor_order_check.hpp"
+#include "pinnquad/identification/rate_frame.hpp"
+#include "pinnquad/identification/row_checks.hpp"
 
 namespace programs {
 namespace {
@@ -92,13 +100,22 @@ class Import {
     }
     settle_absent();
     remove_lag();
-    drop_by_commands();
+    check_motors();
+    drop_rows();
     make_flights();
     return std::move(dataset_);
   }
 
  private:
-  void count_topics(const BoundLog& bound) {
+  void warn(const std::string& what) {
+    const auto& said = dataset_.warnings;
+    if (std::find(said.begin(), said.end(), what) == said.end()) dataset_.warnings.push_back(what);
+  }
+  void warn(const std::string& of, const std::optional<pinnquad::Finding>& finding) {
+    if (finding) warn(of + ": " + finding->sentence);
+  }
+
+  void count_topics(const BoundLog& bound, const std::string& name) {
     std::vector<const LogTopic*> counted;
     const auto count = [&](const Signal& signal) {
       if (!signal.present() || std::find(counted.begin(), counted.end(), signal.topic) != counted.end()) return;
@@ -106,15 +123,15 @@ class Import {
       const pinnquad::ClockReport& report = signal.clock.report;
       steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
                  "one time a row: no time, a second row of one time and stale first rows are left out");
+      const std::string topic = name + ", " + topic_words(signal.topic->name, signal.topic->instance);
       if (report.out_of_order > 0) {
-        dataset_.warnings.push_back(pinnquad::printable(signal.topic->file) + ": " +
-                                    std::to_string(report.out_of_order) +
-                                    " rows were not in time's order and were sorted");
+        warn(topic + ": " + std::to_string(report.out_of_order) + " rows were not in time's order and were sorted");
       }
       if (report.same_time > 0) {
-        dataset_.warnings.push_back(pinnquad::printable(signal.topic->file) + ": " + std::to_string(report.same_time) +
-                                    " rows had the time of another and were left out, the last one stays");
+        warn(topic + ": " + std::to_string(report.same_time) +
+             " rows had the time of another; the last of the file stays");
       }
+      for (const pinnquad::Finding& finding : pinnquad::check_clock(topic, report)) warn(finding.sentence);
       if (report.restarts > 0) refuse_restart(*signal.topic);
     };
     for (const Signal& signal : bound.signals) count(signal);
@@ -134,9 +151,10 @@ class Import {
 
   void take(const LogPart& part, const LogPlace& place) {
     const BoundLog bound = bind_log(part.log, mapping_, request_.airframe);
-    count_topics(bound);
+    count_topics(bound, part.name);
     CommonRows rows = common_rows(bound, period_s_, request_.hold_commands);
     if (!period_s_) period_s_ = rows.period_s;
+    check_signals(bound, rows, part.name);
     const std::size_t base = bound.of(Quantity::body_rates).clock.size(), all = rows.rows();
     steps_.add("one clock", base, all,
                rows.own_rows ? "the table's own rows, every " + pinnquad::number_text(rows.period_s) + " s"
@@ -148,18 +166,63 @@ class Import {
                "a cell without a number, a gap in a topic, rebuilt commands beyond 0..1");
     steps_.add("ends of derivatives", whole, log_rows.flight.size(),
                "Savitzky-Golay windows that reach beyond the rows");
-    const RowMask out = grounded(log_rows, mapping_);
+    const RowMask out = on_the_ground(log_rows, mapping_, *period_s_);
     Passage passage;
     passage.name = part.name;
     passage.trajectory = part.trajectory;
     passage.source = place.path;
     const pinnquad::Flight airborne = without(log_rows.flight, out);
     steps_.add("on the ground", log_rows.flight.size(), airborne.size(),
-               "landed by the log, lower or with less thrust than the mapping's [ground] says");
+               "landed by the log, lower than the mapping's [ground] says, borne by something");
     passage.segments = split_at_gaps(airborne, 1.5 * *period_s_);
     has_velocity_.push_back(log_rows.has_velocity);
     has_altitude_.push_back(log_rows.has_altitude);
+    check_motion(passage);
     passages_.push_back(std::move(passage));
+  }
+
+  void check_signals(const BoundLog& bound, const CommonRows& rows, const std::string& name) {
+    const bool px4 = mapping_.name == "px4";
+    for (const Quantity quantity : {Quantity::motors, Quantity::body_rates}) {
+      const Signal& signal = bound.of(quantity);
+      if (const auto slow = pinnquad::check_log_rate(signal.told, signal.period_s(), px4)) warn(name, slow);
+    }
+    if (std::abs(rows.period_s - *period_s_) > 1e-3 * *period_s_) {
+      warn(name + ": its rows come every " + pinnquad::number_text(rows.period_s) +
+           " s, those of the first log every " + pinnquad::number_text(*period_s_) + " s; --rate gives all the same");
+    }
+    if (!rows.specific_force[0].empty()) {
+      const auto& q = rows.attitude;
+      const auto& w = rows.body_rates;
+      const auto& f = rows.specific_force;
+      warn(name, pinnquad::check_attitude(rows.period_s, {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]},
+                                          {&f[0], &f[1], &f[2]}));
+    }
+  }
+
+  /// Of what is in the air, before the commands are moved.
+  void check_motion(const Passage& passage) {
+    warn(passage.name, pinnquad::check_rate_frame(passage.segments));
+    const pinnquad::Flight whole = joined(passage.segments);
+    constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+    std::vector<double> time_s;
+    for (const pinnquad::Sample& sample : whole) time_s.push_back(sample.time_s);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      std::vector<double> rate;
+      for (const pinnquad::Sample& sample : whole) rate.push_back(sample.body_rates_rad_s[axis]);
+      warn(passage.name,
+           pinnquad::check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
+    }
+  }
+
+  void check_motors() {
+    std::vector<pinnquad::Flight> segments;
+    for (const Passage& passage : passages_) {
+      segments.insert(segments.end(), passage.segments.begin(), passage.segments.end());
+    }
+    const pinnquad::Airframe<double> airframe =
+        request_.airframe ? request_.airframe->value : pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>();
+    warn("motors", pinnquad::check_motor_order(segments, airframe).finding);
   }
 
   void tell(const std::string& what) {
@@ -211,27 +274,32 @@ class Import {
                    " ms from command to motion removed, " + told);
   }
 
-  template <class Rule>
-  void drop(const std::string& name, const std::string& told, const Rule& rule) {
+  /// Rows by `mask(flight)` of each flight as a whole.
+  template <class Mask>
+  void drop(const std::string& name, const std::string& told, const Mask& mask) {
     const std::size_t before = rows_in(passages_);
     for (Passage& passage : passages_) {
-      for (pinnquad::Flight& segment : passage.segments) {
-        RowMask out(segment.size());
-        for (std::size_t row = 0; row < out.size(); ++row) out[row] = rule(segment[row]);
-        segment = without(segment, out);
-      }
+      const pinnquad::Flight whole = joined(passage.segments);
+      passage.segments = {without(whole, mask(whole))};
     }
     steps_.add(name, before, rows_in(passages_), told);
   }
 
-  void drop_by_commands() {
+  void drop_rows() {
     const auto text = [](double value) { return pinnquad::number_text(value); };
-    drop("idle", "all four commands below " + text(mapping_.idle_below),
-         [this](const pinnquad::Sample& sample) { return is_idle(sample, mapping_); });
+    drop("idle", "all four commands below " + text(mapping_.idle_below), [this](const pinnquad::Flight& flight) {
+      RowMask out;
+      for (const pinnquad::Sample& sample : flight) out.push_back(is_idle(sample, mapping_));
+      return out;
+    });
     drop("saturated",
-         "a command at its limit: " + text(mapping_.saturated_below) + " or less, " + text(mapping_.saturated_above) +
-             " or more",
-         [this](const pinnquad::Sample& sample) { return is_saturated(sample, mapping_); });
+         "a command at its limit, " + text(mapping_.lowest_command) + " or " + text(mapping_.highest_command) +
+             " or one it is held at",
+         [this](const pinnquad::Flight& flight) {
+           return pinnquad::saturated_rows(flight, mapping_.lowest_command, mapping_.highest_command);
+         });
+    drop("outliers", "a value like none of its neighbours",
+         [](const pinnquad::Flight& flight) { return pinnquad::outlier_rows(flight); });
   }
 
   void make_flights() {
