@@ -86,7 +86,8 @@ class Import {
     if (!mapping_.trajectory_column.name.empty()) selection.label_columns.push_back(mapping_.trajectory_column.name);
     std::vector<LogPlace> places;
     for (const std::string& path : request_.logs) {
-      for (LogPlace& place : logs_at(path, selection)) places.push_back(std::move(place));
+      for (LogPlace& place : logs_at(path, selection, !mapping_.time_column.name.empty()))
+        places.push_back(std::move(place));
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double done = static_cast<double>(i), all = static_cast<double>(places.size());
@@ -132,16 +133,18 @@ class Import {
              " rows had the time of another; the last of the file stays");
       }
       for (const pinnquad::Finding& finding : pinnquad::check_clock(topic, report)) warn(finding.sentence);
-      if (report.restarts > 0) refuse_restart(*signal.topic);
+      if (report.restarts > 0) refuse_restart(signal);
     };
     for (const Signal& signal : bound.signals) count(signal);
     for (const BoundExtra& extra : bound.extras) count(extra.signal);
   }
 
   /// Two recordings in one table would be mixed by sorting.
-  void refuse_restart(const LogTopic& topic) const {
-    for (std::size_t row = 1; row < topic.size(); ++row) {
-      const double step_s = topic.time_s[row] - topic.time_s[row - 1];
+  void refuse_restart(const Signal& signal) const {
+    const LogTopic& topic = *signal.topic;
+    const std::vector<double> time_s = detail::times_of(topic, *signal.source, mapping_);
+    for (std::size_t row = 1; row < time_s.size(); ++row) {
+      const double step_s = time_s[row] - time_s[row - 1];
       if (!(step_s < -pinnquad::restart_step_s)) continue;
       throw wrong_cell(topic, row, mapping_.time_column.name,
                        "time that goes on (a mapping's [flights] column parts a table of several flights)",
@@ -186,10 +189,6 @@ class Import {
     for (const Quantity quantity : {Quantity::motors, Quantity::body_rates}) {
       const Signal& signal = bound.of(quantity);
       if (const auto slow = pinnquad::check_log_rate(signal.told, signal.period_s(), px4)) warn(name, slow);
-    }
-    if (std::abs(rows.period_s - *period_s_) > 1e-3 * *period_s_) {
-      warn(name + ": its rows come every " + pinnquad::number_text(rows.period_s) +
-           " s, those of the first log every " + pinnquad::number_text(*period_s_) + " s; --rate gives all the same");
     }
     if (!rows.specific_force[0].empty()) {
       const auto& q = rows.attitude;

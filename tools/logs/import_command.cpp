@@ -127,6 +127,7 @@ int run(const Options& options) {
     }
   } catch (const Interrupted&) {
     progress.clear();
+    programs::complain("import", "interrupted; nothing was written");
     return programs::exit_interrupted;
   }
   return 0;
