@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -156,13 +155,17 @@ inline std::vector<const Signal*> needed_signals(const BoundLog& log) {
   return needed;
 }
 
-/// That of the slowest of commands, body rates and force, at most 100 Hz, as a whole number of microseconds.
+/// That of the slowest of commands, body rates and force, at most 100 Hz: a usual one where it is within a tenth of it (loggers
+/// whose rate is 50 Hz drop a row now and then), else a whole number of microseconds.
 inline double usual_period_s(const BoundLog& log) {
-  constexpr double shortest_s = 0.01;
+  constexpr double shortest_s = 0.01, near = 0.1;
   double period_s = shortest_s;
   for (const Quantity quantity :
        {Quantity::motors, Quantity::body_rates, Quantity::specific_force, Quantity::acceleration}) {
     if (log.of(quantity).present()) period_s = std::max(period_s, log.of(quantity).period_s());
+  }
+  for (const double usual_s : {0.01, 0.02, 0.04, 0.05, 0.1}) {
+    if (std::abs(period_s - usual_s) <= near * usual_s) return usual_s;
   }
   return std::round(period_s * 1e6) / 1e6;
 }
