@@ -11,6 +11,7 @@
 #include <cstring>
 #include <random>
 
+#include "fuzz/fuzzing.hpp"
 #include "pinnquad/inference/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "support/described_model.hpp"
@@ -22,24 +23,8 @@ using pinnquad::test::DescribedModel;
 using pinnquad::test::DoubleModel;
 using Header = ModelBlockHeader;
 
-/// A finding: said and stopped at, so that libFuzzer keeps the input.
-void expect(bool holds, const char* rule) {
-  if (holds) return;
-  std::fprintf(stderr, "broken: %s\n", rule);
-  std::abort();
-}
-
-/// How often open() came to which status, told at the end: a fuzzer whose inputs are all refused tests little.
-struct Tally {
-  unsigned long count[status_count] = {};
-  ~Tally() {
-    for (int status = 0; status < status_count; ++status) {
-      if (count[status] == 0) continue;
-      std::fprintf(stderr, "tally: %lu times %s\n", count[status], to_string(static_cast<Status>(status)));
-    }
-  }
-};
-Tally tally;
+using pinnquad_test::expect;
+pinnquad_test::Tally tally;
 
 /// Bytes in memory of their own, exactly as many as there are: the sanitizer sees a read past the end.
 /// `offset` of them before: operator new aligns to 16, so that is the misalignment.
@@ -129,7 +114,7 @@ void load(const std::uint8_t* data, std::size_t size) {
   view.output.spread[3] = Scalar(78);
   view.envelope_lower[15] = Scalar(79);
   const Status status = View::open(memory.block(), size, view);
-  ++tally.count[static_cast<int>(status)];
+  ++tally.count[to_string(status)];
   if (status != Status::ok) {
     expect(status == Status::block_truncated || status == Status::block_incompatible || status == Status::block_corrupt,
            "a refusal says why");

@@ -74,6 +74,7 @@ struct LogParameterChange {
 
 struct FlightLog {
   std::string source;  ///< file or folder, as it was given
+  double start_s = 0;  ///< when the logger began, as it says itself; 0 where it does not. Rows before it are old news
   std::vector<LogTopic> topics;
   std::map<std::string, double> parameters;  ///< as they stood when the log began
   std::map<std::string, std::string> facts;  ///< "sys_name", "ver_hw" ...

@@ -30,12 +30,13 @@ inline constexpr double ticks_per_s = 1e6;
 class Reader {
  public:
   Reader(std::string_view file, const std::string& name, const LogSelection& selection)
-      : selection_(selection), file_size_(file.size()), messages_(file, name, log_.warnings) {
+      : selection_(selection), file_(file), messages_(file, name, log_.warnings) {
     log_.source = name;
   }
 
   FlightLog read() {
     messages_.walk(*this);
+    log_.start_s = number(Basic::uint64, file_.data() + start_place) / ticks_per_s;
     return std::move(log_);
   }
 
@@ -44,7 +45,7 @@ class Reader {
   void progress(std::uint64_t bytes) {
     if (bytes < next_progress_) return;
     next_progress_ = bytes + progress_step;
-    selection_.report(static_cast<double>(bytes) / static_cast<double>(file_size_));
+    selection_.report(static_cast<double>(bytes) / static_cast<double>(file_.size()));
   }
 
   bool fits(const Message& message) const {
@@ -243,7 +244,7 @@ class Reader {
   }
 
   const LogSelection& selection_;
-  std::uint64_t file_size_;
+  std::string_view file_;
   FlightLog log_;
   Messages messages_;
   Formats formats_;

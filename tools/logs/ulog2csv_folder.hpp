@@ -129,8 +129,10 @@ inline FlightLog read_ulog2csv_folder(const std::string& folder, const LogSelect
   for (const ulog2csv::File& file : files) {
     ++done;
     if (file.rest.rfind(begin, 0) != 0) {
-      log.warnings.push_back(pinnquad::printable(file.path) + ": not of the log " + pinnquad::printable(begin) +
-                             "*: left out");
+      if (selection.prefix.empty()) {
+        log.warnings.push_back(pinnquad::printable(file.path) + ": not of the log " + pinnquad::printable(begin) +
+                               "*: left out");
+      }
       continue;
     }
     const std::string name = file.rest.substr(begin.size());

@@ -4,22 +4,20 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <new>
 #include <string>
 #include <vector>
 
+#include "counted_memory.hpp"
 #include "logs/ulog.hpp"
 #include "ulog_bytes.hpp"
 
 using pinnquad_test::Bytes;
+using pinnquad_test::counted_memory;
 using pinnquad_test::UlogBytes;
 using programs::FlightLog;
 using programs::parse_ulog;
 
 namespace {
-
-std::size_t allocated = 0, largest = 0;
 
 const std::string simple = "a:uint64_t timestamp;float x;";
 
@@ -62,16 +60,6 @@ std::vector<std::uint64_t> rows_of(const FlightLog& log) {
 }
 
 }  // namespace
-
-// counts what the reader asks for
-void* operator new(std::size_t size) {
-  allocated += size;
-  largest = std::max(largest, size);
-  if (void* const memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 TEST_CASE("a log that is cut at any byte: every whole message is read, and where it ends is said") {
   const UlogBytes file = log_of_many_messages();
@@ -195,9 +183,9 @@ TEST_CASE("definitions that make no sense are refused, in one line with the byte
 
 TEST_CASE("a small file asks for little memory, whatever it says") {
   const auto asked_for = [](const std::string& bytes) {
-    allocated = largest = 0;
+    counted_memory.reset();
     complaint(bytes);
-    return allocated;
+    return counted_memory.total;
   };
   constexpr std::size_t little = 100000;
   // sizes that grow by a factor per format, and rows that are never there
@@ -228,5 +216,5 @@ TEST_CASE("a small file asks for little memory, whatever it says") {
                            "a:float x;")
                       .str()) < little);
   CHECK(asked_for(UlogBytes().flags(0, 1, {0xffffffffffffffffu}).str()) < little);
-  CHECK(largest < 10000);
+  CHECK(counted_memory.largest < 10000);
 }

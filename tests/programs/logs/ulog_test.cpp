@@ -55,7 +55,7 @@ Bytes simple_row(std::uint64_t time_us, float x) { return Bytes().u64(time_us).f
 }  // namespace
 
 TEST_CASE("every basic type, at its ends") {
-  UlogBytes file;
+  UlogBytes file(1, 2500000);
   file.format(
       "t:uint64_t timestamp;int8_t a;uint8_t b;int16_t c;uint16_t d;int32_t e;uint32_t f;int64_t g;uint64_t h;float "
       "i;double j;"
@@ -69,6 +69,7 @@ TEST_CASE("every basic type, at its ends") {
   file.data(0, low).data(0, high);
   const FlightLog log = parse_ulog(file.str(), "x.ulg");
   CHECK(log.warnings.empty());
+  CHECK(log.start_s == 2.5);
   const LogTopic& t = only_topic(log);
   CHECK(t.time_s == std::vector<double>{0, 1.5});
   CHECK(values(t, "timestamp") == std::vector<double>{0, 1500000});

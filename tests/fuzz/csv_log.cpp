@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// libFuzzer target over the reader of logs that are CSV tables: whatever the bytes, there is a topic whose columns are as long as
+// its clock, or one line that says what is wrong; what was read, written down and read again is the same. Build and run:
+// scripts/heavy/fuzz.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "fuzz/fuzzing.hpp"
+#include "logs/csv_log.hpp"
+
+namespace {
+
+using pinnquad_test::expect;
+using programs::LogTopic;
+
+pinnquad_test::Tally tally;
+
+/// A file that never touches a disk.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const std::string& content) : file_(memfd_create("log", 0)) {
+    expect(file_ >= 0, "memory for a file");
+    for (std::size_t done = 0; done < content.size();) {
+      const ssize_t count = write(file_, content.data() + done, content.size() - done);
+      expect(count > 0, "memory for a file");
+      done += static_cast<std::size_t>(count);
+    }
+  }
+  ~MemoryFile() { close(file_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
+
+ private:
+  int file_;
+};
+
+bool same(double a, double b) { return (std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof a) == 0; }
+
+std::string quoted(const std::string& text) {
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return cell + '"';
+}
+
+/// The topic as a table: numbers, then texts, every text in quotation marks.
+std::string written(const LogTopic& topic) {
+  std::string table;
+  const auto end_cell = [&table](std::size_t index, std::size_t count) { table += index + 1 < count ? ',' : '\n'; };
+  const std::size_t numbers = topic.columns.size(), cells = numbers + topic.texts.size();
+  for (std::size_t i = 0; i < cells; ++i) {
+    table += quoted(i < numbers ? topic.columns[i].name : topic.texts[i - numbers].name);
+    end_cell(i, cells);
+  }
+  for (std::size_t row = 0; row < topic.size(); ++row) {
+    for (std::size_t i = 0; i < cells; ++i) {
+      table += i < numbers ? pinnquad::number_text(topic.columns[i].values[row])
+                           : quoted(topic.texts[i - numbers].values[row]);
+      end_cell(i, cells);
+    }
+  }
+  return table;
+}
+
+void check(const LogTopic& topic) {
+  for (const auto& column : topic.columns)
+    expect(column.values.size() == topic.size(), "columns are as long as the clock");
+  for (const auto& text : topic.texts) {
+    expect(text.values.size() == topic.size(), "texts are as long as the clock");
+    expect(text.first_text < topic.size(), "a text has a cell that is no number");
+    double ignored = 0;
+    expect(!programs::csv_log::cell_number(text.values[text.first_text], ignored), "that cell is no number");
+  }
+  const MemoryFile file(written(topic));
+  const LogTopic again = programs::read_csv_topic(file.path());
+  expect(again.size() == topic.size() && again.columns.size() == topic.columns.size(), "written and read is the same");
+  for (std::size_t i = 0; i < topic.columns.size(); ++i) {
+    expect(again.columns[i].name == topic.columns[i].name, "names survive");
+    for (std::size_t row = 0; row < topic.size(); ++row) {
+      expect(same(again.columns[i].values[row], topic.columns[i].values[row]), "numbers survive");
+    }
+  }
+  expect(again.texts.size() == topic.texts.size(), "texts survive");
+  for (std::size_t i = 0; i < topic.texts.size(); ++i) {
+    expect(again.texts[i].name == topic.texts[i].name && again.texts[i].values == topic.texts[i].values,
+           "texts survive");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile file(std::string(reinterpret_cast<const char*>(data), size));
+  try {
+    programs::LogSelection selection;
+    if (size % 2 == 0) selection.clock_column = "t";
+    const LogTopic topic = programs::read_csv_topic(file.path(), selection);
+    check(topic);
+    ++tally.count[topic.size() > 0 ? "ok" : "no row"];
+  } catch (const pinnquad::InputError& error) {
+    const std::string what = error.what();
+    expect(std::all_of(what.begin(), what.end(), [](char c) { return static_cast<unsigned char>(c) >= ' '; }),
+           "a refusal is one line");
+    ++tally.count["refused"];
+  }
+  return 0;
+}

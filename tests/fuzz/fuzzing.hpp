@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// What every fuzzer needs: a rule whose breach stops it, and how often its inputs were accepted.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+
+namespace pinnquad_test {
+
+/// A finding: said and stopped at, so that libFuzzer keeps the input.
+inline void expect(bool holds, const char* rule) {
+  if (holds) return;
+  std::fprintf(stderr, "broken: %s\n", rule);
+  std::abort();
+}
+
+/// How often the inputs came to what, told at the end: a fuzzer whose inputs are all refused tests little.
+struct Tally {
+  std::map<std::string, unsigned long> count;
+  ~Tally() {
+    for (const auto& [outcome, times] : count) std::fprintf(stderr, "tally: %lu times %s\n", times, outcome.c_str());
+  }
+};
+
+}  // namespace pinnquad_test
