@@ -49,9 +49,9 @@ struct OrderMoments {
   }
 };
 
-inline OrderMoments order_moments(const std::vector<Flight>& segments) {
+inline OrderMoments order_moments(const std::vector<LagSeries>& segments) {
   LagMoments moments{};
-  for (const LagSeries& one : lag_series(segments)) {
+  for (const LagSeries& one : segments) {
     for (std::size_t row = 0; row < one.size(); ++row) {
       std::array<double, lag_columns> x{};
       std::size_t column = 0;
@@ -85,39 +85,56 @@ inline OrderMoments order_moments(const std::vector<Flight>& segments) {
 }  // namespace detail
 
 /// Of all 24 orders the one whose signed sums explain roll and pitch acceleration best, gains positive; yaw, which is weak,
-/// only tells whether the propellers turn as the airframe says. A finding where that order is not the one that stands and
-/// explains at least 0.1 more (R^2, mean of both axes). Segments lag-aligned (remove_lag()).
+/// only tells whether the propellers turn as the airframe says. As they are, or below 8 Hz: gyro noise that comes back as
+/// commands hides the order in calm flights. A finding where that order is not the one that stands, which explains less than
+/// three quarters of it (R^2, mean of both axes). Segments on one uniform clock, lag-aligned (remove_lag()).
 /// Limits: body axes that are x forward, y left, z up look like motors exchanged front for rear, for the commands cannot tell
 /// the two apart: check_rate_frame() can, and is to be asked first.
 inline MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const Airframe<double>& airframe) {
-  constexpr double least_explained = 0.05, least_gain = 0.1, alike = 0.8, yaw_explained = 0.1;
+  constexpr double least_explained = 0.05, stands = 0.75, alike = 0.8, yaw_explained = 0.1, corner_Hz = 8;
+  using Order = std::array<std::size_t, rotor_count>;
+  const Order identity = {0, 1, 2, 3};
   const AllocationMatrix<double> rows = allocation(airframe);
-  const detail::OrderMoments moments = detail::order_moments(lag_aligned);
-  const auto weights = [&](std::size_t axis, const std::array<std::size_t, rotor_count>& order) {
+  const auto weights = [&](std::size_t axis, const Order& order) {
     std::array<double, rotor_count> result{};
     for (std::size_t i = 0; i < rotor_count; ++i) result[order[i]] = rows[1 + axis][i];
     return result;
   };
-  const auto tilting = [&](const std::array<std::size_t, rotor_count>& order) {
-    return (moments.explained(0, weights(0, order)) + moments.explained(1, weights(1, order))) / 2;
-  };
   MotorOrderCheck check;
-  std::array<std::size_t, rotor_count> order = {0, 1, 2, 3}, best = order;
-  check.explained = tilting(order);
+  Order best = identity;
+  detail::OrderMoments moments;
   double most = -2, second = -2;
-  do {
-    const double explained = tilting(order);
-    if (explained > most) {
-      second = most;
-      most = explained;
-      best = order;
-    } else {
-      second = std::max(second, explained);
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
+  const auto try_all = [&](const std::vector<detail::LagSeries>& series) {
+    const detail::OrderMoments of_band = detail::order_moments(series);
+    const auto tilting = [&](const Order& order) {
+      return (of_band.explained(0, weights(0, order)) + of_band.explained(1, weights(1, order))) / 2;
+    };
+    Order order = identity, first = identity;
+    double highest = -2, next = -2;
+    do {
+      const double explained = tilting(order);
+      next = std::max(next, std::min(explained, highest));
+      if (!(explained > highest)) continue;
+      highest = explained;
+      first = order;
+    } while (std::next_permutation(order.begin(), order.end()));
+    if (!(highest > most)) return;
+    most = highest;
+    second = next;
+    best = first;
+    moments = of_band;
+    check.explained = tilting(identity);
+  };
+  const std::vector<detail::LagSeries> series = detail::lag_series(lag_aligned);
+  try_all(series);
+  for (const Flight& segment : lag_aligned) {
+    if (segment.size() < 2) continue;
+    try_all(detail::low_passed(series, segment[1].time_s - segment[0].time_s, corner_Hz));
+    break;
+  }
   check.explained_permuted = most;
   check.ambiguous = !(most >= least_explained) || second > alike * most;
-  const bool as_it_stands = best == std::array<std::size_t, rotor_count>{0, 1, 2, 3};
+  const bool as_it_stands = best == identity;
   if (!check.ambiguous) check.yaw_reversed = moments.explained(2, weights(2, best)) < -yaw_explained;
   if (check.ambiguous || (as_it_stands && !check.yaw_reversed)) return check;
   if (as_it_stands) {
@@ -127,7 +144,7 @@ inline MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned,
         "airframe says (spin), or two that turn alike are exchanged with the other two"};
     return check;
   }
-  if (!(most - check.explained >= least_gain)) return check;
+  if (check.explained > stands * most) return check;
   check.permutation = best;
   MotorOrder airframe_order;
   if (motor_order_of(airframe, airframe_order) == Status::ok) {

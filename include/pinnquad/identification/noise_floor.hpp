@@ -35,13 +35,15 @@ inline std::vector<double> third_octave_means(const std::vector<double>& power) 
 
 }  // namespace detail
 
-/// The floor is the lowest octave above the peak, at a tenth of the peak or less, over which the power halves at most, and what
-/// follows it as flat. All is signal where no octave is flat (a log that was filtered before it was written), all is
-/// noise where nothing stands out of it (the largest third of an octave less than ten times the least).
-/// Limits: a vibration above the floor counts as noise; a signal that is itself flat over an octave a tenth below its peak is
-/// taken for noise; noise that rises towards low frequencies (a drift) is taken for signal.
+/// The floor begins with the highest run of flat octaves that begins below 30 Hz: octaves above the peak, at a tenth of it or less,
+/// over which the power keeps 0.3 of itself (where one follows that keeps half, with that one). Manoeuvres leave shelves further down; further up is what a sensor's own filter
+/// or a log's last digit leaves. What follows the floor is noise too. All is signal where no octave is flat (a log that
+/// was filtered before it was written), all is noise where nothing stands out (the largest third of an octave less than ten
+/// times the least).
+/// Limits: a vibration above the floor counts as noise; motion that is itself flat over an octave just before the noise
+/// hides it; noise that rises towards low frequencies (a drift) is taken for signal.
 inline NoiseFloor noise_floor(const PowerSpectrum& spectrum) {
-  constexpr double below_peak = 0.1, halves = 0.5;
+  constexpr double below_peak = 0.1, kept = 0.3, flatter = 0.5, highest_begin_Hz = 30;
   const std::vector<double>& power = spectrum.power;
   const std::size_t size = power.size();
   NoiseFloor floor;
@@ -55,25 +57,29 @@ inline NoiseFloor noise_floor(const PowerSpectrum& spectrum) {
   const double peak = mean[peak_at], least = *std::min_element(mean.begin() + 1, mean.end() - 1);
   if (!(peak > 0)) return floor;
   const bool all_noise = least > below_peak * peak;
-  std::size_t first = all_noise ? 1 : size, end = all_noise ? last + 1 : size;
-  for (std::size_t k = peak_at; !all_noise && 2 * k <= last; ++k) {
-    if (!(mean[k] < below_peak * peak) || !(mean[2 * k] > halves * mean[k])) continue;
-    if (!(*std::min_element(mean.begin() + static_cast<std::ptrdiff_t>(k),
-                            mean.begin() + static_cast<std::ptrdiff_t>(2 * k)) > halves * mean[k])) {
-      continue;
-    }
+  const auto keeps = [&](std::size_t k, double share) {
+    const auto from = mean.begin() + static_cast<std::ptrdiff_t>(k);
+    return mean[k]<below_peak * peak&& * std::min_element(from, from + static_cast<std::ptrdiff_t>(k) + 1)> share *
+           mean[k];
+  };
+  std::size_t first = all_noise ? 1 : size, flat_before = 0;
+  for (std::size_t k = peak_at; !all_noise && 2 * k <= last && spectrum.frequency_Hz(k) <= highest_begin_Hz; ++k) {
+    if (!keeps(k, kept)) continue;
+    if (first == size || 4 * k > 5 * flat_before + 4) first = k;  // after a third of an octave that was not
+    flat_before = k;
+  }
+  for (std::size_t k = first; first < size && !all_noise && 2 * k <= last && k <= 2 * first; ++k) {
+    if (!keeps(k, flatter)) continue;
     first = k;
-    for (end = 2 * k; end <= last && mean[end] > halves * mean[first];) ++end;
     break;
   }
   if (first == size) return floor;
-  std::vector<double> flat(power.begin() + static_cast<std::ptrdiff_t>(first),
-                           power.begin() + static_cast<std::ptrdiff_t>(end));
+  const std::size_t end = all_noise ? last + 1 : 2 * first;
   double sum = 0;
-  for (const double value : flat) sum += value;
-  floor.power = sum / static_cast<double>(flat.size());
+  for (std::size_t k = first; k < end; ++k) sum += power[k];
+  floor.power = sum / static_cast<double>(end - first);
   // the signal may reach a little into the octave that was found
-  while (first < end && !all_noise && mean[first] > 1.5 * floor.power) ++first;
+  while (!all_noise && first + 1 < end && mean[first] > 1.5 * floor.power) ++first;
   floor.first_bin = first;
   for (std::size_t k = 0; k < size; ++k) {
     floor.noise[k] = k < first ? std::min(power[k], floor.power) : power[k];

@@ -2,6 +2,7 @@
 // Are body rates those of the body, in FRD and rad/s? Asked of the motion: over a step of time the attitude turns by them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -48,30 +49,41 @@ inline std::array<Vector3<double>, rate_frames> logged_rates(const Sample& a, co
 
 }  // namespace detail
 
-/// Compares, over steps of 0.2 s, what the logged rates would be in each frame with what they are. A finding where body rates leave
-/// 0.3 of the rates' squares unexplained or more, and another frame less than a third of that: a flight that hardly turns away
-/// from level and north decides nothing, for there the frames agree. number: the share that body rates leave.
-/// Limits: small tilt and one heading hide a difference; an attitude that is wrong by itself shows here, see check_attitude().
+/// Compares, over steps of 0.2 s, what the logged rates would be in each frame with what they are: per axis the share of the rates'
+/// squares that is left unexplained, mean of the three. A finding where body rates leave 0.3 or more, and another frame less than
+/// a third of that. number: the share that body rates leave.
+/// Limits: where the vehicle stays near level and at one heading near north the frames agree, and nothing is found; an attitude
+/// that is wrong by itself shows here, see check_attitude().
 inline std::optional<Finding> check_rate_frame(const std::vector<Flight>& segments) {
-  constexpr double unexplained = 0.3, better = 1.0 / 3, smallest_rates = 1e-4;  // mean square, (rad/s)^2
-  std::array<double, detail::rate_frames> left{};
-  double rates = 0, steps = 0;
+  constexpr double unexplained = 0.3, better = 1.0 / 3, smallest_rates = 1e-3;  // mean square, (rad/s)^2
+  std::array<Vector3<double>, detail::rate_frames> residual;
+  residual.fill(Vector3<double>::Zero());
+  Vector3<double> rates = Vector3<double>::Zero();
+  double steps = 0;
   const auto judge = [&](const Sample& a, const Sample& b, const Vector3<double>& rate, double dt_s) {
     const Vector3<double> turning =
         detail::turning_rate({a.roll_rad, a.pitch_rad, a.yaw_rad}, {b.roll_rad, b.pitch_rad, b.yaw_rad}, dt_s);
     const auto expected = detail::logged_rates(a, b, turning);
-    for (std::size_t frame = 0; frame < left.size(); ++frame) left[frame] += (rate - expected[frame]).squaredNorm();
-    rates += rate.squaredNorm();
+    for (std::size_t frame = 0; frame < residual.size(); ++frame) {
+      residual[frame] += (rate - expected[frame]).cwiseAbs2();
+    }
+    rates += rate.cwiseAbs2();
     steps += 1;
   };
   for (const Flight& segment : segments) detail::for_each_turning_step(segment, judge);
-  if (!(rates > smallest_rates * steps) || !(left[0] > unexplained * rates)) return std::nullopt;
+  if (!(rates.sum() > smallest_rates * steps)) return std::nullopt;
+  std::array<double, detail::rate_frames> left{};
+  for (std::size_t frame = 0; frame < left.size(); ++frame) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      left[frame] += residual[frame][axis] / std::max(rates[axis], smallest_rates * steps) / 3;
+    }
+  }
+  if (!(left[0] > unexplained)) return std::nullopt;
   const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
   if (!(left[best] < better * left[0])) return std::nullopt;
-  return Finding{"rate_frame", left[0] / rates, "1",
+  return Finding{"rate_frame", left[0], "1",
                  std::string(detail::rate_frame_sentences[best]) + " (taken as the body's they leave " +
-                     detail::percent(left[0] / rates) + " of the turning unexplained, so " +
-                     detail::percent(left[best] / rates) + ")"};
+                     detail::percent(left[0]) + " of the turning unexplained, so " + detail::percent(left[best]) + ")"};
 }
 
 /// find_degrees_by_motion() over all segments as one flight; number: how many of the four columns are in degrees.

@@ -95,7 +95,7 @@ inline std::vector<double> resample(const CleanClock& clock, const std::vector<d
     }
     if (kind == Resampling::hold || last) {
       result[row] = y[at];
-    } else if (kind == Resampling::linear) {
+    } else {
       const double share = std::max(0.0, (to.at(row) - time_s[at]) / (time_s[at + 1] - time_s[at]));
       result[row] = share > 0 ? y[at] + share * (y[at + 1] - y[at]) : y[at];
     }
@@ -111,7 +111,7 @@ inline std::vector<double> resample(const CleanClock& clock, const std::vector<d
       const double dt = time_s[i] - to.at(row);
       line.add(dt, y[i], std::max(0.0, 1 - std::abs(dt) / to.period_s));
     }
-    result[row] = line.at_zero();
+    if (line.weight > 0) result[row] = line.at_zero();  // else a bridged gap: the line between its ends stays
   }
   return result;
 }

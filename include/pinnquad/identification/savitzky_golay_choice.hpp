@@ -39,7 +39,7 @@ inline double gain(const std::vector<double>& weights, int half_window, int deri
 /// Takes, of orders 2 and 4 and all half windows up to an eighth of the longest segment, 0.5 s and 100 rows, the least
 ///   sum over frequency of (H - |omega|^d)^2 signal + H^2 noise,
 /// H the filter's gain, signal and noise of noise_floor(): the expected squared error of the derivative, bias and noise
-/// together, for noise of any colour that noise_floor() sees. A piece is an eighth of the longest segment, or up to 1024 rows: of a
+/// together, for noise of any colour that noise_floor() sees. A piece is an eighth to a sixteenth of the longest segment, 1024 rows at most: of a
 /// signal slower than a piece the error is smaller than expected, and a still wider window might be better. Without a segment of 32 rows: order 2, half window 2.
 inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& series,
                                                  const std::vector<IndexRange>& segments, double period_s,
@@ -52,7 +52,7 @@ inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& seri
   std::size_t longest = 0;
   for (const IndexRange& segment : segments) longest = std::max(longest, segment.size());
   std::size_t length = shortest_piece;
-  while (length < longest_piece && 8 * length <= longest) length *= 2;
+  while (length < longest_piece && 16 * length <= longest) length *= 2;
   const PowerSpectrum spectrum = power_spectrum(series, segments, period_s, length);
   if (spectrum.pieces == 0) return choice;
   const NoiseFloor floor = noise_floor(spectrum);
