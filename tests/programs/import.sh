@@ -178,6 +178,8 @@ if recorded sih/test_circle_csv; then
   read -r n numbers <<<"$(awk -v of="w_x w_y w_z" -v with="xyz[0] xyz[1] xyz[2]" -v clock=timestamp_sample -v ticks=1e6 -v late=0.006 \
     -f "$here/against.awk" "${truth}_angular_velocity_groundtruth_0.csv" "$flight")"
   below 0.1 "body rates against the simulator's, 6 ms of its filter before" $numbers
+  read -r -a numbers <<<"$(awk -f "$here/tilt.awk" "${truth}_attitude_groundtruth_0.csv" "$flight")"
+  below 1.5 "roll and pitch, degrees, against the simulator's" "${numbers[@]}"
   read -r n numbers <<<"$(awk -v of="altitude" -v with="z" -v clock=timestamp_sample -v ticks=1e6 -v late=0 \
     -f "$here/against.awk" <(awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "z") c = i } NR > 1 { $c = -$c } { print }' \
     "${truth}_local_position_groundtruth_0.csv") "$flight")"
