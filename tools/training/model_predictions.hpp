@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/dynamics/site.hpp"
 #include "training/judgement.hpp"
