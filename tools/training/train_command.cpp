@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part of one
-// flight, or the last of several flights), exports the best physics-informed network as a header.
+// flight, or the last of several flights), exports the best physics-informed network as a header. Flights of real vehicles
+// (--dataset, --log) are judged by held-out flights instead: training/train_logs.hpp.
 //   pinnquad train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 #include "training/train_command.hpp"
 
@@ -32,6 +33,7 @@
 #include "training/model_predictions.hpp"
 #include "training/plots.hpp"
 #include "training/recipe.hpp"
+#include "training/train_logs.hpp"
 #include "training/training_report.hpp"
 
 namespace {
@@ -53,7 +55,8 @@ struct Options {
   int epochs = 300;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  bool allow_poor = false;  ///< export what is worse than the mean, marked as such
+  bool allow_poor = false;            ///< export what is worse than the mean, marked as such
+  programs::LogTrainingOptions logs;  ///< what --dataset and --log ask for besides
 };
 
 /// Warns of features that stand still in the training rows: they are exported, and flown only where they stood.
@@ -262,6 +265,22 @@ void require_separate_files(const Options& options) {
   roles.writes("--block", options.block);
 }
 
+/// What logs and flights have in common, as training on logs takes it; `given(name)`: the option is in the command line.
+template <class Given>
+programs::LogTrainingOptions log_options(const Options& options, const Given& given) {
+  programs::LogTrainingOptions logs = options.logs;
+  logs.airframe = given("--airframe") ? options.airframe : "";
+  logs.out = options.out;
+  logs.model_name = options.model_name;
+  logs.block = options.block;
+  logs.seeds = options.seeds;
+  logs.epochs = given("--epochs") ? options.epochs : 0;
+  logs.seed = options.seed;
+  logs.threads = options.threads;
+  logs.allow_poor = options.allow_poor;
+  return logs;
+}
+
 /// Trains on the flights of the options: the exit code.
 int train_chosen(const Options& options) {
   if (!is_identifier(options.model_name)) {
@@ -289,6 +308,8 @@ void add_options(CLI::App& app, Options& options) {
       "  pinnquad train --flight d1.csv --out my_model\n"
       "  pinnquad train --flight a.csv --flight b.csv --flight c.csv --airframe mine.toml --recipe best\n"
       "  pinnquad train --flight d1.csv --recipe small --block weights.block\n"
+      "  pinnquad train --log logs --mapping px4 --hold-out flight7 --out my_model\n"
+      "  pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model\n"
       "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
       "commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
@@ -296,8 +317,7 @@ void add_options(CLI::App& app, Options& options) {
   programs::add_paths(
       app, "--flight", options.flights, "FILE.csv",
       "recorded flight, CSV as `pinnquad fly` writes it: its first part trains, its last tests. Of three or more, "
-      "whole flights, in this order: the first train, the last test")
-      ->required();
+      "whole flights, in this order: the first train, the last test");
   app.add_option("--airframe", options.airframe,
                  "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
       ->capture_default_str();
@@ -327,12 +347,56 @@ void add_options(CLI::App& app, Options& options) {
                "export the best network even if it is worse than the mean of the commands; its header says so");
 }
 
+/// Training on logs of a real vehicle. They exclude what is said of --flight alone.
+void add_log_options(CLI::App& app, programs::LogTrainingOptions& options) {
+  using programs::add_path;
+  CLI::Option* dataset = add_path(app, "--dataset", options.dataset, "DIR",
+                                  "imported flights of a real vehicle, a folder that `pinnquad import` wrote: whole "
+                                  "flights are held out, all kinds of models are compared on them");
+  CLI::Option* log = programs::add_paths(app, "--log", options.logs, "LOG",
+                                         "flight logs, imported first: ULog, CSV, or folders of them");
+  CLI::Option* mapping = app.add_option("--mapping", options.mapping, "what the columns of --log mean: see import")
+                             ->type_name("NAME|FILE.toml");
+  CLI::Option* names =
+      app.add_option("--hold-out", options.hold_out, "flights or trajectories that judge, held out together")
+          ->delimiter(',')
+          ->type_name("NAME,...");
+  CLI::Option* each = app.add_option("--hold-out-each", options.hold_out_each,
+                                     "hold out each flight or each trajectory in turn; the export is fitted to all")
+                          ->check(CLI::IsMember({"flight", "trajectory"}))
+                          ->type_name("flight|trajectory");
+  CLI::Option* models = app.add_option("--models", options.models, "compare these alone, by their names in report.json")
+                            ->delimiter(',')
+                            ->type_name("NAME,...");
+  CLI::Option* exported =
+      app.add_option(
+             "--export", options.export_choice,
+             "which model becomes the header: the best that flies on measured motion (causal), the best that looks "
+             "ahead (centred: planned trajectories only), or one by its name")
+          ->capture_default_str()
+          ->type_name("causal|centred|NAME");
+  log->needs(mapping)->excludes(dataset);
+  mapping->needs(log);
+  names->excludes(each);
+  for (CLI::Option* source : {dataset, log}) {
+    for (const char* of_flights : {"--flight", "--recipe", "--loss"}) source->excludes(app.get_option(of_flights));
+  }
+  for (CLI::Option* of_logs : {names, each, models, exported}) of_logs->excludes(app.get_option("--flight"));
+}
+
 }  // namespace
 
 programs::Command programs::train_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "train", "Trains vanilla and physics-informed networks on flights, judges them, exports the best as a header");
+      "train", "Trains models on flights, judges them on rows that none was trained on, exports the best as a header");
   const auto options = std::make_shared<Options>();
   add_options(*line, *options);
-  return {line, [options] { return train_chosen(*options); }};
+  add_log_options(*line, options->logs);
+  return {line, [options, line] {
+            if (!options->logs.dataset.empty() || !options->logs.logs.empty()) {
+              return train_on_logs(log_options(*options, [line](const char* name) { return line->count(name) > 0; }));
+            }
+            if (options->flights.empty()) throw std::invalid_argument("--flight, --dataset or --log is required");
+            return train_chosen(*options);
+          }};
 }

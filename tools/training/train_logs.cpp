@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: MIT
+// Trains on flights of a real vehicle and says honestly what came of it.
+//   pinnquad train --dataset DIR --hold-out-each trajectory --seeds 5 --out OUT
+//   pinnquad train --log DIR --mapping px4 --hold-out flight7 --out OUT
+#include "training/train_logs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+
+#include "airframe/choice.hpp"
+#include "command_line/console.hpp"
+#include "command_line/file_roles.hpp"
+#include "command_line/folder_lock.hpp"
+#include "logs/dataset_folder.hpp"
+#include "logs/import.hpp"
+#include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/deploy/identifier.hpp"
+#include "training/log_export.hpp"
+#include "training/log_fit_store.hpp"
+#include "training/log_report.hpp"
+#include "training/log_table.hpp"
+
+namespace {
+
+using namespace pinnquad;
+using programs::LogTrainingOptions;
+
+/// Fewer rows than this fill no batches worth the name.
+constexpr std::size_t fewest_training_rows = 256, fewest_judging_rows = 64;
+
+/// The files of --out.
+constexpr std::array<const char*, 3> output_names = {"report.json", "model.hpp", "replay.txt"};
+
+void require_separate_files(const LogTrainingOptions& options) {
+  programs::FileRoles roles;
+  for (const std::string& path : options.logs) roles.reads("--log", path);
+  roles.reads("--dataset", options.dataset);
+  if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
+  roles.writes("--out", options.out);
+  for (const char* name : output_names) roles.writes("--out", options.out + "/" + name);
+  roles.writes("--block", options.block);
+}
+
+/// The kinds asked for, in the order of the table.
+std::vector<programs::LogModelKind> chosen_kinds(const std::vector<std::string>& keys) {
+  std::vector<programs::LogModelKind> kinds;
+  std::vector<std::string> known;
+  for (const programs::LogModelKind& kind : programs::log_model_kinds()) {
+    known.emplace_back(kind.key);
+    if (keys.empty() || std::find(keys.begin(), keys.end(), kind.key) != keys.end()) kinds.push_back(kind);
+  }
+  for (const std::string& key : keys) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    throw std::invalid_argument("--models " + key + ": no model of that name; " + programs::nearest_names(key, known));
+  }
+  return kinds;
+}
+
+/// The dataset of the options; that of logs is written beside the results.
+programs::ImportedDataset dataset_of(const LogTrainingOptions& options,
+                                     const std::optional<programs::NamedAirframe>& airframe, std::string& folder) {
+  if (options.logs.empty()) {
+    folder = options.dataset;
+    return programs::read_dataset_folder(folder);
+  }
+  programs::ImportRequest request;
+  request.logs = options.logs;
+  request.mapping = options.mapping;
+  request.airframe = airframe;
+  std::optional<programs::ProgressLine> progress;
+  std::string job;
+  request.on_progress = [&](const std::string& now, double share) {
+    if (!progress || now != job) progress.emplace(job = now);
+    progress->update(share);
+  };
+  programs::ImportedDataset dataset = programs::import_logs(request);
+  progress.reset();
+  folder = options.out + "/dataset";
+  programs::write_dataset_folder(folder, dataset);
+  return dataset;
+}
+
+/// Throws InputError and std::invalid_argument for flights that no model should be fitted to, or judged on.
+void require_sound(const std::string& folder, const programs::ImportedDataset& dataset,
+                   const std::vector<programs::Fold>& folds) {
+  std::vector<std::uint64_t> hashes;
+  for (const Flight& flight : dataset.flights.flights()) {
+    const std::string place = folder + "/" + flight.name;
+    require_plausible(place, flight);
+    require_varied_commands(place, flight, {0, flight.size()}, "flight's");
+    hashes.push_back(content_hash(flight));
+    const auto same = std::find(hashes.begin(), hashes.end() - 1, hashes.back());
+    if (same == hashes.end() - 1) continue;
+    throw std::invalid_argument(
+        "the flights " + printable(dataset.flights[static_cast<std::size_t>(same - hashes.begin())].name) + " and " +
+        printable(flight.name) + " are the same: one would be judged on what it was trained on");
+  }
+  for (const programs::Fold& fold : folds) {
+    const auto require = [&](const RowSet& rows, std::size_t fewest, const char* what) {
+      if (rows.size() >= fewest) return;
+      throw std::invalid_argument("holding out " + printable(fold.name) + " leaves " + std::to_string(rows.size()) +
+                                  " rows to " + what + "; expected " + std::to_string(fewest) + " or more");
+    };
+    require(fold.split.train, fewest_training_rows, "train");
+    require(fold.split.validation, fewest_judging_rows, "validate");
+    require(fold.split.test, fewest_judging_rows, "judge");
+  }
+}
+
+programs::HoldOutChoice hold_out_of(const LogTrainingOptions& options, const programs::ImportedDataset& dataset) {
+  programs::HoldOutChoice choice;
+  choice.names = options.hold_out;
+  if (!options.hold_out_each.empty()) {
+    choice.each = options.hold_out_each == "flight" ? programs::HoldOutEach::flight : programs::HoldOutEach::trajectory;
+  }
+  if (choice.each || !choice.names.empty()) return choice;
+  std::string names;
+  for (const Flight& flight : dataset.flights.flights()) names += (names.empty() ? "" : ", ") + printable(flight.name);
+  throw std::invalid_argument(
+      "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " + names);
+}
+
+std::string decimals(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+/// Fits, judges, exports: one run of the command.
+class LogTraining {
+ public:
+  LogTraining(const LogTrainingOptions& options, const programs::ImportedDataset& dataset,
+              const programs::NamedAirframe& airframe, std::vector<programs::Fold> folds)
+      : options_(options),
+        dataset_(dataset),
+        plan_{airframe,
+              chosen_kinds(options.models),
+              std::move(folds),
+              dataset.absent,
+              dataset.sample_period_s,
+              options.seed,
+              options.seeds,
+              options.epochs,
+              options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency())},
+        report_(options.out + "/report.json", plan_, dataset) {}
+
+  int run() {
+    warn_of_the_setting();
+    std::printf("[2/5] fit %zu kinds of models, %d seeds\n", plan_.kinds.size(), plan_.seeds);
+    std::fflush(stdout);
+    programs::catch_interrupt();
+    const programs::LogFitStore store(options_.out + "/fits", plan_);
+    std::size_t known = 0;
+    fits_ = programs::fit_all(
+        plan_,
+        [&](programs::FinishedFit& job) {
+          const bool found = store.load(job);
+          if (found) ++known_;
+          return found;
+        },
+        [&](const programs::FinishedFit& job) { store.keep(job); });
+    known = known_.load();
+    if (known > 0) std::printf("      %zu of %zu fits were finished by an earlier run\n", known, fits_.wanted);
+    report_.interrupted_after(fits_.finished.size(), fits_.wanted);
+    if (programs::interrupted() && fits_.finished.size() < fits_.wanted) return tell_interrupted();
+    std::printf("[3/5] judge\n");
+    judged_ = programs::judge_fits(plan_, fits_);
+    verdicts_ = programs::verdicts_on(judged_);
+    programs::print_log_table(plan_, judged_, verdicts_);
+    std::fflush(stdout);
+    report_.judged(plan_, judged_, verdicts_);
+    const int code = export_best();
+    if (code != programs::exit_interrupted) store.clear();
+    return code;
+  }
+
+ private:
+  bool rotated() const { return !options_.hold_out_each.empty(); }
+
+  void warn_of_the_setting() {
+    if (options_.airframe.empty()) {
+      report_.warn("no --airframe: the linearized model and the nominal slopes are those of " + plan_.airframe.name +
+                   ", which is not what flew");
+    }
+    for (const programs::Fold& fold : plan_.folds) {
+      if (fold.part_validates) {
+        report_.warn("holding out " + fold.name +
+                     " leaves one trajectory: its last fifth validates, no flight of its own");
+      }
+    }
+    if (judges() < programs::fewest_pairs) {
+      report_.warn("paired tests over " + std::to_string(judges()) + " held-out flights can't decide: fewer than " +
+                   std::to_string(programs::fewest_pairs) + "; --hold-out-each judges by more");
+    }
+  }
+
+  std::size_t judges() const {
+    std::size_t flights = 0;
+    for (const programs::Fold& fold : plan_.folds) flights += fold.held_out.size();
+    return flights;
+  }
+
+  int tell_interrupted() {
+    report_.write_not_exported("interrupted");
+    std::fprintf(
+        stderr,
+        "train: interrupted; %zu of %zu fits are finished and kept in %s/fits: the same command goes on from there\n",
+        fits_.finished.size(), fits_.wanted, options_.out.c_str());
+    return programs::exit_interrupted;
+  }
+
+  int refuse(const std::string& reason, int code) {
+    report_.write_not_exported(reason);
+    std::string earlier;
+    for (const std::string& path : {options_.out + "/model.hpp", options_.out + "/replay.txt", options_.block}) {
+      std::error_code ignored;
+      if (!path.empty() && std::filesystem::exists(path, ignored))
+        earlier += (earlier.empty() ? "; of an earlier training: " : ", ") + path;
+    }
+    programs::complain("train", "not exported: " + reason + earlier);
+    return code;
+  }
+
+  int export_best() {
+    const std::optional<std::size_t> chosen = programs::kind_to_export(judged_, options_.export_choice, rotated());
+    if (!chosen) return refuse("no model of the kind asked for was judged", programs::exit_failed);
+    const programs::JudgedKind& kind = judged_.kinds[*chosen];
+    const Verdict verdict = programs::exported_verdict(judged_, *chosen);
+    const programs::LogVerdict& beside_simpler = verdicts_[*chosen];
+    if (verdict.worse_than_mean() && !options_.allow_poor) {
+      return refuse(std::string(kind.kind.title) +
+                        ", the best, is worse on the held-out flights than the mean of their commands (R^2 " +
+                        decimals(verdict.test_r_squared, 4) + "); --allow-poor exports it, marked",
+                    programs::exit_failed);
+    }
+    if (beside_simpler.standing != programs::Standing::success &&
+        beside_simpler.standing != programs::Standing::reference) {
+      report_.warn(std::string("what is exported, ") + kind.kind.title + ": " + beside_simpler.sentence);
+    }
+    if (verdict.has_poor_motor()) {
+      report_.warn("one motor's commands are predicted worse than by their mean (R^2 " +
+                   decimals(verdict.worst_motor_r_squared, 4) + " on the held-out flights)");
+    }
+    if (kind.kind.reach == programs::TimeReach::centred) {
+      report_.warn(std::string(kind.kind.title) + " looks ahead: it takes planned trajectories, not measured motion");
+    }
+    report_.write_not_exported("the export was not finished");
+    std::printf("[4/5] export %s\n", kind.kind.title);
+    std::fflush(stdout);
+    const std::optional<Exported> made = exported(*chosen);
+    if (!made) return tell_interrupted();
+    write(*made, kind.kind, verdict);
+    return 0;
+  }
+
+  struct Exported {
+    std::shared_ptr<const programs::TrainedNetwork> model;
+    std::uint64_t seed = 0;
+    const programs::Fold* fold = nullptr;
+  };
+
+  /// The model to write: after a rotation fitted to all flights, else that of the best seed. None if interrupted.
+  std::optional<Exported> exported(std::size_t kind) {
+    if (rotated()) {
+      all_ = programs::fold_of_all(dataset_.flights);
+      programs::LogPlan once = plan_;
+      once.kinds = {plan_.kinds[kind]};
+      once.folds = {*all_};
+      all_fits_ = programs::fit_all(
+          once, [](programs::FinishedFit&) { return false; }, [](const programs::FinishedFit&) {});
+      if (programs::interrupted() && all_fits_.finished.size() < all_fits_.wanted) return {};
+      const programs::FinishedFit* best = programs::best_fit(all_fits_.finished, 0);
+      if (best == nullptr)
+        throw std::invalid_argument("the fit to all flights has no finite error on " + all_->validation.front());
+      return Exported{best->model, best->seed, &*all_};
+    }
+    const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind);
+    if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
+    programs::FinishedFit again = *best;
+    if (!again.model && !programs::fit_one(plan_, again)) return {};  // known from an earlier run: the same once more
+    return Exported{again.model, again.seed, &plan_.folds[again.fold]};
+  }
+
+  void write(const Exported& made, const programs::LogModelKind& kind, const Verdict& verdict) {
+    const Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
+                                                    made.seed, options_.epochs, verdict);
+    const std::string header = options_.out + "/model.hpp";
+    const RowSet& training = made.fold->split.train;
+    made.model->write_header(header, options_.model_name, training, from);
+    made.model->write_replay(options_.out + "/replay.txt",
+                             made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
+    std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
+                kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
+                verdict.worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
+    if (!options_.block.empty()) {
+      const std::vector<unsigned char> block = made.model->block(training, from);
+      write_weight_file(options_.block, block);
+      std::printf("  %s: the same weights as a block of %zu bytes\n", options_.block.c_str(), block.size());
+    }
+    report_.write_exported(kind, made.seed, header, options_.block);
+  }
+
+  const LogTrainingOptions& options_;
+  const programs::ImportedDataset& dataset_;
+  programs::LogPlan plan_;
+  programs::LogReport report_;
+  std::atomic<std::size_t> known_{0};
+  programs::LogFits fits_, all_fits_;
+  std::optional<programs::Fold> all_;
+  programs::LogJudgement judged_;
+  std::vector<programs::LogVerdict> verdicts_;
+};
+
+}  // namespace
+
+int programs::train_on_logs(const LogTrainingOptions& options) {
+  if (!is_identifier(options.model_name)) {
+    throw std::invalid_argument("--name " + options.model_name +
+                                ": a C++ identifier was expected, no keyword and no name that C++ reserves");
+  }
+  require_separate_files(options);
+  chosen_kinds(options.models);  // a name that is none is found before the reading
+  std::optional<NamedAirframe> given;
+  if (!options.airframe.empty()) given = chosen_airframe(options.airframe);
+  const NamedAirframe airframe = given ? *given : chosen_airframe(PaperQuadrotor::name);
+  end_at_interrupt();  // while nothing is worth keeping
+  std::printf("[1/5] read\n");
+  std::fflush(stdout);
+  std::string folder;
+  std::optional<FolderLock> lock;
+  if (!options.logs.empty()) lock.emplace(options.out);
+  const ImportedDataset dataset = dataset_of(options, given, folder);
+  std::vector<Fold> folds = folds_of(dataset.flights, hold_out_of(options, dataset));
+  require_sound(folder, dataset, folds);
+  if (!lock) lock.emplace(options.out);
+  for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
+  if (!options.block.empty()) AtomicFile probe(options.block);
+  std::printf("      %zu rows of %zu flights\n", dataset.flights.rows(), dataset.flights.size());
+  print_folds(folds);
+  return LogTraining(options, dataset, airframe, std::move(folds)).run();
+}
