@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The kinds of models of logged flights, each defined where it is compiled (log_models_<what>.cpp).
+#pragma once
+
+#include "training/log_model.hpp"
+
+namespace programs {
+
+LogModelKind log_constant();
+LogModelKind log_physics();
+LogModelKind log_linear();
+LogModelKind log_linearized();
+LogModelKind log_ridge();
+LogModelKind log_ridge_causal();
+LogModelKind log_ridge_centred();
+
+}  // namespace programs
