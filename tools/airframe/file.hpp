@@ -5,11 +5,9 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
-#include <set>
 #include <string>
 
-#include "command_line/toml_file.hpp"
+#include "command_line/toml_table.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace programs {
@@ -28,88 +26,10 @@ inline bool is_airframe_file(const std::string& name) {
 
 namespace detail {
 
-/// What a number of the file may be.
-struct NumberRange {
-  double least;
-  double most;
-  const char* words;
-};
-/// No quadrotor has a number beyond it.
-inline constexpr double largest_number = 1e9;
-inline constexpr NumberRange above_zero = {std::numeric_limits<double>::denorm_min(), largest_number,
-                                           "a value above 0, at most 1e9"};
-inline constexpr NumberRange from_zero = {0, largest_number, "a value of 0 or more, at most 1e9"};
-inline constexpr NumberRange of_either_sign = {-largest_number, largest_number, "a value from -1e9 to 1e9"};
-inline constexpr NumberRange zero_to_one = {0, 1, "a value from 0 to 1"};
-
-/// A table of the file: asks for its keys one by one, and in the end for those that nobody asked for.
-class AirframeTable {
- public:
-  AirframeTable(const std::string& path, const toml::table& table) : path_(path), table_(table) {}
-
-  double number(const char* key, const NumberRange& range) { return as_number(required(key, "a number"), range); }
-  double number(const char* key, const NumberRange& range, double otherwise) {
-    const toml::node* node = optional(key);
-    return node ? as_number(*node, range) : otherwise;
-  }
-  std::array<double, 3> triple(const char* key, const NumberRange& range) {
-    return as_triple(required(key, three_numbers), range);
-  }
-  std::array<double, 3> triple(const char* key, const NumberRange& range, const std::array<double, 3>& otherwise) {
-    const toml::node* node = optional(key);
-    return node ? as_triple(*node, range) : otherwise;
-  }
-  std::string text(const char* key, const char* expected) {
-    const toml::node& node = required(key, expected);
-    if (!node.is_string()) refuse(node, expected, described(node));
-    return node.as_string()->get();
-  }
-  const toml::node& required(const char* key, const std::string& expected) {
-    const toml::node* node = optional(key);
-    if (!node) refuse(table_, "`" + std::string(key) + "`, " + expected, "no such key");
-    return *node;
-  }
-  void require_no_more() const {
-    for (const auto& [key, node] : table_) {
-      if (known_.count(std::string(key.str())) == 0) {
-        refuse(key.source(), "a key of an airframe", "`" + pinnquad::printable(key.str()) + "`");
-      }
-    }
-  }
-  [[noreturn]] void refuse(const toml::node& node, const std::string& expected, const std::string& found) const {
-    refuse(node.source(), expected, found);
-  }
-
- private:
-  static constexpr const char* three_numbers = "an array of three numbers";
-
-  const toml::node* optional(const char* key) {
-    known_.insert(key);
-    return table_.get(key);
-  }
-  double as_number(const toml::node& node, const NumberRange& range) const {
-    if (!node.is_number()) refuse(node, "a number", described(node));
-    const double value = toml_number(node);
-    if (!(value >= range.least && value <= range.most)) refuse(node, range.words, described(node));
-    return value;
-  }
-  std::array<double, 3> as_triple(const toml::node& node, const NumberRange& range) const {
-    const toml::array* array = node.as_array();
-    if (!array || array->size() != 3) refuse(node, three_numbers, described(node));
-    return {as_number((*array)[0], range), as_number((*array)[1], range), as_number((*array)[2], range)};
-  }
-  [[noreturn]] void refuse(const toml::source_region& where, const std::string& expected,
-                           const std::string& found) const {
-    refuse_toml(path_, where, expected, found);
-  }
-
-  const std::string& path_;
-  const toml::table& table_;
-  std::set<std::string> known_;
-};
+inline constexpr const char* airframe_key = "a key of an airframe";
 
 inline pinnquad::RotorMount<double> rotor_of(const std::string& path, const toml::table& table) {
-  AirframeTable rotor(path, table);
+  TomlTable rotor(path, table, airframe_key);
   pinnquad::RotorMount<double> r;
   r.x_m = rotor.number("x_m", of_either_sign);
   r.y_m = rotor.number("y_m", of_either_sign);
@@ -140,11 +60,8 @@ inline pinnquad::RotorMount<double> rotor_of(const std::string& path, const toml
 /// The airframe of a file. Throws InputError, one line, for a file that can't be read, is no TOML, has a key that is unknown,
 /// missing or of another type, and for values that no quadrotor has.
 inline NamedAirframe read_airframe_file(const std::string& path) {
-  using detail::above_zero;
-  using detail::from_zero;
-  using detail::of_either_sign;
   const toml::table root = read_toml_file(path, "an airframe");
-  detail::AirframeTable table(path, root);
+  TomlTable table(path, root, detail::airframe_key);
   NamedAirframe result;
   pinnquad::Airframe<double>& a = result.value;
   const char* one_line = "a text on one line";

@@ -17,6 +17,16 @@
 
 namespace programs {
 
+/// The tables of a text; `path` names it. Throws InputError if it is no TOML.
+inline toml::table parse_toml(const std::string& content, const std::string& path) {
+  try {
+    return toml::parse(content, path);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw pinnquad::InputError(path, at.line, at.column, "TOML", pinnquad::printable(error.description()));
+  }
+}
+
 /// The tables of a file. Throws InputError: it can't be read, has more than 1 MiB where `what` ("an airframe") was expected, or
 /// is no TOML.
 inline toml::table read_toml_file(const std::string& path, const std::string& what) {
@@ -26,13 +36,7 @@ inline toml::table read_toml_file(const std::string& path, const std::string& wh
   const std::uintmax_t bytes = std::filesystem::file_size(path, absent);
   if (!absent && bytes > most_bytes)
     throw pinnquad::InputError(path, 0, 0, what + " of at most 1 MiB", "a larger file");
-  const std::string content = pinnquad::file_text(path);
-  try {
-    return toml::parse(content, path);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw pinnquad::InputError(path, at.line, at.column, "TOML", pinnquad::printable(error.description()));
-  }
+  return parse_toml(pinnquad::file_text(path), path);
 }
 
 [[noreturn]] inline void refuse_toml(const std::string& path, const toml::source_region& where,

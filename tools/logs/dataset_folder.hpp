@@ -90,6 +90,7 @@ inline nlohmann::json described(const ImportedDataset& dataset, const std::vecto
                          {"rows", dataset.flights.rows()},
                          {"flights", nlohmann::json::array()},
                          {"steps", nlohmann::json::array()},
+                         {"notes", nlohmann::json::array()},
                          {"warnings", nlohmann::json::array()}};
   for (std::size_t i = 0; i < dataset.flights.size(); ++i) {
     const pinnquad::Flight& flight = dataset.flights[i];
@@ -105,6 +106,7 @@ inline nlohmann::json described(const ImportedDataset& dataset, const std::vecto
                              {"rows_after", step.rows_after},
                              {"told", printable(step.told)}});
   }
+  for (const std::string& note : dataset.notes) json["notes"].push_back(printable(note));
   for (const std::string& warning : dataset.warnings) json["warnings"].push_back(printable(warning));
   return json;
 }
@@ -178,10 +180,6 @@ inline ImportedDataset read_dataset_folder(const std::string& path) {
   dataset.lag_removed_s = number(json, "lag_removed_s", -1);
   if (json.contains("airframe")) dataset.airframe = text(json, "airframe");
   if (json.contains("mapping")) dataset.mapping = text(json, "mapping");
-  for (const nlohmann::json& missing : list("absent")) {
-    if (!missing.is_string()) refuse("names in the list \"absent\"", missing.type_name());
-    dataset.absent.push_back(missing.get<std::string>());
-  }
   const nlohmann::json flights = list("flights");
   ProgressLine progress("reading " + std::to_string(flights.size()) + (flights.size() == 1 ? " flight" : " flights"));
   for (const nlohmann::json& entry : flights) {
@@ -212,10 +210,15 @@ inline ImportedDataset read_dataset_folder(const std::string& path) {
     dataset.steps.push_back({text(step, "step"), static_cast<std::size_t>(number(step, "rows_before", 0)),
                              static_cast<std::size_t>(number(step, "rows_after", 0)), text(step, "told")});
   }
-  for (const nlohmann::json& warning : list("warnings")) {
-    if (!warning.is_string()) refuse("texts in the list \"warnings\"", warning.type_name());
-    dataset.warnings.push_back(warning.get<std::string>());
-  }
+  const auto texts = [&](const char* key, std::vector<std::string>& to) {
+    for (const nlohmann::json& each : list(key)) {
+      if (!each.is_string()) refuse("texts in the list \"" + std::string(key) + "\"", each.type_name());
+      to.push_back(each.get<std::string>());
+    }
+  };
+  texts("absent", dataset.absent);
+  texts("notes", dataset.notes);
+  texts("warnings", dataset.warnings);
   return dataset;
 }
 

@@ -12,16 +12,17 @@
 
 namespace programs {
 
-/// NaN where the log has no number.
+/// NaN where the log has no number; infinite where it says so.
 struct LogColumn {
   std::string name;  ///< "q[0]", "battery_voltage"
   std::vector<double> values;
 };
 
-/// A column of labels: of what cannot be read as numbers throughout.
+/// A column of labels: of what cannot be read as numbers throughout. Bytes as they stand in the log.
 struct LogText {
   std::string name;  ///< "flight"
   std::vector<std::string> values;
+  std::size_t first_text = 0;  ///< the first row whose cell is no number: which to name where numbers are expected
 };
 
 /// Rows of one kind of message, in the file's order, which need not be that of time.

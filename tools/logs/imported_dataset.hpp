@@ -23,13 +23,14 @@ struct ImportStep {
 struct ImportedDataset {
   pinnquad::Dataset flights;
   std::vector<std::string> sources;  ///< the log of each flight
-  std::vector<std::string> absent;  ///< quantities that the logs lack, filled with 0: "velocity", "altitude", "heading"
+  std::vector<std::string> absent;  ///< quantities that the logs lack, filled with 0: "velocity", "altitude"
   double sample_period_s = 0;
   double lag_removed_s = 0;  ///< by how much later than told the commands stand in the rows
   std::string airframe;
   std::string mapping;
   std::vector<ImportStep> steps;
-  std::vector<std::string> warnings;
+  std::vector<std::string> notes;     ///< how what the logs lack was computed
+  std::vector<std::string> warnings;  ///< what looks wrong
 
   bool lacks(const std::string& quantity) const {
     for (const std::string& missing : absent) {

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+#include "logs/import.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "logs/bound_log.hpp"
+#include "logs/common_rows.hpp"
+#include "logs/derived_motion.hpp"
+#include "logs/log_parts.hpp"
+#include "logs/mapping_choice.hpp"
+#include "logs/read_log.hpp"
+#include "logs/row_rules.hpp"
+#include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/identification/command_lag.hpp"
+
+namespace programs {
+namespace {
+
+/// Fewest rows of a flight: a batch of training.
+constexpr std::size_t minimum_rows = 64;
+
+/// What the steps cost, summed over logs.
+class Steps {
+ public:
+  explicit Steps(std::vector<ImportStep>& steps) : steps_(steps) {}
+
+  void add(const std::string& name, std::size_t before, std::size_t after, const std::string& told) {
+    for (ImportStep& step : steps_) {
+      if (step.name != name) continue;
+      step.rows_before += before;
+      step.rows_after += after;
+      return;
+    }
+    steps_.push_back({name, before, after, told});
+  }
+
+ private:
+  std::vector<ImportStep>& steps_;
+};
+
+/// A flight on its way: segments of rows without a gap.
+struct Passage {
+  std::string name, trajectory, source;
+  std::vector<pinnquad::Flight> segments;
+
+  std::size_t rows() const {
+    std::size_t sum = 0;
+    for (const pinnquad::Flight& segment : segments) sum += segment.size();
+    return sum;
+  }
+};
+
+std::size_t rows_in(const std::vector<Passage>& passages) {
+  std::size_t sum = 0;
+  for (const Passage& passage : passages) sum += passage.rows();
+  return sum;
+}
+
+class Import {
+ public:
+  explicit Import(const ImportRequest& request)
+      : request_(request), mapping_(chosen_mapping(request.mapping)), steps_(dataset_.steps) {
+    if (request.rate_hz) period_s_ = 1 / *request.rate_hz;
+    dataset_.mapping = mapping_.name;
+    dataset_.airframe = request.airframe ? request.airframe->name : "";
+  }
+
+  ImportedDataset run() {
+    LogSelection selection;
+    selection.topics = mapped_topics(mapping_);
+    if (!mapping_.flight_column.name.empty()) selection.label_columns.push_back(mapping_.flight_column.name);
+    if (!mapping_.trajectory_column.name.empty()) selection.label_columns.push_back(mapping_.trajectory_column.name);
+    std::vector<LogPlace> places;
+    for (const std::string& path : request_.logs) {
+      for (LogPlace& place : logs_at(path, selection)) places.push_back(std::move(place));
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double done = static_cast<double>(i), all = static_cast<double>(places.size());
+      selection.prefix = places[i].prefix;
+      selection.on_progress = [&](double share) { request_.on_progress("reading " + places[i].name, (done + share) / all); };
+      FlightLog log = read_log(places[i].path, selection);
+      for (const std::string& warning : log.warnings) dataset_.warnings.push_back(warning);
+      for (LogPart& part : parts_of(std::move(log), places[i].name, mapping_)) take(part, places[i]);
+    }
+    settle_absent();
+    remove_lag();
+    drop_by_commands();
+    make_flights();
+    return std::move(dataset_);
+  }
+
+ private:
+  void count_topics(const BoundLog& bound) {
+    std::vector<const LogTopic*> counted;
+    const auto count = [&](const Signal& signal) {
+      if (!signal.present() || std::find(counted.begin(), counted.end(), signal.topic) != counted.end()) return;
+      counted.push_back(signal.topic);
+      const pinnquad::ClockReport& report = signal.clock.report;
+      steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
+                 "one time a row: no time, a second row of one time and stale first rows are left out");
+      if (report.out_of_order > 0) {
+        dataset_.warnings.push_back(pinnquad::printable(signal.topic->file) + ": " + std::to_string(report.out_of_order) +
+                                    " rows were not in time's order and were sorted");
+      }
+      if (report.same_time > 0) {
+        dataset_.warnings.push_back(pinnquad::printable(signal.topic->file) + ": " + std::to_string(report.same_time) +
+                                    " rows had the time of another and were left out, the last one stays");
+      }
+      if (report.restarts > 0) refuse_restart(*signal.topic);
+    };
+    for (const Signal& signal : bound.signals) count(signal);
+    for (const BoundExtra& extra : bound.extras) count(extra.signal);
+  }
+
+  /// Two recordings in one table would be mixed by sorting.
+  void refuse_restart(const LogTopic& topic) const {
+    for (std::size_t row = 1; row < topic.size(); ++row) {
+      const double step_s = topic.time_s[row] - topic.time_s[row - 1];
+      if (!(step_s < -pinnquad::restart_step_s)) continue;
+      throw wrong_cell(topic, row, mapping_.time_column.name,
+                       "time that goes on (a mapping's [flights] column parts a table of several flights)",
+                       "a step back of " + pinnquad::number_text(std::round(-step_s * 1000) / 1000) + " s");
+    }
+  }
+
+  void take(const LogPart& part, const LogPlace& place) {
+    const BoundLog bound = bind_log(part.log, mapping_, request_.airframe);
+    count_topics(bound);
+    CommonRows rows = common_rows(bound, period_s_, request_.hold_commands);
+    if (!period_s_) period_s_ = rows.period_s;
+    const std::size_t base = bound.of(Quantity::body_rates).clock.size(), all = rows.rows();
+    steps_.add("one clock", base, all,
+               rows.own_rows ? "the table's own rows, every " + pinnquad::number_text(rows.period_s) + " s"
+                             : "all topics at " + pinnquad::number_text(std::round(1e3 / rows.period_s) / 1e3) + " Hz");
+    LogRows log_rows = rows_of_log(std::move(rows), bound, mapping_, part.log.source);
+    for (const std::string& told : log_rows.told) tell(told);
+    const std::size_t whole = all - log_rows.incomplete;
+    steps_.add("incomplete rows", all, whole, "a cell without a number, a gap in a topic, rebuilt commands beyond 0..1");
+    steps_.add("ends of derivatives", whole, log_rows.flight.size(), "Savitzky-Golay windows that reach beyond the rows");
+    const RowMask out = grounded(log_rows, mapping_);
+    Passage passage;
+    passage.name = part.name;
+    passage.trajectory = part.trajectory;
+    passage.source = place.path;
+    const pinnquad::Flight airborne = without(log_rows.flight, out);
+    steps_.add("on the ground", log_rows.flight.size(), airborne.size(),
+               "landed by the log, lower or with less thrust than the mapping's [ground] says");
+    passage.segments = split_at_gaps(airborne, 1.5 * *period_s_);
+    has_velocity_.push_back(log_rows.has_velocity);
+    has_altitude_.push_back(log_rows.has_altitude);
+    passages_.push_back(std::move(passage));
+  }
+
+  void tell(const std::string& what) {
+    if (std::find(told_.begin(), told_.end(), what) == told_.end()) told_.push_back(what);
+  }
+
+  void settle_absent() {
+    const auto lacks = [](const std::vector<bool>& has) { return std::find(has.begin(), has.end(), false) != has.end(); };
+    if (lacks(has_velocity_)) dataset_.absent.push_back("velocity");
+    if (lacks(has_altitude_)) dataset_.absent.push_back("altitude");
+    for (Passage& passage : passages_) {
+      for (pinnquad::Flight& segment : passage.segments) {
+        for (pinnquad::Sample& sample : segment) {
+          if (dataset_.lacks("altitude")) sample.altitude_m = 0;
+          if (!dataset_.lacks("velocity")) continue;
+          sample.linear_acceleration_m_s2 += pinnquad::cross<double>(sample.body_rates_rad_s, sample.velocity_m_s);
+          sample.velocity_m_s.setZero();
+        }
+      }
+    }
+  }
+
+  void remove_lag() {
+    std::optional<double> lag_s = request_.lag_s ? request_.lag_s : mapping_.lag_s;
+    std::string told = lag_s ? "as given" : "";
+    const std::size_t before = rows_in(passages_);
+    if (!lag_s) {
+      request_.on_progress("estimating the lag", 0);
+      std::vector<pinnquad::Flight> segments;
+      for (const Passage& passage : passages_) {
+        segments.insert(segments.end(), passage.segments.begin(), passage.segments.end());
+      }
+      const pinnquad::CommandLag lag = pinnquad::estimate_command_lag(segments, *period_s_);
+      if (!lag.warning.empty()) dataset_.warnings.push_back("lag: " + lag.warning);
+      lag_s = lag.found ? lag.lag_s : 0;
+      told = lag.found ? "estimated, confidence " + pinnquad::number_text(std::round(lag.confidence * 100) / 100) : "none found";
+    }
+    dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
+    for (Passage& passage : passages_) {
+      for (pinnquad::Flight& segment : passage.segments) {
+        segment = pinnquad::remove_lag(segment, *period_s_, dataset_.lag_removed_s);
+      }
+    }
+    steps_.add("lag", before, rows_in(passages_),
+               pinnquad::number_text(std::round(dataset_.lag_removed_s * 1e4) / 10) + " ms from command to motion removed, " + told);
+  }
+
+  template <class Rule>
+  void drop(const std::string& name, const std::string& told, const Rule& rule) {
+    const std::size_t before = rows_in(passages_);
+    for (Passage& passage : passages_) {
+      for (pinnquad::Flight& segment : passage.segments) {
+        RowMask out(segment.size());
+        for (std::size_t row = 0; row < out.size(); ++row) out[row] = rule(segment[row]);
+        segment = without(segment, out);
+      }
+    }
+    steps_.add(name, before, rows_in(passages_), told);
+  }
+
+  void drop_by_commands() {
+    const auto text = [](double value) { return pinnquad::number_text(value); };
+    drop("idle", "all four commands below " + text(mapping_.idle_below),
+         [this](const pinnquad::Sample& sample) { return is_idle(sample, mapping_); });
+    drop("saturated", "a command at its limit: " + text(mapping_.saturated_below) + " or less, " + text(mapping_.saturated_above) + " or more",
+         [this](const pinnquad::Sample& sample) { return is_saturated(sample, mapping_); });
+  }
+
+  void make_flights() {
+    const std::size_t before = rows_in(passages_);
+    std::size_t longest = 0;
+    for (const Passage& passage : passages_) {
+      int part = 0;
+      for (pinnquad::Flight& flight : split_at_gaps(joined(passage.segments), mapping_.split_gap_s)) {
+        longest = std::max(longest, flight.size());
+        if (flight.size() < minimum_rows) continue;
+        flight.trajectory = passage.trajectory;
+        name_flight(flight, passage.name, ++part);
+        require_plausible_flight(flight, passage.source);
+        dataset_.flights.add(std::move(flight));
+        dataset_.sources.push_back(passage.source);
+      }
+    }
+    steps_.add("short flights", before, dataset_.flights.rows(), "fewer than " + std::to_string(minimum_rows) + " rows");
+    dataset_.sample_period_s = *period_s_;
+    for (const std::string& told : told_) dataset_.notes.push_back(told);
+    if (dataset_.flights.size() > 0) return;
+    const ImportStep* worst = &dataset_.steps.front();
+    for (const ImportStep& step : dataset_.steps) {
+      if (step.rows_before - std::min(step.rows_before, step.rows_after) > worst->rows_before - std::min(worst->rows_before, worst->rows_after)) worst = &step;
+    }
+    throw pinnquad::InputError(request_.logs.front(), 0, 0, "a flight of at least " + std::to_string(minimum_rows) + " rows",
+                               std::to_string(longest) + "; most were lost to '" + worst->name + "' (" + worst->told + ")");
+  }
+
+  void name_flight(pinnquad::Flight& flight, const std::string& name, int part) const {
+    flight.name = part > 1 ? name + " (" + std::to_string(part) + ")" : name;
+    const auto taken = [&](const pinnquad::Flight& other) { return other.name == flight.name; };
+    const auto& flights = dataset_.flights.flights();
+    for (int copy = part + 1; std::any_of(flights.begin(), flights.end(), taken); ++copy) {
+      flight.name = name + " (" + std::to_string(copy) + ")";
+    }
+  }
+
+  static void require_plausible_flight(const pinnquad::Flight& flight, const std::string& source) {
+    const auto found = pinnquad::find_implausible(flight);
+    if (!found) return;
+    throw pinnquad::InputError(source, 0, 0, found->expected, found->found + " at " + pinnquad::number_text(flight[found->row].time_s) + " s of flight " + flight.name);
+  }
+
+  const ImportRequest& request_;
+  Mapping mapping_;
+  ImportedDataset dataset_;
+  Steps steps_;
+  std::optional<double> period_s_;
+  std::vector<Passage> passages_;
+  std::vector<bool> has_velocity_, has_altitude_;
+  std::vector<std::string> told_;
+};
+
+}  // namespace
+
+ImportedDataset import_logs(const ImportRequest& request) { return Import(request).run(); }
+
+}  // namespace programs

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// The logs that are meant by what a command was given, and the flights that one table holds.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "command_line/nearest_names.hpp"
+#include "logs/bound_log.hpp"
+#include "logs/flight_log.hpp"
+#include "logs/mapping.hpp"
+#include "logs/name_pattern.hpp"
+#include "logs/ulog2csv_folder.hpp"
+#include "pinnquad/data/file_error.hpp"
+
+namespace programs {
+
+/// A log to read.
+struct LogPlace {
+  std::string path;
+  std::string prefix;  ///< which log of a folder of ulog2csv
+  std::string name;    ///< "test_circle"
+};
+
+/// Files as they are; of a folder its ULog files, or the logs that ulog2csv wrote into it. Throws InputError: a folder without.
+inline std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path shown = path;
+  if (!shown.has_filename()) shown = shown.parent_path();
+  if (!fs::is_directory(path, error)) return {{path, "", pinnquad::printable(shown.stem().string())}};
+  std::vector<std::string> files;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == ".ulg") files.push_back(entry->path().string());
+  }
+  if (error) throw pinnquad::InputError(path, 0, 0, "a readable folder", "none (" + error.message() + ")");
+  std::sort(files.begin(), files.end());
+  std::vector<LogPlace> places;
+  for (const std::string& file : files) places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
+  if (!places.empty()) return places;
+  for (const std::string& log : ulog2csv::logs_of(ulog2csv::files_of(path), selection)) {
+    places.push_back({path, log, pinnquad::printable(log)});
+  }
+  if (places.empty()) {
+    throw pinnquad::InputError(path, 0, 0, "a folder of .ulg files, or one that ulog2csv wrote", "neither");
+  }
+  return places;
+}
+
+/// A flight's log and what it is called.
+struct LogPart {
+  FlightLog log;
+  std::string name;
+  std::string trajectory;
+};
+
+namespace detail {
+
+inline const LogText& labels_of(const LogTopic& topic, const NamedColumn& wanted, const Mapping& mapping) {
+  if (const LogText* text = topic.text(wanted.name)) return *text;
+  std::vector<std::string> known;
+  for (const LogText& text : topic.texts) known.push_back(text.name);
+  for (const LogColumn& column : topic.columns) known.push_back(column.name);
+  throw pinnquad::InputError(mapping.file, wanted.place.line, wanted.place.column,
+                             "a column of " + topic_words(topic.name, topic.instance) + " in " + topic.file,
+                             "`" + pinnquad::printable(wanted.name) + "`, which it has not; " + nearest_names(wanted.name, known));
+}
+
+inline LogTopic rows_of(const LogTopic& topic, const std::vector<std::size_t>& rows) {
+  const auto picked = [&rows](const auto& values) {
+    std::decay_t<decltype(values)> result;
+    result.reserve(rows.size());
+    for (const std::size_t row : rows) result.push_back(values[row]);
+    return result;
+  };
+  LogTopic part;
+  part.name = topic.name;
+  part.instance = topic.instance;
+  part.file = topic.file;
+  part.places_are_lines = topic.places_are_lines;
+  part.time_s = picked(topic.time_s);
+  part.place = picked(topic.place);
+  for (const LogColumn& column : topic.columns) part.columns.push_back({column.name, picked(column.values)});
+  for (const LogText& text : topic.texts) {
+    const auto first = std::find_if(rows.begin(), rows.end(), [&](std::size_t row) { return row >= text.first_text; });
+    const auto index = static_cast<std::size_t>(first - rows.begin());
+    part.texts.push_back({text.name, picked(text.values), first == rows.end() ? 0 : index});
+  }
+  return part;
+}
+
+}  // namespace detail
+
+/// A table by its labels, in the order in which they first occur; every other log is one flight.
+inline std::vector<LogPart> parts_of(FlightLog log, const std::string& name, const Mapping& mapping) {
+  std::vector<LogPart> parts;
+  const auto trajectory_of = [&mapping](const LogPart& part) {
+    if (!mapping.trajectory_column.name.empty() && !part.log.topics.empty()) {
+      const LogText& labels = detail::labels_of(part.log.topics[0], mapping.trajectory_column, mapping);
+      if (!labels.values.empty()) return pinnquad::printable(labels.values[0]);
+    }
+    return mapping.trajectory.empty() ? part.name : part_of_name(mapping.trajectory, part.name);
+  };
+  if (mapping.flight_column.name.empty() || log.topics.empty()) {
+    parts.push_back({std::move(log), name, ""});
+  } else {
+    const LogTopic& topic = log.topics[0];
+    const LogText& labels = detail::labels_of(topic, mapping.flight_column, mapping);
+    std::map<std::string, std::size_t> known;
+    std::vector<std::vector<std::size_t>> rows;
+    std::vector<std::string> names;
+    for (std::size_t row = 0; row < labels.values.size(); ++row) {
+      const auto [entry, is_new] = known.emplace(labels.values[row], rows.size());
+      if (is_new) {
+        constexpr std::size_t most_flights = 10000;
+        if (rows.size() == most_flights) {
+          throw pinnquad::InputError(mapping.file, mapping.flight_column.place.line, mapping.flight_column.place.column,
+                                     "a column with a label for each flight", "more than 10000 labels");
+        }
+        rows.emplace_back();
+        names.push_back(labels.values[row].empty() ? name : pinnquad::printable(labels.values[row]));
+      }
+      rows[entry->second].push_back(row);
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      LogPart part;
+      part.name = names[i];
+      part.log.source = log.source;
+      part.log.parameters = log.parameters;
+      part.log.topics.push_back(detail::rows_of(topic, rows[i]));
+      parts.push_back(std::move(part));
+    }
+  }
+  for (LogPart& part : parts) part.trajectory = trajectory_of(part);
+  return parts;
+}
+
+}  // namespace programs

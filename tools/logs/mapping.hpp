@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// What the columns of a log mean: which of them make which quantity, in which unit, frame and order.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "logs/quantities.hpp"
+#include "pinnquad/dynamics/motor_order.hpp"
+
+namespace programs {
+
+enum class WorldFrame { ned, enu };
+enum class BodyFrame { frd, flu };
+enum class Axes { body, world };
+/// What the numbers of `motors` are.
+enum class MotorNumbers {
+  thrust,  ///< share of the greatest thrust, 0..1
+  signal,  ///< what the motor's controller is told, from `least` to `most`: a command of the airframe's thrust curve
+  speed    ///< rotor speed
+};
+
+/// A place in the mapping's file, for messages; 0 where it has none.
+struct MappingPlace {
+  std::size_t line = 0;
+  std::size_t column = 0;
+};
+
+struct NamedColumn {
+  std::string name;
+  MappingPlace place;
+};
+
+/// Where a quantity may stand: one of several, the first that the log has is taken.
+struct Source {
+  Quantity quantity = Quantity::attitude;
+  std::string topic;  ///< empty: the log's table
+  int instance = 0;
+  std::string thrust_topic;  ///< of torque_and_thrust, where it is another one
+  std::vector<NamedColumn> columns;
+  double in_si = 1;
+  bool optional = false;    ///< a log without it is one
+  std::string time_column;  ///< empty: the topic's clock
+  double time_in_s = 1e-6;
+  bool held = false;  ///< a value holds until the next one
+  MappingPlace place;
+
+  bool euler = false;          ///< of attitude: roll, pitch, yaw instead of a quaternion
+  bool scalar_last = false;    ///< x, y, z, w
+  bool world_to_body = false;  ///< the quaternion's direction
+  WorldFrame world = WorldFrame::ned;
+  BodyFrame body = BodyFrame::frd;
+  Axes axes = Axes::body;  ///< of accelerations and velocities
+
+  MotorNumbers numbers = MotorNumbers::thrust;
+  std::array<pinnquad::Corner, pinnquad::rotor_count> corners = pinnquad::px4_motor_order.corners;
+  double least = 0, most = 1;          ///< of a motor's number: stopped or idle, and full
+  double thrust_curve = 0;             ///< of a signal: thrust = s ((1 - k) + k s)
+  std::string thrust_curve_parameter;  ///< that the log has it by
+  bool thrust_is_up = false;           ///< of torque_and_thrust: positive for thrust, PX4's z is negative
+};
+
+/// A column that goes along as it is: a model's extra input.
+struct ExtraSource {
+  std::string name;  ///< "battery_voltage"
+  std::string unit;  ///< "V"
+  Source source;     ///< one column; `in_si` is the factor to the unit
+};
+
+struct Mapping {
+  std::string name;  ///< of a ready one; else its file
+  std::string file;  ///< for messages
+  std::string about;
+  std::string airframe;  ///< where none is given
+  NamedColumn time_column;  ///< of a table, which has no clock of its own
+  double time_in_s = 1;
+
+  std::string flight_column;      ///< labels that part a table into flights
+  std::string trajectory_column;  ///< labels that name what was flown
+  std::string trajectory;  ///< pattern of a flight's name, "*_(*)_*": what stands in brackets is the trajectory's
+  double split_gap_s = 5;  ///< a longer pause parts two flights
+
+  double ground_m = 0;            ///< height of the ground in the log's own heights
+  bool ground_from_log = false;   ///< that of the rows before the flight
+  double least_height_m = 0;      ///< rows lower than this above ground are on it; 0: no such test
+  double least_thrust_share = 0;  ///< of the flight's median: rows with less, near its ends, are on the ground
+
+  double saturated_below = 0.005, saturated_above = 0.995;  ///< commands there
+  double idle_below = 0.05;                                 ///< all four commands lower than this: the motors idle
+
+  double least_rate_hz = 0;  ///< a slower source is taken only where there is no other
+  std::optional<double> lag_s;
+
+  std::vector<Source> sources;
+  std::vector<ExtraSource> extras;
+};
+
+}  // namespace programs

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Rows that say nothing of how the vehicle flies: on the ground, with idle motors, with a motor at its limit.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "logs/derived_motion.hpp"
+#include "logs/mapping.hpp"
+#include "pinnquad/data/plausibility.hpp"
+
+namespace programs {
+
+/// A row of a flight by what a rule says of it: true to leave it out.
+using RowMask = std::vector<bool>;
+
+inline double mean_command(const pinnquad::Sample& sample) {
+  double sum = 0;
+  for (const double u : sample.commands) sum += u;
+  return sum / static_cast<double>(sample.commands.size());
+}
+
+/// True where the vehicle stands on the ground: the log says landed, the height is less than the mapping's, or, before the first
+/// and after the last row with the thrust of a flight, the motors give less.
+inline RowMask grounded(const LogRows& rows, const Mapping& mapping) {
+  const pinnquad::Flight& flight = rows.flight;
+  RowMask out(flight.size(), false);
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    const bool low = rows.has_altitude && mapping.least_height_m > 0 && flight[row].altitude_m < mapping.least_height_m;
+    out[row] = low || (!rows.landed.empty() && rows.landed[row]);
+  }
+  std::vector<double> flown;
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    if (!out[row]) flown.push_back(mean_command(flight[row]));
+  }
+  if (flown.empty() || !(mapping.least_thrust_share > 0)) return out;
+  const double least = mapping.least_thrust_share * pinnquad::detail::median_of(std::move(flown));
+  const auto flies = [&](std::size_t row) { return !out[row] && mean_command(flight[row]) >= least; };
+  std::size_t first = 0, last = flight.size();
+  while (first < last && !flies(first)) out[first++] = true;
+  while (last > first && !flies(last - 1)) out[--last] = true;
+  return out;
+}
+
+inline bool is_idle(const pinnquad::Sample& sample, const Mapping& mapping) {
+  return std::all_of(sample.commands.begin(), sample.commands.end(), [&](double u) { return u < mapping.idle_below; });
+}
+
+inline bool is_saturated(const pinnquad::Sample& sample, const Mapping& mapping) {
+  return std::any_of(sample.commands.begin(), sample.commands.end(),
+                     [&](double u) { return u <= mapping.saturated_below || u >= mapping.saturated_above; });
+}
+
+/// A flight of that name and those extra columns, without rows.
+inline pinnquad::Flight emptied(const pinnquad::Flight& flight) {
+  pinnquad::Flight empty;
+  empty.name = flight.name;
+  empty.trajectory = flight.trajectory;
+  for (const pinnquad::ExtraColumn& column : flight.columns()) {
+    pinnquad::ExtraColumn none;
+    none.name = column.name;
+    none.unit = column.unit;
+    empty.add_column(std::move(none));
+  }
+  return empty;
+}
+
+inline void append(pinnquad::Flight& to, const pinnquad::Flight& from, std::size_t row) {
+  std::vector<double> extras;
+  for (const pinnquad::ExtraColumn& column : from.columns()) extras.push_back(column.values[row]);
+  to.push_back(from[row], extras.data(), extras.size());
+}
+
+/// The rows that stay.
+inline pinnquad::Flight without(const pinnquad::Flight& flight, const RowMask& out) {
+  pinnquad::Flight kept = emptied(flight);
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    if (!out[row]) append(kept, flight, row);
+  }
+  return kept;
+}
+
+/// Parts at steps in time longer than `gap_s`.
+inline std::vector<pinnquad::Flight> split_at_gaps(const pinnquad::Flight& flight, double gap_s) {
+  std::vector<pinnquad::Flight> parts;
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    if (row == 0 || flight[row].time_s - flight[row - 1].time_s > gap_s) parts.push_back(emptied(flight));
+    append(parts.back(), flight, row);
+  }
+  return parts;
+}
+
+/// One after the other, which is in time's order.
+inline pinnquad::Flight joined(const std::vector<pinnquad::Flight>& parts) {
+  pinnquad::Flight whole = parts.empty() ? pinnquad::Flight() : emptied(parts.front());
+  for (const pinnquad::Flight& part : parts) {
+    for (std::size_t row = 0; row < part.size(); ++row) append(whole, part, row);
+  }
+  return whole;
+}
+
+}  // namespace programs

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// A quantity as a log has it, in SI units, NED and FRD, on its topic's own clock.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "logs/flight_log.hpp"
+#include "logs/mapping.hpp"
+#include "pinnquad/core/rotation.hpp"
+#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/identification/common_clock.hpp"
+
+namespace programs {
+
+struct Signal {
+  const Source* source = nullptr;  ///< null: the log has none
+  const LogTopic* topic = nullptr;
+  pinnquad::CleanClock clock;
+  std::vector<std::vector<double>> values;  ///< by component, by the topic's row; NaN where it has none
+  std::string told;                         ///< where it is from: "actuator_motors"
+
+  bool present() const noexcept { return source != nullptr; }
+  double period_s() const noexcept { return clock.report.nominal_period_s; }
+};
+
+/// "vehicle_attitude", or "the table" of a log that is one.
+inline std::string topic_words(const std::string& topic, int instance) {
+  return (topic.empty() ? "the table" : topic) + (instance > 0 ? " " + std::to_string(instance) : "");
+}
+
+/// The place of a topic's cell as a message has it.
+inline pinnquad::InputError wrong_cell(const LogTopic& topic, std::size_t row, const std::string& column,
+                                       const std::string& expected, const std::string& found) {
+  std::size_t line = 0, field = 0;
+  std::string file = topic.file;
+  if (topic.places_are_lines && row < topic.place.size()) {
+    line = static_cast<std::size_t>(topic.place[row]);
+    const std::vector<std::string> header = pinnquad::detail::csv_header(file);
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (header[i] == column) field = i + 1;
+    }
+  } else if (row < topic.place.size()) {
+    file += ", byte " + std::to_string(topic.place[row]);
+  }
+  return pinnquad::InputError(file, line, field, expected, found);
+}
+
+namespace detail {
+
+/// Row by row from the mapping's frames to NED and FRD.
+inline void turn_attitude(const Source& source, std::vector<std::vector<double>>& values) {
+  using pinnquad::Quaternion;
+  const double h = std::sqrt(0.5);
+  const Quaternion<double> enu_to_ned{0, h, h, 0}, frd_to_flu{0, 1, 0, 0};
+  const std::size_t rows = values[0].size();
+  std::vector<std::vector<double>> turned(4, std::vector<double>(rows, std::nan("")));
+  for (std::size_t row = 0; row < rows; ++row) {
+    Quaternion<double> q;
+    if (source.euler) {
+      q = pinnquad::from_euler(pinnquad::EulerAngles<double>{values[0][row], values[1][row], values[2][row]});
+    } else {
+      const std::size_t w = source.scalar_last ? 3 : 0, x = source.scalar_last ? 0 : 1;
+      q = {values[w][row], values[x][row], values[x + 1][row], values[x + 2][row]};
+    }
+    if (source.world_to_body) q = pinnquad::conjugate(q);
+    if (source.world == WorldFrame::enu) q = enu_to_ned * q;
+    if (source.body == BodyFrame::flu) q = q * frd_to_flu;
+    turned[0][row] = q.w;
+    turned[1][row] = q.x;
+    turned[2][row] = q.y;
+    turned[3][row] = q.z;
+  }
+  values = std::move(turned);
+}
+
+inline void turn_vector(bool flu, bool enu, std::vector<std::vector<double>>& values) {
+  if (enu) std::swap(values[0], values[1]);
+  if (flu) {
+    for (double& v : values[1]) v = -v;
+  }
+  if (flu || enu) {
+    for (double& v : values[2]) v = -v;
+  }
+}
+
+}  // namespace detail
+
+/// The columns of a quantity in NED and FRD.
+inline void to_our_frames(const Source& source, std::vector<std::vector<double>>& values) {
+  const bool flu = source.body == BodyFrame::flu, enu = source.world == WorldFrame::enu;
+  switch (source.quantity) {
+    case Quantity::attitude: detail::turn_attitude(source, values); break;
+    case Quantity::body_rates:
+    case Quantity::angular_acceleration:
+    case Quantity::specific_force: detail::turn_vector(flu, false, values); break;
+    case Quantity::acceleration:
+    case Quantity::velocity:
+      detail::turn_vector(source.axes == Axes::body && flu, source.axes == Axes::world && enu, values);
+      break;
+    case Quantity::position: detail::turn_vector(false, enu, values); break;
+    case Quantity::torque_and_thrust:
+      if (flu) {
+        for (double& v : values[1]) v = -v;
+        for (double& v : values[2]) v = -v;
+      }
+      break;
+    case Quantity::altitude:
+    case Quantity::motors:
+    case Quantity::landed: break;
+  }
+}
+
+}  // namespace programs
