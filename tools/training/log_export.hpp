@@ -56,11 +56,14 @@ inline std::optional<std::size_t> kind_to_export(const LogJudgement& judged, con
   return best;
 }
 
-/// Of the fits of a kind the one with the least error on the validation flights; none if no such error is finite.
-inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind) {
+/// Of the fits of a kind the one with the least error on the validation flights, of a closed form the only one; none if no such
+/// error is finite.
+inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind, bool seeded) {
   const FinishedFit* best = nullptr;
   for (const FinishedFit& fit : fits) {
-    if (fit.kind != kind || !std::isfinite(fit.validation_error)) continue;
+    if (fit.kind != kind) continue;
+    if (!seeded) return &fit;
+    if (!std::isfinite(fit.validation_error)) continue;
     if (best == nullptr || fit.validation_error < best->validation_error) best = &fit;
   }
   return best;

@@ -44,7 +44,8 @@ struct FinishedFit {
   std::size_t kind = 0, fold = 0;  ///< of the plan
   std::uint64_t seed = 0;
   Predictions held_out;
-  /// Root mean square over all motors of the validation rows that it answers; NaN: none.
+  /// Root mean square over all motors of the validation rows that it answers; NaN: none, or a closed form that was fitted to
+  /// them.
   double validation_error = pinnquad::not_a_number;
   double fit_s = 0;
   LogSlopes slopes;
@@ -94,16 +95,29 @@ inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const
   return {airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()};
 }
 
-/// Fits one kind and asks it what the rows held out need. False if interrupted. Throws what the kind's fit() throws.
+/// Fits one kind and asks it what the rows held out need. Closed forms take the validation rows for fitting; where these choose
+/// between kinds (one parting, whose flights held out have no say), they are fitted without them first. False if interrupted.
+/// Throws what the kind's fit() throws.
 inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
   const LogModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];
+  const auto error_of = [&](const TrainedNetwork& model) {
+    return detail::validation_error(fold.split.validation, detail::predictions_of(kind, model, fold.split.validation));
+  };
   const auto start = std::chrono::steady_clock::now();
-  job.model = kind.fit(plan.fit_of(fold, job.seed));
+  const LogFit fit = plan.fit_of(fold, job.seed);
+  job.model = kind.fit(fit);
   if (!job.model) return false;
   job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  job.validation_error =
-      detail::validation_error(fold.split.validation, detail::predictions_of(kind, *job.model, fold.split.validation));
+  if (kind.seeded) {
+    job.validation_error = error_of(*job.model);
+  } else if (plan.folds.size() == 1 && !fold.split.test.empty()) {
+    const pinnquad::RowSet none;
+    const auto without =
+        kind.fit({plan.airframe, fold.split.train, none, plan.absent, plan.sample_period_s, job.seed, plan.epochs});
+    if (!without) return false;
+    job.validation_error = error_of(*without);
+  }
   if (fold.split.test.empty()) return true;  // to be exported
   job.held_out = detail::predictions_of(kind, *job.model, fold.split.test);
   job.slopes = log_slopes(*job.model, fold.split.test, axis_signs(plan.airframe));

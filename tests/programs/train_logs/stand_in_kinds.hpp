@@ -81,9 +81,20 @@ inline programs::LogModelKind linear_kind() {
           false,
           always,
           [](const programs::LogFit& fit) {
-            const pinnquad::RowSet training = fit.training;
-            return model_of([training](const pinnquad::RowSet& rows) {
-              return programs::regression_predictions<pinnquad::PaperFeatures>(training, rows);
+            using Features = pinnquad::PaperFeatures;
+            std::vector<std::array<double, Features::size>> features;
+            programs::Predictions commands;
+            pinnquad::each_features<Features, double>(
+                fit.training, [&](const pinnquad::Flight& flight, std::size_t row, const auto& x) {
+                  features.push_back(x);
+                  commands.push_back(flight[row].commands);
+                });
+            const auto map = pinnquad::fit_linear_regression(features, commands);
+            return model_of([map](const pinnquad::RowSet& rows) {
+              programs::Predictions made;
+              pinnquad::each_features<Features, double>(
+                  rows, [&](const pinnquad::Flight&, std::size_t, const auto& x) { made.push_back(map.predict(x)); });
+              return made;
             });
           }};
 }
