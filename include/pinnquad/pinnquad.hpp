@@ -56,4 +56,5 @@
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "pinnquad/training/training_data.hpp"
+#include "pinnquad/training/weight_average.hpp"
 #include "pinnquad/training/weighted_batches.hpp"

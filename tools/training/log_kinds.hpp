@@ -13,5 +13,10 @@ LogModelKind log_linearized();
 LogModelKind log_ridge();
 LogModelKind log_ridge_causal();
 LogModelKind log_ridge_centred();
+LogModelKind log_vanilla();
+LogModelKind log_physics_informed();
+LogModelKind log_ridge_residual();
+LogModelKind log_ridge_residual_causal();
+LogModelKind log_ridge_residual_centred();
 
 }  // namespace programs

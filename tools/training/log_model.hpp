@@ -39,8 +39,10 @@ struct LogModelKind {
   std::shared_ptr<const TrainedNetwork> (*fit)(const LogFit&);
 };
 
-/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, ridge_residual, each
-/// with what it sees.
+/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, ridge_residual; ridge and
+/// ridge_residual also with "_causal" and "_centred" windows.
+/// Those that validation rows stop (vanilla, physics_informed) train on the training rows; those that leave out trajectories to
+/// choose by are fitted to training and validation rows at last.
 const std::vector<LogModelKind>& log_model_kinds();
 
 }  // namespace programs

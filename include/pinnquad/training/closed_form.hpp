@@ -4,12 +4,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/identification/regression_sums.hpp"
+#include "pinnquad/inference/composition.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {
@@ -29,6 +32,28 @@ AffineAnswer<ContextType, Scalar> affine_answer(const AffineMap& map) {
   for (const double v : map.weights) *to++ = static_cast<Scalar>(v);
   for (const double v : map.intercept) *to++ = static_cast<Scalar>(v);
   return answer;
+}
+
+/// The sum of two answers with their parameters: an affine map and what a network learnt of its residuals.
+template <class First, class Second>
+Sum<First, Second> sum_of(const First& first, const Second& second) {
+  Sum<First, Second> sum;
+  const auto border = std::copy(first.parameters.begin(), first.parameters.end(), sum.parameters.begin());
+  std::copy(second.parameters.begin(), second.parameters.end(), border);
+  return sum;
+}
+
+/// What `map` leaves of standardised rows: their outputs less the map's.
+template <class Scalar, int InputCount, int OutputCount>
+void take_away(const AffineMap& map, TrainingData<Scalar, InputCount, OutputCount>& data) {
+  std::array<double, static_cast<std::size_t>(InputCount)> x{};
+  for (int row = 0; row < data.size(); ++row) {
+    const Scalar* features = data.features_of(row);
+    std::copy(features, features + InputCount, x.begin());
+    const std::vector<double> said = map(x.data());
+    Scalar* outputs = data.outputs.data() + std::ptrdiff_t{row} * OutputCount;
+    for (int k = 0; k < OutputCount; ++k) outputs[k] -= static_cast<Scalar>(said[static_cast<std::size_t>(k)]);
+  }
 }
 
 /// Rows in groups of which one is left out in turn: trajectories with their repeats, else (all are of one trajectory) flights,
