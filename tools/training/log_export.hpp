@@ -23,8 +23,13 @@ inline constexpr const char* export_centred = "centred";
 
 namespace detail {
 
+/// Over the fits that were not fitted to the validation rows.
 inline double mean_validation_error(const JudgedKind& kind) {
-  return pinnquad::summarize(per_seed(kind, [](const JudgedFit& fit) { return fit.validation_error; })).mean;
+  std::vector<double> errors;
+  for (const JudgedFit& fit : kind.fits) {
+    if (std::isfinite(fit.validation_error)) errors.push_back(fit.validation_error);
+  }
+  return pinnquad::summarize(errors).mean;
 }
 
 }  // namespace detail
@@ -56,13 +61,13 @@ inline std::optional<std::size_t> kind_to_export(const LogJudgement& judged, con
   return best;
 }
 
-/// Of the fits of a kind the one with the least error on the validation flights, of a closed form the only one; none if no such
-/// error is finite.
-inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind, bool seeded) {
+/// Of the fits of a kind the one with the least error on the validation flights, of one that was fitted to them the first; none
+/// if no such error is finite.
+inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind, bool stops_by_validation) {
   const FinishedFit* best = nullptr;
   for (const FinishedFit& fit : fits) {
     if (fit.kind != kind) continue;
-    if (!seeded) return &fit;
+    if (!stops_by_validation) return &fit;
     if (!std::isfinite(fit.validation_error)) continue;
     if (best == nullptr || fit.validation_error < best->validation_error) best = &fit;
   }

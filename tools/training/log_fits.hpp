@@ -44,8 +44,7 @@ struct FinishedFit {
   std::size_t kind = 0, fold = 0;  ///< of the plan
   std::uint64_t seed = 0;
   Predictions held_out;
-  /// Root mean square over all motors of the validation rows that it answers; NaN: none, or a closed form that was fitted to
-  /// them.
+  /// Root mean square over all motors of the validation rows that it answers, if it was not fitted to them; else NaN.
   double validation_error = pinnquad::not_a_number;
   double fit_s = 0;
   LogSlopes slopes;
@@ -95,9 +94,9 @@ inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const
   return {airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()};
 }
 
-/// Fits one kind and asks it what the rows held out need. Closed forms take the validation rows for fitting; where these choose
-/// between kinds (one parting, whose flights held out have no say), they are fitted without them first. False if interrupted.
-/// Throws what the kind's fit() throws.
+/// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose flights held
+/// out have no say), one that takes the validation rows for fitting is fitted without them too, from the first seed. False if
+/// interrupted. Throws what the kind's fit() throws.
 inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
   const LogModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];
@@ -109,9 +108,9 @@ inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
   job.model = kind.fit(fit);
   if (!job.model) return false;
   job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (kind.seeded) {
+  if (kind.stops_by_validation) {
     job.validation_error = error_of(*job.model);
-  } else if (plan.folds.size() == 1 && !fold.split.test.empty()) {
+  } else if (plan.folds.size() == 1 && job.seed == plan.first_seed && !fold.split.test.empty()) {
     const pinnquad::RowSet none;
     const auto without =
         kind.fit({plan.airframe, fold.split.train, none, plan.absent, plan.sample_period_s, job.seed, plan.epochs});

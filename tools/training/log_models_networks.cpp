@@ -57,11 +57,16 @@ std::shared_ptr<const TrainedNetwork> fit_physics_informed(const LogFit& fit) {
 }  // namespace
 
 LogModelKind log_vanilla() {
-  return {"vanilla", "vanilla network", TimeReach::present, true, needs_velocity, fit_vanilla};
+  return {"vanilla", "vanilla network", TimeReach::present, true, needs_velocity, fit_vanilla, true};
 }
 LogModelKind log_physics_informed() {
-  return {"physics_informed", "physics-informed network", TimeReach::present, true,
-          needs_velocity,     fit_physics_informed};
+  return {"physics_informed",
+          "physics-informed network",
+          TimeReach::present,
+          true,
+          needs_velocity,
+          fit_physics_informed,
+          true};
 }
 
 }  // namespace programs

@@ -23,6 +23,8 @@
 #include "pinnquad/deploy/identifier.hpp"
 #include "training/log_export.hpp"
 #include "training/log_fit_store.hpp"
+#include "training/log_page.hpp"
+#include "training/log_replay.hpp"
 #include "training/log_report.hpp"
 #include "training/log_table.hpp"
 
@@ -35,7 +37,7 @@ using programs::LogTrainingOptions;
 constexpr std::size_t fewest_training_rows = 256, fewest_judging_rows = 64;
 
 /// The files of --out.
-constexpr std::array<const char*, 3> output_names = {"report.json", "model.hpp", "replay.txt"};
+constexpr std::array<const char*, 4> output_names = {"report.json", "report.html", "model.hpp", "replay.txt"};
 
 void require_separate_files(const LogTrainingOptions& options) {
   programs::FileRoles roles;
@@ -176,7 +178,11 @@ class LogTraining {
     std::fflush(stdout);
     report_.judged(plan_, judged_, verdicts_);
     const int code = export_best();
-    if (code != programs::exit_interrupted) store.clear();
+    if (code == programs::exit_interrupted) return code;
+    std::printf("[5/5] report\n");
+    std::fflush(stdout);
+    write_page();
+    store.clear();
     return code;
   }
 
@@ -217,6 +223,7 @@ class LogTraining {
 
   int refuse(const std::string& reason, int code) {
     report_.write_not_exported(reason);
+    told_ = "Nothing was exported: " + reason + ".";
     std::string earlier;
     for (const std::string& path : {options_.out + "/model.hpp", options_.out + "/replay.txt", options_.block}) {
       std::error_code ignored;
@@ -229,6 +236,7 @@ class LogTraining {
 
   int export_best() {
     const std::optional<std::size_t> chosen = programs::kind_to_export(judged_, options_.export_choice, rotated());
+    chosen_ = chosen;
     if (!chosen) return refuse("no model of the kind asked for was judged", programs::exit_failed);
     const programs::JudgedKind& kind = judged_.kinds[*chosen];
     const Verdict verdict = programs::exported_verdict(judged_, *chosen);
@@ -272,15 +280,17 @@ class LogTraining {
       programs::LogPlan once = plan_;
       once.kinds = {plan_.kinds[kind]};
       once.folds = {*all_};
+      if (!once.kinds.front().stops_by_validation) once.seeds = 1;
       all_fits_ = programs::fit_all(
           once, [](programs::FinishedFit&) { return false; }, [](const programs::FinishedFit&) {});
       if (programs::interrupted() && all_fits_.finished.size() < all_fits_.wanted) return {};
-      const programs::FinishedFit* best = programs::best_fit(all_fits_.finished, 0, once.kinds.front().seeded);
+      const programs::FinishedFit* best =
+          programs::best_fit(all_fits_.finished, 0, once.kinds.front().stops_by_validation);
       if (best == nullptr)
         throw std::invalid_argument("the fit to all flights has no finite error on " + all_->validation.front());
       return Exported{best->model, best->seed, &*all_};
     }
-    const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].seeded);
+    const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].stops_by_validation);
     if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
     programs::FinishedFit again = *best;
     if (!again.model && !programs::fit_one(plan_, again)) return {};  // known from an earlier run: the same once more
@@ -304,6 +314,32 @@ class LogTraining {
       std::printf("  %s: the same weights as a block of %zu bytes\n", options_.block.c_str(), block.size());
     }
     report_.write_exported(kind, made.seed, header, options_.block);
+    told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +
+            (rotated() ? "fitted anew to all flights, validated on " + made.fold->validation.front() +
+                             ": the figures are of the fits of the rotation"
+                       : "the very model that was judged") +
+            (verdict.worse_than_mean() ? ". NOT FOR FLIGHT: worse than the mean of the commands." : ".");
+  }
+
+  /// The page, and a 3D replay of each held-out flight where their page is built.
+  void write_page() {
+    programs::LogPageInput input{plan_, dataset_, fits_, judged_, verdicts_, report_.json(), chosen_, told_, {}};
+    if (programs::ReplayPage::available()) {
+      programs::ProgressLine progress("replays");
+      for (const std::string& name : judged_.flights) {
+        progress.update(static_cast<double>(input.replays.size()) / static_cast<double>(judged_.flights.size()));
+        const std::string file = "replay-" + std::to_string(input.replays.size() + 1) + ".html";
+        for (const Flight& flight : dataset_.flights.flights()) {
+          if (flight.name == name)
+            programs::write_log_replay(options_.out + "/" + file, flight, dataset_, plan_.airframe.value);
+        }
+        input.replays[name] = file;
+      }
+    }
+    AtomicFile file(options_.out + "/report.html");
+    file.stream() << programs::log_page(input);
+    file.commit();
+    std::printf("  %s/report.html\n", options_.out.c_str());
   }
 
   const LogTrainingOptions& options_;
@@ -315,6 +351,8 @@ class LogTraining {
   std::optional<programs::Fold> all_;
   programs::LogJudgement judged_;
   std::vector<programs::LogVerdict> verdicts_;
+  std::optional<std::size_t> chosen_;
+  std::string told_;  ///< what became of the export
 };
 
 }  // namespace
