@@ -176,25 +176,32 @@ inline std::array<AxisSeries, 3> counted_series(const LogPageInput& in, std::siz
   return all;
 }
 
+/// Speed and the rest at a moment, as far as the logs have it.
+inline std::string facts_of(const LogMoment& moment, const ImportedDataset& dataset) {
+  const MomentFacts facts = facts_at((*moment.flight)[moment.row]);
+  const pinnquad::ExtraColumn* battery = moment.flight->column("battery_voltage");
+  std::string text =
+      "error " + shown::number(1e3 * moment.error, 1) + " ×10⁻³, most on u" + std::to_string(moment.motor + 1);
+  if (!dataset.lacks("velocity")) text += " · speed " + shown::number(facts.speed_m_s, 1) + " m/s";
+  text += " · tilt " + shown::number(facts.tilt_deg, 0) + "°";
+  if (!dataset.lacks("altitude")) text += " · height " + shown::number(facts.altitude_m, 1) + " m";
+  if (battery != nullptr) text += " · battery " + shown::number(battery->values[moment.row], 2) + " V";
+  return text;
+}
+
 inline nlohmann::json moments_json(const LogPageInput& in, const std::vector<std::size_t>& shown) {
   constexpr std::size_t told = 8, drawn = 4;
   nlohmann::json list = nlohmann::json::array();
   const auto moments = worst_moments(in.plan.folds, shown_predictions(in, shown.front()), in.judged.counts, told);
   for (const LogMoment& moment : moments) {
     const pinnquad::Sample& sample = (*moment.flight)[moment.row];
-    const MomentFacts facts = facts_at(sample);
-    const pinnquad::ExtraColumn* battery = moment.flight->column("battery_voltage");
     const auto replay = in.replays.find(moment.flight->name);
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.2f", std::max(0.0, sample.time_s - 1));
     nlohmann::json one = {{"flight", moment.flight->name},
                           {"time", shown::number(sample.time_s, 2)},
-                          {"error", shown::number(1e3 * moment.error, 1)},
                           {"motor", "u" + std::to_string(moment.motor + 1)},
-                          {"speed", in.dataset.lacks("velocity") ? "–" : shown::number(facts.speed_m_s, 1)},
-                          {"tilt", shown::number(facts.tilt_deg, 0)},
-                          {"height", in.dataset.lacks("altitude") ? "–" : shown::number(facts.altitude_m, 1)},
-                          {"battery", battery != nullptr ? shown::number(battery->values[moment.row], 2) : "–"},
+                          {"facts", facts_of(moment, in.dataset)},
                           {"happened", what_happened(moment, in.dataset)},
                           {"replay", replay == in.replays.end() ? nlohmann::json(false)
                                                                 : nlohmann::json(replay->second + "#t=" + seconds)},
@@ -262,6 +269,7 @@ inline std::string log_page(const LogPageInput& in) {
                          {"lag", shown::number(1e3 * in.dataset.lag_removed_s, 0)},
                          {"absent", detail::or_false(detail::listed(in.dataset.absent))},
                          {"headline", false},
+                         {"closed_loop", false},
                          {"moments", nlohmann::json::array()},
                          {"shown", false},
                          {"replays", !in.replays.empty()}};
@@ -275,6 +283,22 @@ inline std::string log_page(const LogPageInput& in) {
                              {"after", step.rows_after},
                              {"lost", step.rows_before - std::min(step.rows_before, step.rows_after)},
                              {"told", step.told}});
+  }
+  if (in.report.contains("closed_loop") && in.report["closed_loop"].contains("model")) {
+    const nlohmann::json& flown = in.report["closed_loop"];
+    page["closed_loop"] = {{"period", shown::number(flown["period_s"], 1)},
+                           {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)},
+                           {"flown", nlohmann::json::array()}};
+    const std::pair<const char*, const char*> policies[] = {
+        {"model", "the exported model"}, {"formula", "the vehicle's own formula"}, {"hover_trim", "none, hover trim"}};
+    for (const auto& [key, name] : policies) {
+      page["closed_loop"]["flown"].push_back(
+          {{"name", name},
+           {"rmse", shown::number(100 * flown[key]["rmse_m"].get<double>(), 1)},
+           {"largest", shown::number(100 * flown[key]["largest_error_m"].get<double>(), 1)},
+           {"time", shown::number(flown[key]["flown_s"], 0)},
+           {"status", flown[key]["status"]}});
+    }
   }
   if (in.exported) {
     const JudgedKind& kind = in.judged.kinds[*in.exported];

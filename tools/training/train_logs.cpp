@@ -23,6 +23,7 @@
 #include "pinnquad/deploy/identifier.hpp"
 #include "training/log_export.hpp"
 #include "training/log_fit_store.hpp"
+#include "training/log_flight.hpp"
 #include "training/log_page.hpp"
 #include "training/log_replay.hpp"
 #include "training/log_report.hpp"
@@ -313,12 +314,40 @@ class LogTraining {
       write_weight_file(options_.block, block);
       std::printf("  %s: the same weights as a block of %zu bytes\n", options_.block.c_str(), block.size());
     }
+    fly(made, kind);
     report_.write_exported(kind, made.seed, header, options_.block);
     told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +
             (rotated() ? "fitted anew to all flights, validated on " + made.fold->validation.front() +
                              ": the figures are of the fits of the rotation"
                        : "the very model that was judged") +
             (verdict.worse_than_mean() ? ". NOT FOR FLIGHT: worse than the mean of the commands." : ".");
+  }
+
+  /// The model in a closed loop on the vehicle that the logs show; what looks ahead is not flown on measured motion.
+  void fly(const Exported& made, const programs::LogModelKind& kind) {
+    if (kind.reach == programs::TimeReach::centred) return;
+    const nlohmann::json flown =
+        programs::fly_logged(made.model, kind.reach, made.fold->split.train, plan_.airframe,
+                             programs::axis_signs(plan_.airframe), !dataset_.lacks("velocity"));
+    report_.flown(flown);
+    if (flown.contains("why_not")) {
+      report_.warn("the model was not flown: " + flown["why_not"].get<std::string>());
+      return;
+    }
+    const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
+    std::printf(
+        "  flown on the vehicle that the logs show, figure-eight of %.1f s: %s cm off; by formula %s, without "
+        "feed-forward %s\n",
+        flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
+        centimetres("hover_trim").c_str());
+    const std::string status = flown["model"]["status"];
+    if (status != to_string(Status::ok)) {
+      report_.warn("in the closed loop the model ended the flight after " + decimals(flown["model"]["flown_s"], 1) +
+                   " s: " + status);
+    } else if (flown["model"]["rmse_m"] > flown["hover_trim"]["rmse_m"]) {
+      report_.warn("in the closed loop the model tracks worse than no feed-forward (" + centimetres("model") +
+                   " cm against " + centimetres("hover_trim") + " cm)");
+    }
   }
 
   /// The page, and a 3D replay of each held-out flight where their page is built.

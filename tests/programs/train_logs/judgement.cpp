@@ -7,10 +7,8 @@
 #include <fstream>
 #include <string>
 
-#include "airframe/choice.hpp"
 #include "data/temporary_folder.hpp"
-#include "simulated_dataset.hpp"
-#include "stand_in_kinds.hpp"
+#include "judged_run.hpp"
 #include "training/log_fit_store.hpp"
 #include "training/log_report.hpp"
 
@@ -32,32 +30,8 @@ pinnquad::Flight two_commands(const std::string& name, std::initializer_list<dou
   return flight;
 }
 
-struct Judged {
-  programs::NamedAirframe airframe = programs::chosen_airframe(pinnquad::PaperQuadrotor::name);
-  pinnquad::Dataset dataset;
-  programs::LogPlan plan;
-  programs::LogFits fits;
-  programs::LogJudgement judged;
-  std::vector<programs::LogVerdict> verdicts;
-
-  Judged(int flights, std::vector<programs::LogModelKind> kinds, const programs::HoldOutChoice& choice, int seeds = 5)
-      : dataset(pinnquad_test::simulated_dataset(flights, 400)),
-        plan{airframe, std::move(kinds), programs::folds_of(dataset, choice), {}, 0.05, 1, seeds, 0, 1} {
-    const auto unknown = [](programs::FinishedFit&) { return false; };
-    fits = programs::fit_all(plan, unknown, [](const programs::FinishedFit&) {});
-    judged = programs::judge_fits(plan, fits);
-    verdicts = programs::verdicts_on(judged);
-  }
-  const programs::LogVerdict& of(const std::string& key) const {
-    for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
-      if (judged.kinds[k].kind.key == key) return verdicts[k];
-    }
-    FAIL("no kind " << key);
-    return verdicts.front();
-  }
-};
-
-const programs::HoldOutChoice each_flight{{}, programs::HoldOutEach::flight};
+const auto& each_flight = pinnquad_test::each_flight;
+using pinnquad_test::Judged;
 
 }  // namespace
 
