@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "command_line/nearest_names.hpp"
 #include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "training/log_figures.hpp"
@@ -37,17 +36,12 @@ inline double mean_validation_error(const JudgedKind& kind) {
 /// The kind to export, an index of judged.kinds; none if nothing fits the choice. After a rotation it is the one whose held-out
 /// error is least: every flight was held out once, and the export is fitted anew. Else it is the one whose error on the
 /// validation flights is least: the flights held out have no say.
-/// Throws std::invalid_argument for a key that is none, or of a kind that was not judged.
+/// Throws std::invalid_argument for the key of a kind that was not judged.
 inline std::optional<std::size_t> kind_to_export(const LogJudgement& judged, const std::string& choice, bool rotated) {
-  if (choice != export_causal && choice != export_centred) {
-    std::vector<std::string> known = {export_causal, export_centred};
-    for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
-      known.emplace_back(judged.kinds[k].kind.key);
-      if (choice != judged.kinds[k].kind.key) continue;
-      if (judged.kinds[k].applicable()) return k;
-      throw std::invalid_argument("--export " + choice + ": not applicable: " + judged.kinds[k].not_applicable);
-    }
-    throw std::invalid_argument("--export " + choice + ": no model of that name; " + nearest_names(choice, known));
+  for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
+    if (choice != judged.kinds[k].kind.key) continue;
+    if (judged.kinds[k].applicable()) return k;
+    throw std::invalid_argument("--export " + choice + ": not applicable: " + judged.kinds[k].not_applicable);
   }
   const std::vector<std::size_t> order = ranking(judged, choice == export_centred);
   if (order.empty()) return {};

@@ -17,6 +17,7 @@
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
+#include "command_line/nearest_names.hpp"
 #include "logs/dataset_folder.hpp"
 #include "logs/import.hpp"
 #include "pinnquad/data/plausibility.hpp"
@@ -65,13 +66,19 @@ std::vector<programs::LogModelKind> chosen_kinds(const std::vector<std::string>&
   return kinds;
 }
 
-/// The dataset of the options; that of logs is written beside the results.
+/// Throws std::invalid_argument for what --export can't mean.
+void require_known_export(const std::string& choice, const std::vector<programs::LogModelKind>& kinds) {
+  std::vector<std::string> known = {programs::export_causal, programs::export_centred};
+  for (const programs::LogModelKind& kind : kinds) known.emplace_back(kind.key);
+  if (std::find(known.begin(), known.end(), choice) != known.end()) return;
+  throw std::invalid_argument("--export " + choice + ": no such model is compared; " +
+                              programs::nearest_names(choice, known));
+}
+
+/// The dataset of the options, read or imported.
 programs::ImportedDataset dataset_of(const LogTrainingOptions& options,
-                                     const std::optional<programs::NamedAirframe>& airframe, std::string& folder) {
-  if (options.logs.empty()) {
-    folder = options.dataset;
-    return programs::read_dataset_folder(folder);
-  }
+                                     const std::optional<programs::NamedAirframe>& airframe) {
+  if (options.logs.empty()) return programs::read_dataset_folder(options.dataset);
   programs::ImportRequest request;
   request.logs = options.logs;
   request.mapping = options.mapping;
@@ -82,19 +89,16 @@ programs::ImportedDataset dataset_of(const LogTrainingOptions& options,
     if (!progress || now != job) progress.emplace(job = now);
     progress->update(share);
   };
-  programs::ImportedDataset dataset = programs::import_logs(request);
-  progress.reset();
-  folder = options.out + "/dataset";
-  programs::write_dataset_folder(folder, dataset);
-  return dataset;
+  return programs::import_logs(request);
 }
 
 /// Throws InputError and std::invalid_argument for flights that no model should be fitted to, or judged on.
 void require_sound(const std::string& folder, const programs::ImportedDataset& dataset,
                    const std::vector<programs::Fold>& folds) {
   std::vector<std::uint64_t> hashes;
+  const std::vector<std::string> files = programs::flight_files(dataset);
   for (const Flight& flight : dataset.flights.flights()) {
-    const std::string place = folder + "/" + flight.name;
+    const std::string place = folder + "/" + files[hashes.size()];
     require_plausible(place, flight);
     require_varied_commands(place, flight, {0, flight.size()}, "flight's");
     hashes.push_back(content_hash(flight));
@@ -392,20 +396,19 @@ int programs::train_on_logs(const LogTrainingOptions& options) {
                                 ": a C++ identifier was expected, no keyword and no name that C++ reserves");
   }
   require_separate_files(options);
-  chosen_kinds(options.models);  // a name that is none is found before the reading
+  require_known_export(options.export_choice, chosen_kinds(options.models));
   std::optional<NamedAirframe> given;
   if (!options.airframe.empty()) given = chosen_airframe(options.airframe);
   const NamedAirframe airframe = given ? *given : chosen_airframe(PaperQuadrotor::name);
   end_at_interrupt();  // while nothing is worth keeping
   std::printf("[1/5] read\n");
   std::fflush(stdout);
-  std::string folder;
-  std::optional<FolderLock> lock;
-  if (!options.logs.empty()) lock.emplace(options.out);
-  const ImportedDataset dataset = dataset_of(options, given, folder);
+  const ImportedDataset dataset = dataset_of(options, given);
+  const std::string folder = options.logs.empty() ? options.dataset : options.out + "/dataset";
   std::vector<Fold> folds = folds_of(dataset.flights, hold_out_of(options, dataset));
   require_sound(folder, dataset, folds);
-  if (!lock) lock.emplace(options.out);
+  const FolderLock lock(options.out);
+  if (!options.logs.empty()) write_dataset_folder(folder, dataset);
   for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
   if (!options.block.empty()) AtomicFile probe(options.block);
   std::printf("      %zu rows of %zu flights\n", dataset.flights.rows(), dataset.flights.size());
