@@ -85,14 +85,21 @@ inline pinnquad::Verdict exported_verdict(const LogJudgement& judged, std::size_
   return verdict;
 }
 
-/// What the header says of where the model comes from.
+/// What the header says of where the model comes from; one that the validation rows do not stop was fitted to them too.
 inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Dataset& dataset, double lag_removed_s,
                                           const LogModelKind& kind, std::uint64_t seed, int epochs,
                                           const pinnquad::Verdict& verdict) {
   std::string flights;
-  for (const std::string& name : fold.train) flights += (flights.empty() ? "" : ", ") + name;
-  pinnquad::Provenance from{flights, pinnquad::content_hash(dataset), fold.split.train.size(), seed, epochs, kind.title,
-                            verdict};
+  const auto add = [&flights](const std::vector<std::string>& names) {
+    for (const std::string& name : names) flights += (flights.empty() ? "" : ", ") + name;
+  };
+  add(fold.train);
+  std::size_t rows = fold.split.train.size();
+  if (!kind.stops_by_validation) {
+    if (!fold.part_validates) add(fold.validation);
+    rows += fold.split.validation.size();
+  }
+  pinnquad::Provenance from{flights, pinnquad::content_hash(dataset), rows, seed, epochs, kind.title, verdict};
   from.sample_period_s = pinnquad::sample_period_s(fold.split.train);
   from.lag_removed_s = lag_removed_s;
   return from;

@@ -6,25 +6,27 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "airframe/choice.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
-#include "command_line/nearest_names.hpp"
-#include "logs/dataset_folder.hpp"
-#include "logs/import.hpp"
-#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/deploy/identifier.hpp"
 #include "training/log_export.hpp"
 #include "training/log_fit_store.hpp"
 #include "training/log_flight.hpp"
+#include "training/log_input.hpp"
 #include "training/log_page.hpp"
 #include "training/log_replay.hpp"
 #include "training/log_report.hpp"
@@ -34,9 +36,6 @@ namespace {
 
 using namespace pinnquad;
 using programs::LogTrainingOptions;
-
-/// Fewer rows than this fill no batches worth the name.
-constexpr std::size_t fewest_training_rows = 256, fewest_judging_rows = 64;
 
 /// The files of --out.
 constexpr std::array<const char*, 4> output_names = {"report.json", "report.html", "model.hpp", "replay.txt"};
@@ -49,88 +48,6 @@ void require_separate_files(const LogTrainingOptions& options) {
   roles.writes("--out", options.out);
   for (const char* name : output_names) roles.writes("--out", options.out + "/" + name);
   roles.writes("--block", options.block);
-}
-
-/// The kinds asked for, in the order of the table.
-std::vector<programs::LogModelKind> chosen_kinds(const std::vector<std::string>& keys) {
-  std::vector<programs::LogModelKind> kinds;
-  std::vector<std::string> known;
-  for (const programs::LogModelKind& kind : programs::log_model_kinds()) {
-    known.emplace_back(kind.key);
-    if (keys.empty() || std::find(keys.begin(), keys.end(), kind.key) != keys.end()) kinds.push_back(kind);
-  }
-  for (const std::string& key : keys) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    throw std::invalid_argument("--models " + key + ": no model of that name; " + programs::nearest_names(key, known));
-  }
-  return kinds;
-}
-
-/// Throws std::invalid_argument for what --export can't mean.
-void require_known_export(const std::string& choice, const std::vector<programs::LogModelKind>& kinds) {
-  std::vector<std::string> known = {programs::export_causal, programs::export_centred};
-  for (const programs::LogModelKind& kind : kinds) known.emplace_back(kind.key);
-  if (std::find(known.begin(), known.end(), choice) != known.end()) return;
-  throw std::invalid_argument("--export " + choice + ": no such model is compared; " +
-                              programs::nearest_names(choice, known));
-}
-
-/// The dataset of the options, read or imported.
-programs::ImportedDataset dataset_of(const LogTrainingOptions& options,
-                                     const std::optional<programs::NamedAirframe>& airframe) {
-  if (options.logs.empty()) return programs::read_dataset_folder(options.dataset);
-  programs::ImportRequest request;
-  request.logs = options.logs;
-  request.mapping = options.mapping;
-  request.airframe = airframe;
-  std::optional<programs::ProgressLine> progress;
-  std::string job;
-  request.on_progress = [&](const std::string& now, double share) {
-    if (!progress || now != job) progress.emplace(job = now);
-    progress->update(share);
-  };
-  return programs::import_logs(request);
-}
-
-/// Throws InputError and std::invalid_argument for flights that no model should be fitted to, or judged on.
-void require_sound(const std::string& folder, const programs::ImportedDataset& dataset,
-                   const std::vector<programs::Fold>& folds) {
-  std::vector<std::uint64_t> hashes;
-  const std::vector<std::string> files = programs::flight_files(dataset);
-  for (const Flight& flight : dataset.flights.flights()) {
-    const std::string place = folder + "/" + files[hashes.size()];
-    require_plausible(place, flight);
-    require_varied_commands(place, flight, {0, flight.size()}, "flight's");
-    hashes.push_back(content_hash(flight));
-    const auto same = std::find(hashes.begin(), hashes.end() - 1, hashes.back());
-    if (same == hashes.end() - 1) continue;
-    throw std::invalid_argument(
-        "the flights " + printable(dataset.flights[static_cast<std::size_t>(same - hashes.begin())].name) + " and " +
-        printable(flight.name) + " are the same: one would be judged on what it was trained on");
-  }
-  for (const programs::Fold& fold : folds) {
-    const auto require = [&](const RowSet& rows, std::size_t fewest, const char* what) {
-      if (rows.size() >= fewest) return;
-      throw std::invalid_argument("holding out " + printable(fold.name) + " leaves " + std::to_string(rows.size()) +
-                                  " rows to " + what + "; expected " + std::to_string(fewest) + " or more");
-    };
-    require(fold.split.train, fewest_training_rows, "train");
-    require(fold.split.validation, fewest_judging_rows, "validate");
-    require(fold.split.test, fewest_judging_rows, "judge");
-  }
-}
-
-programs::HoldOutChoice hold_out_of(const LogTrainingOptions& options, const programs::ImportedDataset& dataset) {
-  programs::HoldOutChoice choice;
-  choice.names = options.hold_out;
-  if (!options.hold_out_each.empty()) {
-    choice.each = options.hold_out_each == "flight" ? programs::HoldOutEach::flight : programs::HoldOutEach::trajectory;
-  }
-  if (choice.each || !choice.names.empty()) return choice;
-  std::string names;
-  for (const Flight& flight : dataset.flights.flights()) names += (names.empty() ? "" : ", ") + printable(flight.name);
-  throw std::invalid_argument(
-      "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " + names);
 }
 
 std::string decimals(double value, int digits) {
@@ -147,7 +64,7 @@ class LogTraining {
       : options_(options),
         dataset_(dataset),
         plan_{airframe,
-              chosen_kinds(options.models),
+              programs::chosen_kinds(options.models),
               std::move(folds),
               dataset.absent,
               dataset.sample_period_s,
@@ -163,7 +80,6 @@ class LogTraining {
     std::fflush(stdout);
     programs::catch_interrupt();
     const programs::LogFitStore store(options_.out + "/fits", plan_);
-    std::size_t known = 0;
     fits_ = programs::fit_all(
         plan_,
         [&](programs::FinishedFit& job) {
@@ -172,8 +88,9 @@ class LogTraining {
           return found;
         },
         [&](const programs::FinishedFit& job) { store.keep(job); });
-    known = known_.load();
-    if (known > 0) std::printf("      %zu of %zu fits were finished by an earlier run\n", known, fits_.wanted);
+    if (known_ > 0) {
+      std::printf("      %zu of %zu fits were finished by an earlier run\n", known_.load(), fits_.wanted);
+    }
     report_.interrupted_after(fits_.finished.size(), fits_.wanted);
     if (programs::interrupted() && fits_.finished.size() < fits_.wanted) return tell_interrupted();
     std::printf("[3/5] judge\n");
