@@ -57,11 +57,11 @@ inline std::optional<std::size_t> kind_to_export(const LogJudgement& judged, con
 
 /// Of the fits of a kind the one with the least error on the validation flights, of one that was fitted to them the first; none
 /// if no such error is finite.
-inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind, bool stops_by_validation) {
+inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind, bool takes_validation) {
   const FinishedFit* best = nullptr;
   for (const FinishedFit& fit : fits) {
     if (fit.kind != kind) continue;
-    if (!stops_by_validation) return &fit;
+    if (takes_validation) return &fit;
     if (!std::isfinite(fit.validation_error)) continue;
     if (best == nullptr || fit.validation_error < best->validation_error) best = &fit;
   }
@@ -95,7 +95,7 @@ inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Data
   };
   add(fold.train);
   std::size_t rows = fold.split.train.size();
-  if (!kind.stops_by_validation) {
+  if (kind.takes_validation) {
     if (!fold.part_validates) add(fold.validation);
     rows += fold.split.validation.size();
   }

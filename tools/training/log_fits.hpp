@@ -108,7 +108,7 @@ inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
   job.model = kind.fit(fit);
   if (!job.model) return false;
   job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (kind.stops_by_validation) {
+  if (!kind.takes_validation) {
     job.validation_error = error_of(*job.model);
   } else if (plan.folds.size() == 1 && job.seed == plan.first_seed && !fold.split.test.empty()) {
     const pinnquad::RowSet none;

@@ -37,8 +37,8 @@ struct LogModelKind {
   std::string (*not_applicable)(const LogFit&);
   /// Throws std::invalid_argument, one line, where the data leave it without an answer. Null if interrupted.
   std::shared_ptr<const TrainedNetwork> (*fit)(const LogFit&);
-  /// The validation rows stop its training; of other kinds they are a part of what it is fitted to.
-  bool stops_by_validation = false;
+  /// fit() is fitted to the validation rows too: what it says of them is no measure of it. Without them it does as well.
+  bool takes_validation = false;
 };
 
 /// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, ridge_residual; ridge and

@@ -57,16 +57,11 @@ std::shared_ptr<const TrainedNetwork> fit_physics_informed(const LogFit& fit) {
 }  // namespace
 
 LogModelKind log_vanilla() {
-  return {"vanilla", "vanilla network", TimeReach::present, true, needs_velocity, fit_vanilla, true};
+  return {"vanilla", "vanilla network", TimeReach::present, true, needs_velocity, fit_vanilla};
 }
 LogModelKind log_physics_informed() {
-  return {"physics_informed",
-          "physics-informed network",
-          TimeReach::present,
-          true,
-          needs_velocity,
-          fit_physics_informed,
-          true};
+  return {"physics_informed", "physics-informed network", TimeReach::present, true,
+          needs_velocity,     fit_physics_informed};
 }
 
 }  // namespace programs

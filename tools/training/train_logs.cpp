@@ -202,17 +202,17 @@ class LogTraining {
       programs::LogPlan once = plan_;
       once.kinds = {plan_.kinds[kind]};
       once.folds = {*all_};
-      if (!once.kinds.front().stops_by_validation) once.seeds = 1;
+      if (once.kinds.front().takes_validation) once.seeds = 1;
       all_fits_ = programs::fit_all(
           once, [](programs::FinishedFit&) { return false; }, [](const programs::FinishedFit&) {});
       if (programs::interrupted() && all_fits_.finished.size() < all_fits_.wanted) return {};
       const programs::FinishedFit* best =
-          programs::best_fit(all_fits_.finished, 0, once.kinds.front().stops_by_validation);
+          programs::best_fit(all_fits_.finished, 0, once.kinds.front().takes_validation);
       if (best == nullptr)
         throw std::invalid_argument("the fit to all flights has no finite error on " + all_->validation.front());
       return Exported{best->model, best->seed, &*all_};
     }
-    const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].stops_by_validation);
+    const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation);
     if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
     programs::FinishedFit again = *best;
     if (!again.model && !programs::fit_one(plan_, again)) return {};  // known from an earlier run: the same once more
