@@ -6,8 +6,13 @@
 namespace programs {
 
 LogModelKind log_ridge_causal() {
-  return {"ridge_causal", "ridge, the last 160 ms",        TimeReach::causal, false,
-          needs_window,   fit_log_ridge<TimeReach::causal>};
+  return {"ridge_causal",
+          "ridge, the last 160 ms",
+          TimeReach::causal,
+          false,
+          needs_window,
+          fit_log_ridge<TimeReach::causal>,
+          true};
 }
 
 }  // namespace programs

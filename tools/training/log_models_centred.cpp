@@ -6,8 +6,13 @@
 namespace programs {
 
 LogModelKind log_ridge_centred() {
-  return {"ridge_centred", "ridge, 80 ms to both sides",     TimeReach::centred, false,
-          needs_window,    fit_log_ridge<TimeReach::centred>};
+  return {"ridge_centred",
+          "ridge, 80 ms to both sides",
+          TimeReach::centred,
+          false,
+          needs_window,
+          fit_log_ridge<TimeReach::centred>,
+          true};
 }
 
 }  // namespace programs

@@ -29,10 +29,11 @@ std::shared_ptr<const TrainedNetwork> fit_linearized(const LogFit& fit) {
 }  // namespace
 
 LogModelKind log_linear() {
-  return {"linear", "linear on the paper's features", TimeReach::present, false, needs_velocity, fit_linear};
+  return {"linear", "linear on the paper's features", TimeReach::present, false, needs_velocity, fit_linear, true};
 }
 LogModelKind log_linearized() {
-  return {"linearized", "linearized model of the airframe", TimeReach::present, false, needs_velocity, fit_linearized};
+  return {"linearized", "linearized model of the airframe", TimeReach::present, false, needs_velocity, fit_linearized,
+          true};
 }
 
 }  // namespace programs

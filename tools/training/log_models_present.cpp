@@ -37,14 +37,15 @@ std::shared_ptr<const TrainedNetwork> fit_physics(const LogFit& fit) {
 }  // namespace
 
 LogModelKind log_constant() {
-  return {"constant", "mean of the commands", TimeReach::present, false, always_applicable, fit_constant};
+  return {"constant", "mean of the commands", TimeReach::present, false, always_applicable, fit_constant, true};
 }
 LogModelKind log_physics() {
-  return {"physics", "physics, parameters fitted", TimeReach::present, false, always_applicable, fit_physics};
+  return {"physics", "physics, parameters fitted", TimeReach::present, false, always_applicable, fit_physics, true};
 }
 LogModelKind log_ridge() {
   return {"ridge", "ridge on physics features", TimeReach::present,
-          false,   always_applicable,           fit_log_ridge<TimeReach::present>};
+          false,   always_applicable,           fit_log_ridge<TimeReach::present>,
+          true};
 }
 
 }  // namespace programs

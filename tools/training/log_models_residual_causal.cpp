@@ -10,7 +10,8 @@ LogModelKind log_ridge_residual_causal() {
           TimeReach::causal,
           true,
           needs_window,
-          fit_log_residual<TimeReach::causal>};
+          fit_log_residual<TimeReach::causal>,
+          true};
 }
 
 }  // namespace programs

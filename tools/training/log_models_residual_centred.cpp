@@ -10,7 +10,8 @@ LogModelKind log_ridge_residual_centred() {
           TimeReach::centred,
           true,
           needs_window,
-          fit_log_residual<TimeReach::centred>};
+          fit_log_residual<TimeReach::centred>,
+          true};
 }
 
 }  // namespace programs

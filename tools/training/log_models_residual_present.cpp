@@ -5,8 +5,13 @@
 namespace programs {
 
 LogModelKind log_ridge_residual() {
-  return {"ridge_residual",  "ridge + residual network",          TimeReach::present, true,
-          always_applicable, fit_log_residual<TimeReach::present>};
+  return {"ridge_residual",
+          "ridge + residual network",
+          TimeReach::present,
+          true,
+          always_applicable,
+          fit_log_residual<TimeReach::present>,
+          true};
 }
 
 }  // namespace programs
