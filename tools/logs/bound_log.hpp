@@ -193,6 +193,7 @@ inline Signal bind_source(const FlightLog& log, const Mapping& mapping, const So
   if (apart) wanted.pop_back();
   std::vector<const LogColumn*> columns = detail::columns_in(*topic, wanted, mapping.file, why);
   if (columns.empty()) return signal;
+  if (!why && !source.time_column.empty() && !topic->column(source.time_column)) return signal;
   const bool empty = std::any_of(columns.begin(), columns.end(),
                                  [](const LogColumn* column) { return !detail::has_number(column->values); });
   if (empty && source.quantity != Quantity::motors) {

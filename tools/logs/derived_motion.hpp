@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -118,13 +119,12 @@ inline double ground_height(const CommonRows& rows, const std::vector<double>& h
                           " m of the log's heights, as before take-off");
     return ground;
   }
-  double lowest = 0;
+  double lowest = std::numeric_limits<double>::infinity();
   for (const double h : height) {
-    if (std::isfinite(h) && (!flew || h < lowest)) lowest = h;
-    flew = flew || std::isfinite(h);
+    if (std::isfinite(h)) lowest = std::min(lowest, h);
   }
   result.told.push_back("ground at the lowest height of the log, which has no row on the ground before take-off");
-  return lowest;
+  return std::isfinite(lowest) ? lowest : 0;
 }
 
 }  // namespace detail

@@ -23,7 +23,7 @@ struct ImportStep {
 struct ImportedDataset {
   pinnquad::Dataset flights;
   std::vector<std::string> sources;  ///< the log of each flight
-  std::vector<std::string> absent;  ///< quantities that the logs lack, filled with 0: "velocity", "altitude"
+  std::vector<std::string> absent;   ///< quantities that the logs lack, filled with 0: "velocity", "altitude"
   double sample_period_s = 0;
   double lag_removed_s = 0;  ///< by how much later than told the commands stand in the rows
   std::string airframe;

@@ -29,22 +29,32 @@ struct LogPlace {
   std::string name;    ///< "test_circle"
 };
 
-/// Files as they are; of a folder its ULog files, or the logs that ulog2csv wrote into it. Throws InputError: a folder without.
-inline std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection) {
+/// Files as they are; of a folder its ULog files, or its CSV tables where the mapping says which column is their clock, or the
+/// logs that ulog2csv wrote into it. Throws InputError: a folder without.
+inline std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock) {
   namespace fs = std::filesystem;
   std::error_code error;
   fs::path shown = path;
   if (!shown.has_filename()) shown = shown.parent_path();
   if (!fs::is_directory(path, error)) return {{path, "", pinnquad::printable(shown.stem().string())}};
-  std::vector<std::string> files;
+  std::vector<std::string> files, tables;
   for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->path().extension() == ".ulg") files.push_back(entry->path().string());
+    if (entry->path().extension() == ".csv") tables.push_back(entry->path().string());
   }
   if (error) throw pinnquad::InputError(path, 0, 0, "a readable folder", "none (" + error.message() + ")");
   std::sort(files.begin(), files.end());
   std::vector<LogPlace> places;
-  for (const std::string& file : files) places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
+  for (const std::string& file : files)
+    places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
   if (!places.empty()) return places;
+  std::sort(tables.begin(), tables.end());
+  if (tables_have_clock) {
+    for (const std::string& file : tables) {
+      places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
+    }
+    if (!places.empty()) return places;
+  }
   for (const std::string& log : ulog2csv::logs_of(ulog2csv::files_of(path), selection)) {
     places.push_back({path, log, pinnquad::printable(log)});
   }
@@ -68,9 +78,10 @@ inline const LogText& labels_of(const LogTopic& topic, const NamedColumn& wanted
   std::vector<std::string> known;
   for (const LogText& text : topic.texts) known.push_back(text.name);
   for (const LogColumn& column : topic.columns) known.push_back(column.name);
-  throw pinnquad::InputError(mapping.file, wanted.place.line, wanted.place.column,
-                             "a column of " + topic_words(topic.name, topic.instance) + " in " + topic.file,
-                             "`" + pinnquad::printable(wanted.name) + "`, which it has not; " + nearest_names(wanted.name, known));
+  throw pinnquad::InputError(
+      mapping.file, wanted.place.line, wanted.place.column,
+      "a column of " + topic_words(topic.name, topic.instance) + " in " + topic.file,
+      "`" + pinnquad::printable(wanted.name) + "`, which it has not; " + nearest_names(wanted.name, known));
 }
 
 inline LogTopic rows_of(const LogTopic& topic, const std::vector<std::size_t>& rows) {

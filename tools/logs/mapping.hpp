@@ -75,22 +75,23 @@ struct Mapping {
   std::string name;  ///< of a ready one; else its file
   std::string file;  ///< for messages
   std::string about;
-  std::string airframe;  ///< where none is given
+  std::string airframe;     ///< where none is given
   NamedColumn time_column;  ///< of a table, which has no clock of its own
   double time_in_s = 1;
 
-  std::string flight_column;      ///< labels that part a table into flights
-  std::string trajectory_column;  ///< labels that name what was flown
+  NamedColumn flight_column;      ///< labels that part a table into flights
+  NamedColumn trajectory_column;  ///< labels that name what was flown
   std::string trajectory;  ///< pattern of a flight's name, "*_(*)_*": what stands in brackets is the trajectory's
   double split_gap_s = 5;  ///< a longer pause parts two flights
 
-  double ground_m = 0;            ///< height of the ground in the log's own heights
-  bool ground_from_log = false;   ///< that of the rows before the flight
-  double least_height_m = 0;      ///< rows lower than this above ground are on it; 0: no such test
-  double least_thrust_share = 0;  ///< of the flight's median: rows with less, near its ends, are on the ground
+  double ground_m = 0;           ///< height of the ground in the log's own heights
+  bool ground_from_log = false;  ///< that of the rows before the flight
+  double least_height_m = 0;     ///< rows lower than this above ground are on it; 0: no such test
+  bool ground_by_contact =
+      false;  ///< what bears the vehicle is told by forces and commands (identification/row_checks.hpp)
 
-  double saturated_below = 0.005, saturated_above = 0.995;  ///< commands there
-  double idle_below = 0.05;                                 ///< all four commands lower than this: the motors idle
+  double lowest_command = 0, highest_command = 1;  ///< where a motor is at its limit
+  double idle_below = 0.05;                        ///< all four commands lower than this: the motors idle
 
   double least_rate_hz = 0;  ///< a slower source is taken only where there is no other
   std::optional<double> lag_s;

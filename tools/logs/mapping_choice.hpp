@@ -40,8 +40,8 @@ inline Mapping chosen_mapping(const std::string& name_or_file) {
     mapping.name = ready.name;
     return mapping;
   }
-  throw std::invalid_argument("no mapping named '" + pinnquad::printable(name_or_file) + "'; known: " + mapping_names() +
-                              ", or a file whose name ends in .toml");
+  throw std::invalid_argument("no mapping named '" + pinnquad::printable(name_or_file) +
+                              "'; known: " + mapping_names() + ", or a file whose name ends in .toml");
 }
 
 }  // namespace programs

@@ -189,6 +189,7 @@ void read_extras(const std::string& path, TomlTable& root, Mapping& mapping) {
   for (const toml::table* node : tables_of(root, "extra")) {
     TomlTable table(path, *node, mapping_key);
     ExtraSource extra;
+    extra.source.quantity = Quantity::extra;
     read_place(table, *node, extra.source);
     extra.name = table.text("name", a_name);
     extra.unit = table.text("unit", a_name);
@@ -243,11 +244,11 @@ void read_rules(const std::string& path, TomlTable& root, Mapping& mapping) {
     }
     if (height && height->is_number()) mapping.ground_m = table.as_number(*height, of_either_sign);
     mapping.least_height_m = table.number("least_height_m", from_zero, mapping.least_height_m);
-    mapping.least_thrust_share = table.number("least_thrust_share", zero_to_one, mapping.least_thrust_share);
+    mapping.ground_by_contact = table.truth("by_contact", false);
   });
   with_table(path, root, "commands", [&](TomlTable& table) {
-    mapping.saturated_below = table.number("saturated_below", of_either_sign, mapping.saturated_below);
-    mapping.saturated_above = table.number("saturated_above", of_either_sign, mapping.saturated_above);
+    mapping.lowest_command = table.number("lowest", zero_to_one, mapping.lowest_command);
+    mapping.highest_command = table.number("highest", zero_to_one, mapping.highest_command);
     mapping.idle_below = table.number("idle_below", of_either_sign, mapping.idle_below);
     if (const toml::node* lag = table.optional("lag_s")) {
       mapping.lag_s = table.as_number(*lag, {-1, 1, "a value from -1 to 1"});

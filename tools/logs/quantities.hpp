@@ -23,7 +23,8 @@ enum class Quantity {
   altitude,
   motors,
   torque_and_thrust,
-  landed
+  landed,
+  extra  ///< any other column, for models that take it: not among `quantities`
 };
 
 /// What a unit measures.

@@ -9,48 +9,27 @@
 
 #include "logs/derived_motion.hpp"
 #include "logs/mapping.hpp"
-#include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/identification/row_checks.hpp"
 
 namespace programs {
 
-/// A row of a flight by what a rule says of it: true to leave it out.
-using RowMask = std::vector<bool>;
+using pinnquad::RowMask;
 
-inline double mean_command(const pinnquad::Sample& sample) {
-  double sum = 0;
-  for (const double u : sample.commands) sum += u;
-  return sum / static_cast<double>(sample.commands.size());
-}
-
-/// True where the vehicle stands on the ground: the log says landed, the height is less than the mapping's, or, before the first
-/// and after the last row with the thrust of a flight, the motors give less.
-inline RowMask grounded(const LogRows& rows, const Mapping& mapping) {
+/// True where the vehicle stands on the ground: the log says landed, it is lower than the mapping says, or something else than
+/// the rotors bears it.
+inline RowMask on_the_ground(const LogRows& rows, const Mapping& mapping, double period_s) {
   const pinnquad::Flight& flight = rows.flight;
   RowMask out(flight.size(), false);
+  if (mapping.ground_by_contact && !flight.empty()) out = pinnquad::grounded_rows(flight, period_s);
   for (std::size_t row = 0; row < flight.size(); ++row) {
     const bool low = rows.has_altitude && mapping.least_height_m > 0 && flight[row].altitude_m < mapping.least_height_m;
-    out[row] = low || (!rows.landed.empty() && rows.landed[row]);
+    out[row] = out[row] || low || (!rows.landed.empty() && rows.landed[row]);
   }
-  std::vector<double> flown;
-  for (std::size_t row = 0; row < flight.size(); ++row) {
-    if (!out[row]) flown.push_back(mean_command(flight[row]));
-  }
-  if (flown.empty() || !(mapping.least_thrust_share > 0)) return out;
-  const double least = mapping.least_thrust_share * pinnquad::detail::median_of(std::move(flown));
-  const auto flies = [&](std::size_t row) { return !out[row] && mean_command(flight[row]) >= least; };
-  std::size_t first = 0, last = flight.size();
-  while (first < last && !flies(first)) out[first++] = true;
-  while (last > first && !flies(last - 1)) out[--last] = true;
   return out;
 }
 
 inline bool is_idle(const pinnquad::Sample& sample, const Mapping& mapping) {
   return std::all_of(sample.commands.begin(), sample.commands.end(), [&](double u) { return u < mapping.idle_below; });
-}
-
-inline bool is_saturated(const pinnquad::Sample& sample, const Mapping& mapping) {
-  return std::any_of(sample.commands.begin(), sample.commands.end(),
-                     [&](double u) { return u <= mapping.saturated_below || u >= mapping.saturated_above; });
 }
 
 /// A flight of that name and those extra columns, without rows.

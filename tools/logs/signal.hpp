@@ -110,7 +110,8 @@ inline void to_our_frames(const Source& source, std::vector<std::vector<double>>
       break;
     case Quantity::altitude:
     case Quantity::motors:
-    case Quantity::landed: break;
+    case Quantity::landed:
+    case Quantity::extra: break;
   }
 }
 

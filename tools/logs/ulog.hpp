@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -82,9 +83,7 @@ class Reader {
     switch (message.type) {
       case 'D': row(message); break;
       case 'A': subscribe(message); break;
-      case 'R':
-        if (subscription(message) != nullptr) topics_[little_endian<std::uint16_t>(message.content.data())] = {};
-        break;
+      case 'R': topics_.erase(little_endian<std::uint16_t>(message.content.data())); break;
       case 'F': formats_.add(parse_format(message.content)); break;
       case 'P': if_sound(message, [&] { parameter(message); }); break;
       case 'I': if_sound(message, [&] { fact(message); }); break;
@@ -104,7 +103,6 @@ class Reader {
 
   /// A topic under the number that its rows carry.
   struct Subscription {
-    bool active = false;
     bool wanted = false;
     std::string name;
     int instance = 0;
@@ -119,23 +117,23 @@ class Reader {
 
   const Subscription* subscription(const Message& message) const {
     if (message.content.size() < 2) return nullptr;
-    const auto id = little_endian<std::uint16_t>(message.content.data());
-    return id < topics_.size() && topics_[id].active ? &topics_[id] : nullptr;
+    const auto found = topics_.find(little_endian<std::uint16_t>(message.content.data()));
+    return found == topics_.end() ? nullptr : &found->second;
   }
 
   void subscribe(const Message& message) {
     is_running_ = true;
     Subscription topic;
-    topic.active = true;
     topic.instance = little_endian<std::uint8_t>(message.content.data());
     const auto id = little_endian<std::uint16_t>(message.content.data() + 1);
     topic.name = message.content.substr(3);
     if (!formats_.has(topic.name)) {
       throw BadMessage{"a topic whose format stands before it", pinnquad::quoted_cell(topic.name)};
     }
-    if (id < topics_.size() && topics_[id].active) {
-      if (topics_[id].name == topic.name && topics_[id].instance == topic.instance) return;
-      throw BadMessage{"one topic with the number " + std::to_string(id), topics_[id].name + " and " + topic.name};
+    const auto known = topics_.find(id);
+    if (known != topics_.end()) {
+      if (known->second.name == topic.name && known->second.instance == topic.instance) return;
+      throw BadMessage{"one topic with the number " + std::to_string(id), known->second.name + " and " + topic.name};
     }
     topic.size = formats_.size(topic.name);
     topic.last_padding = formats_.last_padding(topic.name);
@@ -146,20 +144,19 @@ class Reader {
       if (topic.wanted) messages_.warn(message.place, topic.name + " has no timestamp of type uint64_t: left out");
       topic.wanted = false;
     }
-    if (id >= topics_.size()) topics_.resize(std::size_t{id} + 1);
-    topics_[id] = std::move(topic);
+    topics_.emplace(id, std::move(topic));
   }
 
   void row(const Message& message) {
+    Subscription& from = topics_.at(little_endian<std::uint16_t>(message.content.data()));
+    if (from.wanted && from.topic == none) open(from);
     ++rows_;
-    Subscription& from = topics_[little_endian<std::uint16_t>(message.content.data())];
     if (from.clock == none) return;
     // a logger may leave out padding at the end, which is behind the last number
     const char* const data = message.content.data() + 2;
     const double time_s = number(Basic::uint64, data + from.clock) / ticks_per_s;
     last_time_s_ = std::max(last_time_s_, time_s);
     if (!from.wanted) return;
-    if (from.topic == none) open(from);
     LogTopic& topic = log_.topics[from.topic];
     topic.time_s.push_back(time_s);
     topic.place.push_back(message.place);
@@ -250,7 +247,7 @@ class Reader {
   FlightLog log_;
   Messages messages_;
   Formats formats_;
-  std::vector<Subscription> topics_;  ///< by number
+  std::unordered_map<std::uint16_t, Subscription> topics_;  ///< by number
   std::map<std::pair<std::string, int>, std::size_t> opened_;
   bool is_running_ = false;  ///< the log's definitions are over
   std::size_t rows_ = 0;

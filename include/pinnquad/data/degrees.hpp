@@ -34,20 +34,12 @@ inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const st
   return v * (turn / dt_s);
 }
 
-}  // namespace detail
-
-/// Tries every choice of angles in degrees with rates in rad/s and in deg/s: the share of the rates' squares that the turning
-/// of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to row. Degrees are
-/// found only where radians explain next to nothing (0.8 is left or more) and degrees more than half: a flight that hardly
-/// turns, noise and gaps in time decide nothing.
-inline DegreesFound find_degrees_by_motion(const Flight& flight) {
+/// Steps of 0.2 s, without gaps, one after the other: visit(first sample, last sample, mean body rates over it, its length in s).
+/// A measured attitude jitters from row to row; over a step it turns.
+template <class Visit>
+void for_each_turning_step(const Flight& flight, Visit&& visit) {
   constexpr double step_s = 0.2, longest_step_s = 0.5,
                    largest = 1e4;  // beyond is no angle and no rate, whatever the unit
-  constexpr double unexplained = 0.8, explained = 0.5;
-  constexpr double smallest_rates = 1e-6;  // mean square
-  constexpr std::size_t choices = 8;
-  std::array<std::array<double, 2>, choices> residual{};  // [angles in degrees, a bit each][rates in degrees]
-  double rates = 0, steps = 0;
   for (std::size_t first = 0, last = 0; first < flight.size(); first = last) {
     // rates by the trapezium rule from row to row, the attitude by its ends
     Vector3<double> turned = Vector3<double>::Zero();
@@ -63,13 +55,31 @@ inline DegreesFound find_degrees_by_motion(const Flight& flight) {
     if (last == first) break;
     const double dt_s = flight[last].time_s - begin_s;
     const Vector3<double> rate = turned / dt_s;
-    const Sample& a = flight[first];
-    const Sample& b = flight[last];
+    usable = usable && rate.norm() <= largest;
+    for (const Sample* end : {&flight[first], &flight[last]}) {
+      for (const double angle : {end->roll_rad, end->pitch_rad, end->yaw_rad}) {
+        usable = usable && std::abs(angle) <= largest;
+      }
+    }
+    if (usable) visit(flight[first], flight[last], rate, dt_s);
+  }
+}
+
+}  // namespace detail
+
+/// Tries every choice of angles in degrees with rates in rad/s and in deg/s: the share of the rates' squares that the turning
+/// of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to row. Degrees are
+/// found only where radians explain next to nothing (0.8 is left or more) and degrees more than half: a flight that hardly
+/// turns, noise and gaps in time decide nothing.
+inline DegreesFound find_degrees_by_motion(const Flight& flight) {
+  constexpr double unexplained = 0.8, explained = 0.5;
+  constexpr double smallest_rates = 1e-6;  // mean square
+  constexpr std::size_t choices = 8;
+  std::array<std::array<double, 2>, choices> residual{};  // [angles in degrees, a bit each][rates in degrees]
+  double rates = 0, steps = 0;
+  const auto judge = [&](const Sample& a, const Sample& b, const Vector3<double>& rate, double dt_s) {
     const std::array<double, 3> begin = {a.roll_rad, a.pitch_rad, a.yaw_rad},
                                 end = {b.roll_rad, b.pitch_rad, b.yaw_rad};
-    usable = usable && rate.norm() <= largest;
-    for (std::size_t i = 0; i < 3; ++i) usable = usable && std::abs(begin[i]) <= largest && std::abs(end[i]) <= largest;
-    if (!usable) continue;
     rates += rate.squaredNorm();
     steps += 1;
     for (std::size_t choice = 0; choice < choices; ++choice) {
@@ -83,7 +93,8 @@ inline DegreesFound find_degrees_by_motion(const Flight& flight) {
       residual[choice][0] += (rate - turning).squaredNorm();
       residual[choice][1] += (rate - turning * degrees_per_radian).squaredNorm();
     }
-  }
+  };
+  detail::for_each_turning_step(flight, judge);
   DegreesFound found;
   if (!(rates > smallest_rates * steps) || !(residual[0][0] > unexplained * rates)) return found;
   std::size_t best = 0, best_rates = 0;

@@ -2,6 +2,7 @@
 // What a check of a log has to say: which check, its number, one sentence for the person who flew.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 namespace pinnquad {
@@ -12,5 +13,10 @@ struct Finding {
   std::string unit;      ///< "1" for a share or a ratio
   std::string sentence;  ///< what was seen, and what to do
 };
+
+namespace detail {
+/// "37 %" of 0.37.
+inline std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+}  // namespace detail
 
 }  // namespace pinnquad
