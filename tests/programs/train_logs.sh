@@ -89,7 +89,6 @@ grep -qE 'interrupted; [1-9][0-9]* of 147 fits are finished and kept in cut/fits
 
 # the table of a real vehicle's flights, where they are
 nanobench=$source_dir/../shared/reference/flight_logs/nanobench_subset_50hz.csv
-[ -f "$nanobench" ] || nanobench=$source_dir/../../shared/reference/flight_logs/nanobench_subset_50hz.csv
 if [ ! -f "$nanobench" ]; then
   echo "SKIPPED: nanobench_subset_50hz.csv is not here; its rotation was not judged"
   exit 0

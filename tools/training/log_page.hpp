@@ -90,9 +90,10 @@ inline nlohmann::json table_rows(const LogPageInput& in, bool centred) {
                           {"sentence", in.verdicts[k].sentence}};
     row["figures"] = nlohmann::json::array();
     for (std::size_t i = 0; i < log_figures.size(); ++i) {
+      std::string label = log_figures[i].title;
+      if (label.find("R^2") == 0) label.replace(0, 3, "R²");
       row["figures"].push_back(
-          {{"text", shown_figure(over_seeds(kind, log_figures[i]), i < 3 ? 1 : 1e3, i < 3 ? 3 : 1)},
-           {"label", log_figures[i].title}});
+          {{"text", shown_figure(over_seeds(kind, log_figures[i]), i < 3 ? 1 : 1e3, i < 3 ? 3 : 1)}, {"label", label}});
     }
     const KindSlopes slopes = slopes_of(kind);
     row["slopes"] = nlohmann::json::array();
@@ -245,34 +246,38 @@ inline nlohmann::json or_false(const std::string& text) {
 
 }  // namespace detail
 
+/// The whole page.
 inline std::string log_page(const LogPageInput& in) {
+  constexpr std::size_t most_named = 6;  // held-out flights in the first sentence; all are in the last section
   const std::vector<std::size_t> shown = detail::shown_kinds(in);
   std::size_t rows = 0;
   for (const std::size_t of_fold : in.judged.rows) rows += of_fold;
-  nlohmann::json page = {{"held_out", detail::listed(in.judged.flights)},
-                         {"flight_count", in.judged.flights.size()},
-                         {"rows", rows},
-                         {"all_rows", in.dataset.flights.rows()},
-                         {"seeds", in.plan.seeds},
-                         {"rotated", in.plan.folds.size() > 1},
-                         {"fewest_pairs", fewest_pairs},
-                         {"can_decide", in.judged.flights.size() >= fewest_pairs},
-                         {"export_sentence", in.export_sentence},
-                         {"airframe", in.plan.airframe.name},
-                         {"causal", detail::table_rows(in, false)},
-                         {"centred", detail::table_rows(in, true)},
-                         {"not_applicable", nlohmann::json::array()},
-                         {"folds", detail::folds_json(in.plan)},
-                         {"steps", nlohmann::json::array()},
-                         {"warnings", in.report["warnings"]},
-                         {"period", shown::number(1e3 * in.dataset.sample_period_s, 1)},
-                         {"lag", shown::number(1e3 * in.dataset.lag_removed_s, 0)},
-                         {"absent", detail::or_false(detail::listed(in.dataset.absent))},
-                         {"headline", false},
-                         {"closed_loop", false},
-                         {"moments", nlohmann::json::array()},
-                         {"shown", false},
-                         {"replays", !in.replays.empty()}};
+  nlohmann::json page = {
+      {"held_out", detail::or_false(in.judged.flights.size() <= most_named ? detail::listed(in.judged.flights) : "")},
+      {"flight_count", in.judged.flights.size()},
+      {"rows", rows},
+      {"all_rows", in.dataset.flights.rows()},
+      {"seeds", in.plan.seeds},
+      {"rotated", in.plan.folds.size() > 1},
+      {"fewest_pairs", fewest_pairs},
+      {"can_decide", in.judged.flights.size() >= fewest_pairs},
+      {"export_sentence", in.export_sentence},
+      {"airframe", in.plan.airframe.name},
+      {"causal", detail::table_rows(in, false)},
+      {"centred", detail::table_rows(in, true)},
+      {"not_applicable", nlohmann::json::array()},
+      {"folds", detail::folds_json(in.plan)},
+      {"steps", nlohmann::json::array()},
+      {"notes", in.dataset.notes},
+      {"warnings", in.report["warnings"]},
+      {"period", shown::number(1e3 * in.dataset.sample_period_s, 1)},
+      {"lag", shown::number(1e3 * in.dataset.lag_removed_s, 0)},
+      {"absent", detail::or_false(detail::listed(in.dataset.absent))},
+      {"headline", false},
+      {"closed_loop", false},
+      {"moments", nlohmann::json::array()},
+      {"shown", false},
+      {"replays", !in.replays.empty()}};
   for (const JudgedKind& kind : in.judged.kinds) {
     if (!kind.applicable())
       page["not_applicable"].push_back({{"title", kind.kind.title}, {"reason", kind.not_applicable}});
