@@ -30,9 +30,13 @@ refused '^train: --hold-out fligth3: no flight and no trajectory of that name; n
 refused '^train: --models rigde: no model of that name; nearest: ridge' --dataset logs --hold-out flight3 --models rigde
 refused '^train: --export rigde: no such model is compared; nearest: ridge' --dataset logs --hold-out flight3 --export rigde
 refused 'no/dataset.json' --dataset no --hold-out flight3
-refused 'excludes' --dataset logs --flight logs/flight1.csv
-refused 'excludes' --dataset logs --hold-out flight1 --hold-out-each flight
-refused 'required' --hold-out flight1
+refused '^train: --flight and --dataset can.t be given together' --dataset logs --flight logs/flight1.csv
+refused '^train: --hold-out and --hold-out-each can.t' --dataset logs --hold-out flight1 --hold-out-each flight
+refused '^train: --flight, --dataset or --log is required' --hold-out flight1
+refused '^train: --recipe goes with --flight, not with --dataset' --dataset logs --hold-out flight1 --recipe best
+refused '^train: --hold-out goes with --dataset or --log' --flight logs/flight1.csv --hold-out flight1
+refused '^train: --log and --mapping go together' --log logs --hold-out flight1
+refused 'hold-out-each' --dataset logs --hold-out-each row
 # the same flight under another name: it would train and judge
 dataset leak flight1 flight2 flight3
 cp leak/flight1.csv leak/copy.csv
