@@ -32,6 +32,9 @@ struct MotionPart {
   }
 };
 
+template <class Part>
+inline constexpr bool is_motion_part = std::is_base_of_v<MotionPart<Part>, Part>;
+
 }  // namespace detail
 
 /// What an accelerometer measures: the sum of all forces but gravity over the mass. s = v_dot + omega x v - R^T g.
@@ -161,9 +164,12 @@ struct Joined {
   /// The first Status that is not ok.
   template <class AnyInputs>
   static Status check(const AnyInputs& in) noexcept {
-    Status status = First::check(in);
-    static_cast<void>(((status == Status::ok && (status = More::check(in)) == Status::ok) && ...));
-    return status;
+    if constexpr (sizeof...(More) == 0 || (detail::is_motion_part<First> && ... && detail::is_motion_part<More>)) {
+      return First::check(in);  // parts of a motion check all of it
+    } else {
+      const Status first = First::check(in);
+      return first == Status::ok ? Joined<More...>::check(in) : first;
+    }
   }
   /// Fills x[0..size). The inputs must have passed check().
   template <class Scalar, class AnyInputs>

@@ -8,6 +8,9 @@
 
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/inference/residual_outputs.hpp"
+#include "pinnquad/nn/clip.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
@@ -97,6 +100,83 @@ TEST_CASE("derivatives of a network are its finite differences") {
   check_against_differences<Net<Gelu>, CommandOutputs>("gelu");
   check_against_differences<Net<Relu>, CommandOutputs>("ReLU");
   check_against_differences<Net<Tanh>, RotorSpeedOutputs>("tanh, rotor speeds");
+}
+
+TEST_CASE("derivatives of a sum through a window: by an angular acceleration that is another at all instants") {
+  using Window = PartlyWindowed<PhysicsFeatures, AccelerationFeatures, 3, PeriodMicroseconds<20000>>;
+  using Affine = Network<double, InputSize<Window::size>, Dense<4>>;
+  using Residual = Network<double, InputSize<Window::size>, Clip, Dense<7>, Tanh, Dense<4>>;
+  using Model = TrainedModel<Sum<Affine, Residual>, Context<Window, GivenAirframe>>;
+  std::mt19937_64 engine(6);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Model model{ContextAirframe<GivenAirframe>("paper", airframe_value<PaperQuadrotor, double>())};
+  for (double& parameter : model.network.parameters) parameter = any(engine);
+  for (double& spread : model.input.spread) spread = 1.5 + any(engine);
+  for (double& spread : model.output.spread) spread = 1.5 + any(engine);
+  for (double& mean : model.input.mean) mean = any(engine);
+  const auto derivatives = programs::derivatives_of(model);
+  const std::array<std::array<double, rotor_count>, 3> signs = {
+      model.template signs<Roll>(), model.template signs<Pitch>(), model.template signs<Yaw>()};
+  for (int draw = 0; draw < 50; ++draw) {
+    Model::FeatureVector x{};
+    for (double& feature : x) feature = any(engine);
+    const programs::AxisDerivatives found = derivatives(x);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      constexpr double step = 1e-6;
+      auto above = x, below = x;
+      for (const std::size_t first : {std::size_t{3}, std::size_t{21 + 3}, std::size_t{27 + 3}}) {
+        above[first + axis] += step;
+        below[first + axis] -= step;
+      }
+      const double slope =
+          (signed_sum(signs[axis], model.predict(above)) - signed_sum(signs[axis], model.predict(below))) / (2 * step);
+      CHECK(found[axis] == doctest::Approx(slope).epsilon(1e-6).scale(1e-3));
+    }
+  }
+}
+
+TEST_CASE("derivatives of a residual are its base's too") {
+  using Net = Network<double, InputSize<16>, Dense<4>>;
+  using Model = TrainedModel<Net, Context<PaperFeatures, GivenAirframe, ResidualOutputs<LinearizedInverse>>>;
+  const Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
+  Model model{ContextAirframe<GivenAirframe>("paper", airframe)};
+  model.input.spread.fill(1);
+  model.output.spread.fill(1);
+  const auto derivatives = programs::derivatives_of(model);
+  std::mt19937_64 engine(3);
+  for (const Sample& row : samples(3, engine)) {
+    const programs::AxisDerivatives found = derivatives(row);
+    const double thrust_N = airframe.max_rotor_thrust_N();
+    CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
+    CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));
+    CHECK(found[2] == doctest::Approx(airframe.inertia_kg_m2[2] / airframe.max_rotor_torque_N_m()));
+  }
+}
+
+TEST_CASE("rows that a window leaves without an answer are told by NaN, the others stand in their places") {
+  using Window = PartlyWindowed<PhysicsFeatures, AccelerationFeatures, 3, PeriodMicroseconds<20000>, Centred>;
+  using Model = TrainedModel<Network<float, InputSize<Window::size>, Dense<4>>, Context<Window, GivenAirframe>>;
+  Model model{ContextAirframe<GivenAirframe>("paper", airframe_value<PaperQuadrotor, double>())};
+  model.input.spread.fill(1);
+  model.output.spread.fill(1);
+  model.network.parameters[3] = 1;  // u1: the present angular acceleration about x
+  std::mt19937_64 engine(4);
+  Flight flights[2];
+  RowSet rows;
+  for (Flight& flight : flights) {
+    for (const Sample& sample : samples(6, engine)) {
+      flight.push_back(sample);
+      flight[flight.size() - 1].time_s = 0.02 * double(flight.size());
+    }
+    rows.add(flight, {1, 6});
+  }
+  const programs::Predictions predictions = programs::network_predictions(model, rows);
+  REQUIRE(predictions.size() == 10);
+  for (std::size_t row = 0; row < 10; ++row) {
+    const bool complete = row % 5 > 0 && row % 5 < 4;
+    CHECK(std::isfinite(predictions[row][0]) == complete);
+    if (complete) CHECK(predictions[row][0] == doctest::Approx(rows[row].angular_acceleration_rad_s2[0]));
+  }
 }
 
 TEST_CASE("model 1 commands J / (lever x thrust) per angular acceleration") {

@@ -60,7 +60,8 @@ Dataset read(std::istream& file) {
     sample.pitch_rad = number("pitch");
     sample.yaw_rad = number("yaw");
     sample.altitude_m = -number("pz");
-    sample.commands = {number("ua1"), number("ua2"), number("ua3"), number("ua4")};
+    // front right, rear right, rear left, front left in the file; the airframe counts across
+    sample.commands = {number("ua1"), number("ua3"), number("ua4"), number("ua2")};
     flights.back().push_back(sample);
     voltages[row[0]].push_back(number("vbat"));
   }
