@@ -2,22 +2,14 @@
 // A mapping as a command is given it: by the name of one that the program brings, or by its file.
 #pragma once
 
-#include <array>
 #include <stdexcept>
 #include <string>
 
 #include "command_line/nearest_names.hpp"
 #include "logs/mapping_file.hpp"
+#include "logs/ready_mappings.hpp"
 
 namespace programs {
-
-struct ReadyMapping {
-  const char* name;
-  const char* toml;
-};
-
-/// The files of examples/mappings.
-extern const std::array<ReadyMapping, 3> ready_mappings;
 
 inline bool is_mapping_file(const std::string& name) {
   const std::string ending = ".toml";
