@@ -319,8 +319,7 @@ inline std::string log_page(const LogPageInput& in) {
     page["shown"] = {{"name", in.judged.kinds[shown.front()].kind.title},
                      {"flights", flights_drawing(in.judged, shown)},
                      {"over", detail::or_false(errors_over_drawing(in.judged, shown, detail::errors_over(in, shown)))},
-                     {"ellipses", ellipses_drawing({{in.judged.kinds[shown.front()].kind.title,
-                                                     in.judged.kinds[shown.front()].kind.title,
+                     {"ellipses", ellipses_drawing({{"held out", in.judged.kinds[shown.front()].kind.title,
                                                      detail::counted_series(in, shown.front())}},
                                                    "model")}};
     page["moments"] = detail::moments_json(in, shown);
