@@ -23,7 +23,7 @@ for command in "" fly evaluate block import airframe "airframe list" "airframe c
   # shellcheck disable=SC2086
   "$pinnquad" $command --help | grep -A1 '^Examples:$' | grep -qE "^  (pinnquad|cmake) " || fail "pinnquad $command --help has no example"
 done
-"$pinnquad" train --help | grep -qE '^  --flight FILE\.csv \.\.\. \(needed\)$' || fail "train --help says of --flight: $("$pinnquad" train --help | grep -e --flight)"
+"$pinnquad" train --help | grep -qE '^  --flight FILE\.csv \.\.\.$' || fail "train --help says of --flight: $("$pinnquad" train --help | grep -e --flight)"
 
 # completion, as bash asks for it
 complete_words() { # <what the last word may become> <word>...
@@ -78,7 +78,7 @@ expect_line 2 '^fly: The following argument was not expected: --epochs' "$pinnqu
 expect_line 2 '^study: The following argument was not expected: ablation' "$pinnquad" study paper --out o ablation
 [ ! -e o ] || fail "a study was begun"
 expect_line 2 '^airframe: The following argument was not expected: check' "$pinnquad" airframe list check
-expect_line 2 '^train: --flight is required' "$pinnquad" train --seeds 1
+expect_line 2 '^train: --flight, --dataset or --log is required' "$pinnquad" train --seeds 1
 expect_line 2 '^report: dir is required' "$pinnquad" report
 
 # options from a file: the same flight; the command line goes first; it may stand before the command or behind

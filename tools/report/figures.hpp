@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "pictures/drawing.hpp"
 #include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/evaluation/confidence_ellipse.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "report/comparisons.hpp"
-#include "report/drawing.hpp"
+#include "training/ellipses_drawing.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {
@@ -180,57 +180,14 @@ inline std::string changes_figure(const std::vector<Comparison>& comparisons) {
                       "Mean change of the mean absolute error: " + told + ".");
 }
 
-/// Fig. 8: signed command sum over angular acceleration in units of the target's spread; dots target, plus signs
-/// prediction, 3-sigma ellipses with their major axes.
+/// Fig. 8 of the models by number.
 inline std::string ellipses_figure(const std::vector<int>& models, const std::vector<StudySeries>& series) {
-  constexpr double panel = 300, gap = 50, left = 50, top = 38, range = 4.6;
-  constexpr std::size_t most_points = 450;
-  constexpr std::array<const char*, 3> rates = {"dp/dt", "dq/dt", "dr/dt"};
-  std::string text, told;
+  std::vector<EllipsesRow> rows;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const AxisSeries& s = series[m].axes[axis];
-      const double x0 = left + static_cast<double>(axis) * (panel + gap),
-                   y0 = top + static_cast<double>(m) * (panel + 92);
-      const drawing::Axis x{-range, range, x0, x0 + panel}, y{-range, range, y0 + panel, y0};
-      const pinnquad::AxisSpread spread = pinnquad::axis_spread(s.angular_acceleration, s.target);
-      const pinnquad::PhysicalConsistency c =
-          pinnquad::physical_consistency(s.target, s.predicted, s.angular_acceleration);
-      text += drawing::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target spreads") +
-              drawing::vertical_axis(y, x0, x0 + panel, 5, "");
-      drawing::Trace target, predicted;
-      for (std::size_t i = 0; i < s.target.size(); i += s.target.size() / most_points + 1) {
-        const double px = s.angular_acceleration[i] / spread.x;
-        const double flown = s.target[i] / spread.y, said = s.predicted[i] / spread.y;
-        if (std::abs(px) > range) continue;
-        if (std::abs(flown) <= range) target.dot(x(px), y(flown));
-        if (std::abs(said) <= range) predicted.plus(x(px), y(said));
-      }
-      text += drawing::path(target.d(), "cloud") + drawing::path(predicted.d(), "plus");
-      told += (told.empty() ? "model " : "; model ") + std::to_string(models[m]) + " " + axis_names[axis] +
-              ": angle difference " + shown::number(c.angle_difference_deg, 2) + "°";
-      const auto ellipse = [&](const pinnquad::ConfidenceEllipse& e, const std::string& kind) {
-        drawing::Trace outline, major;
-        for (const auto& p : pinnquad::ellipse_outline(e, 91)) outline.to(x(p[0]), y(p[1]));
-        const auto tips = pinnquad::ellipse_outline(e, 3);
-        major.to(x(tips[0][0]), y(tips[0][1]));
-        major.to(x(tips[1][0]), y(tips[1][1]));
-        text += drawing::path(outline.d(), kind) + drawing::path(major.d(), kind + " dash");
-      };
-      ellipse(c.target_standardized, "first");
-      ellipse(c.predicted_standardized, "second");
-      text += drawing::label(x0, y0 - 10, "M" + std::to_string(models[m]) + ", " + axis_names[axis], "title") +
-              drawing::label(x0 + panel, y0 - 10,
-                             "Δm " + shown::number(c.angle_difference_deg, 2) + "°, slope error " +
-                                 shown::number(100 * c.slope_error, 1) + " %",
-                             "small end");
-    }
+    const std::string number = std::to_string(models[m]);
+    rows.push_back({"M" + number, "model " + number, series[m].axes});
   }
-  return drawing::svg(
-      1060, top + static_cast<double>(models.size()) * (panel + 92) - 40, text,
-      "Confidence ellipses of target and prediction",
-      "Signed command sum over angular acceleration in roll, pitch and yaw, one row of panels per model; " + told +
-          ".");
+  return ellipses_drawing(rows, "model");
 }
 
 /// Fig. 2: angular acceleration and signed sum of the flown commands over some seconds, each in its spread.

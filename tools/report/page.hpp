@@ -9,15 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command_line/listed.hpp"
-#include "pictures/html_text.hpp"
+#include "pictures/filled_page.hpp"
+#include "pictures/page_template.hpp"
 #include "report/figures.hpp"
 #include "report/gaps.hpp"
 #include "report/input.hpp"
-#include "report/page_template.hpp"
 #include "report/tables.hpp"
 
 namespace programs {
@@ -74,26 +73,6 @@ inline nlohmann::json drawings(const ReportInput& input, const std::vector<Compa
           {"errors_d3", errors_figure(study, {13, 14}, "Test error on D3, with periodic wind")}};
 }
 
-/// JSON as the template reads it. It cannot ask whether a list has entries: beside a list `x` there is `any_x`.
-inline kainjow::mustache::data mustache_data(const nlohmann::json& value) {
-  using kainjow::mustache::data;
-  if (value.is_object()) {
-    data object(data::type::object);
-    for (const auto& item : value.items()) {
-      object.set(item.key(), mustache_data(item.value()));
-      if (item.value().is_array()) object.set("any_" + item.key(), data(!item.value().empty()));
-    }
-    return object;
-  }
-  if (value.is_array()) {
-    data list(data::type::list);
-    for (const nlohmann::json& item : value) list.push_back(mustache_data(item));
-    return list;
-  }
-  if (value.is_boolean()) return data(value.get<bool>());
-  return data(value.is_string() ? value.get<std::string>() : value.dump());
-}
-
 }  // namespace detail
 
 /// What the page says, as report.json: figures are text in the signs of the page; table3.csv, comparisons.csv and claims.csv
@@ -144,10 +123,7 @@ inline nlohmann::json report_figures(const detail::ReportInput& input, const std
 inline std::string report_page(const detail::ReportInput& input, const std::vector<Comparison>& comparisons,
                                nlohmann::json figures) {
   figures["drawings"] = detail::drawings(input, comparisons, figures["figures"]["epochs"].get<std::uint64_t>());
-  figures["page_style"] = page_style;
-  kainjow::mustache::mustache page(report_template);
-  page.set_custom_escape(html_text);
-  return page.render(detail::mustache_data(figures));
+  return filled_page(report_template, std::move(figures));
 }
 
 }  // namespace programs

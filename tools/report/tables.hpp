@@ -17,7 +17,7 @@
 #include "pinnquad/evaluation/summary.hpp"
 #include "report/claims.hpp"
 #include "report/comparisons.hpp"
-#include "report/numbers.hpp"
+#include "pictures/numbers.hpp"
 #include "report/settings.hpp"
 
 namespace programs {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part of one
-// flight, or the last of several flights), exports the best physics-informed network as a header.
+// flight, or the last of several flights), exports the best physics-informed network as a header. Flights of real vehicles
+// (--dataset, --log) are judged by held-out flights instead: training/train_logs.hpp.
 //   pinnquad train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 #include "training/train_command.hpp"
 
@@ -30,10 +31,12 @@
 #include "pinnquad/evaluation/model_errors.hpp"
 #include "training/judge_all.hpp"
 #include "training/judgement.hpp"
+#include "training/log_options.hpp"
 #include "training/model_figures.hpp"
 #include "training/model_predictions.hpp"
 #include "training/plots.hpp"
 #include "training/recipe.hpp"
+#include "training/train_logs.hpp"
 #include "training/training_report.hpp"
 
 namespace {
@@ -55,7 +58,8 @@ struct Options {
   int epochs = 300;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  bool allow_poor = false;  ///< export what is worse than the mean, marked as such
+  bool allow_poor = false;            ///< export what is worse than the mean, marked as such
+  programs::LogTrainingOptions logs;  ///< what --dataset and --log ask for besides
 };
 
 /// Warns of features that stand still in the training rows: they are exported, and flown only where they stood.
@@ -262,6 +266,22 @@ void require_separate_files(const Options& options) {
   roles.writes("--block", options.block);
 }
 
+/// What logs and flights have in common, as training on logs takes it; `given(name)`: the option is in the command line.
+template <class Given>
+programs::LogTrainingOptions log_options(const Options& options, const Given& given) {
+  programs::LogTrainingOptions logs = options.logs;
+  logs.airframe = given("--airframe") ? options.airframe : "";
+  logs.out = options.out;
+  logs.model_name = options.model_name;
+  logs.block = options.block;
+  logs.seeds = options.seeds;
+  logs.epochs = given("--epochs") ? options.epochs : 0;
+  logs.seed = options.seed;
+  logs.threads = options.threads;
+  logs.allow_poor = options.allow_poor;
+  return logs;
+}
+
 /// Trains on the flights of the options: the exit code.
 int train_chosen(const Options& options) {
   if (!is_identifier(options.model_name)) {
@@ -289,6 +309,8 @@ void add_options(CLI::App& app, Options& options) {
       "  pinnquad train --flight d1.csv --out my_model\n"
       "  pinnquad train --flight a.csv --flight b.csv --flight c.csv --airframe mine.toml --recipe best\n"
       "  pinnquad train --flight d1.csv --recipe small --block weights.block\n"
+      "  pinnquad train --log logs --mapping px4 --hold-out flight7 --out my_model\n"
+      "  pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model\n"
       "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
       "commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
@@ -296,8 +318,7 @@ void add_options(CLI::App& app, Options& options) {
   programs::add_paths(
       app, "--flight", options.flights, "FILE.csv",
       "recorded flight, CSV as `pinnquad fly` writes it: its first part trains, its last tests. Of three or more, "
-      "whole flights, in this order: the first train, the last test")
-      ->required();
+      "whole flights, in this order: the first train, the last test");
   app.add_option("--airframe", options.airframe,
                  "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
       ->capture_default_str();
@@ -331,8 +352,13 @@ void add_options(CLI::App& app, Options& options) {
 
 programs::Command programs::train_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "train", "Trains vanilla and physics-informed networks on flights, judges them, exports the best as a header");
+      "train", "Trains models on flights, judges them on rows that none was trained on, exports the best as a header");
   const auto options = std::make_shared<Options>();
   add_options(*line, *options);
-  return {line, [options] { return train_chosen(*options); }};
+  add_log_options(*line, options->logs);
+  return {line, [options, line] {
+            require_one_source(*line);
+            if (!options->flights.empty()) return train_chosen(*options);
+            return train_on_logs(log_options(*options, [line](const char* name) { return line->count(name) > 0; }));
+          }};
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pictures/html_text.hpp"
-#include "report/numbers.hpp"
+#include "pictures/numbers.hpp"
 
 namespace programs {
 namespace drawing {

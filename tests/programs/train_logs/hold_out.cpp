@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// What is held out is never trained on: whole flights, repeats together, no copy under another name.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "simulated_dataset.hpp"
+#include "training/hold_out.hpp"
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// A flight whose rows have content of their own, without a simulator.
+pinnquad::Flight made_flight(const std::string& name, const std::string& trajectory, std::size_t rows, double first) {
+  pinnquad::Flight flight;
+  for (std::size_t row = 0; row < rows; ++row) {
+    pinnquad::Sample sample;
+    sample.time_s = 0.02 * static_cast<double>(row);
+    sample.velocity_m_s[0] = first + static_cast<double>(row);
+    flight.push_back(sample);
+  }
+  flight.name = name;
+  flight.trajectory = trajectory;
+  return flight;
+}
+
+/// circle twice, eight, star, and two flights that name no trajectory.
+pinnquad::Dataset repeats() {
+  pinnquad::Dataset dataset;
+  dataset.add(made_flight("circle_1", "circle", 100, 1e3));
+  dataset.add(made_flight("circle_2", "circle", 120, 2e3));
+  dataset.add(made_flight("eight_1", "eight", 100, 3e3));
+  dataset.add(made_flight("star_1", "star", 90, 4e3));
+  dataset.add(made_flight("x", "", 100, 5e3));
+  dataset.add(made_flight("y", "", 200, 6e3));
+  return dataset;
+}
+
+void require_apart(const programs::Fold& fold) {
+  std::set<const pinnquad::Flight*> seen;
+  for (const pinnquad::RowSet* rows : {&fold.split.train, &fold.split.validation, &fold.split.test}) {
+    REQUIRE_FALSE(rows->empty());
+    for (const pinnquad::FlightRows& piece : rows->pieces()) {
+      CHECK(seen.insert(piece.flight).second);           // in one part alone
+      CHECK(piece.rows.size() == piece.flight->size());  // and whole
+      for (const pinnquad::Flight* other : seen) {
+        if (other->trajectory.empty() || other->trajectory != piece.flight->trajectory) continue;
+        const bool here = std::any_of(rows->pieces().begin(), rows->pieces().end(),
+                                      [&](const pinnquad::FlightRows& p) { return p.flight == other; });
+        CHECK(here);  // repeats are on the same side
+      }
+    }
+  }
+}
+
+bool says(const std::exception& error, const std::string& what) {
+  return std::string(error.what()).find(what) != std::string::npos;
+}
+
+template <class Call>
+void refused(const Call& call, const std::string& words) {
+  try {
+    call();
+    FAIL("not refused: " << words);
+  } catch (const std::invalid_argument& error) {
+    CHECK_MESSAGE(says(error, words), error.what());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a flight that is held out takes the repeats of its trajectory with it") {
+  const pinnquad::Dataset dataset = repeats();
+  for (const char* name : {"circle_1", "circle"}) {
+    const auto folds = programs::folds_of(dataset, {{name}, {}});
+    REQUIRE(folds.size() == 1);
+    CHECK(folds[0].held_out == Names{"circle_1", "circle_2"});
+    require_apart(folds[0]);
+  }
+  const auto both = programs::folds_of(dataset, {{"star_1", "eight", "star"}, {}});
+  CHECK(both[0].held_out == Names{"star_1", "eight_1"});
+  CHECK(both[0].name == "star_1, eight, star");
+  require_apart(both[0]);
+}
+
+TEST_CASE("in turn every trajectory is held out once; flight by flight its repeats do not train") {
+  const pinnquad::Dataset dataset = repeats();
+  const auto trajectories = programs::folds_of(dataset, {{}, programs::HoldOutEach::trajectory});
+  REQUIRE(trajectories.size() == 5);
+  Names all;
+  for (const auto& fold : trajectories) {
+    require_apart(fold);
+    CHECK(fold.train.size() + fold.validation.size() + fold.held_out.size() == dataset.size());
+    all.insert(all.end(), fold.held_out.begin(), fold.held_out.end());
+  }
+  CHECK(all == Names{"circle_1", "circle_2", "eight_1", "star_1", "x", "y"});
+
+  const auto flights = programs::folds_of(dataset, {{}, programs::HoldOutEach::flight});
+  REQUIRE(flights.size() == 6);
+  for (const auto& fold : flights) {
+    require_apart(fold);
+    CHECK(fold.held_out.size() == 1);
+  }
+  for (const Names& part : {flights[0].train, flights[0].validation}) {
+    CHECK(std::find(part.begin(), part.end(), "circle_2") == part.end());
+  }
+}
+
+TEST_CASE(
+    "validation is a trajectory of its own, of about a fifth of the rows left; of one trajectory its last fifth") {
+  const pinnquad::Dataset dataset = repeats();
+  const auto fold = programs::folds_of(dataset, {{"y"}, {}}).front();  // 510 rows left: 102 is a fifth
+  CHECK(fold.validation == Names{"eight_1"});
+  CHECK_FALSE(fold.part_validates);
+
+  pinnquad::Dataset two;
+  two.add(made_flight("a", "", 100, 0));
+  two.add(made_flight("b", "", 50, 1e3));
+  const auto part = programs::folds_of(two, {{"b"}, {}}).front();
+  CHECK(part.part_validates);
+  REQUIRE(part.split.train.pieces().size() == 1);
+  CHECK(part.split.train.pieces()[0].rows.end == 80);
+  CHECK(part.split.validation.pieces()[0].rows.begin == 80);
+}
+
+TEST_CASE("a name that is none is refused in one line with the nearest that are; so is nothing left to train on") {
+  const pinnquad::Dataset dataset = repeats();
+  refused(
+      [&] {
+        programs::folds_of(dataset, {{"circel_1"}, {}});
+      },
+      "--hold-out circel_1: no flight and no trajectory of that name; nearest: circle_1");
+  refused([&] { programs::folds_of(dataset, {{"ar"}, {}}); }, "nearest: star, star_1");
+  refused(
+      [&] {
+        programs::folds_of(dataset, {{"circle", "eight", "star", "x", "y"}, {}});
+      },
+      "no flight is left to train on");
+}
+
+TEST_CASE("a leak is refused: the same flight under another name, or a stretch of it on a clock of its own") {
+  const pinnquad::Flight flown = pinnquad_test::simulated_flight("a", 1, 300);
+  const auto dataset_with = [&](pinnquad::Flight planted) {
+    pinnquad::Dataset dataset;
+    dataset.add(flown);
+    dataset.add(pinnquad_test::simulated_flight("b", 2, 300));
+    dataset.add(pinnquad_test::simulated_flight("c", 3, 300));
+    planted.name = "planted";
+    dataset.add(std::move(planted));
+    return dataset;
+  };
+  const pinnquad::Dataset copied = dataset_with(flown);
+  refused([&] { programs::folds_of(copied, {{"planted"}, {}}); }, "300 of the 300 rows of the held-out flight planted");
+  pinnquad::Flight stretch;
+  for (std::size_t row = 200; row < 300; ++row) {
+    stretch.push_back(flown[row]);
+    stretch[stretch.size() - 1].time_s -= 7;
+  }
+  const pinnquad::Dataset cut = dataset_with(stretch);
+  refused([&] { programs::folds_of(cut, {{"a"}, {}}); }, "100 of the 300 rows of the held-out flight a");
+  CHECK_NOTHROW(programs::folds_of(cut, {{"b"}, {}}));  // there both train
+}

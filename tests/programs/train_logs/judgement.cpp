@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// Errors against a computation by hand, and verdicts on models whose worth is known: one that is secretly the mean, one that is
+// spoiled, one that knows the commands.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "data/temporary_folder.hpp"
+#include "judged_run.hpp"
+#include "training/log_fit_store.hpp"
+#include "training/log_report.hpp"
+
+namespace {
+
+using programs::Standing;
+
+pinnquad::Flight two_commands(const std::string& name, std::initializer_list<double> u1) {
+  pinnquad::Flight flight;
+  double time_s = 0;
+  for (const double u : u1) {
+    pinnquad::Sample sample;
+    sample.time_s = time_s;
+    sample.commands = {u, u, u, u};
+    flight.push_back(sample);
+    time_s += 2;
+  }
+  flight.name = name;
+  return flight;
+}
+
+const auto& each_flight = pinnquad_test::each_flight;
+using pinnquad_test::Judged;
+
+}  // namespace
+
+TEST_CASE("R^2 plain, without a flight's bias, and without the bias of its first four seconds, by hand") {
+  // times 0, 2, 4, 6 s; errors of the first flight 0.1 0.1 0.2 0.2, of the second -0.1 -0.1 -0.1 -0.3
+  const pinnquad::Flight a = two_commands("a", {0.2, 0.4, 0.6, 0.8}), b = two_commands("b", {0.1, 0.3, 0.1, 0.3});
+  pinnquad::RowSet rows;
+  rows.add(a, {0, 4});
+  rows.add(b, {0, 4});
+  programs::Predictions made;
+  for (const double u : {0.3, 0.5, 0.8, 1.0, 0.0, 0.2, 0.0, 0.0}) made.push_back({u, u, u, u});
+  const programs::LogErrors errors = programs::log_errors(rows, made, std::vector<bool>(8, true));
+  // squares of errors 0.01 + 0.01 + 0.04 + 0.04 + 3 x 0.01 + 0.09 = 0.22; of targets about 0.35:
+  // 0.0225 + 0.0025 + 0.0625 + 0.2025 + 2 x (0.0625 + 0.0025) = 0.42
+  CHECK(errors.r2[0] == doctest::Approx(1 - 0.22 / 0.42));
+  CHECK(errors.root_mean_square[1] == doctest::Approx(std::sqrt(0.22 / 8)));
+  CHECK(errors.mean_absolute[2] == doctest::Approx(1.2 / 8));
+  // mean errors 0.15 and -0.15: left 4 x 0.0025, and 3 x 0.0025 + 0.0225; targets about 0.5 and 0.2: 0.2 and 0.04
+  CHECK(errors.r2_flight_bias_removed[3] == doctest::Approx(1 - 0.04 / 0.24));
+  // biases of the rows before 4 s: 0.1 and -0.1; left at 4 and 6 s 0.1 0.1 and 0 -0.2: 0.06. Targets 0.6 0.8 0.1 0.3 about 0.45
+  CHECK(errors.r2_start_bias_removed[0] == doctest::Approx(1 - 0.06 / (0.0225 + 0.1225 + 0.1225 + 0.0225)));
+
+  // a row that does not count is in no sum
+  std::vector<bool> counts(8, true);
+  counts[7] = false;
+  made[7] = {9, 9, 9, 9};
+  const programs::LogErrors fewer = programs::log_errors(rows, made, counts);
+  CHECK(fewer.rows == 7);
+  CHECK(fewer.mean_absolute[0] == doctest::Approx(0.9 / 7));
+  CHECK(programs::error_by_flight(rows, made, counts)[1] == doctest::Approx(0.1));
+}
+
+TEST_CASE("a constant explains nothing once each flight's bias is removed, whatever the constant") {
+  const Judged run(4, {pinnquad_test::constant_kind()}, each_flight);
+  for (const programs::JudgedFit& fit : run.judged.kinds[0].fits) {
+    for (const double r2 : fit.errors.r2_flight_bias_removed) CHECK(r2 == doctest::Approx(0).epsilon(1e-9));
+    for (const double r2 : fit.errors.r2) CHECK(r2 < 0);
+  }
+}
+
+TEST_CASE(
+    "with eight flights held out in turn: what is linear is a success, what is secretly the mean or spoiled is none") {
+  const Judged run(8,
+                   {pinnquad_test::constant_kind(), pinnquad_test::secret_mean_kind(), pinnquad_test::linear_kind(),
+                    pinnquad_test::spoiled_linear_kind(), pinnquad_test::needs_battery_kind()},
+                   each_flight);
+  CHECK(run.judged.flights.size() == 8);
+  CHECK(run.of("constant").standing == Standing::reference);
+  const auto& secret = run.of("network");
+  CHECK(secret.standing != Standing::success);
+  CHECK(secret.standing != Standing::undecided);
+  CHECK(secret.sentence.find("no success") == 0);
+  const auto& linear = run.of("linear");
+  CHECK_MESSAGE(linear.standing == Standing::success, linear.sentence);
+  REQUIRE(linear.against.size() == 2);
+  CHECK(linear.against[0].flights.pairs == 8);
+  CHECK(linear.against[0].flights.p_value == doctest::Approx(std::pow(2.0, -7)));
+  CHECK_FALSE(linear.against[0].seeds.has_value());  // a closed form has no seeds to pair
+  const auto& spoiled = run.of("spoiled");
+  CHECK_MESSAGE(spoiled.standing == Standing::worse, spoiled.sentence);
+  CHECK(spoiled.sentence.find("no success: worse than linear, paper's features, which is simpler") == 0);
+  CHECK(spoiled.against.back().seeds->losses == 5);
+  const programs::JudgedKind* battery = run.judged.find("battery");
+  CHECK(battery->not_applicable == "needs battery_voltage, which the logs lack");
+}
+
+TEST_CASE("with fewer flights than a test needs nothing is called a success") {
+  const Judged run(4,
+                   {pinnquad_test::constant_kind(), pinnquad_test::linear_kind(), pinnquad_test::spoiled_linear_kind()},
+                   {{"flight2"}, {}});
+  const auto& linear = run.of("linear");
+  CHECK_MESSAGE(linear.standing == Standing::undecided, linear.sentence);
+  CHECK(linear.sentence.find("1 held-out flight can't tell, 6 or more can") != std::string::npos);
+  CHECK(run.of("spoiled").standing == Standing::no_better);
+}
+
+TEST_CASE("models that look ahead are ranked apart, and are no simpler model of one that does not") {
+  const Judged run(8,
+                   {pinnquad_test::constant_kind(), pinnquad_test::oracle_kind(programs::TimeReach::centred),
+                    pinnquad_test::linear_kind()},
+                   each_flight);
+  CHECK(programs::ranking(run.judged, false) == std::vector<std::size_t>{2, 0});
+  CHECK(programs::ranking(run.judged, true) == std::vector<std::size_t>{1});
+  CHECK(run.of("linear").standing == Standing::success);
+  CHECK(run.of("linear").against.size() == 1);
+  // the row that the oracle leaves without an answer counts for no kind
+  for (const std::size_t rows : run.judged.rows) CHECK(rows == 399);
+  for (const auto& kind : run.judged.kinds) CHECK(kind.fits.front().errors.rows == 399);
+}
+
+TEST_CASE("slopes: those of the truth are right, those of a mirrored model wrong in every row, a constant has none") {
+  const Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, each_flight);
+  CHECK_FALSE(programs::slopes_of(run.judged.kinds[0]).applicable);
+  const programs::KindSlopes linear = programs::slopes_of(run.judged.kinds[1]);
+  const std::array<double, 3> nominal = programs::nominal_slopes(run.airframe);
+  REQUIRE(linear.applicable);
+  for (std::size_t axis = 0; axis < 2; ++axis) {  // yaw is a small part of what the paper's quadrotor commands
+    CHECK(linear.wrong_share[axis] == 0);
+    CHECK(linear.least[axis] / nominal[axis] == doctest::Approx(1).epsilon(0.25));
+  }
+  const auto mirrored = pinnquad_test::model_of([](const pinnquad::RowSet& rows) {
+    programs::Predictions made;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const double p_dot = rows[row].angular_acceleration_rad_s2[0];
+      made.push_back({1e-3 * p_dot, -1e-3 * p_dot, -1e-3 * p_dot, 1e-3 * p_dot});
+    }
+    return made;
+  });
+  const auto slopes = programs::log_slopes(*mirrored, run.plan.folds[0].split.test, programs::axis_signs(run.airframe));
+  CHECK(slopes.applicable);
+  CHECK(slopes.wrong_share[0] == 1);
+  CHECK(slopes.least[0] == doctest::Approx(-4e-3));
+}
+
+TEST_CASE(
+    "report.json: each model by its key, figures with mean, deviation and each seed, by parting, in plain words") {
+  const Judged run(4,
+                   {pinnquad_test::constant_kind(), pinnquad_test::linear_kind(), pinnquad_test::spoiled_linear_kind(),
+                    pinnquad_test::needs_battery_kind()},
+                   each_flight, 5);
+  const pinnquad_test::TemporaryFolder folder;
+  programs::ImportedDataset imported;
+  imported.flights = run.dataset;
+  programs::LogReport report(folder.path("report.json"), run.plan, imported);
+  report.judged(run.plan, run.judged, run.verdicts);
+  report.write_not_exported("because");
+  std::ifstream file(folder.path("report.json"));
+  const nlohmann::json json = nlohmann::json::parse(file);
+  CHECK(json["held_out"] == nlohmann::json({"flight1", "flight2", "flight3", "flight4"}));
+  CHECK(json["exported"] == false);
+  CHECK(json["not_exported_because"] == "because");
+  CHECK(json["warnings"].is_array());
+  const auto& spoiled = json["models"]["spoiled"];
+  for (const char* figure : {"r2", "r2_flight_bias_removed", "r2_start_bias_removed", "rmse", "mean_absolute_error"}) {
+    CHECK(spoiled[figure]["per_seed"].size() == 5);
+    CHECK(spoiled[figure]["deviation"].is_number());
+    CHECK(spoiled["by_fold"]["flight3"][figure]["mean"].is_number());
+    CHECK(spoiled["per_motor"]["u4"][figure]["mean"].is_number());
+  }
+  CHECK(json["models"]["linear"]["r2"]["per_seed"].size() == 1);
+  CHECK(json["models"]["linear"]["r2"]["deviation"].is_null());
+  CHECK(json["models"]["constant"]["slopes"]["not_applicable_because"].is_string());
+  CHECK(json["models"]["battery"]["applicable"] == false);
+  CHECK(json["models"]["battery"]["not_applicable_because"] == "needs battery_voltage, which the logs lack");
+  double mean = 0;
+  for (const auto& fold : json["models"]["linear"]["by_fold"]) mean += fold["r2"]["mean"].get<double>() / 4;
+  CHECK(mean == doctest::Approx(json["models"]["linear"]["r2"]["mean"].get<double>()));
+  CHECK(json["ranking"]["causal"][0] == "linear");
+}
+
+TEST_CASE(
+    "fits that an interrupted run finished are taken up again, those of other rows, seeds or half a file are not") {
+  const Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::secret_mean_kind()}, each_flight, 2);
+  const pinnquad_test::TemporaryFolder folder;
+  const programs::LogFitStore store(folder.path("fits"), run.plan);
+  for (const programs::FinishedFit& fit : run.fits.finished) store.keep(fit);
+  const programs::FinishedFit& kept = run.fits.finished.back();
+  programs::FinishedFit asked;
+  asked.kind = kept.kind;
+  asked.fold = kept.fold;
+  asked.seed = kept.seed;
+  programs::FinishedFit loaded = asked;
+  REQUIRE(store.load(loaded));
+  CHECK(loaded.held_out == kept.held_out);
+  CHECK(loaded.validation_error == kept.validation_error);
+  CHECK(loaded.slopes.median == kept.slopes.median);
+
+  programs::FinishedFit other_seed = asked;
+  other_seed.seed = 77;
+  CHECK_FALSE(store.load(other_seed));
+  programs::LogPlan longer = run.plan;
+  longer.epochs = 10;
+  loaded = asked;
+  CHECK_FALSE(programs::LogFitStore(folder.path("fits"), longer).load(loaded));
+
+  const std::string path = folder.path("fits") + "/network-" + std::to_string(kept.seed) + "-3.fit";
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 9);
+  loaded = asked;
+  CHECK_FALSE(store.load(loaded));
+  CHECK(loaded.held_out.empty());
+  store.clear();
+  CHECK_FALSE(std::filesystem::exists(folder.path("fits")));
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// The report page of judged flights says what was held out, what each model is worth, and where it was wrong. The page stays in
+// the working folder, to be looked at.
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <string>
+
+#include "judged_run.hpp"
+#include "training/log_page.hpp"
+
+namespace {
+
+using pinnquad_test::Judged;
+
+/// Names that a page must hold as text, and a battery that sags.
+pinnquad::Dataset with_battery(const pinnquad::Dataset& flights) {
+  pinnquad::Dataset dataset;
+  for (pinnquad::Flight flight : flights.flights()) {
+    pinnquad::ExtraColumn battery;
+    battery.name = "battery_voltage";
+    battery.unit = "V";
+    for (std::size_t row = 0; row < flight.size(); ++row)
+      battery.values.push_back(4.1 - 1e-3 * static_cast<double>(row));
+    flight.add_column(battery);
+    dataset.add(std::move(flight));
+  }
+  return dataset;
+}
+
+std::string page_of(Judged& run, const std::vector<std::string>& absent, bool with_replays) {
+  programs::ImportedDataset imported;
+  imported.flights = run.dataset;
+  imported.absent = absent;
+  imported.sample_period_s = 0.05;
+  imported.notes = {"specific force by the library's own formula"};
+  imported.steps.push_back({"saturated", 4000, 3200, "a command below 0.005 or above 0.995"});
+  programs::LogReport report("nowhere.json", run.plan, imported);
+  report.judged(run.plan, run.judged, run.verdicts);
+  programs::LogPageInput input{run.plan,
+                               imported,
+                               run.fits,
+                               run.judged,
+                               run.verdicts,
+                               report.json(),
+                               std::size_t{2},
+                               "Exported as out/model.hpp.",
+                               {}};
+  for (const std::string& flight : run.judged.flights) {
+    if (with_replays) input.replays[flight] = "replay-of-" + flight + ".html";
+  }
+  return programs::log_page(input);
+}
+
+std::size_t count_of(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links") {
+  using namespace pinnquad_test;
+  Judged run(with_battery(simulated_dataset(8, 300)),
+             {constant_kind(), secret_mean_kind(), linear_kind(), spoiled_linear_kind(),
+              oracle_kind(programs::TimeReach::centred), needs_battery_kind()},
+             each_flight, 5);
+  const std::string page = page_of(run, {}, true);
+  std::ofstream("log_page.html") << page;
+  for (const std::string& sentence :
+       {run.of("linear").sentence, run.of("network").sentence, run.of("spoiled").sentence}) {
+    CHECK_MESSAGE(page.find(programs::html_text(sentence)) != std::string::npos, sentence);
+  }
+  CHECK(page.find("looking ahead: for planned trajectories only") != std::string::npos);
+  CHECK(page.find("needs battery_voltage, which the logs lack") != std::string::npos);
+  CHECK(page.find("battery, V") != std::string::npos);
+  CHECK(page.find("specific force by the library") != std::string::npos);
+  CHECK(page.find("a command below 0.005 or above 0.995") != std::string::npos);
+  CHECK(page.find("href=\"replay-of-flight") != std::string::npos);
+  CHECK(page.find("can’t reach p") == std::string::npos);  // eight flights can
+  CHECK(page.find("· speed ") != std::string::npos);
+  CHECK(page.find("nan") == std::string::npos);
+  CHECK(page.find("{{") == std::string::npos);
+  CHECK(count_of(page, "<svg") == count_of(page, "</svg>"));
+  CHECK(count_of(page, "<svg") == 3 + 4);  // flights, errors over, ellipses; the four worst moments
+  CHECK(count_of(page, "class=\"moment\"") == 8);
+}
+
+TEST_CASE(
+    "the page of logs that lack velocity and height leaves out what it can't know, and says that one flight can't "
+    "decide") {
+  using namespace pinnquad_test;
+  Judged run(simulated_dataset(4, 300), {constant_kind(), secret_mean_kind(), linear_kind()}, {{"flight2"}, {}}, 2);
+  const std::string page = page_of(run, {"velocity", "altitude"}, false);
+  CHECK(page.find("The logs have none of the three") != std::string::npos);
+  CHECK(page.find("The logs lack: velocity, altitude") != std::string::npos);
+  CHECK(page.find("Fewer than 6 held-out flights can’t reach p") != std::string::npos);
+  CHECK(page.find("· speed ") == std::string::npos);
+  CHECK(page.find("· tilt ") != std::string::npos);
+  CHECK(page.find("No 3D replays") != std::string::npos);
+}
+
+TEST_CASE("the worst moment is where a model was spoiled, and what happened there is named") {
+  using namespace pinnquad_test;
+  pinnquad::Flight flight = simulated_flight("a", 1, 400);
+  flight[200].commands = {0.99, 0.5, 0.5, 0.01};
+  pinnquad::Dataset dataset(flight);
+  programs::Fold fold;
+  fold.split.test.add(dataset[0], {0, 400});
+  programs::Predictions made;
+  for (std::size_t row = 0; row < 400; ++row) made.push_back(dataset[0][row].commands);
+  for (std::size_t row = 196; row < 206; ++row) made[row][2] += 0.2;
+  made[50][1] += 0.05;
+  const std::vector<programs::Fold> folds = {fold};
+  const auto moments = programs::worst_moments(folds, {&made}, {std::vector<bool>(400, true)}, 3);
+  REQUIRE(moments.size() == 3);
+  CHECK(moments[0].row >= 196);
+  CHECK(moments[0].row < 206);
+  CHECK(moments[0].motor == 2);
+  CHECK(moments[0].error == doctest::Approx(0.1).epsilon(0.15));  // one motor of four is off by 0.2
+  programs::ImportedDataset imported;
+  imported.sample_period_s = 0.05;
+  const std::string told = programs::what_happened(moments[0], imported);
+  CHECK_MESSAGE(told.find("a motor at full (") == 0, told);
+  CHECK_MESSAGE(told.find("a motor at idle (0.0") != std::string::npos, told);
+}

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// Which flights of a dataset judge, which validate, which train: whole flights, repeats of a trajectory never on both sides.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command_line/nearest_names.hpp"
+#include "pinnquad/data/printable.hpp"
+#include "pinnquad/data/split_flights.hpp"
+
+namespace programs {
+
+/// What is held out in turn, where no names are given.
+enum class HoldOutEach { flight, trajectory };
+
+struct HoldOutChoice {
+  std::vector<std::string> names;   ///< of flights or trajectories, held out together
+  std::optional<HoldOutEach> each;  ///< rotation: each in turn
+};
+
+/// One parting of a dataset. Names are those of flights.
+struct Fold {
+  std::string name;  ///< of what is held out: "circle"
+  std::vector<std::string> train, validation, held_out;
+  /// No flight was left to validate: the last fifth of the training flights does.
+  bool part_validates = false;
+  pinnquad::RowSplit split;
+};
+
+namespace detail {
+
+/// Flights that are one piece of evidence: repeats of a trajectory, or a flight that names none.
+struct FlightGroup {
+  std::string name;
+  std::vector<const pinnquad::Flight*> flights;
+  std::size_t rows = 0;
+};
+
+inline std::vector<FlightGroup> flight_groups(const pinnquad::Dataset& dataset) {
+  std::vector<FlightGroup> groups;
+  for (const pinnquad::Flight& flight : dataset.flights()) {
+    const std::string& name = flight.trajectory.empty() ? flight.name : flight.trajectory;
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const FlightGroup& g) {
+      return g.name == name && !flight.trajectory.empty() && !g.flights.front()->trajectory.empty();
+    });
+    if (group == groups.end()) group = groups.insert(groups.end(), FlightGroup{name, {}, 0});
+    group->flights.push_back(&flight);
+    group->rows += flight.size();
+  }
+  return groups;
+}
+
+inline void add_whole(pinnquad::RowSet& rows, std::vector<std::string>& names, const pinnquad::Flight& flight) {
+  rows.add(flight, {0, flight.size()});
+  names.push_back(flight.name);
+}
+
+/// `tested` judge; groups of `left` train, but for the one whose rows come closest to a fifth of them, which validates.
+inline Fold fold_of(std::string name, const std::vector<const pinnquad::Flight*>& tested,
+                    const std::vector<const FlightGroup*>& left) {
+  constexpr double validation_share = 0.2;
+  Fold fold;
+  fold.name = std::move(name);
+  for (const pinnquad::Flight* flight : tested) add_whole(fold.split.test, fold.held_out, *flight);
+  if (left.empty()) {
+    throw std::invalid_argument("--hold-out " + pinnquad::printable(fold.name) +
+                                ": no flight is left to train on; expected two flights or more of different "
+                                "trajectories");
+  }
+  if (left.size() == 1) {
+    fold.part_validates = true;
+    for (const pinnquad::Flight* flight : left.front()->flights) {
+      const auto border = static_cast<std::size_t>((1 - validation_share) * static_cast<double>(flight->size()));
+      fold.split.train.add(*flight, {0, border});
+      fold.split.validation.add(*flight, {border, flight->size()});
+      fold.train.push_back(flight->name);
+      fold.validation.push_back(flight->name);
+    }
+    return fold;
+  }
+  double rows = 0;
+  for (const FlightGroup* group : left) rows += static_cast<double>(group->rows);
+  const auto miss = [&](const FlightGroup* group) {
+    return std::abs(static_cast<double>(group->rows) - validation_share * rows);
+  };
+  const FlightGroup* validates = left.front();
+  for (const FlightGroup* group : left) {
+    if (miss(group) < miss(validates)) validates = group;
+  }
+  for (const FlightGroup* group : left) {
+    for (const pinnquad::Flight* flight : group->flights) {
+      if (group == validates) {
+        add_whole(fold.split.validation, fold.validation, *flight);
+      } else {
+        add_whole(fold.split.train, fold.train, *flight);
+      }
+    }
+  }
+  return fold;
+}
+
+/// Hashes of a row's content but its time, which another cut of the same log may count from elsewhere.
+inline std::vector<std::uint64_t> row_hashes(const pinnquad::RowSet& rows) {
+  std::vector<std::uint64_t> hashes;
+  hashes.reserve(rows.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    pinnquad::detail::Fnv1a fnv;
+    const pinnquad::SampleValues values = pinnquad::to_values(rows[row]);
+    for (std::size_t i = 1; i < values.size(); ++i) pinnquad::detail::absorb_number(fnv, values[i]);
+    hashes.push_back(fnv.hash);
+  }
+  return hashes;
+}
+
+}  // namespace detail
+
+/// Throws std::invalid_argument, one line, where rows that judge are, to the bit, among those that train or validate.
+inline void require_no_leak(const Fold& fold) {
+  constexpr double most_shared = 0.01;  // of a vehicle at rest some rows may be alike
+  std::vector<std::uint64_t> known = detail::row_hashes(fold.split.train);
+  const std::vector<std::uint64_t> validating = detail::row_hashes(fold.split.validation);
+  known.insert(known.end(), validating.begin(), validating.end());
+  std::sort(known.begin(), known.end());
+  for (const pinnquad::FlightRows& piece : fold.split.test.pieces()) {
+    std::size_t shared = 0;
+    for (const std::uint64_t hash : detail::row_hashes(pinnquad::RowSet(*piece.flight, piece.rows))) {
+      if (std::binary_search(known.begin(), known.end(), hash)) ++shared;
+    }
+    if (static_cast<double>(shared) <= most_shared * static_cast<double>(piece.rows.size())) continue;
+    throw std::invalid_argument(std::to_string(shared) + " of the " + std::to_string(piece.rows.size()) +
+                                " rows of the held-out flight " + pinnquad::printable(piece.flight->name) +
+                                " are among those that train: it would be judged on what it was trained on");
+  }
+}
+
+/// The partings that a choice asks for; views of the dataset. A flight that is held out takes the repeats of its trajectory
+/// with it. Throws std::invalid_argument, one line: a name that is no flight and no trajectory (with the nearest that are), too
+/// few flights, a flight that comes twice.
+inline std::vector<Fold> folds_of(const pinnquad::Dataset& dataset, const HoldOutChoice& choice) {
+  const std::vector<detail::FlightGroup> groups = detail::flight_groups(dataset);
+  const auto others = [&](const auto& is_out) {
+    std::vector<const detail::FlightGroup*> left;
+    for (const detail::FlightGroup& group : groups) {
+      if (!is_out(group)) left.push_back(&group);
+    }
+    return left;
+  };
+  std::vector<Fold> folds;
+  if (choice.each) {
+    for (const detail::FlightGroup& group : groups) {
+      const auto left = others([&](const detail::FlightGroup& other) { return &other == &group; });
+      if (*choice.each == HoldOutEach::trajectory) {
+        folds.push_back(detail::fold_of(group.name, group.flights, left));
+        continue;
+      }
+      for (const pinnquad::Flight* flight : group.flights) {  // its repeats neither train nor judge
+        folds.push_back(detail::fold_of(flight->name, {flight}, left));
+      }
+    }
+  } else {
+    std::vector<const detail::FlightGroup*> out;
+    std::string all;
+    for (const std::string& name : choice.names) {
+      const auto group = std::find_if(groups.begin(), groups.end(), [&](const detail::FlightGroup& g) {
+        return g.name == name || std::any_of(g.flights.begin(), g.flights.end(),
+                                             [&](const pinnquad::Flight* flight) { return flight->name == name; });
+      });
+      if (group == groups.end()) {
+        std::vector<std::string> known;
+        for (const detail::FlightGroup& g : groups) {
+          known.push_back(g.name);
+          for (const pinnquad::Flight* flight : g.flights) known.push_back(flight->name);
+        }
+        throw std::invalid_argument("--hold-out " + pinnquad::printable(name) +
+                                    ": no flight and no trajectory of that name; " + nearest_names(name, known));
+      }
+      if (std::find(out.begin(), out.end(), &*group) == out.end()) out.push_back(&*group);
+      all += (all.empty() ? "" : ", ") + name;
+    }
+    std::vector<const pinnquad::Flight*> tested;
+    for (const detail::FlightGroup* group : out) {
+      tested.insert(tested.end(), group->flights.begin(), group->flights.end());
+    }
+    folds.push_back(detail::fold_of(all, tested, others([&](const detail::FlightGroup& g) {
+                                      return std::find(out.begin(), out.end(), &g) != out.end();
+                                    })));
+  }
+  for (const Fold& fold : folds) require_no_leak(fold);
+  return folds;
+}
+std::vector<Fold> folds_of(const pinnquad::Dataset&&, const HoldOutChoice&) = delete;  // its rows would be gone
+
+/// What trains and validates the model that is exported after a rotation: all flights, the group closest to a fifth validates.
+inline Fold fold_of_all(const pinnquad::Dataset& dataset) {
+  const std::vector<detail::FlightGroup> groups = detail::flight_groups(dataset);
+  std::vector<const detail::FlightGroup*> all;
+  for (const detail::FlightGroup& group : groups) all.push_back(&group);
+  return detail::fold_of("all flights", {}, all);
+}
+
+}  // namespace programs

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// What a training on logs begins with: the kinds of models and the dataset that were asked for, sound enough to fit and to judge.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "command_line/nearest_names.hpp"
+#include "command_line/progress_line.hpp"
+#include "logs/dataset_folder.hpp"
+#include "logs/import.hpp"
+#include "pinnquad/data/plausibility.hpp"
+#include "training/hold_out.hpp"
+#include "training/log_export.hpp"
+#include "training/log_model.hpp"
+#include "training/train_logs.hpp"
+
+namespace programs {
+
+/// Fewer rows than this fill no batches worth the name.
+inline constexpr std::size_t fewest_training_rows = 256, fewest_judging_rows = 64;
+
+/// The kinds asked for, in the order of the table.
+inline std::vector<LogModelKind> chosen_kinds(const std::vector<std::string>& keys) {
+  std::vector<LogModelKind> kinds;
+  std::vector<std::string> known;
+  for (const LogModelKind& kind : log_model_kinds()) {
+    known.emplace_back(kind.key);
+    if (keys.empty() || std::find(keys.begin(), keys.end(), kind.key) != keys.end()) kinds.push_back(kind);
+  }
+  for (const std::string& key : keys) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    throw std::invalid_argument("--models " + key + ": no model of that name; " + nearest_names(key, known));
+  }
+  return kinds;
+}
+
+/// Throws std::invalid_argument for what --export can't mean.
+inline void require_known_export(const std::string& choice, const std::vector<LogModelKind>& kinds) {
+  std::vector<std::string> known = {export_causal, export_centred};
+  for (const LogModelKind& kind : kinds) known.emplace_back(kind.key);
+  if (std::find(known.begin(), known.end(), choice) != known.end()) return;
+  throw std::invalid_argument("--export " + choice + ": no such model is compared; " + nearest_names(choice, known));
+}
+
+/// The dataset of the options, read or imported.
+inline ImportedDataset dataset_of(const LogTrainingOptions& options, const std::optional<NamedAirframe>& airframe) {
+  if (options.logs.empty()) return read_dataset_folder(options.dataset);
+  ImportRequest request;
+  request.logs = options.logs;
+  request.mapping = options.mapping;
+  request.airframe = airframe;
+  std::optional<ProgressLine> progress;
+  std::string job;
+  request.on_progress = [&](const std::string& now, double share) {
+    if (!progress || now != job) progress.emplace(job = now);
+    progress->update(share);
+  };
+  return import_logs(request);
+}
+
+/// Throws InputError and std::invalid_argument for flights that no model should be fitted to, or judged on.
+inline void require_sound(const std::string& folder, const ImportedDataset& dataset, const std::vector<Fold>& folds) {
+  std::vector<std::uint64_t> hashes;
+  const std::vector<std::string> files = flight_files(dataset);
+  for (const pinnquad::Flight& flight : dataset.flights.flights()) {
+    const std::string place = folder + "/" + files[hashes.size()];
+    pinnquad::require_plausible(place, flight);
+    pinnquad::require_varied_commands(place, flight, {0, flight.size()}, "flight's");
+    hashes.push_back(pinnquad::content_hash(flight));
+    const auto same = std::find(hashes.begin(), hashes.end() - 1, hashes.back());
+    if (same == hashes.end() - 1) continue;
+    throw std::invalid_argument(
+        "the flights " + pinnquad::printable(dataset.flights[static_cast<std::size_t>(same - hashes.begin())].name) +
+        " and " + pinnquad::printable(flight.name) + " are the same: one would be judged on what it was trained on");
+  }
+  for (const Fold& fold : folds) {
+    const auto require = [&](const pinnquad::RowSet& rows, std::size_t fewest, const char* what) {
+      if (rows.size() >= fewest) return;
+      throw std::invalid_argument("holding out " + pinnquad::printable(fold.name) + " leaves " +
+                                  std::to_string(rows.size()) + " rows to " + what + "; expected " +
+                                  std::to_string(fewest) + " or more");
+    };
+    require(fold.split.train, fewest_training_rows, "train");
+    require(fold.split.validation, fewest_judging_rows, "validate");
+    require(fold.split.test, fewest_judging_rows, "judge");
+  }
+}
+
+inline HoldOutChoice hold_out_of(const LogTrainingOptions& options, const ImportedDataset& dataset) {
+  HoldOutChoice choice;
+  choice.names = options.hold_out;
+  if (!options.hold_out_each.empty()) {
+    choice.each = options.hold_out_each == "flight" ? HoldOutEach::flight : HoldOutEach::trajectory;
+  }
+  if (choice.each || !choice.names.empty()) return choice;
+  std::string names;
+  for (const pinnquad::Flight& flight : dataset.flights.flights())
+    names += (names.empty() ? "" : ", ") + pinnquad::printable(flight.name);
+  throw std::invalid_argument(
+      "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " + names);
+}
+
+}  // namespace programs

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+// The report page of a training on logs: all that it says as one JSON value, for the template log_page.html.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pictures/filled_page.hpp"
+#include "training/ellipses_drawing.hpp"
+#include "training/log_drawings.hpp"
+#include "training/log_report.hpp"
+
+namespace programs {
+
+/// What a page is made of.
+struct LogPageInput {
+  const LogPlan& plan;
+  const ImportedDataset& dataset;
+  const LogFits& fits;
+  const LogJudgement& judged;
+  const std::vector<LogVerdict>& verdicts;
+  const nlohmann::json& report;                ///< report.json
+  std::optional<std::size_t> exported;         ///< of judged.kinds: what was exported, or would have been
+  std::string export_sentence;                 ///< what became of it
+  std::map<std::string, std::string> replays;  ///< flight -> file of its 3D replay, where there is one
+};
+
+namespace detail {
+
+/// The predictions of a kind's first seed, parting by parting.
+inline std::vector<const Predictions*> shown_predictions(const LogPageInput& in, std::size_t kind) {
+  std::vector<const Predictions*> result(in.plan.folds.size(), nullptr);
+  for (const FinishedFit& fit : in.fits.finished) {
+    if (fit.kind == kind && fit.seed == in.judged.kinds[kind].seeds.front()) result[fit.fold] = &fit.held_out;
+  }
+  return result;
+}
+
+/// What is exported, the simpler kind that comes nearest to it, the best that looks ahead.
+inline std::vector<std::size_t> shown_kinds(const LogPageInput& in) {
+  std::vector<std::size_t> shown;
+  const auto show = [&shown](std::size_t k) {
+    if (std::find(shown.begin(), shown.end(), k) == shown.end() && shown.size() < most_shown_kinds) shown.push_back(k);
+  };
+  const std::vector<std::size_t> causal = ranking(in.judged, false), centred = ranking(in.judged, true);
+  if (in.exported) show(*in.exported);
+  if (!causal.empty()) show(causal.front());
+  if (!shown.empty()) {
+    const AgainstSimpler* nearest = nullptr;
+    for (const AgainstSimpler& against : in.verdicts[shown.front()].against) {
+      if (nearest == nullptr || against.flights.baseline_mean < nearest->flights.baseline_mean) nearest = &against;
+    }
+    if (nearest != nullptr) show(nearest->simpler);
+  }
+  if (!centred.empty()) show(centred.front());
+  return shown;
+}
+
+inline std::string shown_figure(const std::vector<double>& values, double scale, int decimals) {
+  const pinnquad::Summary s = pinnquad::summarize(values);
+  return shown::number(scale * s.mean, decimals) +
+         (s.count > 1 && std::isfinite(s.deviation) ? " ± " + shown::number(scale * s.deviation, decimals) : "");
+}
+
+inline const char* badge_of(Standing standing) {
+  switch (standing) {
+    case Standing::success: return "reproduced";
+    case Standing::undecided: return "undecided";
+    case Standing::reference: return "open";
+    default: return "not";
+  }
+}
+
+inline nlohmann::json table_rows(const LogPageInput& in, bool centred) {
+  nlohmann::json rows = nlohmann::json::array();
+  const std::array<double, 3> nominal = nominal_slopes(in.plan.airframe);
+  for (const std::size_t k : ranking(in.judged, centred)) {
+    const JudgedKind& kind = in.judged.kinds[k];
+    nlohmann::json row = {{"title", kind.kind.title},
+                          {"key", kind.kind.key},
+                          {"sees", word_of(kind.kind.reach)},
+                          {"exported", in.exported == k},
+                          {"badge", badge_of(in.verdicts[k].standing)},
+                          {"standing", word_of(in.verdicts[k].standing)},
+                          {"sentence", in.verdicts[k].sentence}};
+    row["figures"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < log_figures.size(); ++i) {
+      std::string label = log_figures[i].title;
+      if (label.find("R^2") == 0) label.replace(0, 3, "R²");
+      row["figures"].push_back(
+          {{"text", shown_figure(over_seeds(kind, log_figures[i]), i < 3 ? 1 : 1e3, i < 3 ? 3 : 1)}, {"label", label}});
+    }
+    const KindSlopes slopes = slopes_of(kind);
+    row["slopes"] = nlohmann::json::array();
+    for (std::size_t axis = 0; slopes.applicable && axis < 3; ++axis) {
+      row["slopes"].push_back({{"axis", axis_names[axis]},
+                               {"wrong", shown::number(100 * slopes.wrong_share[axis], 2)},
+                               {"is_wrong", slopes.wrong_share[axis] > 0},
+                               {"least", shown::number(slopes.least[axis] / nominal[axis], 2)},
+                               {"median", shown::number(slopes.median[axis] / nominal[axis], 2)}});
+    }
+    row["motors"] = nlohmann::json::array();
+    for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+      row["motors"].push_back({{"r2", shown_figure(over_seeds(kind, log_figures[0], motor), 1, 3)},
+                               {"rmse", shown_figure(over_seeds(kind, log_figures[3], motor), 1e3, 1)}});
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// Errors of the shown kinds over what the logs have of speed, battery and height.
+inline std::vector<ErrorsOver> errors_over(const LogPageInput& in, const std::vector<std::size_t>& shown) {
+  std::vector<ErrorsOver> all = {
+      {"speed", "m/s", {}, {}, {}}, {"battery", "V", {}, {}, {}}, {"height", "m", {}, {}, {}}};
+  std::vector<std::vector<const Predictions*>> predictions;
+  for (const std::size_t k : shown) predictions.push_back(shown_predictions(in, k));
+  for (ErrorsOver& over : all) {
+    over.error.resize(shown.size());
+    over.square.resize(shown.size());
+  }
+  std::vector<bool> known = {!in.dataset.lacks("velocity"), true, !in.dataset.lacks("altitude")};
+  for (std::size_t fold = 0; fold < in.plan.folds.size(); ++fold) {
+    std::size_t at = 0;
+    for (const pinnquad::FlightRows& piece : in.plan.folds[fold].split.test.pieces()) {
+      const pinnquad::ExtraColumn* battery = piece.flight->column("battery_voltage");
+      known[1] = known[1] && battery != nullptr;
+      for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row, ++at) {
+        if (!in.judged.counts[fold][at]) continue;
+        const pinnquad::Sample& sample = (*piece.flight)[row];
+        const double values[] = {sample.velocity_m_s.norm(), battery != nullptr ? battery->values[row] : 0,
+                                 sample.altitude_m};
+        for (std::size_t q = 0; q < all.size(); ++q) {
+          all[q].value.push_back(values[q]);
+          for (std::size_t i = 0; i < shown.size(); ++i) {
+            double mean = 0, square = 0;
+            for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+              const double error = (*predictions[i][fold])[at][motor] - sample.commands[motor];
+              mean += error / pinnquad::rotor_count;
+              square += error * error / pinnquad::rotor_count;
+            }
+            all[q].error[i].push_back(mean);
+            all[q].square[i].push_back(square);
+          }
+        }
+      }
+    }
+  }
+  std::vector<ErrorsOver> result;
+  for (std::size_t q = 0; q < all.size(); ++q) {
+    if (known[q]) result.push_back(std::move(all[q]));
+  }
+  return result;
+}
+
+/// Command sums of the rows that count, flown and predicted.
+inline std::array<AxisSeries, 3> counted_series(const LogPageInput& in, std::size_t kind) {
+  const pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe{in.plan.airframe.name, in.plan.airframe.value};
+  const auto predictions = shown_predictions(in, kind);
+  std::array<AxisSeries, 3> all;
+  for (std::size_t fold = 0; fold < in.plan.folds.size(); ++fold) {
+    const auto of_fold = axis_series(airframe, in.plan.folds[fold].split.test, *predictions[fold]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < of_fold[axis].target.size(); ++i) {
+        if (!in.judged.counts[fold][i]) continue;
+        all[axis].angular_acceleration.push_back(of_fold[axis].angular_acceleration[i]);
+        all[axis].target.push_back(of_fold[axis].target[i]);
+        all[axis].predicted.push_back(of_fold[axis].predicted[i]);
+      }
+    }
+  }
+  return all;
+}
+
+/// Speed and the rest at a moment, as far as the logs have it.
+inline std::string facts_of(const LogMoment& moment, const ImportedDataset& dataset) {
+  const MomentFacts facts = facts_at((*moment.flight)[moment.row]);
+  const pinnquad::ExtraColumn* battery = moment.flight->column("battery_voltage");
+  std::string text =
+      "error " + shown::number(1e3 * moment.error, 1) + " ×10⁻³, most on u" + std::to_string(moment.motor + 1);
+  if (!dataset.lacks("velocity")) text += " · speed " + shown::number(facts.speed_m_s, 1) + " m/s";
+  text += " · tilt " + shown::number(facts.tilt_deg, 0) + "°";
+  if (!dataset.lacks("altitude")) text += " · height " + shown::number(facts.altitude_m, 1) + " m";
+  if (battery != nullptr) text += " · battery " + shown::number(battery->values[moment.row], 2) + " V";
+  return text;
+}
+
+inline nlohmann::json moments_json(const LogPageInput& in, const std::vector<std::size_t>& shown) {
+  constexpr std::size_t told = 8, drawn = 4;
+  nlohmann::json list = nlohmann::json::array();
+  const auto moments = worst_moments(in.plan.folds, shown_predictions(in, shown.front()), in.judged.counts, told);
+  for (const LogMoment& moment : moments) {
+    const pinnquad::Sample& sample = (*moment.flight)[moment.row];
+    const auto replay = in.replays.find(moment.flight->name);
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.2f", std::max(0.0, sample.time_s - 1));
+    nlohmann::json one = {{"flight", moment.flight->name},
+                          {"time", shown::number(sample.time_s, 2)},
+                          {"motor", "u" + std::to_string(moment.motor + 1)},
+                          {"facts", facts_of(moment, in.dataset)},
+                          {"happened", what_happened(moment, in.dataset)},
+                          {"replay", replay == in.replays.end() ? nlohmann::json(false)
+                                                                : nlohmann::json(replay->second + "#t=" + seconds)},
+                          {"drawing", false}};
+    if (list.size() < drawn) {
+      std::vector<const Predictions*> predictions;
+      for (const std::size_t k : shown) predictions.push_back(shown_predictions(in, k)[moment.fold]);
+      for (const pinnquad::FlightRows& piece : in.plan.folds[moment.fold].split.test.pieces()) {
+        if (piece.flight == moment.flight) {
+          one["drawing"] = moment_drawing(moment, piece, in.judged, shown, predictions);
+        }
+      }
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+inline std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+inline nlohmann::json folds_json(const LogPlan& plan) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Fold& fold : plan.folds) {
+    rows.push_back({{"held_out", listed(fold.held_out)},
+                    {"held_out_rows", fold.split.test.size()},
+                    {"validation", (fold.part_validates ? "last fifth of " : "") + listed(fold.validation)},
+                    {"validation_rows", fold.split.validation.size()},
+                    {"train", listed(fold.train)},
+                    {"train_rows", fold.split.train.size()}});
+  }
+  return rows;
+}
+
+inline nlohmann::json or_false(const std::string& text) {
+  return text.empty() ? nlohmann::json(false) : nlohmann::json(text);
+}
+
+}  // namespace detail
+
+/// The whole page.
+inline std::string log_page(const LogPageInput& in) {
+  constexpr std::size_t most_named = 6;  // held-out flights in the first sentence; all are in the last section
+  const std::vector<std::size_t> shown = detail::shown_kinds(in);
+  std::size_t rows = 0;
+  for (const std::size_t of_fold : in.judged.rows) rows += of_fold;
+  nlohmann::json page = {
+      {"held_out", detail::or_false(in.judged.flights.size() <= most_named ? detail::listed(in.judged.flights) : "")},
+      {"flight_count", in.judged.flights.size()},
+      {"rows", rows},
+      {"all_rows", in.dataset.flights.rows()},
+      {"seeds", in.plan.seeds},
+      {"rotated", in.plan.folds.size() > 1},
+      {"fewest_pairs", fewest_pairs},
+      {"can_decide", in.judged.flights.size() >= fewest_pairs},
+      {"export_sentence", in.export_sentence},
+      {"airframe", in.plan.airframe.name},
+      {"causal", detail::table_rows(in, false)},
+      {"centred", detail::table_rows(in, true)},
+      {"not_applicable", nlohmann::json::array()},
+      {"folds", detail::folds_json(in.plan)},
+      {"steps", nlohmann::json::array()},
+      {"notes", in.dataset.notes},
+      {"warnings", in.report["warnings"]},
+      {"period", shown::number(1e3 * in.dataset.sample_period_s, 1)},
+      {"lag", shown::number(1e3 * in.dataset.lag_removed_s, 0)},
+      {"absent", detail::or_false(detail::listed(in.dataset.absent))},
+      {"headline", false},
+      {"closed_loop", false},
+      {"moments", nlohmann::json::array()},
+      {"shown", false},
+      {"replays", !in.replays.empty()}};
+  for (const JudgedKind& kind : in.judged.kinds) {
+    if (!kind.applicable())
+      page["not_applicable"].push_back({{"title", kind.kind.title}, {"reason", kind.not_applicable}});
+  }
+  for (const ImportStep& step : in.dataset.steps) {
+    page["steps"].push_back({{"step", step.name},
+                             {"before", step.rows_before},
+                             {"after", step.rows_after},
+                             {"lost", step.rows_before - std::min(step.rows_before, step.rows_after)},
+                             {"told", step.told}});
+  }
+  if (in.report.contains("closed_loop") && in.report["closed_loop"].contains("model")) {
+    const nlohmann::json& flown = in.report["closed_loop"];
+    page["closed_loop"] = {{"period", shown::number(flown["period_s"], 1)},
+                           {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)},
+                           {"flown", nlohmann::json::array()}};
+    const std::pair<const char*, const char*> policies[] = {
+        {"model", "the exported model"}, {"formula", "the vehicle's own formula"}, {"hover_trim", "none, hover trim"}};
+    for (const auto& [key, name] : policies) {
+      page["closed_loop"]["flown"].push_back(
+          {{"name", name},
+           {"rmse", shown::number(100 * flown[key]["rmse_m"].get<double>(), 1)},
+           {"largest", shown::number(100 * flown[key]["largest_error_m"].get<double>(), 1)},
+           {"time", shown::number(flown[key]["flown_s"], 0)},
+           {"status", flown[key]["status"]}});
+    }
+  }
+  if (in.exported) {
+    const JudgedKind& kind = in.judged.kinds[*in.exported];
+    const LogVerdict& verdict = in.verdicts[*in.exported];
+    page["headline"] = {{"title", kind.kind.title},
+                        {"r2", shown::number(detail::r2_of(kind), 3)},
+                        {"unbiased", shown::number(pinnquad::summarize(over_seeds(kind, log_figures[1])).mean, 3)},
+                        {"rmse", shown::number(1e3 * pinnquad::summarize(over_seeds(kind, log_figures[3])).mean, 1)},
+                        {"standing", word_of(verdict.standing)},
+                        {"sentence", verdict.sentence}};
+  }
+  if (!shown.empty()) {
+    page["shown"] = {{"name", in.judged.kinds[shown.front()].kind.title},
+                     {"flights", flights_drawing(in.judged, shown)},
+                     {"over", detail::or_false(errors_over_drawing(in.judged, shown, detail::errors_over(in, shown)))},
+                     {"ellipses", ellipses_drawing({{"held out", in.judged.kinds[shown.front()].kind.title,
+                                                     detail::counted_series(in, shown.front())}},
+                                                   "model")}};
+    page["moments"] = detail::moments_json(in, shown);
+  }
+  return filled_page(log_page_template, std::move(page));
+}
+
+}  // namespace programs

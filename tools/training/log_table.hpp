@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// The table of models on standard output: those that fly on measured motion, then those that look ahead, then those that can't be
+// judged, each with its verdict.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "training/log_figures.hpp"
+#include "training/log_verdict.hpp"
+
+namespace programs {
+namespace detail {
+
+inline void print_kind(const LogJudgement& judged, const std::vector<LogVerdict>& verdicts, std::size_t k) {
+  const JudgedKind& kind = judged.kinds[k];
+  std::printf("  %-38s %-8s", kind.kind.title, word_of(kind.kind.reach));
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::printf("  %15s", mean_and_deviation(over_seeds(kind, log_figures[i]), 1, 3).c_str());
+  }
+  std::printf("  %15s", mean_and_deviation(over_seeds(kind, log_figures[3]), 1e3, 2).c_str());
+  const KindSlopes slopes = slopes_of(kind);
+  double wrong = 0;
+  for (const double share : slopes.wrong_share) wrong = std::max(wrong, share);
+  if (slopes.applicable) {
+    std::printf("  %7.2f\n", 100 * wrong);
+  } else {
+    std::printf("  %7s\n", "-");
+  }
+  std::printf("      %s\n", verdicts[k].sentence.c_str());
+}
+
+}  // namespace detail
+
+inline void print_log_table(const LogPlan& plan, const LogJudgement& judged, const std::vector<LogVerdict>& verdicts) {
+  std::size_t rows = 0;
+  for (const std::size_t of_fold : judged.rows) rows += of_fold;
+  std::printf("  held out: %zu rows of %zu flights%s; mean +- deviation over the seeds\n", rows, judged.flights.size(),
+              plan.folds.size() > 1 ? ", in turn" : "");
+  std::printf("  %-38s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "sees", "R^2", "flight's bias", "bias of the",
+              "RMSE, 1e-3", "wrong");
+  std::printf("  %-38s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "", "", "removed", "first 4 s rem.", "", "slope %");
+  for (const bool centred : {false, true}) {
+    const std::vector<std::size_t> order = ranking(judged, centred);
+    if (order.empty()) continue;
+    std::printf("  %s\n", centred ? "looking ahead: for planned trajectories only" : "for flight on measured motion");
+    for (const std::size_t k : order) detail::print_kind(judged, verdicts, k);
+  }
+  for (const JudgedKind& kind : judged.kinds) {
+    if (!kind.applicable()) std::printf("  %-38s not applicable: %s\n", kind.kind.title, kind.not_applicable.c_str());
+  }
+}
+
+inline void print_folds(const std::vector<Fold>& folds) {
+  const auto listed = [](const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + pinnquad::printable(name);
+    return text;
+  };
+  for (const Fold& fold : folds) {
+    std::printf("      held out: %s (%zu rows)\n", listed(fold.held_out).c_str(), fold.split.test.size());
+    std::printf("        validate: %s%s (%zu rows)\n", fold.part_validates ? "the last fifth of " : "",
+                listed(fold.validation).c_str(), fold.split.validation.size());
+    std::printf("        train: %s (%zu rows)\n", listed(fold.train).c_str(), fold.split.train.size());
+  }
+}
+
+}  // namespace programs

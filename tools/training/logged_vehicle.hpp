@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// A vehicle that turns and climbs by its commands as the flights of a log do: what a model of these logs can be flown on. Its mass
+// is 1 kg and its arms are as they are given, for the logs say nothing of them: thrust per mass and torque per inertia are theirs.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pinnquad/core/rotation.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/evaluation/joint_moments.hpp"
+
+namespace programs {
+
+/// What all four commands do together, by least squares.
+struct CommandEffects {
+  double thrust_m_s2 = 0;               ///< specific force along -z per sum of the commands
+  std::array<double, 3> turn_rad_s2{};  ///< angular acceleration about x, y, z per signed command sum
+};
+
+/// Specific force of a row: v_dot + omega x v - R^T g.
+inline pinnquad::Vector3<double> specific_force(const pinnquad::Sample& sample) {
+  const auto attitude =
+      pinnquad::from_euler(pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+  return sample.linear_acceleration_m_s2 + pinnquad::cross<double>(sample.body_rates_rad_s, sample.velocity_m_s) -
+         pinnquad::standard_gravity_m_s2<double> * pinnquad::world_down_axis(attitude);
+}
+
+/// The thrust through the origin, so that the hover is right; the turns with a trim.
+inline CommandEffects command_effects(const pinnquad::RowSet& rows,
+                                      const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs) {
+  CommandEffects effects;
+  double product = 0, square = 0;
+  std::array<std::vector<double>, 3> sums, turns;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const pinnquad::Sample& sample = rows[row];
+    double all = 0;
+    for (const double u : sample.commands) all += u;
+    product -= all * specific_force(sample)[2];
+    square += all * all;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sums[axis].push_back(pinnquad::signed_sum(signs[axis], sample.commands));
+      turns[axis].push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
+    }
+  }
+  effects.thrust_m_s2 = product / square;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const pinnquad::JointMoments moments = pinnquad::joint_moments(sums[axis], turns[axis]);
+    effects.turn_rad_s2[axis] = moments.covariance / moments.variance_x;
+  }
+  return effects;
+}
+
+/// The arms and the motor order of `like`, the effects of the rows. None where the rows show no vehicle: a command that does not
+/// lift or turns the wrong way, or one that can't hover.
+inline std::optional<pinnquad::Airframe<double>> logged_vehicle(const pinnquad::Airframe<double>& like,
+                                                                const CommandEffects& effects) {
+  constexpr double propeller_m = 0.2, rev_s = 100, pi = 3.141592653589793;
+  const double thrust_N = effects.thrust_m_s2;  // of one rotor of a vehicle of 1 kg
+  if (!(thrust_N > 0)) return {};
+  for (const double turn : effects.turn_rad_s2) {
+    if (!(turn > 0)) return {};
+  }
+  pinnquad::Airframe<double> made{};
+  made.mass_kg = 1;
+  double arm_x_m = 0, arm_y_m = 0;
+  for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
+    made.rotors[i].x_m = like.rotors[i].x_m;
+    made.rotors[i].y_m = like.rotors[i].y_m;
+    made.rotors[i].spin = like.rotors[i].spin;
+    arm_x_m += std::abs(like.rotors[i].x_m) / pinnquad::rotor_count;
+    arm_y_m += std::abs(like.rotors[i].y_m) / pinnquad::rotor_count;
+  }
+  const double rated = pinnquad::rated_air_density_kg_m3<double> * rev_s * rev_s * std::pow(propeller_m, 4);
+  made.inertia_kg_m2 = {arm_y_m * thrust_N / effects.turn_rad_s2[0], arm_x_m * thrust_N / effects.turn_rad_s2[1], 0};
+  made.inertia_kg_m2[2] = 0.9 * (made.inertia_kg_m2[0] + made.inertia_kg_m2[1]);  // flat, as quadrotors are
+  made.propeller_diameter_m = propeller_m;
+  made.max_rotor_speed_rev_s = rev_s;
+  made.thrust_coefficient = thrust_N / rated;
+  made.power_coefficient = 2 * pi * effects.turn_rad_s2[2] * made.inertia_kg_m2[2] / (rated * propeller_m);
+  made.rotor_time_constant_s = like.rotor_time_constant_s;
+  if (pinnquad::check_airframe(made) != pinnquad::Status::ok) return {};
+  if (pinnquad::Rotors<double>(made).status() != pinnquad::Status::ok) return {};
+  return made;
+}
+
+}  // namespace programs
