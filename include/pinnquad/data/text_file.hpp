@@ -43,6 +43,7 @@ class TextFile {
     return count;
   }
   const std::string& path() const noexcept { return path_; }
+  std::uintmax_t bytes_read() const noexcept { return read_; }
 
  private:
   static constexpr const char* expected = "a readable file";
@@ -132,6 +133,8 @@ class CsvRecords {
 
   /// Where the last record begins, from 1.
   std::size_t line() const noexcept { return line_; }
+  /// Bytes of the file up to the last record's end.
+  std::uintmax_t bytes() const noexcept { return file_.bytes_read() - (end_ - begin_); }
   /// Whether there are quotation marks in the last record.
   bool has_quotes() const noexcept { return has_quotes_; }
 

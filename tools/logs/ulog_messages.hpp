@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// A ULog file message by message: through its sections, on behind bytes that make no sense, up to where it was cut.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "logs/ulog_types.hpp"
+#include "pinnquad/data/file_error.hpp"
+
+namespace programs::ulog {
+
+struct Message {
+  char type = 0;
+  std::string_view content;
+  std::uint64_t place = 0;  ///< of its header's first byte in the file
+};
+
+/// What a reader made of a message.
+enum class Taken { yes, unknown };
+
+/// Hands over every message of a file. A message that a crash cut is left out. What is wrong is an error before the first row of
+/// data, where all is needed; behind it, the walk goes on at the next sync message. What is lost is said in `warnings`.
+class Messages {
+ public:
+  Messages(std::string_view file, std::string name, std::vector<std::string>& warnings)
+      : file_(file), name_(std::move(name)), warnings_(warnings) {}
+
+  /// `reader.take(message)` may throw BadMessage; `reader.fits(message)` says whether one is as its type demands;
+  /// `reader.in_data()` whether a row has been read; `reader.progress(bytes)` is told how far the walk is.
+  /// Throws InputError: no ULog file, one of an incompatible kind, a bad message before the data.
+  template <class Reader>
+  void walk(Reader& reader) {
+    check_header();
+    for (const auto& [begin, end] : sections()) {
+      position_ = begin;
+      end_ = end;
+      while (position_ < end_) {
+        reader.progress(position_);
+        try {
+          step(reader);
+        } catch (const BadMessage& bad) {
+          if (!reader.in_data()) refuse(position_, bad.expected, bad.found);
+          resynchronise(bad);
+        }
+      }
+    }
+    if (unknown_ > 0) {
+      warn(first_unknown_, std::to_string(unknown_) + (unknown_ == 1 ? " message" : " messages") +
+                               " of unknown type or of a topic that was not announced left out, this the first");
+    }
+    if (unsaid_ > 0) warnings_.push_back(shown() + ": " + std::to_string(unsaid_) + " more places like these");
+  }
+
+  /// For a reader's own warnings.
+  void warn(std::uint64_t place, const std::string& what) {
+    constexpr std::size_t most = 20;
+    if (warnings_.size() >= most) {
+      ++unsaid_;
+    } else {
+      warnings_.push_back(shown() + ": byte " + std::to_string(place) + ": " + what);
+    }
+  }
+
+ private:
+  using Section = std::pair<std::uint64_t, std::uint64_t>;
+
+  std::string shown() const { return pinnquad::printable(name_); }
+
+  [[noreturn]] void refuse(std::uint64_t place, const std::string& expected, const std::string& found) const {
+    throw pinnquad::InputError(name_, 0, 0, expected + " at byte " + std::to_string(place), found);
+  }
+
+  void check_header() {
+    if (file_.substr(0, magic.size()) != magic) {
+      throw pinnquad::InputError(name_, 0, 0, "a ULog file, which begins with ULog 01 12 35 (hexadecimal)",
+                                 file_.size() < magic.size() && magic.substr(0, file_.size()) == file_
+                                     ? "only " + std::to_string(file_.size()) + " bytes"
+                                     : "other bytes");
+    }
+    if (file_.size() < file_header_size) {
+      throw pinnquad::InputError(name_, 0, 0, "a header of 16 bytes", "only " + std::to_string(file_.size()));
+    }
+    const auto version = static_cast<std::uint8_t>(file_[version_place]);
+    if (version > newest_known_version) {
+      warn(version_place, "version " + std::to_string(version) + " of the format, which is newer than this reader");
+    }
+  }
+
+  /// The log itself, and what a crash dump appended to it.
+  std::vector<Section> sections() {
+    const std::uint64_t size = file_.size();
+    Message flags;
+    if (!whole(file_header_size, size, flags) || flags.type != 'B') return {{file_header_size, size}};
+    const std::uint64_t after = file_header_size + message_header_size + flags.content.size();
+    if (flags.content.size() < FlagBits::size) {
+      refuse(file_header_size, "flag bits of 40 bytes", std::to_string(flags.content.size()));
+    }
+    const std::string_view incompatible = flags.content.substr(FlagBits::incompatible, 8);
+    const auto first = static_cast<unsigned char>(incompatible[0]);
+    if ((first & ~FlagBits::data_appended) != 0 || incompatible.find_first_not_of('\0', 1) != std::string_view::npos) {
+      refuse(file_header_size, "a log that this reader can take in",
+             "one whose flag bits say that it needs a newer one");
+    }
+    std::vector<Section> result;
+    std::uint64_t begin = after;
+    for (std::size_t i = 0; i < FlagBits::offset_count && (first & FlagBits::data_appended) != 0; ++i) {
+      const auto offset = little_endian<std::uint64_t>(flags.content.data() + FlagBits::offsets + 8 * i);
+      if (offset == 0) break;
+      if (offset < begin) {
+        refuse(file_header_size, "data appended behind byte " + std::to_string(begin),
+               "at byte " + std::to_string(offset));
+      }
+      if (offset > size) {
+        warn(size, "the file ends here, before the data that were appended to it at byte " + std::to_string(offset));
+        break;
+      }
+      result.emplace_back(begin, offset);
+      begin = offset;
+    }
+    result.emplace_back(begin, size);
+    return result;
+  }
+
+  /// The message whose header begins there; false where it does not end before `end`.
+  bool whole(std::uint64_t place, std::uint64_t end, Message& message) const {
+    if (end - place < message_header_size) return false;
+    const char* const header = file_.data() + place;
+    const auto size = little_endian<std::uint16_t>(header);
+    if (size > end - place - message_header_size) return false;
+    message = {header[2], file_.substr(place + message_header_size, size), place};
+    return true;
+  }
+
+  std::uint64_t next_sync(std::uint64_t from) const {
+    const std::size_t found = file_.substr(0, end_).find(sync_message, from);
+    return found == std::string_view::npos ? end_ : found;
+  }
+
+  template <class Reader>
+  void step(Reader& reader) {
+    Message message;
+    if (!whole(position_, end_, message)) {
+      if (next_sync(position_ + 1) < end_)
+        throw BadMessage{"a message that ends before the next sync message", "a longer one"};
+      warn(position_, "the log ends in the middle of a message; what stands before it has been read");
+      position_ = end_;
+      return;
+    }
+    const std::uint64_t next = position_ + message_header_size + message.content.size();
+    if (message.type != 'D' && message.content.find(sync_message) != std::string_view::npos) {
+      throw BadMessage{"a message that ends before the next sync message", "a longer one"};
+    }
+    if (reader.take(message) == Taken::unknown) {
+      // of a newer logger, which is to be ignored, or of bytes that were damaged: then what follows makes no sense either
+      Message following;
+      if (next < end_ && !(whole(next, end_, following) && reader.fits(following))) {
+        throw BadMessage{"a message of a known type and topic", "another one, and no message behind it"};
+      }
+      if (unknown_++ == 0) first_unknown_ = position_;
+    }
+    position_ = next;
+  }
+
+  void resynchronise(const BadMessage& bad) {
+    const std::uint64_t next = next_sync(position_ + 1);
+    const std::string lost = std::to_string(next - position_);
+    warn(position_,
+         "expected " + bad.expected + ", found " + bad.found + ": " + lost +
+             (next < end_ ? " bytes left out, up to the next sync message" : " bytes left out, up to the end"));
+    position_ = next;
+  }
+
+  std::string_view file_;
+  std::string name_;
+  std::vector<std::string>& warnings_;
+  std::uint64_t position_ = 0, end_ = 0;
+  std::uint64_t first_unknown_ = 0;
+  std::size_t unknown_ = 0, unsaid_ = 0;
+};
+
+}  // namespace programs::ulog
