@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/json_file.hpp"
 #include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "report/rows.hpp"
@@ -61,18 +62,8 @@ inline void read_planned_model(const nlohmann::json& model, StudySettings& setti
 
 /// Throws InputError with line and column where the file is no JSON object; where it is that of another kind of study.
 inline StudySettings read_study_settings(const std::string& path) {
-  const std::string text = pinnquad::file_text(path);
   StudySettings settings;
-  try {
-    settings.all = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
-    const auto before = text.begin() + static_cast<std::ptrdiff_t>(at);
-    const std::size_t line = 1 + static_cast<std::size_t>(std::count(text.begin(), before, '\n'));
-    const std::size_t start = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
-    const std::size_t column = start == std::string::npos ? at + 1 : at - start;
-    throw pinnquad::InputError(path, line, column, "JSON", at < text.size() ? "something else" : "its end");
-  }
+  settings.all = programs::read_json_file(path);
   if (!settings.all.is_object()) throw pinnquad::InputError(path, 1, 1, "a JSON object", settings.all.type_name());
   const auto find = [&](const char* key) { return settings.all.value(key, nlohmann::json()); };
   if (find("kind").is_string() && find("kind") != "table 2") {

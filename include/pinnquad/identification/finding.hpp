@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// What a check of a log has to say: which check, its number, one sentence for the person who flew.
+#pragma once
+
+#include <string>
+
+namespace pinnquad {
+
+struct Finding {
+  std::string check;     ///< "rate_frame", "motor_order": for scripts
+  double number = 0;     ///< by which it was decided, in `unit`
+  std::string unit;      ///< "1" for a share or a ratio
+  std::string sentence;  ///< what was seen, and what to do
+};
+
+}  // namespace pinnquad

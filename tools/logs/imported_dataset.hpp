@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// What `import` makes of flight logs: flights on one clock, and what was done to get them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "pinnquad/data/dataset.hpp"
+
+namespace programs {
+
+/// One thing that was done to the rows, and what it cost.
+struct ImportStep {
+  std::string name;  ///< "saturated"
+  std::size_t rows_before = 0;
+  std::size_t rows_after = 0;
+  std::string told;  ///< how, in a few words: "a command below 0.005 or above 0.995"
+};
+
+/// Flights as a training takes them. Row k holds the commands that cause the motion of row k. Where velocity is absent, the
+/// linear acceleration is specific force + R^T g: what it is with v = 0.
+struct ImportedDataset {
+  pinnquad::Dataset flights;
+  std::vector<std::string> sources;  ///< the log of each flight
+  std::vector<std::string> absent;  ///< quantities that the logs lack, filled with 0: "velocity", "altitude", "heading"
+  double sample_period_s = 0;
+  double lag_removed_s = 0;  ///< by how much later than told the commands stand in the rows
+  std::string airframe;
+  std::string mapping;
+  std::vector<ImportStep> steps;
+  std::vector<std::string> warnings;
+
+  bool lacks(const std::string& quantity) const {
+    for (const std::string& missing : absent) {
+      if (missing == quantity) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace programs
