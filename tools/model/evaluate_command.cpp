@@ -81,7 +81,8 @@ Evaluation evaluated(const programs::Block& block, const programs::Identity& ide
         {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]), static_cast<double>(u[3])});
   }
   const programs::NetworkDerivatives<Features, Outputs> derivatives(
-      identity.network, block.parameters, programs::scaler_of<double, Features::size>(block.input_mean, block.input_spread),
+      identity.network, block.parameters,
+      programs::scaler_of<double, Features::size>(block.input_mean, block.input_spread),
       programs::scaler_of<double, OutputMap<Outputs>::size>(block.output_mean, block.output_spread),
       programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value));
   result.wrong_derivatives = programs::wrong_derivative_shares(rows, [&](const Sample& sample) {
@@ -157,8 +158,8 @@ int evaluate(const Options& options) {
   if (!(evaluation.golden_difference <= golden_tolerance)) {
     throw InputError(block.path, 0, 0, "golden commands that its weights give", "others");
   }
-  programs::Judgement judged =
-      programs::judge(programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value), rows, evaluation.predictions);
+  programs::Judgement judged = programs::judge(
+      programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value), rows, evaluation.predictions);
   judged.wrong_derivative_share = evaluation.wrong_derivatives;
   if (options.json) {
     print_json(options, block, identity, dataset, rows, evaluation, judged);

@@ -18,24 +18,26 @@ namespace programs {
 /// declines. `training`: TrainingGuard alone, as an InverseDynamics that names no guard.
 enum class ReplayGuard { flight_stack, training };
 
-namespace detail {
-
-using FallbackFormula = pinnquad::AnalyticInverse<pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>>;
-using FlightStackGuard =
-    pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<flight_stacks::AbsurdCommands>,
-                     pinnquad::Fallback<FallbackFormula>>;
+/// The guard that flies.
+using FlightStackController = flight_stacks::NeuralController<RunTimeShape<pinnquad::PaperFeatures, float>,
+                                                              RunTimeView<pinnquad::PaperFeatures, float>>;
+using FlightStackGuard = FlightStackController::Guard;
+using FallbackFormula = FlightStackController::Formula;
 
 /// The airframe as flight code has it: of the program's own airframes the type's numbers, else each rounded.
 inline pinnquad::Airframe<float> flying_airframe(const NamedAirframe& airframe) {
   pinnquad::Airframe<float> result = pinnquad::airframe_in<float>(airframe.value);
   each_airframe([&](auto tag) {
     using Vehicle = typename decltype(tag)::type;
-    const bool same = airframe.name == Vehicle::name &&
-                      airframe.value.mass_kg == pinnquad::airframe_value<Vehicle, double>().mass_kg;
+    const bool same =
+        airframe.name == Vehicle::name &&
+        pinnquad::detail::equal(airframe.value.mass_kg, pinnquad::airframe_value<Vehicle, double>().mass_kg);
     if (same) result = pinnquad::airframe_value<Vehicle, float>();
   });
   return result;
 }
+
+namespace detail {
 
 /// "window of 4 instants, 60 ms: ..." is what warming_up says in words.
 template <class Features>
@@ -61,7 +63,8 @@ class FlightReplay {
 
   /// `on_row()` is called after each.
   template <class OnRow>
-  void run(const pinnquad::Flight& flight, std::size_t index, std::vector<ReplayedRow>& rows, const OnRow& on_row) const {
+  void run(const pinnquad::Flight& flight, std::size_t index, std::vector<ReplayedRow>& rows,
+           const OnRow& on_row) const {
     const pinnquad::FlightInputs<Inputs> recorded({&flight, {0, flight.size()}});
     for (std::size_t row = 0; row < flight.size(); ++row) {
       ReplayedRow result;
@@ -140,7 +143,7 @@ void replay_flights(const Block& block, const Identity& identity, ReplayGuard gu
     using Features = decltype(features);
     using View = RunTimeView<Features, decltype(scalar)>;
     const View view = View::of(block, identity, outputs);
-    const pinnquad::Quadrotor<float, pinnquad::QuadraticDrag> vehicle(detail::flying_airframe(identity.airframe));
+    const pinnquad::Quadrotor<float, pinnquad::QuadraticDrag> vehicle(flying_airframe(identity.airframe));
     const auto run = [&](const auto& replay) {
       for (std::size_t i = 0; i < flights.size(); ++i) replay.run(flights[i], i, replayed.rows, on_row);
     };
@@ -148,8 +151,8 @@ void replay_flights(const Block& block, const Identity& identity, ReplayGuard gu
       using Inverse = pinnquad::InverseDynamics<View, pinnquad::TrainingGuard>;
       run(detail::FlightReplay<Inverse, Features>(view, {}));
     } else {
-      using Inverse = pinnquad::InverseDynamics<View, detail::FlightStackGuard>;
-      run(detail::FlightReplay<Inverse, Features>(view, detail::FlightStackGuard(detail::FallbackFormula(vehicle))));
+      using Inverse = pinnquad::InverseDynamics<View, FlightStackGuard>;
+      run(detail::FlightReplay<Inverse, Features>(view, FlightStackGuard(FallbackFormula(vehicle))));
     }
   });
 }

@@ -27,7 +27,8 @@ class ReasonOf {
     using pinnquad::Status;
     switch (cause) {
       case Status::ok: return "";
-      case Status::limited: return report.features_clamped ? "a feature was moved into the envelope" : "commands clipped";
+      case Status::limited:
+        return report.features_clamped ? "a feature was moved into the envelope" : "commands clipped";
       case Status::not_finite: return not_finite(x);
       case Status::not_unit_quaternion: return "the attitude is no unit quaternion";
       case Status::outside_envelope: return outside(report, x);
@@ -44,7 +45,8 @@ class ReasonOf {
     const auto i = static_cast<std::size_t>(feature);
     const std::string unit = std::string(Features::units[i]) == "1" ? "" : std::string(" ") + Features::units[i];
     if (!std::isfinite(value)) return std::string(name(feature)) + (std::isnan(value) ? " is NaN" : " is infinite");
-    const auto lower = static_cast<double>(view_.envelope_lower[i]), upper = static_cast<double>(view_.envelope_upper[i]);
+    const auto lower = static_cast<double>(view_.envelope_lower[i]),
+               upper = static_cast<double>(view_.envelope_upper[i]);
     const bool below = value < lower;
     return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(feature), value, unit.c_str(),
                     below ? "below" : "above", below ? lower : upper, half_widths);
@@ -68,7 +70,7 @@ class ReasonOf {
         beyond(report.worst_feature, static_cast<double>(x[worst]), static_cast<double>(report.excess[worst]));
     std::string others;
     for (std::size_t i = 0; i < report.excess.size(); ++i) {
-      if (i == worst || report.excess[i] == Scalar(0)) continue;
+      if (i == worst || pinnquad::detail::equal(report.excess[i], Scalar(0))) continue;
       others += (others.empty() ? "" : ", ") + std::string(Features::names[i]);
     }
     return others.empty() ? reason : reason + "; outside too: " + others;

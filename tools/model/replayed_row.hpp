@@ -41,6 +41,7 @@ struct ReplayedRow {
   Answerer answerer = Answerer::nobody;
   FourCommands commands = no_commands;  ///< NaN where there are none
   FourCommands logged = no_commands;    ///< those of the log
+  std::string reaction;                 ///< of a core
   std::string feature;                  ///< the one furthest outside the envelope
   double excess = 0;                    ///< by how many half-widths of its range
   std::string state;   ///< what it does, in a few words: an event is a row whose state is another than the one's before
@@ -53,9 +54,9 @@ struct Replayed {
   std::vector<std::string> flights;  ///< their names
   std::vector<ReplayedRow> rows;
   std::vector<std::string> notes;
-  bool of_core = false;            ///< a record of a core, run by a core
-  std::size_t compared = 0;        ///< of a core: ticks whose state is known
-  std::size_t at_the_edge = 0;     ///< differ by rounding alone: a feature on the border of the envelope
+  bool of_core = false;         ///< a record of a core, run by a core
+  std::size_t compared = 0;     ///< of a core: ticks whose state is known
+  std::size_t at_the_edge = 0;  ///< differ by rounding alone: a feature on the border of the envelope
 };
 
 /// The largest difference of a command; NaN where there is nothing to compare. `rotor`: which, from 0.

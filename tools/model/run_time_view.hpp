@@ -65,7 +65,7 @@ class RunTimeView {
   using FeatureVector = std::array<Scalar, static_cast<std::size_t>(Features::size)>;
 
   pinnquad::Scaler<Scalar, Features::size> input{};
-  pinnquad::Scaler<Scalar, pinnquad::rotor_count> output{};  ///< leaves commands as they are
+  pinnquad::Scaler<Scalar, pinnquad::rotor_count> output{};                       ///< leaves commands as they are
   FeatureVector envelope_lower = pinnquad::detail::ones<Scalar, Features::size>;  ///< as made, it is empty
   FeatureVector envelope_upper{};
   std::vector<FeatureVector> golden_features;
