@@ -29,6 +29,7 @@ int record(const std::string& folder, const Target& target) {
   write(folder + "/sound.block", sound_block<Model>());
   write(folder + "/other.block", other_block<Model>());
   write(folder + "/narrow.block", narrow_block<Model>());
+  write(folder + "/bit.block", bit_block<Model>());
   std::array<Fault, fault_script.size() + 1> faults{};
   std::copy(fault_script.begin(), fault_script.end(), faults.begin());
   faults.back() = {30.5, 1.5, FaultKind::flown_by_hand, 0, "flown by hand for 1.5 s", Reaction::gives_up};

@@ -72,7 +72,8 @@ std::string bad_numbers(const char* name, const float (&values)[Count]) {
 class CoreWords {
  public:
   explicit CoreWords(const flight_stacks::CoreSettings& settings)
-      : limits_us_{settings.body_rates_us, settings.attitude_us, settings.local_us, settings.set_point_us} {}
+      : settings_(settings),
+        limits_us_{settings.body_rates_us, settings.attitude_us, settings.local_us, settings.set_point_us} {}
 
   void forget() { inputs_ = {}; }
 
@@ -96,6 +97,10 @@ class CoreWords {
       if ((report.stale_inputs() >> i & 1u) == 0) continue;
       words += (words.empty() ? "" : "; ") + std::string(core_input_names[i]) + ": " + stale(i, now_us);
     }
+    if (report.reaction != flight_stacks::Reaction::gives_up) return words;
+    const bool keeps = report.body_rates_stale || report.attitude_stale;
+    if (keeps) words += in_words("; commands are kept for %.0f ms at most", 1e-3 * settings_.keep_us);
+    if (!keeps && report.local_stale) words += in_words("; it levels for %.0f ms at most", 1e-3 * settings_.level_us);
     return words;
   }
 
@@ -118,6 +123,7 @@ class CoreWords {
     return in.refused ? words + "; the last sample was refused: " + in.why : words;
   }
 
+  flight_stacks::CoreSettings settings_;
   std::array<Input, 4> inputs_{};
   std::array<std::uint32_t, 4> limits_us_;
 };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -78,7 +79,7 @@ class CoreReplay {
     take_model(model);
     ReplayedRow row;
     row.row = record.tick;
-    row.time_s = 1e-6 * static_cast<double>(record.timestamp);
+    row.time_s = static_cast<double>(record.timestamp) / 1e6;
     take_inputs(record, record.came);
     flight_stacks::StepReport report;
     pinnquad::Commands<float> commands{};
@@ -90,7 +91,7 @@ class CoreReplay {
       compare(record, report, row, replayed);
     }
     if (!report.set_point_stale) holding_unknown_ = false;
-    if (row.answerer != Answerer::nobody) answer_unknown_ = false;
+    if (row.answerer == Answerer::model || row.answerer == Answerer::formula) answer_unknown_ = false;
     last_tick_ = record.tick;
     return row;
   }
@@ -182,15 +183,18 @@ class CoreReplay {
       row.answerer = report.status == pinnquad::Status::fell_back ? Answerer::formula : Answerer::model;
     }
     if (record.asked == 0) {
+      row.answerer = Answerer::not_asked;
       row.state = "is not asked";
       row.reason = "off, or flown by hand";
       return;
     }
     row.state = row.reaction;
     if (asked_network) {
-      row.state += row.answerer == Answerer::model ? ", by the model" : ", by the formula: ";
-      if (row.answerer == Answerer::formula) row.state += pinnquad::to_string(report.cause);
-      if (models_.size() > 1) row.state += " (" + models_[*model].path + ")";
+      row.state +=
+          row.answerer == Answerer::model ? ", model" : std::string(", formula (") + to_string(report.cause) + ")";
+    }
+    if (model && models_.size() > 1) {
+      row.state += " [" + std::filesystem::path(models_[*model].path).filename().string() + "]";
     }
     row.reason = words_.stale(report, record.timestamp);
     if (!model) row.reason = "no model was accepted yet";
@@ -256,20 +260,20 @@ class CoreReplay {
       if (!same) say(in_words("u%zu %.7g, logged %.7g", i + 1, mine, theirs));
       commands_differ = commands_differ || !same;
     }
-    if (!row.differs.empty() && at_the_edge(record, report, row)) {
+    if (!row.differs.empty() && at_the_edge(record, report)) {
       ++replayed.at_the_edge;
       row.differs.clear();
     }
   }
 
   /// In the envelope here, just outside it there, or the other way round: rounding of another machine.
-  static bool at_the_edge(const Record& record, const flight_stacks::StepReport& report, const ReplayedRow& row) {
+  static bool at_the_edge(const Record& record, const flight_stacks::StepReport& report) {
     using pinnquad::Status;
     constexpr float rounding = 1e-5f;
     const auto logged = static_cast<Status>(record.cause);
     const bool one_side = (report.cause == Status::outside_envelope) != (logged == Status::outside_envelope);
-    const bool answered =
-        row.answerer != Answerer::nobody && record.reaction == static_cast<std::uint8_t>(report.reaction);
+    const bool answered = report.reaction <= flight_stacks::Reaction::levels &&
+                          record.reaction == static_cast<std::uint8_t>(report.reaction);
     return one_side && answered && record.stale_inputs == report.stale_inputs() &&
            (report.cause == Status::outside_envelope ? report.worst_excess : record.envelope_excess) <= rounding;
   }

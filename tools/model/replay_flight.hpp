@@ -2,7 +2,9 @@
 // A model over recorded flights, row by row, as InverseDynamics::predict() answers in flight.
 #pragma once
 
-#include <functional>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,6 +77,8 @@ class FlightReplay {
       Inputs inputs;
       if (recorded.read(row, inputs)) {
         predict(inputs, result);
+        const std::string columns = bad_columns(flight, row);
+        if (result.cause == pinnquad::Status::not_finite && !columns.empty()) result.reason = columns;
       } else {
         result.status = result.cause = pinnquad::Status::warming_up;
         result.reason = warming_up<Features>();
@@ -101,17 +105,33 @@ class FlightReplay {
     if (pinnquad::has_output(result.status)) {
       result.answerer = result.status == pinnquad::Status::fell_back ? Answerer::formula : Answerer::model;
       for (std::size_t i = 0; i < commands.size(); ++i) result.commands[i] = static_cast<double>(commands[i]);
-    } else if (report.fallback_asked) {
+    } else if (report.fallback_asked && report.fallback != report.cause) {
       result.reason += std::string("; the formula declines too: ") + pinnquad::to_string(report.fallback);
     }
   }
 
-  static std::string state_of(const ReplayedRow& row) {
-    if (row.answerer == Answerer::model) {
-      return row.status == pinnquad::Status::limited ? "the model answers, limited" : "the model answers";
+  /// "columns wdot_x, roll: NaN or infinite" of those that these features ask for.
+  static std::string bad_columns(const pinnquad::Flight& flight, std::size_t row) {
+    std::string names;
+    const auto look = [&names](const std::string& name, double value) {
+      const bool is_altitude = name == "altitude";
+      const auto asks = [&name](const char* feature) { return name == feature; };
+      const bool asked = !is_altitude || std::any_of(Features::names.begin(), Features::names.end(), asks);
+      if (asked && !std::isfinite(value)) names += (names.empty() ? "" : ", ") + name;
+    };
+    const pinnquad::SampleValues values = pinnquad::to_values(flight[row]);
+    constexpr std::size_t first_command = pinnquad::sample_value_count - pinnquad::rotor_count;
+    for (std::size_t i = 1; i < first_command; ++i) look(std::string(pinnquad::sample_field_names[i]), values[i]);
+    for (const char* name : pinnquad::extra_column_names<Features>) {
+      if (const pinnquad::ExtraColumn* column = flight.column(name)) look(name, column->values[row]);
     }
-    return std::string(row.answerer == Answerer::formula ? "falls back, " : "no commands, ") +
-           pinnquad::to_string(row.cause);
+    return names.empty() ? "" : "NaN or infinite: " + names;
+  }
+
+  static std::string state_of(const ReplayedRow& row) {
+    if (row.answerer == Answerer::model) return row.status == pinnquad::Status::limited ? "model, limited" : "model";
+    return std::string(row.answerer == Answerer::formula ? "formula (" : "no commands (") +
+           pinnquad::to_string(row.cause) + ")";
   }
 
   Inverse inverse_;

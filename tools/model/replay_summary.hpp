@@ -27,12 +27,25 @@ struct ReplayStretch {
   double duration_s = 0;  ///< to the row behind it
 };
 
+/// How often a feature was the one furthest outside the envelope.
+struct OutsideCount {
+  std::size_t rows = 0;
+  double largest_excess = 0;  ///< half-widths of its range
+};
+
+/// A row whose state is another than the one's before, and for how long it stays so.
+struct ReplayEvent {
+  const ReplayedRow* row = nullptr;
+  double duration_s = 0;
+};
+
 struct ReplaySummary {
   std::map<std::string, std::size_t> answerers;  ///< rows by who answered
   std::map<std::string, std::size_t> statuses, causes, reactions;
   ReplayStretch longest;
-  std::vector<const ReplayedRow*> events;  ///< the first row of a flight among them
-  const ReplayedRow* furthest = nullptr;   ///< whose commands differ most from the log's
+  std::map<std::string, OutsideCount> outside;  ///< by feature
+  std::vector<ReplayEvent> events;              ///< the first row of a flight among them
+  const ReplayedRow* furthest = nullptr;        ///< whose commands differ most from the log's
   double largest_difference = 0;
   std::size_t furthest_rotor = 0;
   double mean_difference = 0;
@@ -59,8 +72,19 @@ inline ReplaySummary summary_of(const Replayed& replayed) {
     ++result.statuses[pinnquad::to_string(row.status)];
     ++result.causes[pinnquad::to_string(row.cause)];
     if (!row.reaction.empty()) ++result.reactions[row.reaction];
-    if (begins || row.state != before->state) result.events.push_back(&row);
-    if (row.answerer == Answerer::model) {
+    if (begins || row.state != before->state) {
+      if (!result.events.empty()) {
+        ReplayEvent& last = result.events.back();
+        last.duration_s = (begins ? before->time_s : row.time_s) - last.row->time_s;
+      }
+      result.events.push_back({&row});
+    }
+    if (!row.feature.empty()) {
+      OutsideCount& count = result.outside[row.feature];
+      ++count.rows;
+      count.largest_excess = std::max(count.largest_excess, row.excess);
+    }
+    if (row.answerer == Answerer::model || row.answerer == Answerer::not_asked) {
       end_stretch(row.time_s);
     } else if (current.rows++ == 0) {
       current.first = &row;
@@ -82,7 +106,10 @@ inline ReplaySummary summary_of(const Replayed& replayed) {
     }
     before = &row;
   }
-  if (before != nullptr) end_stretch(before->time_s);
+  if (before != nullptr) {
+    end_stretch(before->time_s);
+    result.events.back().duration_s = before->time_s - result.events.back().row->time_s;
+  }
   result.mean_difference = compared > 0 ? sum / static_cast<double>(compared) : 0;
   return result;
 }
@@ -120,19 +147,29 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
   std::printf("%-11s %zu, from %.3f to %.3f s\n", unit, rows, replayed.rows.front().time_s,
               replayed.rows.back().time_s);
   if (replayed.of_core) std::printf("reactions   %s\n", detail::counts_in_words(summary.reactions).c_str());
-  const std::pair<Answerer, const char*> lines[] = {
-      {Answerer::model, "model      "}, {Answerer::formula, "fell back  "}, {Answerer::nobody, "no answer  "}};
+  const std::pair<Answerer, const char*> lines[] = {{Answerer::model, "model"},
+                                                    {Answerer::formula, "fell back"},
+                                                    {Answerer::nobody, "no answer"},
+                                                    {Answerer::not_asked, "not asked"}};
   for (const auto& [answerer, name] : lines) {
     const std::size_t count = detail::count_of(summary.answerers, to_string(answerer));
-    std::printf("%s %zu (%.1f %%)\n", name, count, 100.0 * static_cast<double>(count) / static_cast<double>(rows));
+    if (count == 0 && answerer == Answerer::not_asked) continue;
+    std::printf("%-11s %zu (%.1f %%)\n", name, count, 100.0 * static_cast<double>(count) / static_cast<double>(rows));
   }
   const std::string causes = detail::counts_in_words(summary.causes, "ok");
   if (!causes.empty()) std::printf("because     %s\n", causes.c_str());
+  if (!summary.outside.empty()) {
+    std::map<std::string, std::size_t> rows_of;
+    for (const auto& [feature, count] : summary.outside) rows_of[feature] = count.rows;
+    std::printf("outside     %s\n", detail::counts_in_words(rows_of).c_str());
+  }
   if (summary.longest.rows > 0) {
     std::printf("longest     %.3f s without the model: %zu %s from %s\n", summary.longest.duration_s,
                 summary.longest.rows, unit, detail::place_of(replayed, *summary.longest.first).c_str());
   }
-  if (summary.furthest != nullptr) {
+  if (summary.furthest != nullptr && !(summary.largest_difference > 0)) {
+    std::printf("commands    equal to the log's, bit for bit\n");
+  } else if (summary.furthest != nullptr) {
     const auto i = summary.furthest_rotor;
     std::printf(
         "commands    largest difference from the log's %.2g: u%zu %.4f, logged %.4f, at %s; mean of the largest per "
@@ -141,14 +178,12 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
         detail::place_of(replayed, *summary.furthest).c_str(), replayed.of_core ? "tick" : "row",
         summary.mean_difference);
   }
-  std::printf("events      %zu\n", summary.events.size());
+  std::printf("events      %zu%s\n", summary.events.size(),
+              summary.events.size() > events_shown ? ", the first ones (--out has every row):" : "");
   for (std::size_t i = 0; i < std::min(summary.events.size(), events_shown); ++i) {
-    const ReplayedRow& row = *summary.events[i];
-    std::printf("  %10.3f s  %s%s%s\n", row.time_s, printable(row.state).c_str(), row.reason.empty() ? "" : ": ",
-                printable(row.reason).c_str());
-  }
-  if (summary.events.size() > events_shown) {
-    std::printf("  ... %zu more (--out has all)\n", summary.events.size() - events_shown);
+    const ReplayedRow& row = *summary.events[i].row;
+    std::printf("  %10.3f s, %s  %s%s%s\n", row.time_s, in_words("%.3f s", summary.events[i].duration_s).c_str(),
+                printable(row.state).c_str(), row.reason.empty() ? "" : ": ", printable(row.reason).c_str());
   }
   for (const std::string& note : replayed.notes) std::printf("note        %s\n", printable(note).c_str());
   if (!replayed.of_core) return;
@@ -169,6 +204,8 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
   }
 }
 
+inline nlohmann::json finite_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nullptr; }
+
 inline nlohmann::json as_json(const Replayed& replayed, const ReplaySummary& summary) {
   const auto place = [&](const ReplayedRow& row) {
     return nlohmann::json{
@@ -183,12 +220,19 @@ inline nlohmann::json as_json(const Replayed& replayed, const ReplaySummary& sum
                          {"longest_without_model", nullptr},
                          {"largest_difference", nullptr},
                          {"notes", replayed.notes}};
-  for (const Answerer answerer : {Answerer::model, Answerer::formula, Answerer::nobody}) {
+  json["outside_envelope"] = nlohmann::json::object();
+  for (const auto& [feature, count] : summary.outside) {
+    json["outside_envelope"][feature] = {{"rows", count.rows},
+                                         {"largest_excess", finite_or_null(count.largest_excess)}};
+  }
+  for (const Answerer answerer : {Answerer::model, Answerer::formula, Answerer::nobody, Answerer::not_asked}) {
     json["answered_by"][to_string(answerer)] = detail::count_of(summary.answerers, to_string(answerer));
   }
   for (std::size_t i = 0; i < std::min(summary.events.size(), events_shown); ++i) {
-    json["events"].push_back(place(*summary.events[i]));
-    json["events"].back().update({{"state", summary.events[i]->state}, {"reason", summary.events[i]->reason}});
+    const ReplayEvent& event = summary.events[i];
+    json["events"].push_back(place(*event.row));
+    json["events"].back().update(
+        {{"duration_s", event.duration_s}, {"state", event.row->state}, {"reason", event.row->reason}});
   }
   if (summary.longest.rows > 0) {
     json["longest_without_model"] = place(*summary.longest.first);

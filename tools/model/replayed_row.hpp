@@ -16,13 +16,19 @@
 namespace programs {
 
 /// Whose commands came out.
-enum class Answerer { model, formula, nobody };
+enum class Answerer {
+  model,
+  formula,
+  nobody,
+  not_asked,  ///< a core that its stack asked nothing: off, or flown by hand
+};
 
 constexpr const char* to_string(Answerer answerer) noexcept {
   switch (answerer) {
     case Answerer::model: return "model";
     case Answerer::formula: return "formula";
     case Answerer::nobody: return "nobody";
+    case Answerer::not_asked: return "not_asked";
   }
   return "unknown";
 }

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+# Changes a core's log: one cell, or rows taken out. Columns and rows by name and tick.
+#   planted.py LOG.csv OUT.csv set TICK COLUMN VALUE | add TICK COLUMN VALUE | drop FIRST LAST | rename COLUMN NAME
+import csv
+import sys
+
+source, target, how, *what = sys.argv[1:]
+rows = list(csv.reader(open(source)))
+column = {name: i for i, name in enumerate(rows[0])}
+if how == "rename":
+    rows[0][column[what[0]]] = what[1]
+elif how == "drop":
+    first, last = int(what[0]), int(what[1])
+    rows = rows[:1] + [row for row in rows[1:] if not first <= int(row[column["tick"]]) <= last]
+else:
+    (row,) = [row for row in rows[1:] if row[column["tick"]] == what[0]]
+    at = column[what[1]]
+    row[at] = what[2] if how == "set" else repr(float(row[at]) + float(what[2]))
+csv.writer(open(target, "w"), lineterminator="\n").writerows(rows)
