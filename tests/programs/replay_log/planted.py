@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Changes a core's log: one cell, or rows taken out. Columns and rows by name and tick.
-#   planted.py LOG.csv OUT.csv set TICK COLUMN VALUE | add TICK COLUMN VALUE | drop FIRST LAST | rename COLUMN NAME
+#   planted.py LOG.csv OUT.csv set TICK COLUMN VALUE | add TICK COLUMN VALUE | drop FIRST LAST [FIRST LAST...] | rename COLUMN NAME
 import csv
 import sys
 
@@ -10,8 +10,9 @@ column = {name: i for i, name in enumerate(rows[0])}
 if how == "rename":
     rows[0][column[what[0]]] = what[1]
 elif how == "drop":
-    first, last = int(what[0]), int(what[1])
-    rows = rows[:1] + [row for row in rows[1:] if not first <= int(row[column["tick"]]) <= last]
+    gaps = [(int(first), int(last)) for first, last in zip(what[::2], what[1::2])]
+    gone = lambda tick: any(first <= tick <= last for first, last in gaps)
+    rows = rows[:1] + [row for row in rows[1:] if not gone(int(row[column["tick"]]))]
 else:
     (row,) = [row for row in rows[1:] if row[column["tick"]] == what[0]]
     at = column[what[1]]
