@@ -7,10 +7,15 @@
 // CASE NO_SUCH_COLUMN: pinnquad: these inputs have no such column
 // CASE WINDOW_OF_NO_FEATURES: pinnquad: Windowed's first argument is not a feature set
 // CASE EVEN_CENTRED_WINDOW: pinnquad: a window has one tap or more, a centred one an odd number
+// CASE PART_OF_OTHER_INPUTS: pinnquad: what PartlyWindowed asks of the other taps is made of the same inputs
+// CASE CENTRED_PART: pinnquad: a centred window looks ahead, and no loop can
+// CASE JOINED_TWICE: pinnquad: feature sets that are Joined have a feature in common
+// CASE JOINED_INPUTS: pinnquad: feature sets that are Joined have the same Inputs
 // CASE CENTRED_HISTORY: pinnquad: a centred window looks ahead, and no loop can
 // CASE UNMEASURED_INPUT: pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument
 // CASE MEASURING_MAY_THROW: pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be noexcept
 #include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/inference/motion_parts.hpp"
 
 namespace {
 
@@ -41,6 +46,14 @@ using Past = Windowed<Measured, 4, PeriodMicroseconds<20000>, Centred>;
 using Past = Windowed<Windowed<Measured, 2, PeriodMicroseconds<20000>>, 3, PeriodMicroseconds<20000>>;
 #elif defined(CENTRED_HISTORY)
 using Past = Windowed<Measured, 3, PeriodMicroseconds<20000>, Centred>;
+#elif defined(PART_OF_OTHER_INPUTS)
+using Past = PartlyWindowed<Measured, PaperFeaturesWithAltitude, 3, PeriodMicroseconds<20000>>;
+#elif defined(CENTRED_PART)
+using Past = PartlyWindowed<Measured, AccelerationFeatures, 3, PeriodMicroseconds<20000>, Centred>;
+#elif defined(JOINED_TWICE)
+using Past = Windowed<Joined<BodyRates, DownVector, BodyRates>, 3, PeriodMicroseconds<20000>>;
+#elif defined(JOINED_INPUTS)
+using Past = Windowed<Joined<BodyRates, PaperFeaturesWithAltitude>, 3, PeriodMicroseconds<20000>>;
 #else
 using Past = Windowed<Measured, 3, PeriodMicroseconds<20000>>;
 #endif

@@ -175,6 +175,20 @@ unsigned char pinnquad_flight_history(const float* state, const float* wanted, d
   return static_cast<unsigned char>(status == Status::ok ? Past::check(history.inputs()) : status);
 }
 
+unsigned char pinnquad_flight_parts_of_motion(const float* state, const float* wanted, double time_s, float voltage_V,
+                                              float* x) {
+  using Measured = pinnquad::WithColumns<pinnquad::PhysicsFeatures, pinnquad::BatteryVoltage>;
+  using Past =
+      pinnquad::PartlyWindowed<Measured, pinnquad::AccelerationFeatures, 3, pinnquad::PeriodMicroseconds<20000>>;
+  pinnquad::InputHistory<Past, float> history;
+  pinnquad::InputHistory<Past, float>::Present present;
+  static_cast<pinnquad::MotionInputs<float>&>(present) = pinnquad::motion_inputs(read(state).body, motion(wanted));
+  present.column<pinnquad::BatteryVoltage>() = voltage_V;
+  const Status status = history.take(present, time_s);
+  Past::extract(history.inputs(), x);
+  return static_cast<unsigned char>(status == Status::ok ? Past::check(history.inputs()) : status);
+}
+
 unsigned char pinnquad_flight_self_test_reported(float* largest_difference) {
   pinnquad::SelfTestReport<float> report;
   const Status status = pinnquad::self_test(guarded(), report);
@@ -239,8 +253,8 @@ void pinnquad_flight_tanh_network(const float* parameters, const float* x, float
 
 void pinnquad_flight_smooth_network(const float* parameters, const float* x, float* y, float* jacobian) {
   using Net = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
-                                pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus, pinnquad::Dense<9>,
-                                pinnquad::Sine, pinnquad::Dense<4>>;
+                                pinnquad::Silu, pinnquad::Clip, pinnquad::Dense<9>, pinnquad::Softplus,
+                                pinnquad::Dense<9>, pinnquad::Sine, pinnquad::Dense<4>>;
   pinnquad::JacobianPass<Net>::run(parameters, x, y, jacobian);
   pinnquad::BatchedNetwork<Net>::forward(parameters, x, y, 5);
 }

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "pinnquad/data/row_set.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
+#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/deploy/record_writer.hpp"
+#include "pinnquad/inference/composition.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "training/model_predictions.hpp"
@@ -24,81 +24,157 @@ namespace programs {
 /// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, in 1 / (rad/s^2).
 using AxisDerivatives = std::array<double, 3>;
 
-/// Share of rows in which the derivative is negative, per axis; NaN where it is not finite in a row, or there are no
-/// rows. `derivatives_of(sample)` gives a row's AxisDerivatives.
+/// Counts rows in which the derivative is negative, per axis.
+class WrongDerivatives {
+ public:
+  void add(const AxisDerivatives& derivatives) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(derivatives[axis])) wrong_[axis] = std::numeric_limits<double>::quiet_NaN();
+      wrong_[axis] += derivatives[axis] < 0 ? 1 : 0;
+    }
+    ++rows_;
+  }
+  /// NaN where the derivative is not finite in a row, or there are no rows.
+  std::array<double, 3> shares() const {
+    std::array<double, 3> shares = wrong_;
+    for (double& share : shares) share /= static_cast<double>(rows_);
+    return shares;
+  }
+
+ private:
+  std::array<double, 3> wrong_{};
+  std::size_t rows_ = 0;
+};
+
+/// Share of rows in which the derivative is negative, per axis. `derivatives_of(sample)` gives a row's AxisDerivatives.
 template <class DerivativesOf>
 std::array<double, 3> wrong_derivative_shares(const pinnquad::RowSet& rows, const DerivativesOf& derivatives_of) {
-  std::array<double, 3> wrong{};
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const AxisDerivatives derivatives = derivatives_of(rows[row]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(derivatives[axis])) wrong[axis] = std::numeric_limits<double>::quiet_NaN();
-      wrong[axis] += derivatives[axis] < 0 ? 1 : 0;
-    }
-  }
-  for (double& share : wrong) share /= static_cast<double>(rows.size());
-  return wrong;
+  WrongDerivatives wrong;
+  for (std::size_t row = 0; row < rows.size(); ++row) wrong.add(derivatives_of(rows[row]));
+  return wrong.shares();
 }
 
-/// Of a network between its scalers, exact, worked out in double whatever the network's own scalar is.
-template <class Features, class Outputs>
+/// Of a network, or a sum of some, between its scalers, exact, worked out in double whatever the network's own scalar is.
+/// Of features with a window: by an angular acceleration that is another at all taps at once.
+template <class FeatureSet, class Outputs>
 class NetworkDerivatives {
   using Map = pinnquad::OutputMap<Outputs>;
-  static_assert(!Map::has_feature_slopes, "an output schema whose commands depend on the features besides");
 
  public:
+  using Features = FeatureSet;
+  using FeatureVector = std::array<double, static_cast<std::size_t>(Features::size)>;
   using InputScaler = pinnquad::Scaler<double, Features::size>;
   using OutputScaler = pinnquad::Scaler<double, Map::size>;
 
-  /// Parameters as RunTimeNetwork takes them.
-  NetworkDerivatives(NetworkSpec spec, const std::vector<double>& parameters, const InputScaler& input,
-                     const OutputScaler& output, const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe)
-      : network_(std::move(spec), parameters),
+  NetworkDerivatives(std::vector<RunTimeNetwork<double>> summands, const InputScaler& input, const OutputScaler& output,
+                     const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe)
+      : summands_(std::move(summands)),
         input_(input),
         output_(output),
         setting_(airframe.output_setting<Outputs, double>()),
         signs_{airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()} {}
+  /// Parameters as RunTimeNetwork takes them.
+  NetworkDerivatives(NetworkSpec spec, const std::vector<double>& parameters, const InputScaler& input,
+                     const OutputScaler& output, const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe)
+      : NetworkDerivatives({RunTimeNetwork<double>(std::move(spec), parameters)}, input, output, airframe) {}
 
   AxisDerivatives operator()(const pinnquad::Sample& sample) const {
-    const auto features = pinnquad::sample_features<Features, double>(sample);
-    std::array<double, Features::size> standardised{};
+    return (*this)(pinnquad::sample_features<Features, double>(sample));
+  }
+  AxisDerivatives operator()(const FeatureVector& features) const {
+    FeatureVector standardised{};
     input_.standardise(features.data(), standardised.data());
     std::vector<std::array<double, 4>> x(standardised.size());  // a value, and its derivatives by three features
     for (std::size_t i = 0; i < x.size(); ++i) x[i][0] = standardised[i];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t feature = static_cast<std::size_t>(Features::angular_acceleration) + axis;
-      x[feature][axis + 1] = 1 / input_.spread[feature];
+    each_angular_acceleration(
+        [&](std::size_t axis, std::size_t feature) { x[feature][axis + 1] = 1 / input_.spread[feature]; });
+    std::vector<std::array<double, 4>> y = summands_.front().pushed_forward(x);
+    for (std::size_t part = 1; part < summands_.size(); ++part) {
+      const std::vector<std::array<double, 4>> more = summands_[part].pushed_forward(x);
+      for (std::size_t k = 0; k < y.size(); ++k) {
+        for (std::size_t i = 0; i < y[k].size(); ++i) y[k][i] += more[k][i];
+      }
     }
-    const std::vector<std::array<double, 4>> y = network_.pushed_forward(std::move(x));
     std::array<double, Map::size> made{}, outputs{};
     for (std::size_t k = 0; k < made.size(); ++k) made[k] = y[k][0];
     output_.restore(made.data(), outputs.data());
     std::array<double, Map::slope_count> slopes{};
     Map::slopes(features.data(), static_cast<const double*>(outputs.data()), setting_, slopes.data());
-    AxisDerivatives result{};
+    std::array<pinnquad::Commands<double>, 3> by_acceleration{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      pinnquad::Commands<double> by_acceleration{};
       for (int rotor = 0; rotor < pinnquad::rotor_count; ++rotor) {
         for (int k = Map::first_output(rotor); k < Map::last_output(rotor); ++k) {
           const auto output = static_cast<std::size_t>(k);
-          by_acceleration[static_cast<std::size_t>(rotor)] +=
+          by_acceleration[axis][static_cast<std::size_t>(rotor)] +=
               slopes[static_cast<std::size_t>(Map::slope_index(rotor, k))] * output_.spread[output] *
               y[output][axis + 1];
         }
       }
-      result[axis] = pinnquad::signed_sum(signs_[axis], by_acceleration);
+    }
+    if constexpr (Map::has_feature_slopes) {
+      std::array<double, static_cast<std::size_t>(pinnquad::rotor_count * Features::size)> by_x{};
+      Map::template feature_slopes<Features::size>(features.data(), static_cast<const double*>(outputs.data()),
+                                                   setting_, by_x.data());
+      each_angular_acceleration([&](std::size_t axis, std::size_t feature) {
+        for (std::size_t rotor = 0; rotor < by_acceleration[axis].size(); ++rotor) {
+          by_acceleration[axis][rotor] += by_x[rotor * features.size() + feature];
+        }
+      });
+    }
+    AxisDerivatives result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      result[axis] = pinnquad::signed_sum(signs_[axis], by_acceleration[axis]);
     }
     return result;
   }
 
  private:
-  RunTimeNetwork<double> network_;
+  template <class Visit>
+  static void each_angular_acceleration(const Visit& visit) {
+    for (int tap = 0; tap < pinnquad::detail::WindowOf<Features>::taps; ++tap) {
+      const int first = pinnquad::angular_acceleration_at<Features>(tap);
+      if (first < 0) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) visit(axis, static_cast<std::size_t>(first) + axis);
+    }
+  }
+
+  std::vector<RunTimeNetwork<double>> summands_;
   InputScaler input_;
   OutputScaler output_;
   decltype(std::declval<pinnquad::ContextAirframe<pinnquad::GivenAirframe>>()
                .template output_setting<Outputs, double>()) setting_;
   std::array<std::array<double, pinnquad::rotor_count>, 3> signs_;
 };
+
+/// Share of the rows that have features in which the derivative is negative, per axis.
+template <class Features, class Outputs>
+std::array<double, 3> wrong_derivative_shares(const pinnquad::RowSet& rows,
+                                              const NetworkDerivatives<Features, Outputs>& derivatives) {
+  WrongDerivatives wrong;
+  pinnquad::each_features<Features, double>(
+      rows, [&](const pinnquad::Flight&, std::size_t, const auto& x) { wrong.add(derivatives(x)); });
+  return wrong.shares();
+}
+
+namespace detail {
+
+/// A network, or each of a sum, with its own of the parameters.
+template <class Answer>
+struct Summands {
+  static void add(std::vector<RunTimeNetwork<double>>& to, const std::vector<double>& parameters) {
+    to.emplace_back(*parse_network(pinnquad::detail::description_text<Answer>()), parameters);
+  }
+};
+template <class First, class Second>
+struct Summands<pinnquad::Sum<First, Second>> {
+  static void add(std::vector<RunTimeNetwork<double>>& to, const std::vector<double>& parameters) {
+    const auto border = parameters.begin() + First::parameter_count;
+    Summands<First>::add(to, {parameters.begin(), border});
+    Summands<Second>::add(to, {border, parameters.end()});
+  }
+};
+
+}  // namespace detail
 
 /// Of a trained model (training/trained_model.hpp).
 template <class Model>
@@ -112,8 +188,9 @@ auto derivatives_of(const Model& model) {
     return to;
   };
   const std::vector<double> parameters(model.network.parameters.begin(), model.network.parameters.end());
-  return Derivatives(*parse_network(pinnquad::detail::description_text<typename Model::Network>()), parameters,
-                     cast(model.input, typename Derivatives::InputScaler{}),
+  std::vector<RunTimeNetwork<double>> summands;
+  detail::Summands<typename Model::Network>::add(summands, parameters);
+  return Derivatives(std::move(summands), cast(model.input, typename Derivatives::InputScaler{}),
                      cast(model.output, typename Derivatives::OutputScaler{}),
                      pinnquad::ContextAirframe<pinnquad::GivenAirframe>(std::string(model.airframe_name()),
                                                                         model.template airframe<double>()));

@@ -37,10 +37,14 @@ struct LogModelKind {
   std::string (*not_applicable)(const LogFit&);
   /// Throws std::invalid_argument, one line, where the data leave it without an answer. Null if interrupted.
   std::shared_ptr<const TrainedNetwork> (*fit)(const LogFit&);
+  /// fit() is fitted to the validation rows too: what it says of them is no measure of it. Without them it does as well.
+  bool takes_validation = false;
 };
 
-/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, ridge_residual, each
-/// with what it sees.
+/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, ridge_residual; ridge and
+/// ridge_residual also with "_causal" and "_centred" windows.
+/// Those that validation rows stop (vanilla, physics_informed) train on the training rows; those that choose by leaving out
+/// trajectories in turn have to be left nothing else.
 const std::vector<LogModelKind>& log_model_kinds();
 
 }  // namespace programs

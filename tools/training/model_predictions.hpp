@@ -50,14 +50,22 @@ Predictions regression_predictions(const pinnquad::RowSet& training, const pinnq
   return result;
 }
 
-/// A trained model on a set of rows.
+/// A trained model on a set of rows: NaN for a row that has no features, where a window is not complete.
 template <class Model>
 Predictions network_predictions(const Model& model, const pinnquad::RowSet& rows) {
   Predictions result;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const auto u = model.predict(rows[row]);
-    result.push_back(
-        {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]), static_cast<double>(u[3])});
+  const auto unanswered = pinnquad::not_a_number;
+  for (const pinnquad::FlightRows& piece : rows.pieces()) {
+    const std::size_t first = result.size();
+    result.resize(first + piece.rows.size(), {unanswered, unanswered, unanswered, unanswered});
+    pinnquad::each_features<typename Model::Features, typename Model::Scalar>(
+        pinnquad::RowSet(*piece.flight, piece.rows),
+        [&](const pinnquad::Flight&, std::size_t row, const typename Model::FeatureVector& x) {
+          const auto u = model.predict(x);
+          for (std::size_t i = 0; i < u.size(); ++i) {
+            result[first + row - piece.rows.begin][i] = static_cast<double>(u[i]);
+          }
+        });
   }
   return result;
 }

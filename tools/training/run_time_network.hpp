@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "pinnquad/nn/clip.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/relu.hpp"
@@ -50,7 +51,8 @@ const std::vector<Activation<Scalar>>& activations() {
   static const std::vector<Activation<Scalar>> all = {
       detail::activation_of<Relu, Scalar>(),     detail::activation_of<Tanh, Scalar>(),
       detail::activation_of<Gelu, Scalar>(),     detail::activation_of<Silu, Scalar>(),
-      detail::activation_of<Softplus, Scalar>(), detail::activation_of<Sine, Scalar>()};
+      detail::activation_of<Softplus, Scalar>(), detail::activation_of<Sine, Scalar>(),
+      detail::activation_of<Clip, Scalar>()};
   return all;
 }
 

@@ -29,16 +29,24 @@ class TrainedNetwork {
   virtual std::vector<unsigned char> block(const pinnquad::RowSet& training,
                                            const pinnquad::Provenance& provenance) const = 0;
   /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
-  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4).
+  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4). Of a feature
+  /// set that asks for more than a motion "pinnquad-replay-features", and X in the place of the first 16.
   virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
 };
 
+/// How an export says which airframe it is for.
+enum class ExportedAirframe {
+  by_value,  ///< a struct before the model
+  by_name    ///< the type, where it is one of those that the program knows by name
+};
+
 /// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
-/// name, which an export names by its type.
-template <class Model>
+/// name.
+template <class Model, ExportedAirframe Exported = ExportedAirframe::by_name>
 class NetworkOfModel : public TrainedNetwork {
  public:
-  NetworkOfModel(const Model& model, bool library_airframe) : model_(model), library_airframe_(library_airframe) {}
+  explicit NetworkOfModel(const Model& model, bool library_airframe = false)
+      : model_(model), library_airframe_(library_airframe) {}
 
   Predictions predictions(const pinnquad::RowSet& rows) const override { return network_predictions(model_, rows); }
   std::array<double, 3> wrong_derivatives(const pinnquad::RowSet& rows) const override {
@@ -47,36 +55,47 @@ class NetworkOfModel : public TrainedNetwork {
   void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                     const pinnquad::Provenance& provenance) const override {
     with_exported([&](const auto& model) {
-      pinnquad::write_model_header(path, name, model, pinnquad::golden_features<Model>(training), provenance);
+      pinnquad::write_model_header(path, name, model, pinnquad::golden_features<Model>(training), clocked(provenance));
     });
   }
   std::vector<unsigned char> block(const pinnquad::RowSet& training,
                                    const pinnquad::Provenance& provenance) const override {
     std::vector<unsigned char> bytes;
     with_exported([&](const auto& model) {
-      bytes = pinnquad::model_block(model, pinnquad::golden_features<Model>(training), provenance);
+      bytes = pinnquad::model_block(model, pinnquad::golden_features<Model>(training), clocked(provenance));
     });
     return bytes;
   }
   void write_replay(const std::string& path, const pinnquad::RowSet& rows) const override {
-    using Inputs = pinnquad::MotionInputs<typename Model::Scalar>;
+    using Inputs = typename Model::Features::template Inputs<typename Model::Scalar>;
+    constexpr bool asks_for_motion = std::is_same_v<Inputs, pinnquad::MotionInputs<typename Model::Scalar>>;
+    std::size_t count = 0;
+    std::string lines, line;
+    const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + pinnquad::number_text(value); };
+    pinnquad::each_features<typename Model::Features, typename Model::Scalar>(
+        rows, [&](const pinnquad::Flight& flight, std::size_t row, const typename Model::FeatureVector& x) {
+          line.clear();
+          if constexpr (asks_for_motion) {
+            const Inputs in = pinnquad::SampleInputs<Inputs>::from(flight[row]);
+            for (const auto* vector : {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s,
+                                       &in.body_rates_rad_s}) {
+              for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
+            }
+            for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z})
+              add(static_cast<double>(v));
+          } else {
+            for (const auto v : x) add(static_cast<double>(v));
+          }
+          for (const auto u : model_.predict(x)) add(static_cast<double>(u));
+          for (const double u : flight[row].commands) add(u);
+          lines += line + '\n';
+          ++count;
+        });
+    constexpr int numbers = (asks_for_motion ? 16 : Model::Features::size) + 2 * pinnquad::rotor_count;
     pinnquad::AtomicFile file(path);
-    file.stream() << "pinnquad-replay 1 " << rows.size() << " 24\n";
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const pinnquad::Sample& sample = rows[row];
-      const Inputs in = pinnquad::SampleInputs<Inputs>::from(sample);
-      const auto predicted = model_.predict(sample);
-      std::string line;
-      const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + pinnquad::number_text(value); };
-      for (const auto* vector :
-           {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s, &in.body_rates_rad_s}) {
-        for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
-      }
-      for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z}) add(static_cast<double>(v));
-      for (const auto u : predicted) add(static_cast<double>(u));
-      for (const double u : sample.commands) add(u);
-      file.stream() << line << '\n';
-    }
+    file.stream() << (asks_for_motion ? "pinnquad-replay 1 " : "pinnquad-replay-features 1 ") << count << ' ' << numbers
+                  << '\n'
+                  << lines;
     file.commit();
   }
 
@@ -84,17 +103,25 @@ class NetworkOfModel : public TrainedNetwork {
   /// Calls `use` with the model of the airframe's own type, or of the value.
   template <class Use>
   void with_exported(const Use& use) const {
-    if (!library_airframe_) return use(model_);
-    with_airframe(model_.airframe_name(), [&](auto tag) {
-      using Context = pinnquad::Context<typename Model::Features, typename decltype(tag)::type>;
-      pinnquad::TrainedModel<typename Model::Network, Context> named;
-      named.network = model_.network;
-      named.input = model_.input;
-      named.output = model_.output;
-      named.envelope_lower = model_.envelope_lower;
-      named.envelope_upper = model_.envelope_upper;
-      use(named);
-    });
+    if (!library_airframe_ || Exported == ExportedAirframe::by_value) return use(model_);
+    if constexpr (Exported == ExportedAirframe::by_name) {
+      with_airframe(model_.airframe_name(), [&](auto tag) {
+        using Context = pinnquad::Context<typename Model::Features, typename decltype(tag)::type>;
+        pinnquad::TrainedModel<typename Model::Network, Context> named;
+        named.network = model_.network;
+        named.input = model_.input;
+        named.output = model_.output;
+        named.envelope_lower = model_.envelope_lower;
+        named.envelope_upper = model_.envelope_upper;
+        use(named);
+      });
+    }
+  }
+
+  /// A window has a period of its own, whatever that of the flights.
+  static pinnquad::Provenance clocked(pinnquad::Provenance provenance) {
+    if (pinnquad::is_windowed<typename Model::Features>) provenance.sample_period_s = 0;
+    return provenance;
   }
 
   Model model_;

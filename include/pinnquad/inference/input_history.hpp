@@ -109,7 +109,7 @@ constexpr int default_history_length() noexcept {
 }
 
 /// Inputs of a feature set without a past: the present ones are all there is, always `ok`; predict() checks them.
-template <class Features, class Scalar, int MostSamples = default_history_length<Features>()>
+template <class Features, class Scalar, int MostSamples = default_history_length<Features>(), class = void>
 class InputHistory {
  public:
   using Inputs = typename Features::template Inputs<Scalar>;
@@ -127,9 +127,9 @@ class InputHistory {
 };
 
 /// Inputs of a causal window. Take the present inputs in every tick with their time; between them the taps are interpolated.
-template <class FeatureSet, int Taps, class Period, class Reach, class Scalar, int MostSamples>
-class InputHistory<Windowed<FeatureSet, Taps, Period, Reach>, Scalar, MostSamples> {
-  using Features = Windowed<FeatureSet, Taps, Period, Reach>;
+template <class Features, class Scalar, int MostSamples>
+class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<Features>>> {
+  using FeatureSet = typename Features::TapFeatures;
   using Window = typename Features::Window;
   static_assert(
       Window::causal,

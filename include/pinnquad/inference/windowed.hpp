@@ -92,60 +92,66 @@ template <class FeatureSet, int Offset, int Index>
 inline constexpr auto tap_name = make_tap_name<FeatureSet, Offset, Index>();
 
 /// Of entry `Entry` of a window's X.
-template <class FeatureSet, class Reach, int Taps, int Entry>
+template <class FeatureSet, class Part, class Reach, int Taps, int Entry>
 constexpr const char* window_name() noexcept {
-  constexpr int tap = Entry / FeatureSet::size, index = Entry % FeatureSet::size;
-  if constexpr (tap == 0) {
-    return FeatureSet::names[std::size_t(index)];
+  if constexpr (Entry < FeatureSet::size) {
+    return FeatureSet::names[std::size_t(Entry)];
   } else {
-    return tap_name<FeatureSet, Reach::offset(Taps, tap - 1), index>.data();
+    constexpr int behind = Entry - FeatureSet::size;
+    return tap_name<Part, Reach::offset(Taps, behind / Part::size), behind % Part::size>.data();
   }
 }
-template <class FeatureSet, class Reach, int Taps, int... Entry>
+template <class FeatureSet, class Part, class Reach, int Taps, int... Entry>
 constexpr std::array<const char*, sizeof...(Entry)> window_names(std::integer_sequence<int, Entry...>) noexcept {
-  return {window_name<FeatureSet, Reach, Taps, Entry>()...};
+  return {window_name<FeatureSet, Part, Reach, Taps, Entry>()...};
 }
-template <class FeatureSet, int... Entry>
-constexpr std::array<const char*, sizeof...(Entry)> window_units(std::integer_sequence<int, Entry...>) noexcept {
-  return {FeatureSet::units[std::size_t(Entry % FeatureSet::size)]...};
+template <class FeatureSet, class Part, std::size_t Size>
+constexpr std::array<const char*, Size> window_units() noexcept {
+  std::array<const char*, Size> units{};
+  for (std::size_t i = 0; i < Size; ++i) {
+    constexpr std::size_t present = FeatureSet::units.size(), other = Part::units.size();
+    units[i] = i < present ? FeatureSet::units[i] : Part::units[(i - present) % other];
+  }
+  return units;
 }
 
-}  // namespace detail
-
-/// A feature set with a window: X of `Features` at the present instant, then at each other tap, in the order of
-/// Window::offset_s: the last instant first.
-template <class FeatureSet, int Taps, class Period, class Reach = Causal>
-struct Windowed {
-  static_assert(is_feature_set<FeatureSet>,
+/// X of `FeatureSet` at the present instant, then X of `Part` at each other tap: what Windowed and PartlyWindowed are.
+template <class FeatureSet, class Part, int Taps, class Period, class Reach>
+struct WindowFeatures {
+  static_assert(is_feature_set<FeatureSet> && is_feature_set<Part>,
                 "pinnquad: Windowed's first argument is not a feature set (inference/features.hpp)");
-  static_assert(!detail::HasWindow<FeatureSet>::value,
+  static_assert(!HasWindow<FeatureSet>::value && !HasWindow<Part>::value,
                 "pinnquad: a window of windows is one with more taps: Windowed has no Windowed inside");
   static_assert(Reach::template fits<Taps>,
                 "pinnquad: a window has one tap or more, a centred one an odd number (inference/windowed.hpp)");
+  static_assert(
+      std::is_base_of_v<typename Part::template Inputs<double>, typename FeatureSet::template Inputs<double>>,
+      "pinnquad: what PartlyWindowed asks of the other taps is made of the same inputs (inference/windowed.hpp)");
 
   using TapFeatures = FeatureSet;
+  using OtherTapFeatures = Part;  ///< of the taps behind the present one
   using Window = TapWindow<Taps, Period, Reach>;
   template <class Scalar>
   using Inputs = WindowInputs<typename FeatureSet::template Inputs<Scalar>, Scalar, Window>;
 
-  static constexpr int size = Taps * FeatureSet::size;
+  static constexpr int size = FeatureSet::size + (Taps - 1) * Part::size;
   static constexpr int angular_acceleration = FeatureSet::angular_acceleration;
-  static constexpr auto names =
-      detail::window_names<FeatureSet, Reach, Taps>(std::make_integer_sequence<int, Taps * FeatureSet::size>{});
-  static constexpr auto units =
-      detail::window_units<FeatureSet>(std::make_integer_sequence<int, Taps * FeatureSet::size>{});
+  static constexpr auto names = window_names<FeatureSet, Part, Reach, Taps>(
+      std::make_integer_sequence<int, FeatureSet::size + (Taps - 1) * Part::size>{});
+  static constexpr auto units = window_units<FeatureSet, Part, names.size()>();
   /// What flights must have measured.
   static constexpr auto column_names = extra_column_names<FeatureSet>;
   static constexpr auto column_units = extra_column_units<FeatureSet>;
 
-  /// As `Features`, of every tap; `warming_up` where a tap is missing and the present inputs are sound.
+  /// As `FeatureSet` of the present and as `Part` of every other tap; `warming_up` where a tap is missing and the present
+  /// inputs are sound.
   template <class Scalar, class Tap>
   static Status check(const WindowInputs<Tap, Scalar, Window>& in) noexcept {
     const Status present = FeatureSet::check(static_cast<const Tap&>(in));
     if (present != Status::ok) return present;
     if (!in.complete) return Status::warming_up;
     for (const Tap& other : in.others) {
-      const Status checked = FeatureSet::check(other);
+      const Status checked = Part::check(other);
       if (checked != Status::ok) return checked;
     }
     return Status::ok;
@@ -156,16 +162,42 @@ struct Windowed {
   static void extract(const WindowInputs<Tap, Scalar, Window>& in, Scalar* x) noexcept {
     FeatureSet::extract(static_cast<const Tap&>(in), x);
     for (std::size_t tap = 0; tap < in.others.size(); ++tap) {
-      Scalar* behind = x + (int(tap) + 1) * FeatureSet::size;
-      FeatureSet::extract(in.others[tap], behind);
+      Scalar* behind = x + FeatureSet::size + int(tap) * Part::size;
+      Part::extract(in.others[tap], behind);
       if (in.complete) continue;
-      for (int i = 0; i < FeatureSet::size; ++i) behind[i] = std::numeric_limits<Scalar>::quiet_NaN();
+      for (int i = 0; i < Part::size; ++i) behind[i] = std::numeric_limits<Scalar>::quiet_NaN();
     }
   }
 };
 
+}  // namespace detail
+
+/// A feature set with a window: X of `FeatureSet` at the present instant, then at each other tap, in the order of
+/// Window::offset_s: the last instant first.
+template <class FeatureSet, int Taps, class Period, class Reach = Causal>
+struct Windowed : detail::WindowFeatures<FeatureSet, FeatureSet, Taps, Period, Reach> {};
+
+/// The same with all of `FeatureSet` at the present instant and `Part` of it alone at the other taps: a window over what changes
+/// fast. Windowed<Set, ...> is PartlyWindowed<Set, Set, ...>.
+template <class FeatureSet, class Part, int Taps, class Period, class Reach = Causal>
+struct PartlyWindowed : detail::WindowFeatures<FeatureSet, Part, Taps, Period, Reach> {};
+
 /// True for a feature set that asks for a window.
 template <class Features>
 inline constexpr bool is_windowed = detail::HasWindow<Features>::value;
+
+/// Index in X of the angular acceleration at a tap (0: the present one); -1 if it has none there.
+template <class Features>
+constexpr int angular_acceleration_at([[maybe_unused]] int tap) noexcept {
+  if constexpr (is_windowed<Features>) {
+    using Part = typename Features::OtherTapFeatures;
+    if (tap > 0) {
+      return Part::angular_acceleration < 0
+                 ? -1
+                 : Features::TapFeatures::size + (tap - 1) * Part::size + Part::angular_acceleration;
+    }
+  }
+  return Features::angular_acceleration;
+}
 
 }  // namespace pinnquad

@@ -34,8 +34,10 @@ template <class... Done, int Out, class... Left>
 struct FoldSpecs<SpecList<Done...>, SpecList<Dense<Out>, BatchNorm, Left...>>
     : FoldSpecs<SpecList<Done..., Dense<Out>>, SpecList<Left...>> {};
 
-template <class NetworkType>
-struct FoldNetwork;
+template <class Answer>
+struct FoldNetwork {
+  using type = Answer;
+};
 template <class Scalar, class InputSize, class... Specs>
 struct FoldNetwork<Network<Scalar, InputSize, Specs...>> {
   template <class List>
@@ -79,10 +81,30 @@ struct IsBatchNorm : std::false_type {};
 template <class Scalar, int Size>
 struct IsBatchNorm<BatchNormLayer<Scalar, Size>> : std::true_type {};
 
+template <class NetworkType>
+typename FoldNetwork<NetworkType>::type without_batch_norm(const NetworkType& network) {
+  using Scalar = typename NetworkType::Scalar;
+  typename FoldNetwork<NetworkType>::type result;
+  Scalar* end = result.parameters.data();  // behind the last layer written
+  Scalar* last = end;                      // that layer
+  unroll<NetworkType::layer_count>([&](auto index) {
+    using Layer = typename NetworkType::template Layer<decltype(index)::value>;
+    const Scalar* own = network.parameters.data() + NetworkType::Sizes::offset(index);
+    if constexpr (IsBatchNorm<Layer>::value) {
+      using Before = typename NetworkType::template Layer<decltype(index)::value - 1>;
+      fold_into_dense(Layer{}, own, last, Before::inputs);
+    } else {
+      last = end;
+      end += copy_layer(Layer{}, own, last);
+    }
+  });
+  return result;
+}
+
 }  // namespace detail
 
 /// The network without its BatchNorms: Dense, DenseWithoutBias and a BatchNorm behind either become one Dense. A network that
-/// has none of them is its own folded type.
+/// has none of them, and an answer that is no network (inference/answer.hpp), is its own folded type.
 template <class NetworkType>
 using Folded = typename detail::FoldNetwork<NetworkType>::type;
 
@@ -90,22 +112,11 @@ using Folded = typename detail::FoldNetwork<NetworkType>::type;
 /// returned bit for bit.
 template <class NetworkType>
 Folded<NetworkType> folded(const NetworkType& network) {
-  using Scalar = typename NetworkType::Scalar;
-  Folded<NetworkType> result;
-  Scalar* end = result.parameters.data();  // behind the last layer written
-  Scalar* last = end;                      // that layer
-  unroll<NetworkType::layer_count>([&](auto index) {
-    using Layer = typename NetworkType::template Layer<decltype(index)::value>;
-    const Scalar* own = network.parameters.data() + NetworkType::Sizes::offset(index);
-    if constexpr (detail::IsBatchNorm<Layer>::value) {
-      using Before = typename NetworkType::template Layer<decltype(index)::value - 1>;
-      detail::fold_into_dense(Layer{}, own, last, Before::inputs);
-    } else {
-      last = end;
-      end += detail::copy_layer(Layer{}, own, last);
-    }
-  });
-  return result;
+  if constexpr (!is_network<NetworkType>) {
+    return network;
+  } else {
+    return detail::without_batch_norm(network);
+  }
 }
 
 }  // namespace pinnquad

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// The kinds of models on logged flights of a Crazyflie (NanoBench): each of the five types of trajectory held out in turn, all its
+// repeats and speeds together. What a study reached with other code is asked of the windowed ridge and of the network on it.
+//   log_model_rotation CSV ridge|residual|all      77 where there is no such file
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "pinnquad/dynamics/airframes/crazyflie.hpp"
+#include "training/log_model.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+constexpr double asked_r_squared = 0.73;
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> found;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) found.push_back(cell);
+  return found;
+}
+
+/// Commands as the file has them behind the lag: ua1 to ua4.
+Dataset read(std::istream& file) {
+  std::string line;
+  std::getline(file, line);
+  const std::vector<std::string> names = cells(line);
+  std::vector<Flight> flights;
+  std::map<std::string, std::vector<double>> voltages;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> row = cells(line);
+    const auto number = [&](const char* name) {
+      return std::stod(row[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
+    };
+    const auto vector = [&](const char* x, const char* y, const char* z) {
+      return Vector3<double>(number(x), number(y), number(z));
+    };
+    if (flights.empty() || flights.back().name != row[0]) {
+      flights.emplace_back();
+      flights.back().name = row[0];
+      const std::size_t type = row[0].find('_') + 1;  // "B10_lissajous_fast_rep1"
+      flights.back().trajectory = row[0].substr(type, row[0].find('_', type) - type);
+    }
+    Sample sample;
+    sample.time_s = number("t");
+    sample.velocity_m_s = vector("vbx", "vby", "vbz");
+    sample.body_rates_rad_s = vector("wx", "wy", "wz");
+    sample.linear_acceleration_m_s2 =
+        vector("abx", "aby", "abz") - cross<double>(sample.body_rates_rad_s, sample.velocity_m_s);
+    sample.angular_acceleration_rad_s2 = vector("dwx", "dwy", "dwz");
+    sample.roll_rad = number("roll");
+    sample.pitch_rad = number("pitch");
+    sample.yaw_rad = number("yaw");
+    sample.altitude_m = -number("pz");
+    sample.commands = {number("ua1"), number("ua2"), number("ua3"), number("ua4")};
+    flights.back().push_back(sample);
+    voltages[row[0]].push_back(number("vbat"));
+  }
+  Dataset dataset;
+  for (Flight& flight : flights) {
+    flight.add_column({{BatteryVoltage::name, BatteryVoltage::unit}, voltages[flight.name]});
+    dataset.add(std::move(flight));
+  }
+  return dataset;
+}
+
+/// Sums that R^2 is made of, per motor.
+struct Sums {
+  double rows = 0;
+  std::array<double, rotor_count> error{}, target{}, target_squared{};
+
+  void add(const Sums& other) {
+    rows += other.rows;
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      error[i] += other.error[i];
+      target[i] += other.target[i];
+      target_squared[i] += other.target_squared[i];
+    }
+  }
+  /// Mean over the motors.
+  double r_squared() const {
+    double mean = 0;
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      mean += (1 - error[i] / (target_squared[i] - target[i] * target[i] / rows)) / rotor_count;
+    }
+    return mean;
+  }
+};
+
+Sums judged(const programs::TrainedNetwork& model, const RowSet& rows) {
+  const programs::Predictions predictions = model.predictions(rows);
+  Sums sums;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (!std::isfinite(predictions[row][0])) continue;
+    ++sums.rows;
+    for (std::size_t i = 0; i < sums.error.size(); ++i) {
+      const double target = rows[row].commands[i], error = predictions[row][i] - target;
+      sums.error[i] += error * error;
+      sums.target[i] += target;
+      sums.target_squared[i] += target * target;
+    }
+  }
+  return sums;
+}
+
+/// The mean over the held-out types of their R^2; prints it, that of all held-out rows together, and each type's.
+double rotate(const Dataset& dataset, const programs::LogModelKind& kind) {
+  const programs::NamedAirframe airframe{Crazyflie::name, airframe_value<Crazyflie, double>()};
+  std::vector<std::string> types;
+  for (const Flight& flight : dataset.flights()) {
+    if (std::find(types.begin(), types.end(), flight.trajectory) == types.end()) types.push_back(flight.trajectory);
+  }
+  const std::vector<std::string> absent;
+  const RowSet none;
+  Sums all;
+  double mean = 0;
+  std::string each;
+  for (const std::string& held_out : types) {
+    RowSet training, test;
+    for (const Flight& flight : dataset.flights()) {
+      (flight.trajectory == held_out ? test : training).add(flight, {0, flight.size()});
+    }
+    const programs::LogFit fit{airframe, training, none, absent, 0.02};
+    const Sums sums = judged(*kind.fit(fit), test);
+    all.add(sums);
+    mean += sums.r_squared() / static_cast<double>(types.size());
+    char text[64];
+    std::snprintf(text, sizeof text, "  %s %.3f", held_out.c_str(), sums.r_squared());
+    each += text;
+  }
+  std::printf("%-24s R^2, mean over the types %.4f, all rows together %.4f; %.0f rows%s\n", kind.key, mean,
+              all.r_squared(), all.rows, each.c_str());
+  std::fflush(stdout);
+  return mean;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 3) return 2;
+  std::ifstream file(arguments[1]);
+  if (!file) {
+    std::printf("no %s\n", arguments[1]);
+    return 77;
+  }
+  const Dataset dataset = read(file);
+  const std::string wanted = arguments[2];
+  std::map<std::string, double> found;
+  for (const programs::LogModelKind& kind : programs::log_model_kinds()) {
+    const std::string key = kind.key;
+    const bool is_residual = key.rfind("ridge_residual", 0) == 0;
+    if (wanted == "ridge" && kind.seeded) continue;
+    if (wanted == "residual" && key != "ridge_residual_centred") continue;
+    if (wanted != "all" && is_residual && wanted != "residual") continue;
+    found[key] = rotate(dataset, kind);
+  }
+  const auto at_least = [&](const char* key, double least) {
+    const auto at = found.find(key);
+    if (at == found.end() || at->second >= least) return true;
+    std::printf("%s: expected %.2f or more\n", key, least);
+    return false;
+  };
+  bool good = at_least("ridge_centred", asked_r_squared) && at_least("ridge_residual_centred", asked_r_squared);
+  // what every step of the ladder is worth: a constant knows nothing, the window is what the present instant lacks
+  if (wanted != "residual") {
+    good = good && found["constant"] < 0 && found["physics"] > found["constant"] &&
+           found["ridge_centred"] > found["ridge"] && found["ridge_causal"] > found["ridge"];
+  }
+  return good ? 0 : 1;
+}

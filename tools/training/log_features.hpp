@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// What a model of logged flights is told: the feature sets, by what the logs have measured and by how far a model looks.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/inference/windowed.hpp"
+#include "training/log_model.hpp"
+
+namespace programs {
+
+/// Nine instants, 20 ms apart: of planned motions 80 ms to both sides, else the last 160 ms. Specific force and angular
+/// acceleration alone, for they are what the rotors' lag and the differentiation smear.
+template <class Present>
+using LogCausalWindow = pinnquad::PartlyWindowed<Present, pinnquad::AccelerationFeatures, 9,
+                                                 pinnquad::PeriodMicroseconds<20000>, pinnquad::Causal>;
+template <class Present>
+using LogCentredWindow = pinnquad::PartlyWindowed<Present, pinnquad::AccelerationFeatures, 9,
+                                                  pinnquad::PeriodMicroseconds<20000>, pinnquad::Centred>;
+
+template <TimeReach Reach, class Present>
+using LogFeatures = std::conditional_t<
+    Reach == TimeReach::present, Present,
+    std::conditional_t<Reach == TimeReach::causal, LogCausalWindow<Present>, LogCentredWindow<Present>>>;
+
+template <class Features>
+struct FeaturesTag {
+  using type = Features;
+};
+
+inline bool has_velocity(const LogFit& fit) {
+  return std::find(fit.absent.begin(), fit.absent.end(), "velocity") == fit.absent.end();
+}
+
+/// In all flights, in volts.
+inline bool has_battery(const LogFit& fit) {
+  for (const pinnquad::RowSet* rows : {&fit.training, &fit.validation}) {
+    for (const pinnquad::FlightRows& piece : rows->pieces()) {
+      const pinnquad::ExtraColumn* column = piece.flight->column(pinnquad::BatteryVoltage::name);
+      if (column == nullptr || column->unit != pinnquad::BatteryVoltage::unit) return false;
+    }
+  }
+  return true;
+}
+
+/// Calls `use(FeaturesTag)` with what physics asks for, as far as the logs have it.
+template <TimeReach Reach, class Use>
+auto with_physics_features(const LogFit& fit, const Use& use) {
+  using namespace pinnquad;
+  using Without = PhysicsFeaturesWithoutVelocity;
+  if (has_velocity(fit)) {
+    return has_battery(fit) ? use(FeaturesTag<LogFeatures<Reach, WithColumns<PhysicsFeatures, BatteryVoltage>>>{})
+                            : use(FeaturesTag<LogFeatures<Reach, PhysicsFeatures>>{});
+  }
+  return has_battery(fit) ? use(FeaturesTag<LogFeatures<Reach, WithColumns<Without, BatteryVoltage>>>{})
+                          : use(FeaturesTag<LogFeatures<Reach, Without>>{});
+}
+
+/// The same with the paper's features, which the logs have to have but for the battery.
+template <class Use>
+auto with_paper_features(const LogFit& fit, const Use& use) {
+  using namespace pinnquad;
+  return has_battery(fit) ? use(FeaturesTag<WithColumns<PaperFeatures, BatteryVoltage>>{})
+                          : use(FeaturesTag<PaperFeatures>{});
+}
+
+inline std::string always_applicable(const LogFit&) { return ""; }
+
+inline std::string needs_velocity(const LogFit& fit) {
+  return has_velocity(fit) ? "" : "needs velocity, which the logs lack";
+}
+
+/// A window is interpolated between rows, but not over gaps.
+inline std::string needs_window(const LogFit& fit) {
+  using Window = LogCausalWindow<pinnquad::PhysicsFeatures>::Window;
+  if (fit.sample_period_s <= Window::largest_gap_s) return "";
+  const auto milliseconds = [](double seconds) { return std::to_string(static_cast<int>(seconds * 1e3 + 0.5)); };
+  return "needs a row every " + milliseconds(Window::period_s) + " ms for its window, the logs have one every " +
+         milliseconds(fit.sample_period_s);
+}
+
+}  // namespace programs

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "training/log_kinds.hpp"
+
+namespace programs {
+
+const std::vector<LogModelKind>& log_model_kinds() {
+  static const std::vector<LogModelKind> kinds = {log_constant(),
+                                                  log_physics(),
+                                                  log_linear(),
+                                                  log_linearized(),
+                                                  log_ridge(),
+                                                  log_ridge_causal(),
+                                                  log_ridge_centred(),
+                                                  log_vanilla(),
+                                                  log_physics_informed(),
+                                                  log_ridge_residual(),
+                                                  log_ridge_residual_causal(),
+                                                  log_ridge_residual_centred()};
+  return kinds;
+}
+
+}  // namespace programs

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Ridge regression on physics features with 80 ms to both sides, for motions that are planned.
+#include "training/log_closed_form.hpp"
+#include "training/log_kinds.hpp"
+
+namespace programs {
+
+LogModelKind log_ridge_centred() {
+  return {"ridge_centred",
+          "ridge, 80 ms to both sides",
+          TimeReach::centred,
+          false,
+          needs_window,
+          fit_log_ridge<TimeReach::centred>,
+          true};
+}
+
+}  // namespace programs

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Models of the paper's features that nobody trains: linear regression, and Eq. (3) of the airframe as it is given.
+#include "training/log_closed_form.hpp"
+#include "training/log_kinds.hpp"
+
+#include "pinnquad/inference/residual_outputs.hpp"
+
+namespace programs {
+
+namespace {
+
+std::shared_ptr<const TrainedNetwork> fit_linear(const LogFit& fit) {
+  return with_paper_features(fit, [&](auto tag) {
+    return fit_affine<typename decltype(tag)::type>(fit, [](const auto& context, const pinnquad::RowSet& rows) {
+      return solved_least_squares(log_sums(context, rows));
+    });
+  });
+}
+
+/// A residual of 0 on Eq. (3) inverted.
+std::shared_ptr<const TrainedNetwork> fit_linearized(const LogFit& fit) {
+  using Context = LogContext<pinnquad::PaperFeatures, pinnquad::ResidualOutputs<pinnquad::LinearizedInverse>>;
+  const pinnquad::RowSet rows = rows_not_held_out(fit);
+  Context context = log_context<Context>(fit, rows);
+  context.output.mean = {};
+  return log_model_of(pinnquad::AffineAnswer<Context>{}, context, rows);
+}
+
+}  // namespace
+
+LogModelKind log_linear() {
+  return {"linear", "linear on the paper's features", TimeReach::present, false, needs_velocity, fit_linear, true};
+}
+LogModelKind log_linearized() {
+  return {"linearized", "linearized model of the airframe", TimeReach::present, false, needs_velocity, fit_linearized,
+          true};
+}
+
+}  // namespace programs
