@@ -187,7 +187,8 @@ plant set 7000 'attitude[0]' text
 refused 'planted.csv:1: expected a column attitude\[0\] of numbers' planted.csv "${models[@]}"
 plant set 7000 'attitude[0]' 1e300
 refused 'planted.csv:7000: expected a 32-bit number' planted.csv "${models[@]}"
-refused 'a model of checksum [0-9a-f]* flew from 28.000 s, and none of these is it' $log --model sound.block --model narrow.block
+plant set 7000 model 123
+refused 'a model of checksum 0000007b flew from 11.998 s, and none of these is it' planted.csv "${models[@]}"
 refused "no setting named 'tilt'; known: body_rates_us, .*tilt_1_s" $log "${models[@]}" --set tilt=7
 refused 'expected tilt_1_s=NUMBER in 1/s' $log "${models[@]}" --set tilt_1_s=x
 refused 'expected keep_us=NUMBER, a whole one, in us' $log "${models[@]}" --set keep_us=1.5
