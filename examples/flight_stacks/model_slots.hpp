@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #include "pinnquad/flight.hpp"
@@ -30,6 +31,11 @@ class ModelSlots {
     return current;
   }
 
+  /// Control thread: the checksum that the block of a model that take() gave has at its end, 0 for null.
+  std::uint32_t checksum(const Inverse* taken) const noexcept {
+    return taken == nullptr ? 0 : checksums_[taken == &slots_[0] ? 0 : 1];
+  }
+
   /// The other thread. True once the control thread has taken the model accepted last: the block of the one before is
   /// free.
   bool settled() const noexcept {
@@ -46,6 +52,7 @@ class ModelSlots {
     if (opened != pinnquad::Status::ok) return opened;
     Inverse& free = current == &slots_[0] ? slots_[1] : slots_[0];
     free = Inverse(view, free.guard());
+    checksums_[&free == &slots_[0] ? 0 : 1] = checksum_of(block);
     const pinnquad::Status tested = pinnquad::self_test(free);
     if (tested == pinnquad::Status::ok) published_.store(&free, std::memory_order_release);
     return tested;
@@ -54,7 +61,20 @@ class ModelSlots {
  private:
   static_assert(std::atomic<const Inverse*>::is_always_lock_free);
 
+  /// Of a block that was opened: it says how long it is.
+  static std::uint32_t checksum_of(const void* block) noexcept {
+    using Header = pinnquad::ModelBlockHeader;
+    const auto* bytes = static_cast<const unsigned char*>(block);
+    const auto number = [bytes](std::size_t at) noexcept {
+      std::uint32_t value = 0;
+      for (std::size_t i = 4; i-- > 0;) value = (value << 8) | bytes[at + i];
+      return value;
+    };
+    return number(number(Header::length) - Header::checksum_size);
+  }
+
   Inverse slots_[2];
+  std::uint32_t checksums_[2]{};  ///< written and read as the slots are
   std::atomic<const Inverse*> published_{nullptr};
   std::atomic<const Inverse*> taken_{nullptr};
 };

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "flight_stacks/core_record.hpp"
 #include "flight_stacks/inputs.hpp"
 #include "flight_stacks/model_slots.hpp"
 
@@ -41,22 +42,27 @@ struct StepReport {
   }
 };
 
-/// `Shape` says what a model block must hold: an exported header.
-template <class Shape>
+/// `Shape` says what a model block must hold: an exported header. `View` opens the block; on the ground it may be one whose
+/// network is known at run time alone (tools/model/replay_core.hpp).
+template <class Shape, class View = pinnquad::ModelView<Shape>>
 class NeuralController {
  public:
   using Vehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
   using Formula = pinnquad::AnalyticInverse<Vehicle>;
   using Guard =
       pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<AbsurdCommands>, pinnquad::Fallback<Formula>>;
-  using Inverse = pinnquad::InverseDynamics<pinnquad::ModelView<Shape>, Guard>;
+  using Inverse = pinnquad::InverseDynamics<View, Guard>;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
 
   explicit NeuralController(const AgeLimits& ages = {}, const OutputLimits& outputs = {},
                             const pinnquad::FlightGains<float>& gains = {}) noexcept
+      : NeuralController(pinnquad::airframe_value<typename Shape::Vehicle, float>(), ages, outputs, gains) {}
+  /// Of an airframe that is known at run time alone.
+  explicit NeuralController(const pinnquad::Airframe<float>& airframe, const AgeLimits& ages = {},
+                            const OutputLimits& outputs = {}, const pinnquad::FlightGains<float>& gains = {}) noexcept
       : ages_(ages),
         outputs_(outputs),
-        vehicle_(pinnquad::airframe_value<typename Shape::Vehicle, float>()),
+        vehicle_(airframe),
         outer_loop_(gains, pinnquad::flight_limits(vehicle_.airframe(), 1.0f, gains)),
         models_(Guard(Formula(vehicle_))) {}
   NeuralController(const NeuralController&) = delete;  // slots are pointed to
@@ -110,6 +116,7 @@ class NeuralController {
   Reaction step(std::uint64_t now_us, pinnquad::Commands<float>& commands, StepReport& report) noexcept {
     report = {};
     const Inverse* inverse = models_.take();
+    checksum_ = models_.checksum(inverse);
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
     if (reaction <= Reaction::levels) {
       pinnquad::Commands<float> answer{};
@@ -129,6 +136,34 @@ class NeuralController {
     report.reaction = reaction;
     return reaction;
   }
+
+  /// A tick in which the stack asks nothing: off, or flown by hand. For who writes down every tick (recorded_controller.hpp).
+  void skip(std::uint64_t /*now_us*/) noexcept {}
+
+  /// What it was made with.
+  CoreSettings settings() const noexcept {
+    const auto us = [](std::uint64_t time_us) noexcept { return static_cast<std::uint32_t>(time_us); };
+    const pinnquad::FlightGains<float>& gains = outer_loop_.gains();
+    CoreSettings all;
+    all.body_rates_us = us(ages_.body_rates_us);
+    all.attitude_us = us(ages_.attitude_us);
+    all.local_us = us(ages_.local_us);
+    all.set_point_us = us(ages_.set_point_us);
+    all.keep_us = us(ages_.keep_us);
+    all.level_us = us(ages_.level_us);
+    all.lowest_command = outputs_.lower;
+    all.highest_command = outputs_.upper;
+    all.position_1_s = gains.position_1_s;
+    all.velocity_1_s = gains.velocity_1_s;
+    all.tilt_1_s = gains.tilt_1_s;
+    all.yaw_1_s = gains.yaw_1_s;
+    all.roll_pitch_rate_1_s = gains.roll_pitch_rate_1_s;
+    all.yaw_rate_1_s = gains.yaw_rate_1_s;
+    return all;
+  }
+
+  /// Of the block whose model the last step asked; 0: none.
+  std::uint32_t model_checksum() const noexcept { return checksum_; }
 
   /// How often the network was asked since the start, and what it came to; the rest fell back to the formula.
   const pinnquad::FallbackCount& count() const noexcept { return count_; }
@@ -248,6 +283,7 @@ class NeuralController {
   std::uint64_t answered_us_ = 0;
   bool answered_ = false;
   bool ready_ = false;
+  std::uint32_t checksum_ = 0;
   pinnquad::FallbackCount count_{};
 };
 

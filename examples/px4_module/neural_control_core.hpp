@@ -66,8 +66,9 @@ struct PinnquadStatus {
   std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point
 };
 
-/// `Model` is an exported header; the weights come as a model block.
-template <class Model>
+/// `Model` is an exported header; the weights come as a model block. `Controller`: one that writes down what it is told
+/// (flight_stacks/recorded_controller.hpp), where the module logs it.
+template <class Model, class Controller = flight_stacks::NeuralController<Model>>
 class NeuralControl {
  public:
   using ClockUs = std::uint64_t (*)();
@@ -108,6 +109,8 @@ class NeuralControl {
     return controller_.set_point(m.timestamp, wanted);
   }
 
+  const Controller& controller() const noexcept { return controller_; }
+
   /// One tick, after the messages. False: the module has no commands, nothing is to be published to the motors, and
   /// PX4's own controllers must take over. `status` is written either way.
   bool run(ActuatorMotors& motors, PinnquadStatus& status) noexcept {
@@ -130,7 +133,7 @@ class NeuralControl {
   static pinnquad::Vector3<float> vector(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
 
   ClockUs clock_;
-  flight_stacks::NeuralController<Model> controller_;
+  Controller controller_;
 };
 
 }  // namespace pinnquad_px4

@@ -52,6 +52,8 @@ class FaultyFlight {
         vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), pinnquad::paper_site<double>()),
         own_({}, pinnquad::flight_limits(vehicle_.airframe(), 1.0)) {}
 
+  CoreSettings settings() const { return stack_.settings(); }
+
   /// Boot: a corrupt model is refused and the module stays out; then a sound one.
   bool boot() {
     say("boot", "a corrupt model offered");
@@ -65,6 +67,11 @@ class FaultyFlight {
 
   template <class Target, class Faults>
   FlightFigures fly(const Target& target, double duration_s, const Faults& faults) {
+    return fly(target, duration_s, faults, [](const CoreRecord&) {});
+  }
+  /// `on_tick(record)` sees what the core received and answered in each.
+  template <class Target, class Faults, class OnTick>
+  FlightFigures fly(const Target& target, double duration_s, const Faults& faults, const OnTick& on_tick) {
     figures_.worst.assign(faults.size(), Reaction::flies);
     figures_.fell_back.assign(faults.size(), 0);
     figures_.asked.assign(faults.size(), 0);
@@ -84,7 +91,9 @@ class FaultyFlight {
         if (!on && began[i] && !ended[i]) ended[i] = true, end(fault, i);
       }
       feed(ms, now_us, target(time_s_));
+      stack_.fly_by_hand(faulty(FaultKind::flown_by_hand));
       const Answer answer = stack_.run(now_us);
+      on_tick(stack_.record());
       note(answer, faults);
       choose(answer, ms);
       by_module += own_flies_ ? 0 : 1;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "flight.hpp"
+#include "flight_paths.hpp"
 
 namespace {
 
@@ -17,38 +18,6 @@ constexpr double duration_s = 33, calm_duration_s = 20;
 constexpr double lowest_m = 9;         // 10.9 m is flown; the lowest place asked for is 9.9 m
 constexpr double steepest_rad = 1.05;  // 60 deg; the outer loop asks for 49
 constexpr std::array<Fault, 0> no_faults = {};
-
-TrajectoryPoint<double> hover(double /*time_s*/) { return pinnquad::Hover<double>{{0, 0, -10}}.sample(0); }
-
-/// A lying eight around the start; its length says how fast.
-struct Eight {
-  pinnquad::FigureEight<double> path;
-  Eight(double half_length_m, double period_s) {
-    path.center_m = {0, 0, -10};
-    path.half_length_m = half_length_m;
-    path.half_width_m = half_length_m / 2;
-    path.half_height_m = half_length_m / 8;
-    path.period_s = period_s;
-  }
-  TrajectoryPoint<double> operator()(double time_s) const { return path.sample(time_s); }
-};
-
-/// Another place and yaw every 2 s, in a box: steps, no path.
-struct RandomPlaces {
-  std::vector<TrajectoryPoint<double>> places;
-  explicit RandomPlaces(double half_box_m) {
-    std::mt19937_64 engine(3);
-    for (int i = 0; i < 20; ++i) {
-      TrajectoryPoint<double> point;
-      const auto draw = [&](double half) { return pinnquad::uniform(engine, -half, half); };
-      point.position_m = {draw(half_box_m), draw(half_box_m), -10 + draw(half_box_m / 4)};
-      point.yaw_rad = draw(1.0);
-      places.push_back(point);
-    }
-    places[0] = hover(0);
-  }
-  TrajectoryPoint<double> operator()(double time_s) const { return places[static_cast<std::size_t>(time_s / 2)]; }
-};
 
 /// `farthest_m`: of the figure-eight the set points fly on for 1.5 s while the module, told nothing, holds its place.
 template <class Stack, class Target>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "pinnquad/deploy/weight_file.hpp"
@@ -38,6 +39,18 @@ template <class Model>
 Block other_block() {
   Trained<Model> model = trained_model<Model>();
   for (float& weight : model.network.parameters) weight *= 1.001f;
+  return pinnquad::model_block(model, {Model::golden_features.begin(), Model::golden_features.end()}, {});
+}
+
+/// One bit of one weight is another, with golden vectors to match: a sound model, not the exported one.
+template <class Model>
+Block bit_block() {
+  Trained<Model> model = trained_model<Model>();
+  std::uint32_t bits = 0;
+  float& weight = model.network.parameters[0];
+  std::memcpy(&bits, &weight, sizeof bits);
+  bits ^= std::uint32_t{1} << 18;  // a weight that is a few percent off
+  std::memcpy(&weight, &bits, sizeof bits);
   return pinnquad::model_block(model, {Model::golden_features.begin(), Model::golden_features.end()}, {});
 }
 

@@ -3,12 +3,15 @@
 // The core of px4_module behind C functions, for the compile gates: its glue needs PX4's tree.
 #include <new>
 
+#include "flight_stacks/recorded_controller.hpp"
 #include "models/demo_quadrotor.hpp"
 #include "px4_module/neural_control_core.hpp"
 
 namespace {
 using Core = pinnquad_px4::NeuralControl<DemoQuadModel>;
-}
+using RecordedCore =
+    pinnquad_px4::NeuralControl<DemoQuadModel, flight_stacks::Recorded<flight_stacks::NeuralController<DemoQuadModel>>>;
+}  // namespace
 
 extern "C" {
 
@@ -31,6 +34,22 @@ bool pinnquad_flight_px4_run(Core* core, const pinnquad_px4::VehicleAngularVeloc
   static_cast<void>(core->take(*local));
   static_cast<void>(core->take(*set_point));
   return core->run(*motors, *status);
+}
+
+/// A module that logs what it is told.
+bool pinnquad_flight_px4_run_recorded(RecordedCore* core, const pinnquad_px4::VehicleAngularVelocity* rates,
+                                      const pinnquad_px4::VehicleAttitude* attitude,
+                                      const pinnquad_px4::VehicleLocalPosition* local,
+                                      const pinnquad_px4::TrajectorySetpoint* set_point,
+                                      pinnquad_px4::ActuatorMotors* motors, pinnquad_px4::PinnquadStatus* status,
+                                      flight_stacks::CoreRecord* record) {
+  static_cast<void>(core->take(*rates));
+  static_cast<void>(core->take(*attitude));
+  static_cast<void>(core->take(*local));
+  static_cast<void>(core->take(*set_point));
+  const bool has_commands = core->run(*motors, *status);
+  *record = core->controller().record();
+  return has_commands;
 }
 
 }  // extern "C"

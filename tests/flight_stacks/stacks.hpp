@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "crazyflie_app/src/neural_control_core.hpp"
+#include "flight_stacks/recorded_controller.hpp"
 #include "models/crazyflie_2_1.hpp"
 #include "models/demo_quadrotor.hpp"
 #include "pinnquad/core/rotation.hpp"
@@ -51,6 +52,8 @@ class Px4StackOf {
 
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
+  const CoreRecord& record() const { return core_.controller().record(); }
+  CoreSettings settings() const { return core_.controller().settings(); }
 
   void rates(std::uint64_t time_us, const pinnquad::Vector3<double>& w) {
     pinnquad_px4::VehicleAngularVelocity m;
@@ -87,6 +90,9 @@ class Px4StackOf {
     static_cast<void>(core_.take(m));
   }
 
+  /// The module runs unselected too.
+  void fly_by_hand(bool /*by_hand*/) {}
+
   Answer run(std::uint64_t now_us) {
     now_us_ = now_us;
     pinnquad_px4::ActuatorMotors motors;
@@ -100,7 +106,7 @@ class Px4StackOf {
   static std::uint64_t clock() { return now_us_; }
   static inline std::uint64_t now_us_ = 0;
 
-  pinnquad_px4::NeuralControl<Model> core_;
+  pinnquad_px4::NeuralControl<Model, Recorded<NeuralController<Model>>> core_;
 };
 
 /// The paper's quadrotor.
@@ -118,6 +124,8 @@ class CrazyflieStackOf {
 
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
+  const CoreRecord& record() const { return core_.controller().record(); }
+  CoreSettings settings() const { return core_.controller().settings(); }
 
   void rates(std::uint64_t time_us, const pinnquad::Vector3<double>& w) {
     state_.gyro_timestamp = in_ms(time_us);
@@ -164,10 +172,16 @@ class CrazyflieStackOf {
     setpoint_.mode_yaw = crazyflie_mode_abs;
   }
 
+  void fly_by_hand(bool by_hand) { by_hand_ = by_hand; }
+
   Answer run(std::uint64_t now_us) {
     float m[4] = {};
     CrazyflieReport report{};
-    Answer answer = answer_of(core_.step(in_ms(now_us), state_, setpoint_, m, report), report);
+    CrazyflieSetpoint asked = setpoint_;
+    if (by_hand_) {
+      for (std::uint8_t& mode : asked.mode) mode = crazyflie_mode_disable;
+    }
+    Answer answer = answer_of(core_.step(in_ms(now_us), state_, asked, m, report), report);
     // pinnquad: front right, rear left, front left, rear right; M1..M4 front right, rear right, rear left, front left
     answer.commands = {static_cast<double>(m[0]), static_cast<double>(m[2]), static_cast<double>(m[3]),
                        static_cast<double>(m[1])};
@@ -182,9 +196,10 @@ class CrazyflieStackOf {
     enu[2] = static_cast<float>(-ned[2]);
   }
 
-  pinnquad_crazyflie::NeuralControl<Model> core_;
+  pinnquad_crazyflie::NeuralControl<Model, Recorded<NeuralController<Model>>> core_;
   CrazyflieState state_{};
   CrazyflieSetpoint setpoint_{};
+  bool by_hand_ = false;
 };
 
 using CrazyflieStack = CrazyflieStackOf<CrazyflieModel>;

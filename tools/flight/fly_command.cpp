@@ -349,7 +349,7 @@ void add_options(CLI::App& app, Options& options) {
   add_path(app, "--pictures", options.pictures, "DIR",
            "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)");
   add_path(app, "--replay", options.replay, "FILE.html",
-           "page that replays the flight in 3D in a browser (docs/replay.md)");
+           "page that replays the flight in 3D in a browser (docs/replay.md); a model over a log: pinnquad replay");
   app.add_flag("--list-airframes", options.list_airframes,
                "print the airframes and where their values are from, and stop");
 }

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,10 +18,8 @@
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "logs/training_flights.hpp"
-#include "model/header_block.hpp"
-#include "model/identity.hpp"
+#include "model/run_time_model.hpp"
 #include "pinnquad/data/sample_inputs.hpp"
-#include "pinnquad/training/context_airframe.hpp"
 #include "training/derivatives.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
@@ -40,40 +37,6 @@ struct Options {
   bool json = false;
 };
 
-using Airframe = ContextAirframe<GivenAirframe>;
-
-/// A block's network between its scalers, in the block's scalar.
-template <class Features, class Outputs, class Scalar>
-class RunTimeModel {
- public:
-  using FeatureVector = std::array<Scalar, static_cast<std::size_t>(Features::size)>;
-
-  RunTimeModel(const programs::Block& block, const programs::Identity& identity)
-      : network_(identity.network, block.parameters),
-        airframe_(identity.airframe.name, identity.airframe.value),
-        input_(programs::scaler_of<Scaler<Scalar, Features::size>>(block.input_mean, block.input_spread)),
-        output_(programs::scaler_of<Scaler<Scalar, OutputMap<Outputs>::size>>(block.output_mean, block.output_spread)) {
-  }
-
-  Commands<Scalar> predict(const FeatureVector& x) const {
-    std::vector<Scalar> standardised(x.size());
-    input_.standardise(x.data(), standardised.data());
-    const std::vector<Scalar> made = network_.forward(standardised);
-    std::array<Scalar, static_cast<std::size_t>(OutputMap<Outputs>::size)> outputs{};
-    output_.restore(made.data(), outputs.data());
-    Commands<Scalar> commands{};
-    OutputMap<Outputs>::commands(x.data(), static_cast<const Scalar*>(outputs.data()),
-                                 airframe_.template output_setting<Outputs, Scalar>(), commands.data());
-    return commands;
-  }
-
- private:
-  programs::RunTimeNetwork<Scalar> network_;
-  Airframe airframe_;
-  Scaler<Scalar, Features::size> input_;
-  Scaler<Scalar, OutputMap<Outputs>::size> output_;
-};
-
 /// What was found.
 struct Evaluation {
   double golden_difference = 0;  ///< the largest of the golden vectors' commands
@@ -84,7 +47,7 @@ struct Evaluation {
 
 template <class Features, class Outputs, class Scalar>
 Evaluation evaluated(const programs::Block& block, const programs::Identity& identity, const RowSet& rows) {
-  using Model = RunTimeModel<Features, Outputs, Scalar>;
+  using Model = programs::RunTimeModel<Features, Outputs, Scalar>;
   const Model model(block, identity);
   Evaluation result;
   for (std::size_t vector = 0; vector < block.golden_count; ++vector) {
@@ -122,7 +85,7 @@ Evaluation evaluated(const programs::Block& block, const programs::Identity& ide
       identity.network, block.parameters,
       programs::scaler_of<typename Derivatives::InputScaler>(block.input_mean, block.input_spread),
       programs::scaler_of<typename Derivatives::OutputScaler>(block.output_mean, block.output_spread),
-      Airframe(identity.airframe.name, identity.airframe.value));
+      programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value));
   result.wrong_derivatives = programs::wrong_derivative_shares(rows, [&](const Sample& sample) {
     advance();
     return derivatives(sample);
@@ -185,19 +148,10 @@ void print_table(const programs::Block& block, const programs::Identity& identit
   programs::print_wrong_derivatives(results, {"model"});
 }
 
-/// The model as a block, whichever it is; `answer`: the network as a description, empty where a block alone is given.
-programs::Block read_model(const std::string& path, std::string& answer) {
-  if (std::filesystem::path(path).extension() != ".hpp") return programs::read_block(path);
-  const programs::HeaderFile header(path);
-  if (answer.empty()) answer = programs::answer_of(header);
-  const std::vector<unsigned char> bytes = programs::block_of(header);
-  return programs::read_block(path, std::string(bytes.begin(), bytes.end()));
-}
-
 int evaluate(const Options& options) {
   programs::end_at_interrupt();
   std::string answer = options.answer;
-  const programs::Block block = read_model(options.model, answer);
+  const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, answer));
   const programs::Identity identity = programs::identify(block, options.airframe, answer);
   const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows);
   const RowSet rows = chosen_rows(options, dataset);
@@ -205,8 +159,8 @@ int evaluate(const Options& options) {
   if (!(evaluation.golden_difference <= golden_tolerance)) {
     throw InputError(block.path, 0, 0, "golden commands that its weights give", "others");
   }
-  programs::Judgement judged =
-      programs::judge(Airframe(identity.airframe.name, identity.airframe.value), rows, evaluation.predictions);
+  programs::Judgement judged = programs::judge(
+      programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value), rows, evaluation.predictions);
   judged.wrong_derivative_share = evaluation.wrong_derivatives;
   if (options.json) {
     print_json(options, block, identity, dataset, rows, evaluation, judged);

@@ -15,7 +15,8 @@ inline constexpr float rad_per_deg = 0.017453292519943295f;
 /// counter-clockwise seen from above.
 inline constexpr std::size_t rotor_of_motor[4] = {0, 3, 1, 2};
 
-template <class Model>
+/// `Controller`: one that writes down what it is told (flight_stacks/recorded_controller.hpp), where the app logs it.
+template <class Model, class Controller = flight_stacks::NeuralController<Model>>
 class NeuralControl {
  public:
   explicit NeuralControl(const flight_stacks::AgeLimits& ages = {}) noexcept : controller_(ages) {}
@@ -24,6 +25,7 @@ class NeuralControl {
     return controller_.offer_model(block, length);
   }
   bool ready() const noexcept { return controller_.ready(); }
+  const Controller& controller() const noexcept { return controller_; }
 
   bool step(std::uint32_t now_ms, const CrazyflieState& state, const CrazyflieSetpoint& setpoint, float (&forces)[4],
             CrazyflieReport& report) noexcept {
@@ -34,6 +36,8 @@ class NeuralControl {
       take(state);
       take(setpoint);
       has_commands = controller_.step(in_us(now_ms), commands, why) != flight_stacks::Reaction::gives_up;
+    } else {
+      controller_.skip(in_us(now_ms));
     }
     controller_.describe(why, report);
     if (!has_commands) return false;
@@ -86,7 +90,7 @@ class NeuralControl {
     static_cast<void>(controller_.set_point(in_us(s.timestamp), wanted));
   }
 
-  flight_stacks::NeuralController<Model> controller_;
+  Controller controller_;
   pinnquad::Heading<float> heading_{};  ///< of the body in the firmware's world
 };
 

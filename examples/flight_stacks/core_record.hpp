@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// What the controller received and what it answered, tick by tick, as plain numbers: what a module logs and what
+// `pinnquad replay` runs through the same controller on the ground (docs/replay_log.md). The one place that says which numbers,
+// in which order, under which names and units: a PX4 message (px4_module/msg) and a CSV have those of each_number().
+// NED, FRD, SI units, commands in the airframe's rotor order, whatever the stack's own are.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace flight_stacks {
+
+/// An input's bit in `came` and `stale_inputs`.
+inline constexpr std::uint8_t body_rates_bit = 1, attitude_bit = 2, local_bit = 4, set_point_bit = 8;
+
+/// One tick. Inputs are those that came last, as they came: refused ones too. Of one input, one sample per tick at most.
+struct CoreRecord {
+  static constexpr const char* topic = "pinnquad_record";
+
+  std::uint64_t timestamp{0};  ///< of the tick, on the clock of the samples
+  std::uint64_t body_rates_us{0};
+  std::uint64_t attitude_us{0};
+  std::uint64_t local_us{0};
+  std::uint64_t set_point_us{0};
+  std::uint32_t tick{0};   ///< counts from 1; a number that is missing was not logged
+  std::uint32_t model{0};  ///< checksum of the model block that flew; 0: none was accepted yet
+  std::uint32_t refused_samples{0};
+  float body_rates_rad_s[3]{};
+  float attitude[4]{1, 0, 0, 0};  ///< w, x, y, z; body -> world
+  float position_m[3]{};
+  float velocity_m_s[3]{};       ///< world
+  float wanted_position_m[3]{};  ///< of the set point, as all that follows; NaN: not asked for
+  float wanted_velocity_m_s[3]{};
+  float wanted_acceleration_m_s2[3]{};
+  float wanted_jerk_m_s3[3]{};
+  float wanted_yaw_rad{0};
+  float wanted_yaw_rate_rad_s{0};
+  float commands[4]{};       ///< NaN where there were none
+  float envelope_excess{0};  ///< how far the worst feature lay outside, in half-widths of its range
+  std::int8_t envelope_feature{-1};
+  std::uint8_t came{0};          ///< which inputs came since the tick before, as bits
+  std::uint8_t asked{0};         ///< 0: the stack asked nothing of the controller: off, or flown by hand
+  std::uint8_t reaction{0};      ///< Reaction
+  std::uint8_t status{0};        ///< pinnquad::Status
+  std::uint8_t cause{0};         ///< pinnquad::Status of the network alone
+  std::uint8_t stale_inputs{0};  ///< as bits
+
+  /// Calls `visit(name, unit, number or array)` for each, in their order. No more noexcept than `visit`.
+  template <class Self, class Visit>
+  static void each_number(Self& self, const Visit& visit) {
+    visit("timestamp", "us", self.timestamp);
+    visit("body_rates_us", "us", self.body_rates_us);
+    visit("attitude_us", "us", self.attitude_us);
+    visit("local_us", "us", self.local_us);
+    visit("set_point_us", "us", self.set_point_us);
+    visit("tick", "1", self.tick);
+    visit("model", "1", self.model);
+    visit("refused_samples", "1", self.refused_samples);
+    visit("body_rates_rad_s", "rad/s", self.body_rates_rad_s);
+    visit("attitude", "1", self.attitude);
+    visit("position_m", "m", self.position_m);
+    visit("velocity_m_s", "m/s", self.velocity_m_s);
+    visit("wanted_position_m", "m", self.wanted_position_m);
+    visit("wanted_velocity_m_s", "m/s", self.wanted_velocity_m_s);
+    visit("wanted_acceleration_m_s2", "m/s^2", self.wanted_acceleration_m_s2);
+    visit("wanted_jerk_m_s3", "m/s^3", self.wanted_jerk_m_s3);
+    visit("wanted_yaw_rad", "rad", self.wanted_yaw_rad);
+    visit("wanted_yaw_rate_rad_s", "rad/s", self.wanted_yaw_rate_rad_s);
+    visit("commands", "1", self.commands);
+    visit("envelope_excess", "1", self.envelope_excess);
+    visit("envelope_feature", "1", self.envelope_feature);
+    visit("came", "bits", self.came);
+    visit("asked", "1", self.asked);
+    visit("reaction", "1", self.reaction);
+    visit("status", "1", self.status);
+    visit("cause", "1", self.cause);
+    visit("stale_inputs", "bits", self.stale_inputs);
+  }
+};
+
+/// What a controller was made with: once when it starts.
+struct CoreSettings {
+  static constexpr const char* topic = "pinnquad_settings";
+
+  std::uint64_t timestamp{0};
+  // AgeLimits
+  std::uint32_t body_rates_us{0};
+  std::uint32_t attitude_us{0};
+  std::uint32_t local_us{0};
+  std::uint32_t set_point_us{0};
+  std::uint32_t keep_us{0};
+  std::uint32_t level_us{0};
+  // OutputLimits
+  float lowest_command{0};
+  float highest_command{0};
+  // pinnquad::FlightGains
+  float position_1_s{0};
+  float velocity_1_s{0};
+  float tilt_1_s{0};
+  float yaw_1_s{0};
+  float roll_pitch_rate_1_s{0};
+  float yaw_rate_1_s{0};
+
+  /// As CoreRecord's.
+  template <class Self, class Visit>
+  static void each_number(Self& self, const Visit& visit) {
+    visit("timestamp", "us", self.timestamp);
+    visit("body_rates_us", "us", self.body_rates_us);
+    visit("attitude_us", "us", self.attitude_us);
+    visit("local_us", "us", self.local_us);
+    visit("set_point_us", "us", self.set_point_us);
+    visit("keep_us", "us", self.keep_us);
+    visit("level_us", "us", self.level_us);
+    visit("lowest_command", "1", self.lowest_command);
+    visit("highest_command", "1", self.highest_command);
+    visit("position_1_s", "1/s", self.position_1_s);
+    visit("velocity_1_s", "1/s", self.velocity_1_s);
+    visit("tilt_1_s", "1/s", self.tilt_1_s);
+    visit("yaw_1_s", "1/s", self.yaw_1_s);
+    visit("roll_pitch_rate_1_s", "1/s", self.roll_pitch_rate_1_s);
+    visit("yaw_rate_1_s", "1/s", self.yaw_rate_1_s);
+  }
+};
+
+}  // namespace flight_stacks

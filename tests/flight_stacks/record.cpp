@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Flies a core through the fault script in the simulator and writes what it received and answered, with the models that flew,
+// for `pinnquad replay`.
+//   flight_stacks_record px4|crazyflie hover|eight|random_places FOLDER
+#include <cstdio>
+#include <cstring>
+
+#include "flight.hpp"
+#include "flight_paths.hpp"
+#include "record_csv.hpp"
+
+namespace {
+
+using namespace flight_stacks::test;
+using flight_stacks::CoreRecord;
+using flight_stacks::CoreSettings;
+using flight_stacks::Reaction;
+
+constexpr double duration_s = 33;
+
+void write(const std::string& path, const Block& block) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
+}
+
+template <class Stack, class Target>
+int record(const std::string& folder, const Target& target) {
+  using Model = typename Stack::Model;
+  write(folder + "/sound.block", sound_block<Model>());
+  write(folder + "/other.block", other_block<Model>());
+  write(folder + "/narrow.block", narrow_block<Model>());
+  write(folder + "/bit.block", bit_block<Model>());
+  std::array<Fault, fault_script.size() + 1> faults{};
+  std::copy(fault_script.begin(), fault_script.end(), faults.begin());
+  faults.back() = {30.5, 1.5, FaultKind::flown_by_hand, 0, "flown by hand for 1.5 s", Reaction::gives_up};
+  FaultyFlight<Stack> flight;
+  if (!flight.boot()) return 1;
+  std::ofstream settings = record_file<CoreSettings>(folder, "flight");
+  settings << csv_row(flight.settings());
+  std::ofstream ticks = record_file<CoreRecord>(folder, "flight");
+  const FlightFigures flown =
+      flight.fly(target, duration_s, faults, [&](const CoreRecord& tick) { ticks << csv_row(tick); });
+  for (const std::string& line : flown.log) std::printf("%s\n", line.c_str());
+  settings.close();
+  ticks.close();
+  return settings && ticks && !flown.crashed ? 0 : 1;
+}
+
+template <class Stack>
+int record(const std::string& path, const std::string& folder, double half_length_m, double period_s,
+           double half_box_m) {
+  if (path == "hover") return record<Stack>(folder, hover);
+  if (path == "eight") return record<Stack>(folder, Eight(half_length_m, period_s));
+  return record<Stack>(folder, RandomPlaces(half_box_m));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 4) return std::fprintf(stderr, "flight_stacks_record STACK PATH FOLDER\n"), 2;
+  return std::strcmp(arguments[1], "px4") == 0 ? record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5)
+                                               : record<CrazyflieStack>(arguments[2], arguments[3], 1.5, 6, 1);
+}

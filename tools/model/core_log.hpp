@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// What a flight stack's core logged (examples/flight_stacks/core_record.hpp), from a log's columns: numbers checked against what
+// each may be.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "flight_stacks/core_record.hpp"
+#include "logs/flight_log.hpp"
+#include "model/replayed_row.hpp"
+#include "pinnquad/data/file_error.hpp"
+
+namespace programs {
+
+namespace detail {
+
+[[noreturn]] inline void refuse_core_number(const LogTopic& topic, std::size_t row, const std::string& expected,
+                                            double found) {
+  const bool has_line = topic.places_are_lines && row < topic.place.size();
+  throw pinnquad::InputError(
+      topic.file, has_line ? static_cast<std::size_t>(topic.place[row]) : 0, 0, expected,
+      in_words("%.9g", found) + (has_line ? "" : " in message " + std::to_string(row + 1) + " of " + topic.name));
+}
+
+/// A column's number as a field has it: whole where the field is, within its range. NaN and infinity are numbers of a float.
+template <class Number>
+Number core_number(const LogTopic& topic, const LogColumn& column, std::size_t row) {
+  const double value = column.values[row];
+  double least = static_cast<double>(std::numeric_limits<Number>::lowest());
+  double most = static_cast<double>(std::numeric_limits<Number>::max());
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (std::isfinite(value) && !(value >= least && value <= most)) {
+      refuse_core_number(topic, row, "a 32-bit number in column " + column.name, value);
+    }
+  } else {
+    most = std::min(most, 9007199254740992.0);  // 2^53: beyond it a double skips whole numbers
+    if (!(value >= least && value <= most) || std::floor(value) < value) {
+      refuse_core_number(topic, row, in_words("a whole number from %.0f to %.0f in column ", least, most) + column.name,
+                         value);
+    }
+  }
+  return static_cast<Number>(value);
+}
+
+/// Throws InputError where there is none.
+inline const LogColumn& core_column(const LogTopic& topic, const std::string& name) {
+  if (const LogColumn* column = topic.column(name)) return *column;
+  throw pinnquad::InputError(topic.file, topic.places_are_lines ? 1 : 0, 0,
+                             "a column " + name + " of numbers, as a core logs it",
+                             topic.text(name) != nullptr ? "text in it" : "none of that name");
+}
+
+}  // namespace detail
+
+/// The rows of a topic as records of a core. Throws InputError, one line: a column that is missing or holds text, a number that
+/// its field can't be.
+template <class Record>
+std::vector<Record> core_records(const LogTopic& topic) {
+  std::vector<const LogColumn*> columns;
+  const Record layout{};
+  Record::each_number(layout, [&](const char* name, const char*, const auto& value) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if constexpr (std::is_array_v<Value>) {
+      for (std::size_t i = 0; i < std::extent_v<Value>; ++i) {
+        columns.push_back(&detail::core_column(topic, name + ("[" + std::to_string(i) + "]")));
+      }
+    } else {
+      columns.push_back(&detail::core_column(topic, name));
+    }
+  });
+  std::vector<Record> records(topic.size());
+  for (std::size_t row = 0; row < records.size(); ++row) {
+    auto column = columns.begin();
+    const auto take = [&](auto& number) {
+      number = detail::core_number<std::decay_t<decltype(number)>>(topic, **column, row);
+      ++column;
+    };
+    Record::each_number(records[row], [&](const char*, const char*, auto& value) {
+      if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
+        for (auto& number : value) take(number);
+      } else {
+        take(value);
+      }
+    });
+  }
+  return records;
+}
+
+}  // namespace programs

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// What a flight stack's controller does, and why, in words; and its settings as its own types have them.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "flight_stacks/core_record.hpp"
+#include "flight_stacks/neural_controller.hpp"
+#include "model/replayed_row.hpp"
+
+namespace programs {
+
+inline flight_stacks::AgeLimits age_limits(const flight_stacks::CoreSettings& s) {
+  flight_stacks::AgeLimits ages;
+  ages.body_rates_us = s.body_rates_us;
+  ages.attitude_us = s.attitude_us;
+  ages.local_us = s.local_us;
+  ages.set_point_us = s.set_point_us;
+  ages.keep_us = s.keep_us;
+  ages.level_us = s.level_us;
+  return ages;
+}
+
+inline flight_stacks::OutputLimits output_limits(const flight_stacks::CoreSettings& s) {
+  return {s.lowest_command, s.highest_command};
+}
+
+inline pinnquad::FlightGains<float> flight_gains(const flight_stacks::CoreSettings& s) {
+  return {s.position_1_s, s.velocity_1_s, s.tilt_1_s, s.yaw_1_s, s.roll_pitch_rate_1_s, s.yaw_rate_1_s};
+}
+
+/// The numbers that a log holds may be those of a newer core.
+inline std::string reaction_name(std::uint8_t number) {
+  const auto last = static_cast<std::uint8_t>(flight_stacks::Reaction::gives_up);
+  return number > last ? "reaction " + std::to_string(number)
+                       : flight_stacks::to_string(static_cast<flight_stacks::Reaction>(number));
+}
+inline std::string status_name(std::uint8_t number) {
+  return number >= pinnquad::status_count ? "status " + std::to_string(number)
+                                          : pinnquad::to_string(static_cast<pinnquad::Status>(number));
+}
+
+inline constexpr std::array<const char*, 4> core_input_names = {"body rates", "attitude", "position and velocity",
+                                                                "set point"};
+
+/// "attitude, set point" of bits; "none".
+inline std::string input_names(std::uint8_t bits) {
+  std::string names;
+  for (std::size_t i = 0; i < core_input_names.size(); ++i) {
+    if ((bits >> i & 1u) != 0) names += (names.empty() ? "" : ", ") + std::string(core_input_names[i]);
+  }
+  return names.empty() ? "none" : names;
+}
+
+/// "attitude[2] is NaN", "position_m[0] = 2e+06": the first number that no sample has; empty if there is none.
+template <std::size_t Count>
+std::string bad_numbers(const char* name, const float (&values)[Count]) {
+  for (std::size_t i = 0; i < Count; ++i) {
+    const auto value = static_cast<double>(values[i]);
+    if (std::isfinite(value) && std::fabs(value) <= static_cast<double>(flight_stacks::most_plausible)) continue;
+    const std::string which = std::string(name) + "[" + std::to_string(i) + "]";
+    return which + (std::isnan(value) ? " is NaN" : in_words(" = %.3g", value));
+  }
+  return "";
+}
+
+/// Follows the inputs of a controller, so that it can say why one is stale.
+class CoreWords {
+ public:
+  explicit CoreWords(const flight_stacks::CoreSettings& settings)
+      : settings_(settings),
+        limits_us_{settings.body_rates_us, settings.attitude_us, settings.local_us, settings.set_point_us} {}
+
+  void forget() { inputs_ = {}; }
+
+  /// A sample of input 0 to 3; `what` is wrong with it where it was refused.
+  void came(int input, std::uint64_t time_us, pinnquad::Status status, const std::string& what) {
+    Input& in = inputs_[static_cast<std::size_t>(input)];
+    in.refused = status != pinnquad::Status::ok;
+    if (in.refused) {
+      in.why = what.empty() ? pinnquad::to_string(status) : what;
+    } else {
+      in.accepted = true;
+      in.time_us = time_us;
+    }
+  }
+  bool refused(int input) const { return inputs_[static_cast<std::size_t>(input)].refused; }
+
+  /// "attitude is 21 ms old (limit 20 ms); body rates are refused: body_rates_rad_s[0] is NaN"; empty if nothing is stale.
+  std::string stale(const flight_stacks::StepReport& report, std::uint64_t now_us) const {
+    std::string words;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      if ((report.stale_inputs() >> i & 1u) == 0) continue;
+      words += (words.empty() ? "" : "; ") + std::string(core_input_names[i]) + ": " + stale(i, now_us);
+    }
+    if (report.reaction != flight_stacks::Reaction::gives_up) return words;
+    const bool keeps = report.body_rates_stale || report.attitude_stale;
+    if (keeps) words += in_words("; commands are kept for %.0f ms at most", 1e-3 * settings_.keep_us);
+    if (!keeps && report.local_stale) words += in_words("; it levels for %.0f ms at most", 1e-3 * settings_.level_us);
+    return words;
+  }
+
+ private:
+  struct Input {
+    bool accepted = false, refused = false;
+    std::uint64_t time_us = 0;
+    std::string why;
+  };
+
+  std::string stale(std::size_t input, std::uint64_t now_us) const {
+    const Input& in = inputs_[input];
+    std::string words = "never came";
+    if (in.accepted && in.time_us > now_us) {
+      words = in_words("its time stamp is %.1f ms ahead", 1e-3 * static_cast<double>(in.time_us - now_us));
+    } else if (in.accepted) {
+      words = in_words("%.1f ms old, limit %.0f ms", 1e-3 * static_cast<double>(now_us - in.time_us),
+                       1e-3 * static_cast<double>(limits_us_[input]));
+    }
+    return in.refused ? words + "; the last sample was refused: " + in.why : words;
+  }
+
+  flight_stacks::CoreSettings settings_;
+  std::array<Input, 4> inputs_{};
+  std::array<std::uint32_t, 4> limits_us_;
+};
+
+}  // namespace programs

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// Runs a model over a log, row by row, with the checks and guards that fly; or, where the log has what a flight stack's core
+// received, the core itself, and compares what it answers with what was logged.
+//   pinnquad replay flight.csv --model my_model/model.hpp
+#include "model/replay_command.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "command_line/console.hpp"
+#include "command_line/file_roles.hpp"
+#include "command_line/interrupt.hpp"
+#include "command_line/options.hpp"
+#include "command_line/progress_line.hpp"
+#include "model/replay_core.hpp"
+#include "model/replay_flight.hpp"
+#include "model/replay_input.hpp"
+#include "model/replay_summary.hpp"
+#include "model/replay_table.hpp"
+
+namespace {
+
+using namespace pinnquad;
+using programs::Replayed;
+using programs::ReplayInput;
+using programs::ReplayModel;
+
+struct Options {
+  std::string log;
+  std::vector<std::string> models;
+  std::string airframe;
+  std::string answer;
+  std::string guard = "flight_stack";
+  std::vector<std::string> settings;
+  double tolerance = 1e-5;
+  std::string out;
+  bool json = false;
+};
+
+/// Throws InputError and std::invalid_argument: no model, one that does not give its golden commands.
+ReplayModel read_model(const std::string& path, const Options& options) {
+  ReplayModel model;
+  model.path = path;
+  std::string answer = options.answer;
+  model.bytes = programs::block_bytes(path, answer);
+  model.block = programs::read_block(model.path, model.bytes);
+  model.block.path = path;
+  model.identity = programs::identify(model.block, options.airframe, answer);
+  programs::with_schema(model.block, model.identity, [&](auto features, auto outputs, auto scalar) {
+    using View = programs::RunTimeView<decltype(features), decltype(scalar)>;
+    const InverseDynamics<View> inverse(View::of(model.block, model.identity, outputs));
+    if (self_test(inverse) != Status::ok)
+      throw InputError(path, 0, 0, "golden commands that its weights give", "others");
+  });
+  return model;
+}
+
+/// NAME=VALUE of --set. Throws std::invalid_argument: no such setting, no number.
+void apply_setting(const std::string& text, flight_stacks::CoreSettings& settings) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  bool found = false;
+  std::string known;
+  flight_stacks::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& number) {
+    if (std::string(of) == "timestamp") return;
+    known += (known.empty() ? "" : ", ") + std::string(of);
+    if (name != of) return;
+    found = true;
+    using Number = std::decay_t<decltype(number)>;
+    double value = 0;
+    const bool is_number = equals != std::string::npos &&
+                           programs::parse_decimal(text.substr(equals + 1), 0.0, 1e9, value) &&
+                           (std::is_floating_point_v<Number> || std::floor(value) >= value);
+    if (!is_number) {
+      throw std::invalid_argument(
+          "--set: expected " + name + "=NUMBER" + (std::is_floating_point_v<Number> ? "" : ", a whole one,") +
+          (std::string(unit) == "1" ? "" : std::string(" in ") + unit) + ", found '" + text + "'");
+    }
+    number = static_cast<Number>(value);
+  });
+  if (!found) throw std::invalid_argument("--set: no setting named '" + name + "'; known: " + known);
+}
+
+Replayed replay_flights(const Options& options, const ReplayInput& input, const std::vector<ReplayModel>& models) {
+  if (models.size() > 1) {
+    throw std::invalid_argument(
+        "--model: a log of flights takes one model; several are for a log of a core, which names them");
+  }
+  if (!options.settings.empty()) {
+    throw std::invalid_argument(
+        "--set: these are settings of a flight stack's core, and the log has none of its records");
+  }
+  Replayed replayed;
+  replayed.notes = input.notes;
+  std::size_t rows = 0;
+  for (const Flight& flight : input.flights) {
+    replayed.flights.push_back(flight.name);
+    rows += flight.size();
+  }
+  programs::ProgressLine progress("replaying " + std::to_string(rows) + " rows");
+  const auto guard =
+      options.guard == "training" ? programs::ReplayGuard::training : programs::ReplayGuard::flight_stack;
+  replayed.rows.reserve(rows);
+  programs::replay_flights(models.front().block, models.front().identity, guard, input.flights, replayed, [&] {
+    progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(rows));
+  });
+  return replayed;
+}
+
+/// Which of the models flew in each tick, by checksum; one model alone stands for whatever flew.
+class FlownModels {
+ public:
+  explicit FlownModels(const std::vector<ReplayModel>& models) {
+    for (const ReplayModel& model : models) checksums_.push_back(model.checksum());
+  }
+
+  /// Throws std::invalid_argument for one that is not among several.
+  std::optional<std::size_t> of(const flight_stacks::CoreRecord& tick, Replayed& replayed) {
+    if (tick.model == 0) return {};
+    const auto found = std::find(checksums_.begin(), checksums_.end(), tick.model);
+    if (found != checksums_.end()) return static_cast<std::size_t>(found - checksums_.begin());
+    const std::string flew = programs::in_words("a model of checksum %08x flew from %.3f s", tick.model,
+                                                1e-6 * static_cast<double>(tick.timestamp));
+    if (checksums_.size() > 1) throw std::invalid_argument("--model: " + flew + ", and none of these is it");
+    if (std::find(strangers_.begin(), strangers_.end(), tick.model) == strangers_.end()) {
+      strangers_.push_back(tick.model);
+      replayed.notes.push_back(flew + ", not the one given, " + programs::in_words("%08x", checksums_.front()) +
+                               ": what follows may differ for that");
+    }
+    return 0;
+  }
+
+ private:
+  std::vector<std::uint32_t> checksums_, strangers_;
+};
+
+Replayed replay_core(const Options& options, const ReplayInput& input, const std::vector<ReplayModel>& models) {
+  Replayed replayed;
+  replayed.of_core = true;
+  replayed.notes = input.notes;
+  replayed.flights = {printable(std::filesystem::path(options.log).filename().string())};
+  programs::CoreReplayOptions of_core{input.settings, options.tolerance};
+  const Airframe<float> airframe = programs::flying_airframe(models.front().identity.airframe);
+  if (!input.has_settings) {
+    of_core.settings = programs::FlightStackController(airframe).settings();
+    replayed.notes.push_back("the log has no topic pinnquad_settings: a core's own limits and gains are taken");
+  }
+  for (const std::string& setting : options.settings) apply_setting(setting, of_core.settings);
+  for (const ReplayModel& model : models) {
+    if (model.identity.airframe.name == models.front().identity.airframe.name) continue;
+    throw std::invalid_argument("--model: " + models.front().path + " is for " + models.front().identity.airframe.name +
+                                ", " + model.path + " for " + model.identity.airframe.name);
+  }
+  programs::CoreReplay core(models, airframe, of_core);
+  FlownModels flown(models);
+  programs::ProgressLine progress("replaying " + std::to_string(input.ticks.size()) + " ticks");
+  replayed.rows.reserve(input.ticks.size());
+  for (const flight_stacks::CoreRecord& tick : input.ticks) {
+    replayed.rows.push_back(core.run(tick, flown.of(tick, replayed), replayed));
+    progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(input.ticks.size()));
+  }
+  return replayed;
+}
+
+void print_head(const Options& options, const Replayed& replayed, const std::vector<ReplayModel>& models) {
+  std::printf("%-11s %s\n", "log", printable(options.log).c_str());
+  for (const ReplayModel& model : models) {
+    std::printf("%-11s %s (checksum %08x), for %s\n", "model", printable(model.path).c_str(), model.checksum(),
+                model.identity.airframe.name.c_str());
+  }
+  std::printf("%-11s %s\n", "run by",
+              replayed.of_core ? "the flight stacks' controller, tick by tick, and compared with what it logged"
+              : options.guard == "training"
+                  ? "InverseDynamics behind TrainingGuard: refuses, has no fallback"
+                  : "InverseDynamics behind the flight stacks' guard: falls back to the formula");
+}
+
+int replay(const Options& options) {
+  programs::end_at_interrupt();
+  programs::FileRoles roles;
+  roles.reads("LOG", options.log);
+  for (const std::string& model : options.models) roles.reads("--model", model);
+  roles.writes("--out", options.out);
+  std::vector<ReplayModel> models;
+  for (const std::string& path : options.models) models.push_back(read_model(path, options));
+  const ReplayInput input = programs::read_replay_input(options.log);
+  const Replayed replayed =
+      input.of_core() ? replay_core(options, input, models) : replay_flights(options, input, models);
+  const programs::ReplaySummary summary = programs::summary_of(replayed);
+  if (!options.out.empty()) {
+    programs::ProgressLine progress("writing " + printable(options.out));
+    programs::write_replay_table(options.out, replayed, [&](double share) { progress.update(share); });
+  }
+  if (options.json) {
+    nlohmann::json json = programs::as_json(replayed, summary);
+    json["log"] = options.log;
+    json["run_by"] = input.of_core() ? "core" : options.guard;
+    for (const ReplayModel& model : models) {
+      json["models"].push_back({{"path", model.path},
+                                {"checksum", programs::in_words("%08x", model.checksum())},
+                                {"airframe", model.identity.airframe.name}});
+    }
+    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    print_head(options, replayed, models);
+    programs::print_summary(replayed, summary);
+  }
+  if (summary.differing > 0) return programs::exit_failed;
+  if (input.of_core() || programs::detail::count_of(summary.answerers, "model") > 0) return 0;
+  programs::complain("replay", models.front().path + ": answers no row of this log");
+  return programs::exit_failed;
+}
+
+}  // namespace
+
+programs::Command programs::replay_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "replay",
+      "Runs a model, or a flight stack's core, over a log: who answered, what, and why not (a flight as a page in "
+      "3D: fly --replay)");
+  const auto options = std::make_shared<Options>();
+  add_path(*line, "log", options->log, "LOG",
+           "a recorded flight (FILE.csv), a folder that pinnquad import wrote, or what a flight stack's core logged: a "
+           "ULog file, a folder that ulog2csv wrote, NAME_pinnquad_record_0.csv")
+      ->required();
+  add_paths(*line, "--model", options->models, "MODEL",
+            "a header that pinnquad train exported (MODEL.hpp), or a model block; of a core's log all that flew")
+      ->required();
+  add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
+           "what flew: a file, or one of: " + airframe_names() + " (default: the one that the model was trained for)");
+  line->add_option("--answer", options->answer,
+                   "the network as the model's header states it (answer = ...); needed of a block whose hidden layers "
+                   "differ in width");
+  line->add_option("--guard", options->guard,
+                   "what stands between model and motors where the log is a flight: flight_stack, as "
+                   "examples/flight_stacks, which falls back to the formula; training, which refuses")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"flight_stack", "training"}));
+  line->add_option("--set", options->settings,
+                   "a setting of the core other than the log's, to see what it would have done: --set tilt_1_s=7")
+      ->type_name("NAME=VALUE");
+  add_number(*line, "--tolerance", options->tolerance, 0.0, 1.0,
+             "largest difference of a command from the core's log that counts as the same");
+  add_path(*line, "--out", options->out, "FILE.csv", "every row: status, who answered, commands, the reason in words");
+  line->add_flag("--json", options->json, "the summary as JSON");
+  line->footer(
+      "Examples:\n"
+      "  pinnquad replay flight.csv --model my_model/model.hpp\n"
+      "  pinnquad replay flight.csv --model my_model/weights.block --out rows.csv\n"
+      "  pinnquad replay flight.ulg --model weights.block        the core, tick by tick\n"
+      "  pinnquad replay flight.ulg --model weights.block --set attitude_us=30000\n"
+      "Exit codes: 0; 1 the core answers otherwise than was logged, or the model answers no row; 2 bad input or a "
+      "file\n"
+      "that can't be read or written; 130 interrupted.\n"
+      "docs/replay_log.md says what a core logs. A flight as a page in 3D: pinnquad fly --replay.");
+  return {line, [options] { return replay(*options); }};
+}

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+// The flight stacks' controller (examples/flight_stacks/neural_controller.hpp) over what it logged: each tick's inputs go in as
+// they came, what it answers is compared with what was logged.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flight_stacks/neural_controller.hpp"
+#include "model/core_words.hpp"
+#include "model/replay_reason.hpp"
+#include "model/run_time_view.hpp"
+
+namespace programs {
+
+/// A model as `replay` is given it.
+struct ReplayModel {
+  std::string path;
+  std::string bytes;  ///< of the block; aligned by the heap
+  Block block;
+  Identity identity;
+
+  std::uint32_t checksum() const {
+    return pinnquad::crc32(reinterpret_cast<const unsigned char*>(bytes.data()),
+                           bytes.size() - pinnquad::ModelBlockHeader::checksum_size);
+  }
+};
+
+struct CoreReplayOptions {
+  flight_stacks::CoreSettings settings;
+  double tolerance = 1e-5;  ///< of a command
+};
+
+/// Runs records of one core, in their order, through controllers of the airframe of `models`, which is the same for all.
+class CoreReplay {
+  using Shape = RunTimeShape<pinnquad::PaperFeatures, float>;
+  using View = RunTimeView<pinnquad::PaperFeatures, float>;
+  using Controller = flight_stacks::NeuralController<Shape, View>;
+  using Record = flight_stacks::CoreRecord;
+  using Features = Shape::Features;
+
+ public:
+  /// Throws std::invalid_argument for a model that no flight stack flies.
+  CoreReplay(const std::vector<ReplayModel>& models, const pinnquad::Airframe<float>& airframe,
+             const CoreReplayOptions& options)
+      : models_(models), airframe_(airframe), options_(options), words_(options.settings) {
+    for (const ReplayModel& model : models) {
+      bool flies = false;
+      each_schema([&](auto features, auto outputs) {
+        if constexpr (std::is_same_v<decltype(features), pinnquad::PaperFeatures>) {
+          using Outputs = decltype(outputs);
+          if (flies || model.block.is_double ||
+              detail::shape_hash_of<pinnquad::PaperFeatures, Outputs>(model.identity.answer, model.identity.airframe) !=
+                  model.block.shape_hash) {
+            return;
+          }
+          flies = true;
+          const View view = View::of(model.block, model.identity, outputs);
+          View::know(model.bytes.data(), view);
+          reasons_.emplace_back(view);
+        }
+      });
+      if (!flies) {
+        throw std::invalid_argument(model.path +
+                                    ": a flight stack's core flies float models of the paper's features (" +
+                                    "vdot_bx..cos_yaw); this one is another");
+      }
+    }
+    restart();
+  }
+
+  /// One tick. `model`: which of the models flew, or none.
+  ReplayedRow run(const Record& record, std::optional<std::size_t> model, Replayed& replayed) {
+    take_gap(record);
+    take_model(model);
+    ReplayedRow row;
+    row.row = record.tick;
+    row.time_s = static_cast<double>(record.timestamp) / 1e6;
+    take_inputs(record, record.came);
+    flight_stacks::StepReport report;
+    pinnquad::Commands<float> commands{};
+    if (record.asked != 0) controller_->step(record.timestamp, commands, report);
+    describe(record, report, commands, model, row);
+    const bool known = is_known(record, report);
+    if (known) {
+      ++replayed.compared;
+      compare(record, report, row, replayed);
+    }
+    if (!report.set_point_stale) holding_unknown_ = false;
+    if (row.answerer == Answerer::model || row.answerer == Answerer::formula) answer_unknown_ = false;
+    last_tick_ = record.tick;
+    return row;
+  }
+
+ private:
+  void restart() {
+    controller_.emplace(airframe_, age_limits(options_.settings), output_limits(options_.settings),
+                        flight_gains(options_.settings));
+    flown_.reset();
+    words_.forget();
+    refused_base_ = 0;
+    refused_base_known_ = true;
+    unknown_inputs_ = 0;
+    holding_unknown_ = answer_unknown_ = false;
+  }
+
+  /// Ticks that are missing: the controller is put together again from what the record says came last.
+  void take_gap(const Record& record) {
+    if (record.tick == last_tick_ + 1) return;
+    const bool from_the_start = record.tick == 1;
+    restart();
+    if (from_the_start) return;
+    holding_unknown_ = answer_unknown_ = true;
+    take_inputs(record, static_cast<std::uint8_t>(~record.came & 15));
+    for (int i = 0; i < 4; ++i) {  // what was refused hides the good one before it
+      if (words_.refused(i)) unknown_inputs_ = static_cast<std::uint8_t>(unknown_inputs_ | (1 << i));
+    }
+    refused_base_ = record.refused_samples;
+    refused_base_known_ = false;
+  }
+
+  void take_model(std::optional<std::size_t> model) {
+    if (!model || flown_ == model) return;
+    const ReplayModel& flies = models_[*model];
+    static_cast<void>(controller_->offer_model(flies.bytes.data(), flies.bytes.size()));
+    flown_ = model;
+  }
+
+  void take_inputs(const Record& r, std::uint8_t which) {
+    using pinnquad::Status;
+    const auto vector = [](const float(&v)[3]) { return pinnquad::Vector3<float>(v[0], v[1], v[2]); };
+    const auto note = [&](int input, std::uint64_t time_us, Status status, const std::string& what) {
+      words_.came(input, time_us, status, what);
+      if (status == Status::ok) unknown_inputs_ = static_cast<std::uint8_t>(unknown_inputs_ & ~(1 << input));
+    };
+    if ((which & flight_stacks::body_rates_bit) != 0) {
+      note(0, r.body_rates_us, controller_->body_rates(r.body_rates_us, vector(r.body_rates_rad_s)),
+           bad_numbers("body_rates_rad_s", r.body_rates_rad_s));
+    }
+    if ((which & flight_stacks::attitude_bit) != 0) {
+      const pinnquad::Quaternion<float> q{r.attitude[0], r.attitude[1], r.attitude[2], r.attitude[3]};
+      const Status status = controller_->attitude(r.attitude_us, q);
+      note(1, r.attitude_us, status,
+           status == Status::not_unit_quaternion
+               ? in_words("its norm is %.6g", std::sqrt(static_cast<double>(pinnquad::squared_norm(q))))
+               : bad_numbers("attitude", r.attitude));
+    }
+    if ((which & flight_stacks::local_bit) != 0) {
+      const std::string position = bad_numbers("position_m", r.position_m);
+      note(2, r.local_us, controller_->local(r.local_us, {vector(r.position_m), vector(r.velocity_m_s)}),
+           position.empty() ? bad_numbers("velocity_m_s", r.velocity_m_s) : position);
+    }
+    if ((which & flight_stacks::set_point_bit) != 0) {
+      pinnquad::TrajectoryPoint<float> wanted;
+      wanted.position_m = vector(r.wanted_position_m);
+      wanted.velocity_m_s = vector(r.wanted_velocity_m_s);
+      wanted.acceleration_m_s2 = vector(r.wanted_acceleration_m_s2);
+      wanted.jerk_m_s3 = vector(r.wanted_jerk_m_s3);
+      wanted.yaw_rad = r.wanted_yaw_rad;
+      wanted.yaw_rate_rad_s = r.wanted_yaw_rate_rad_s;
+      note(3, r.set_point_us, controller_->set_point(r.set_point_us, wanted), "it asks for nothing, or beyond 1e6");
+    }
+  }
+
+  void describe(const Record& record, const flight_stacks::StepReport& report,
+                const pinnquad::Commands<float>& commands, std::optional<std::size_t> model, ReplayedRow& row) {
+    using flight_stacks::Reaction;
+    row.status = report.status;
+    row.cause = report.cause;
+    row.reaction = flight_stacks::to_string(report.reaction);
+    row.excess = static_cast<double>(report.worst_excess);
+    if (report.worst_feature >= 0) row.feature = Features::names[static_cast<std::size_t>(report.worst_feature)];
+    if (report.reaction != Reaction::gives_up) {
+      for (std::size_t i = 0; i < commands.size(); ++i) row.commands[i] = static_cast<double>(commands[i]);
+    }
+    for (std::size_t i = 0; i < 4; ++i) row.logged[i] = static_cast<double>(record.commands[i]);
+    const bool asked_network = report.reaction <= Reaction::levels;
+    if (asked_network) {
+      row.answerer = report.status == pinnquad::Status::fell_back ? Answerer::formula : Answerer::model;
+    }
+    if (record.asked == 0) {
+      row.answerer = Answerer::not_asked;
+      row.state = "is not asked";
+      row.reason = "off, or flown by hand";
+      return;
+    }
+    row.state = row.reaction;
+    if (asked_network) {
+      row.state +=
+          row.answerer == Answerer::model ? ", model" : std::string(", formula (") + to_string(report.cause) + ")";
+    }
+    if (model && models_.size() > 1) {
+      row.state += " [" + std::filesystem::path(models_[*model].path).filename().string() + "]";
+    }
+    row.reason = words_.stale(report, record.timestamp);
+    if (!model) row.reason = "no model was accepted yet";
+    const bool has_cause = report.cause != pinnquad::Status::ok || report.status != pinnquad::Status::ok;
+    if (model && has_cause) {
+      const std::string why = reasons_[*model](report.cause, Excess(report), Features::last<float>);
+      row.reason += (row.reason.empty() || why.empty() ? "" : "; ") + why;
+      if (!pinnquad::has_output(report.status)) {
+        row.reason += std::string("; the formula declines too: ") + pinnquad::to_string(report.status);
+      }
+    }
+  }
+
+  /// A step's report as that of a guard: of the features outside it knows the worst alone.
+  struct Excess {
+    std::array<float, static_cast<std::size_t>(Features::size)> excess{};
+    int worst_feature;
+    bool features_clamped = false;
+    explicit Excess(const flight_stacks::StepReport& report) : worst_feature(report.worst_feature) {
+      if (worst_feature >= 0) excess[static_cast<std::size_t>(worst_feature)] = report.worst_excess;
+    }
+  };
+
+  /// False behind a gap, as long as what the core answered may depend on what was not logged.
+  bool is_known(const Record& record, const flight_stacks::StepReport& report) const {
+    using flight_stacks::Reaction;
+    if (record.asked == 0) return true;
+    if (unknown_inputs_ != 0) return false;
+    const auto logged = static_cast<Reaction>(record.reaction);
+    if (holding_unknown_ && (logged == Reaction::holds_position || report.reaction == Reaction::holds_position))
+      return false;
+    return !answer_unknown_ || (logged <= Reaction::levels && report.reaction <= Reaction::levels);
+  }
+
+  void compare(const Record& record, const flight_stacks::StepReport& report, ReplayedRow& row, Replayed& replayed) {
+    using pinnquad::Status;
+    const auto say = [&row](const std::string& text) { row.differs += (row.differs.empty() ? "" : "; ") + text; };
+    const std::string reaction = reaction_name(record.reaction), status = status_name(record.status),
+                      cause = status_name(record.cause);
+    if (reaction != flight_stacks::to_string(report.reaction)) say("it " + row.reaction + ", logged: " + reaction);
+    if (status != pinnquad::to_string(report.status)) {
+      say(std::string("status ") + pinnquad::to_string(report.status) + ", logged " + status);
+    }
+    if (cause != pinnquad::to_string(report.cause)) {
+      say(std::string("the network came to ") + pinnquad::to_string(report.cause) + ", logged " + cause);
+    }
+    if (record.stale_inputs != report.stale_inputs()) {
+      say("stale: " + input_names(report.stale_inputs()) + ", logged: " + input_names(record.stale_inputs));
+    }
+    const std::uint32_t refused = controller_->refused_samples();
+    if (!refused_base_known_) {
+      refused_base_ = record.refused_samples - refused;
+      refused_base_known_ = true;
+    }
+    if (refused + refused_base_ != record.refused_samples) {
+      say(in_words("%u samples refused, logged %u", refused + refused_base_, record.refused_samples));
+      refused_base_ = record.refused_samples - refused;
+    }
+    bool commands_differ = false;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double mine = row.commands[i], theirs = row.logged[i];
+      const bool same = std::isnan(mine) ? std::isnan(theirs) : std::fabs(mine - theirs) <= options_.tolerance;
+      if (!same) say(in_words("u%zu %.7g, logged %.7g", i + 1, mine, theirs));
+      commands_differ = commands_differ || !same;
+    }
+    if (!row.differs.empty() && at_the_edge(record, report)) {
+      ++replayed.at_the_edge;
+      row.differs.clear();
+    }
+  }
+
+  /// In the envelope here, just outside it there, or the other way round: rounding of another machine.
+  static bool at_the_edge(const Record& record, const flight_stacks::StepReport& report) {
+    using pinnquad::Status;
+    constexpr float rounding = 1e-5f;
+    const auto logged = static_cast<Status>(record.cause);
+    const bool one_side = (report.cause == Status::outside_envelope) != (logged == Status::outside_envelope);
+    const bool answered = report.reaction <= flight_stacks::Reaction::levels &&
+                          record.reaction == static_cast<std::uint8_t>(report.reaction);
+    return one_side && answered && record.stale_inputs == report.stale_inputs() &&
+           (report.cause == Status::outside_envelope ? report.worst_excess : record.envelope_excess) <= rounding;
+  }
+
+  const std::vector<ReplayModel>& models_;
+  pinnquad::Airframe<float> airframe_;
+  CoreReplayOptions options_;
+  CoreWords words_;
+  std::vector<ReasonOf<Features, View>> reasons_;  ///< of each model
+  std::optional<Controller> controller_;
+  std::optional<std::size_t> flown_;
+  std::uint32_t last_tick_ = 0;
+  std::uint32_t refused_base_ = 0;
+  bool refused_base_known_ = true;
+  std::uint8_t unknown_inputs_ = 0;  ///< behind a gap: bits of inputs of which the last good sample is not known
+  bool holding_unknown_ = false, answer_unknown_ = false;
+};
+
+}  // namespace programs

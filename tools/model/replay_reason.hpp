@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Why a model did not answer, in words: which feature left the envelope, and by how much; what is NaN; which command is absurd.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "model/replayed_row.hpp"
+#include "pinnquad/inference/guard.hpp"
+
+namespace programs {
+
+/// A model's features: what they are called, and between which numbers it was trained.
+template <class Features, class View>
+class ReasonOf {
+ public:
+  using Scalar = typename View::Scalar;
+  using FeatureVector = typename View::FeatureVector;
+
+  explicit ReasonOf(const View& view) : view_(view) {}
+
+  /// Of what the network alone came to; `x`: its features. Empty where it answered.
+  template <class Report>
+  std::string operator()(pinnquad::Status cause, const Report& report, const FeatureVector& x) const {
+    using pinnquad::Status;
+    switch (cause) {
+      case Status::ok: return "";
+      case Status::limited:
+        return report.features_clamped ? "a feature was moved into the envelope" : "commands clipped";
+      case Status::not_finite: return not_finite(x);
+      case Status::not_unit_quaternion: return "the attitude is no unit quaternion";
+      case Status::outside_envelope: return outside(report, x);
+      case Status::outside_limits: return absurd(x);
+      case Status::output_not_finite: return "the network's commands are NaN or infinite";
+      default: return pinnquad::to_string(cause);
+    }
+  }
+
+  static const char* name(int feature) { return Features::names[static_cast<std::size_t>(feature)]; }
+
+  /// "wdot_x = 71.2 rad/s^2 is above 62.9, by 0.13 half-widths of its range"
+  std::string beyond(int feature, double value, double half_widths) const {
+    const auto i = static_cast<std::size_t>(feature);
+    const std::string unit = std::string(Features::units[i]) == "1" ? "" : std::string(" ") + Features::units[i];
+    if (!std::isfinite(value)) return std::string(name(feature)) + (std::isnan(value) ? " is NaN" : " is infinite");
+    const auto lower = static_cast<double>(view_.envelope_lower[i]),
+               upper = static_cast<double>(view_.envelope_upper[i]);
+    const bool below = value < lower;
+    return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(feature), value, unit.c_str(),
+                    below ? "below" : "above", below ? lower : upper, half_widths);
+  }
+
+ private:
+  std::string not_finite(const FeatureVector& x) const {
+    std::string names;
+    for (int i = 0; i < Features::size; ++i) {
+      if (std::isfinite(x[static_cast<std::size_t>(i)])) continue;
+      names += (names.empty() ? "" : ", ") + std::string(name(i));
+    }
+    return names.empty() ? "an input is NaN or infinite" : "NaN or infinite: " + names;
+  }
+
+  template <class Report>
+  std::string outside(const Report& report, const FeatureVector& x) const {
+    if (report.worst_feature < 0) return "outside the envelope";
+    const auto worst = static_cast<std::size_t>(report.worst_feature);
+    std::string reason =
+        beyond(report.worst_feature, static_cast<double>(x[worst]), static_cast<double>(report.excess[worst]));
+    std::string others;
+    for (std::size_t i = 0; i < report.excess.size(); ++i) {
+      if (i == worst || pinnquad::detail::equal(report.excess[i], Scalar(0))) continue;
+      others += (others.empty() ? "" : ", ") + std::string(Features::names[i]);
+    }
+    return others.empty() ? reason : reason + "; outside too: " + others;
+  }
+
+  std::string absurd(const FeatureVector& x) const {
+    FeatureVector standardised{};
+    view_.input.standardise(x.data(), standardised.data());
+    std::array<Scalar, pinnquad::rotor_count> u{};
+    view_.forward(standardised.data(), u.data());
+    std::string words = "the network's commands are beyond the guard's limits:";
+    for (const Scalar command : u) words += in_words(" %.3g", static_cast<double>(command));
+    return words;
+  }
+
+  View view_;
+};
+
+}  // namespace programs
