@@ -12,10 +12,10 @@
 #include "model/block.hpp"
 #include "model/header_block.hpp"
 #include "model/identity.hpp"
+#include "model/run_time_answer.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/training/context_airframe.hpp"
-#include "training/run_time_network.hpp"
 
 namespace programs {
 
@@ -42,7 +42,7 @@ pinnquad::Scaler<Scalar, Size> scaler_of(const std::vector<double>& mean, const 
   return result;
 }
 
-/// A block's network between its scalers, in the block's scalar.
+/// A block's answer between its scalers, in the block's scalar.
 template <class Features, class Outputs, class Scalar>
 class RunTimeModel {
  public:
@@ -50,7 +50,7 @@ class RunTimeModel {
   using Map = pinnquad::OutputMap<Outputs>;
 
   RunTimeModel(const Block& block, const Identity& identity)
-      : network_(identity.network, block.parameters),
+      : network_(identity.networks, block.parameters),
         airframe_(identity.airframe.name, identity.airframe.value),
         input_(scaler_of<Scalar, Features::size>(block.input_mean, block.input_spread)),
         output_(scaler_of<Scalar, Map::size>(block.output_mean, block.output_spread)) {}
@@ -73,7 +73,7 @@ class RunTimeModel {
   const pinnquad::Scaler<Scalar, Features::size>& input() const noexcept { return input_; }
 
  private:
-  RunTimeNetwork<Scalar> network_;
+  RunTimeAnswer<Scalar> network_;
   RunTimeAirframe airframe_;
   pinnquad::Scaler<Scalar, Features::size> input_;
   pinnquad::Scaler<Scalar, Map::size> output_;
