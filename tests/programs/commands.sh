@@ -4,7 +4,7 @@ source "$(dirname "$0")/common.sh" "$@"
 
 number() { sed -n "s/^#define PINNQUAD_VERSION_$1 \([0-9]*\)$/\1/p" "$source_dir/include/pinnquad/version.hpp"; }
 version="pinnquad $(number MAJOR).$(number MINOR).$(number PATCH)"
-commands=("" fly train study evaluate block airframe "airframe list" "airframe check" "airframe convert" new "study paper" "study ablation" "study merge" report)
+commands=("" fly train study evaluate replay block airframe "airframe list" "airframe check" "airframe convert" new "study paper" "study ablation" "study merge" report)
 for command in "${commands[@]}"; do
   # shellcheck disable=SC2086 # several words
   "$pinnquad" $command --help >help.txt 2>stderr.txt || fail "pinnquad $command --help: exit code $?"
@@ -15,11 +15,11 @@ for command in "${commands[@]}"; do
   # shellcheck disable=SC2086
   [ "$("$pinnquad" $command --version)" = "$version" ] || fail "pinnquad $command --version"
 done
-for command in fly train study report evaluate block airframe new; do
+for command in fly train study report evaluate replay block airframe new; do
   "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
 done
 
-for command in "" fly evaluate block airframe "airframe list" "airframe check" "airframe convert" new "study paper"; do
+for command in "" fly evaluate replay block airframe "airframe list" "airframe check" "airframe convert" new "study paper"; do
   # shellcheck disable=SC2086
   "$pinnquad" $command --help | grep -A1 '^Examples:$' | grep -qE "^  (pinnquad|cmake) " || fail "pinnquad $command --help has no example"
 done

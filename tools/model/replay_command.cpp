@@ -257,7 +257,7 @@ programs::Command programs::replay_command(CLI::App& program) {
       "Examples:\n"
       "  pinnquad replay flight.csv --model my_model/model.hpp\n"
       "  pinnquad replay flight.csv --model my_model/weights.block --out rows.csv\n"
-      "  pinnquad replay flight.ulg --model weights.block         the core, tick by tick\n"
+      "  pinnquad replay flight.ulg --model weights.block        the core, tick by tick\n"
       "  pinnquad replay flight.ulg --model weights.block --set attitude_us=30000\n"
       "Exit codes: 0; 1 the core answers otherwise than was logged, or the model answers no row; 2 bad input or a "
       "file\n"
