@@ -18,12 +18,16 @@ for guard in training flight_stack; do
   python3 "$here/compare.py" demo.csv demo_$guard.txt 3
   "$pinnquad" replay flight.csv --model speeds.block --guard $guard --out speeds.csv >speeds.txt
   python3 "$here/compare.py" speeds.csv speeds_$guard.txt 3
+  # a ridge and a network with a window, as train fits them to logs; the judge's window is a control loop's
+  "$pinnquad" replay flight.csv --model physics.block --answer "$(cat physics.answer)" --guard $guard --out physics.csv >physics.txt
+  python3 "$here/compare.py" physics.csv physics_$guard.txt 3
 done
 grep -q 'NaN or infinite: wdot_x' demo.txt || fail "no word of the NaN: $(cat demo.txt)"
 grep -qE 'outside_envelope\),"?wdot_y = [-0-9.]+ rad/s\^2 is (above|below) [-0-9.]+, by [0-9.e+]+ half-widths' demo.csv ||
   fail "no word of the feature outside"
 grep -q 'the formula declines too' demo.csv || fail "no word of the formula"
 ! grep -q altitude demo.csv || fail "complains of a column that the model does not ask for"
+grep -qE '^flight.csv,801,.*warming_up.* from 160 ms before' physics.csv || fail "no word of the window behind a gap"
 grep -q 'NaN or infinite: altitude' speeds.csv || fail "no word of the altitude"
 "$pinnquad" replay flight.csv --model "$demo" --json >demo.json
 python3 - demo.csv demo.json <<'PY'

@@ -82,7 +82,7 @@ Evaluation evaluated(const programs::Block& block, const programs::Identity& ide
   }
   using Derivatives = programs::NetworkDerivatives<Features, Outputs>;
   const Derivatives derivatives(
-      identity.network, block.parameters,
+      identity.networks.front(), block.parameters,
       programs::scaler_of<typename Derivatives::InputScaler>(block.input_mean, block.input_spread),
       programs::scaler_of<typename Derivatives::OutputScaler>(block.output_mean, block.output_spread),
       programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value));
@@ -152,7 +152,9 @@ int evaluate(const Options& options) {
   programs::end_at_interrupt();
   std::string answer = options.answer;
   const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, answer));
+  programs::require_present_alone(block);
   const programs::Identity identity = programs::identify(block, options.airframe, answer);
+  if (identity.networks.size() != 1) throw InputError(block.path, 0, 0, "a network by itself", "a sum of some");
   const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows);
   const RowSet rows = chosen_rows(options, dataset);
   const Evaluation evaluation = evaluated(block, identity, rows);

@@ -10,8 +10,8 @@
 
 #include "airframe/choice.hpp"
 #include "model/block.hpp"
+#include "model/run_time_answer.hpp"
 #include "pinnquad/inference/features.hpp"
-#include "training/run_time_network.hpp"
 
 namespace programs {
 
@@ -27,8 +27,8 @@ void each_schema(const Function& function) {
 
 /// What was found.
 struct Identity {
-  std::string answer;  ///< description of the network
-  NetworkSpec network;
+  std::string answer;                 ///< description of the network
+  std::vector<NetworkSpec> networks;  ///< of a sum more than one
   NamedAirframe airframe;
   std::string features, outputs;  ///< first and last name of each, for a reader
 };
@@ -93,13 +93,15 @@ inline std::vector<NamedAirframe> candidate_airframes(const std::string& wanted)
 }  // namespace detail
 
 /// Finds out which model a block is. `airframe` (a name or a file) and `answer` (as an exported header states it) narrow what is
-/// tried; empty: all that is known. Throws std::invalid_argument, one line, where nothing has the block's hash.
-inline Identity identify(const Block& block, const std::string& airframe, const std::string& answer) {
+/// tried; empty: all that is known. `each(function)` calls it with every pair of feature set and output schema to try, as
+/// each_schema() does. Throws std::invalid_argument, one line, where nothing has the block's hash.
+template <class Each>
+Identity identify(const Block& block, const std::string& airframe, const std::string& answer, const Each& each) {
   const std::vector<NamedAirframe> airframes = detail::candidate_airframes(airframe);
   std::vector<std::string> answers = {answer};
   if (answer.empty()) answers = detail::candidate_networks(block);
   std::optional<Identity> found;
-  each_schema([&](auto features, auto outputs) {
+  each([&](auto features, auto outputs) {
     using Features = decltype(features);
     using Outputs = decltype(outputs);
     using Map = pinnquad::OutputMap<Outputs>;
@@ -107,14 +109,15 @@ inline Identity identify(const Block& block, const std::string& airframe, const 
     for (const std::string& text : answers) {
       for (const NamedAirframe& candidate : airframes) {
         if (detail::shape_hash_of<Features, Outputs>(text, candidate) != block.shape_hash) continue;
-        const std::optional<NetworkSpec> spec = parse_network(text);
-        if (!spec || static_cast<std::size_t>(spec->parameter_count()) != block.parameter_count ||
-            spec->inputs != block.inputs || spec->outputs() != block.outputs ||
-            (spec->scalar == "double") != block.is_double) {
+        const std::optional<std::vector<NetworkSpec>> networks = parse_answer(text);
+        if (!networks || static_cast<std::size_t>(parameter_count(*networks)) != block.parameter_count ||
+            networks->front().inputs != block.inputs || networks->front().outputs() != block.outputs ||
+            (networks->front().scalar == "double") != block.is_double) {
           continue;
         }
-        found = Identity{text, *spec, candidate, std::string(Features::names.front()) + ".." + Features::names.back(),
-                         std::string(Map::names.front()) + ".." + Map::names.back()};
+        found =
+            Identity{text, *networks, candidate, std::string(Features::names.front()) + ".." + Features::names.back(),
+                     std::string(Map::names.front()) + ".." + Map::names.back()};
         return;
       }
     }
@@ -128,6 +131,9 @@ inline Identity identify(const Block& block, const std::string& airframe, const 
                                 "TEXT as its header states it if its layers differ in width");
   }
   return *found;
+}
+inline Identity identify(const Block& block, const std::string& airframe, const std::string& answer) {
+  return identify(block, airframe, answer, [](const auto& function) { each_schema(function); });
 }
 
 }  // namespace programs

@@ -21,8 +21,8 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
+#include "model/flight_model.hpp"
 #include "model/replay_core.hpp"
-#include "model/replay_flight.hpp"
 #include "model/replay_input.hpp"
 #include "model/replay_summary.hpp"
 #include "model/replay_table.hpp"
@@ -46,6 +46,10 @@ struct Options {
   bool json = false;
 };
 
+programs::ReplayGuard guard_of(const Options& options) {
+  return options.guard == "training" ? programs::ReplayGuard::training : programs::ReplayGuard::flight_stack;
+}
+
 /// Throws InputError and std::invalid_argument: no model, one that does not give its golden commands.
 ReplayModel read_model(const std::string& path, const Options& options) {
   ReplayModel model;
@@ -54,13 +58,10 @@ ReplayModel read_model(const std::string& path, const Options& options) {
   model.bytes = programs::block_bytes(path, answer);
   model.block = programs::read_block(model.path, model.bytes);
   model.block.path = path;
-  model.identity = programs::identify(model.block, options.airframe, answer);
-  programs::with_schema(model.block, model.identity, [&](auto features, auto outputs, auto scalar) {
-    using View = programs::RunTimeView<decltype(features), decltype(scalar)>;
-    const InverseDynamics<View> inverse(View::of(model.block, model.identity, outputs));
-    if (self_test(inverse) != Status::ok)
-      throw InputError(path, 0, 0, "golden commands that its weights give", "others");
-  });
+  model.identity = programs::identify_flight_model(model.block, options.airframe, answer);
+  const auto tested = programs::flight_model(model.block, model.identity, guard_of(options));
+  if (tested == nullptr) throw InputError(path, 0, 0, "a model of float", "one of double with these features");
+  if (!tested->tests_itself()) throw InputError(path, 0, 0, "golden commands that its weights give", "others");
   return model;
 }
 
@@ -107,12 +108,12 @@ Replayed replay_flights(const Options& options, const ReplayInput& input, const 
     rows += flight.size();
   }
   programs::ProgressLine progress("replaying " + std::to_string(rows) + " rows");
-  const auto guard =
-      options.guard == "training" ? programs::ReplayGuard::training : programs::ReplayGuard::flight_stack;
   replayed.rows.reserve(rows);
-  programs::replay_flights(models.front().block, models.front().identity, guard, input.flights, replayed, [&] {
-    progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(rows));
-  });
+  const auto model = programs::flight_model(models.front().block, models.front().identity, guard_of(options));
+  for (std::size_t i = 0; i < input.flights.size(); ++i) {
+    model->run(input.flights[i], i, replayed.rows,
+               [&] { progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(rows)); });
+  }
   return replayed;
 }
 

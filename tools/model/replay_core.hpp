@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "flight_stacks/neural_controller.hpp"
 #include "model/core_words.hpp"
+#include "model/flight_stack.hpp"
 #include "model/replay_reason.hpp"
-#include "model/run_time_view.hpp"
 
 namespace programs {
 
@@ -39,7 +38,6 @@ struct CoreReplayOptions {
 class CoreReplay {
   using Shape = RunTimeShape<pinnquad::PaperFeatures, float>;
   using View = RunTimeView<pinnquad::PaperFeatures, float>;
-  using Controller = flight_stacks::NeuralController<Shape, View>;
   using Record = flight_stacks::CoreRecord;
   using Features = Shape::Features;
 
@@ -283,7 +281,7 @@ class CoreReplay {
   CoreReplayOptions options_;
   CoreWords words_;
   std::vector<ReasonOf<Features, View>> reasons_;  ///< of each model
-  std::optional<Controller> controller_;
+  std::optional<FlightStackController> controller_;
   std::optional<std::size_t> flown_;
   std::uint32_t last_tick_ = 0;
   std::uint32_t refused_base_ = 0;

@@ -1,43 +1,23 @@
 // SPDX-License-Identifier: MIT
-// A model over recorded flights, row by row, as InverseDynamics::predict() answers in flight.
+// A model over recorded flights, row by row, as InverseDynamics::predict() answers in flight: of one feature set.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "flight_stacks/neural_controller.hpp"
+#include "model/flight_model.hpp"
+#include "model/flight_stack.hpp"
 #include "model/replay_reason.hpp"
 #include "model/run_time_view.hpp"
 #include "pinnquad/data/flight_features.hpp"
 
 namespace programs {
-
-/// `flight_stack`: as examples/flight_stacks: absurd commands are refused too, and the formula answers where the network
-/// declines. `training`: TrainingGuard alone, as an InverseDynamics that names no guard.
-enum class ReplayGuard { flight_stack, training };
-
-/// The guard that flies.
-using FlightStackController = flight_stacks::NeuralController<RunTimeShape<pinnquad::PaperFeatures, float>,
-                                                              RunTimeView<pinnquad::PaperFeatures, float>>;
-using FlightStackGuard = FlightStackController::Guard;
-using FallbackFormula = FlightStackController::Formula;
-
-/// The airframe as flight code has it: of the program's own airframes the type's numbers, else each rounded.
-inline pinnquad::Airframe<float> flying_airframe(const NamedAirframe& airframe) {
-  pinnquad::Airframe<float> result = pinnquad::airframe_in<float>(airframe.value);
-  each_airframe([&](auto tag) {
-    using Vehicle = typename decltype(tag)::type;
-    const bool same =
-        airframe.name == Vehicle::name &&
-        pinnquad::detail::equal(airframe.value.mass_kg, pinnquad::airframe_value<Vehicle, double>().mass_kg);
-    if (same) result = pinnquad::airframe_value<Vehicle, float>();
-  });
-  return result;
-}
 
 namespace detail {
 
@@ -61,7 +41,7 @@ class FlightReplay {
   using Inputs = typename Features::template Inputs<Scalar>;
 
  public:
-  FlightReplay(const View& view, const typename Inverse::Guard& guard) : inverse_(view, guard), reason_(view) {}
+  explicit FlightReplay(const Inverse& inverse) : inverse_(inverse), reason_(inverse.model()) {}
 
   /// `on_row()` is called after each.
   template <class OnRow>
@@ -138,43 +118,35 @@ class FlightReplay {
   ReasonOf<Features, View> reason_;
 };
 
+template <class Inverse, class Features>
+class FlightModelOf : public FlightModel {
+ public:
+  FlightModelOf(const typename Inverse::Model& view, const typename Inverse::Guard& guard)
+      : inverse_(view, guard), replay_(inverse_) {}
+
+  bool tests_itself() const override { return pinnquad::self_test(inverse_) == pinnquad::Status::ok; }
+  void run(const pinnquad::Flight& flight, std::size_t number, std::vector<ReplayedRow>& rows,
+           const std::function<void()>& on_row) const override {
+    replay_.run(flight, number, rows, on_row);
+  }
+
+ private:
+  Inverse inverse_;
+  FlightReplay<Inverse, Features> replay_;
+};
+
+template <class Features, class Outputs, class Scalar>
+std::unique_ptr<const FlightModel> flight_model_of(const Block& block, const Identity& identity, ReplayGuard guard) {
+  using View = RunTimeView<Features, Scalar>;
+  const View view = View::of(block, identity, Outputs{});
+  if (guard == ReplayGuard::training) {
+    using Inverse = pinnquad::InverseDynamics<View, pinnquad::TrainingGuard>;
+    return std::make_unique<FlightModelOf<Inverse, Features>>(view, pinnquad::TrainingGuard());
+  }
+  using Inverse = pinnquad::InverseDynamics<View, FlightStackGuard>;
+  const pinnquad::Quadrotor<float, pinnquad::QuadraticDrag> vehicle(flying_airframe(identity.airframe));
+  return std::make_unique<FlightModelOf<Inverse, Features>>(view, FlightStackGuard(FallbackFormula(vehicle)));
+}
+
 }  // namespace detail
-
-/// Calls `function(features, outputs, scalar)`, values of the types that an identity is.
-template <class Function>
-void with_schema(const Block& block, const Identity& identity, const Function& function) {
-  each_schema([&](auto features, auto outputs) {
-    using Features = decltype(features);
-    using Outputs = decltype(outputs);
-    if (detail::shape_hash_of<Features, Outputs>(identity.answer, identity.airframe) != block.shape_hash) return;
-    if (block.is_double) {
-      function(features, outputs, double{});
-    } else {
-      function(features, outputs, float{});
-    }
-  });
-}
-
-/// Runs the model over each flight. Throws std::invalid_argument for a flight without a column that the model asks for.
-template <class OnRow>
-void replay_flights(const Block& block, const Identity& identity, ReplayGuard guard,
-                    const std::vector<pinnquad::Flight>& flights, Replayed& replayed, const OnRow& on_row) {
-  with_schema(block, identity, [&](auto features, auto outputs, auto scalar) {
-    using Features = decltype(features);
-    using View = RunTimeView<Features, decltype(scalar)>;
-    const View view = View::of(block, identity, outputs);
-    const pinnquad::Quadrotor<float, pinnquad::QuadraticDrag> vehicle(flying_airframe(identity.airframe));
-    const auto run = [&](const auto& replay) {
-      for (std::size_t i = 0; i < flights.size(); ++i) replay.run(flights[i], i, replayed.rows, on_row);
-    };
-    if (guard == ReplayGuard::training) {
-      using Inverse = pinnquad::InverseDynamics<View, pinnquad::TrainingGuard>;
-      run(detail::FlightReplay<Inverse, Features>(view, {}));
-    } else {
-      using Inverse = pinnquad::InverseDynamics<View, FlightStackGuard>;
-      run(detail::FlightReplay<Inverse, Features>(view, FlightStackGuard(FallbackFormula(vehicle))));
-    }
-  });
-}
-
 }  // namespace programs

@@ -12,11 +12,11 @@
 #include "model/block.hpp"
 #include "model/header_block.hpp"
 #include "model/identity.hpp"
+#include "model/run_time_answer.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "training/derivatives.hpp"
-#include "training/run_time_network.hpp"
 
 namespace programs {
 
@@ -32,7 +32,7 @@ inline std::string block_bytes(const std::string& path, std::string& answer) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// A block's network between its scalers, in the block's scalar.
+/// A block's answer between its scalers, in the block's scalar.
 template <class Features, class Outputs, class Scalar>
 class RunTimeModel {
  public:
@@ -40,7 +40,7 @@ class RunTimeModel {
   using Map = pinnquad::OutputMap<Outputs>;
 
   RunTimeModel(const Block& block, const Identity& identity)
-      : network_(identity.network, block.parameters),
+      : network_(identity.networks, block.parameters),
         airframe_(identity.airframe.name, identity.airframe.value),
         input_(scaler_of<pinnquad::Scaler<Scalar, Features::size>>(block.input_mean, block.input_spread)),
         output_(scaler_of<pinnquad::Scaler<Scalar, Map::size>>(block.output_mean, block.output_spread)) {}
@@ -63,7 +63,7 @@ class RunTimeModel {
   const pinnquad::Scaler<Scalar, Features::size>& input() const noexcept { return input_; }
 
  private:
-  RunTimeNetwork<Scalar> network_;
+  RunTimeAnswer<Scalar> network_;
   RunTimeAirframe airframe_;
   pinnquad::Scaler<Scalar, Features::size> input_;
   pinnquad::Scaler<Scalar, Map::size> output_;

@@ -33,7 +33,7 @@ struct Watched : FeatureSet {
 
 /// Stands for the network in a shape: as many inputs and outputs, nothing else; the view answers.
 template <class ScalarType, int InputCount>
-struct RunTimeAnswer {
+struct AnswerShape {
   using Scalar = ScalarType;
   static constexpr int inputs = InputCount, outputs = pinnquad::rotor_count, parameter_count = 0;
   using Parameters = std::array<Scalar, 0>;
@@ -49,7 +49,7 @@ struct RunTimeShape {
   using Features = Watched<FeatureSet>;
   using Outputs = pinnquad::CommandOutputs;
   using Vehicle = pinnquad::PaperQuadrotor;
-  using Network = RunTimeAnswer<Scalar, Features::size>;
+  using Network = AnswerShape<Scalar, Features::size>;
 };
 
 /// As pinnquad::ModelView. Blocks are known beforehand by their address: know() says what is in one.

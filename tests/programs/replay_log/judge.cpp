@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What `pinnquad replay` must say of a flight: compiled models asked row by row, each by InverseDynamics with the guard that a
-// user would write. One is an exported header; the other, of double, further features and another output schema, is made here
-// and written as a block.
+// user would write. One is an exported header; the others are made here and written as blocks: one of double with further
+// features and another output schema, one as `train` fits it to logs, whose window a control loop's InputHistory fills.
 //   replay_log_judge FLIGHT.csv FOLDER
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace pinnquad;
 
-using Row = std::array<double, 21>;
+using Row = std::array<double, 22>;  ///< a flight's columns, then the battery's voltage
 
 /// NaN is a number here.
 std::vector<Row> read_rows(const char* path) {
@@ -81,6 +81,83 @@ void judge(const std::vector<Row>& rows, const Inverse& inverse, const std::stri
   }
 }
 
+/// Random weights, scaled by the rows; what lies beyond `spreads` of them is outside its envelope.
+template <class Model, class Features>
+void fill(Model& model, const std::vector<std::array<typename Model::Scalar, std::size_t(Features::size)>>& all,
+          double spreads) {
+  using Scalar = typename Model::Scalar;
+  std::mt19937_64 engine(11);
+  for (Scalar& weight : model.network.parameters) weight = Scalar(uniform(engine, -0.4, 0.4));
+  for (std::size_t i = 0; i < std::size_t(Features::size); ++i) {
+    double sum = 0, squares = 0;
+    for (const auto& x : all) sum += double(x[i]);
+    const double mean = sum / double(all.size());
+    for (const auto& x : all) squares += (double(x[i]) - mean) * (double(x[i]) - mean);
+    const double spread = std::sqrt(squares / double(all.size())) + 1e-3;
+    model.input.mean[i] = Scalar(mean);
+    model.input.spread[i] = Scalar(spread);
+    model.envelope_lower[i] = Scalar(mean - spreads * spread);
+    model.envelope_upper[i] = Scalar(mean + spreads * spread);
+  }
+}
+
+template <class Array>
+bool finite(const Array& x) {
+  return std::all_of(x.begin(), x.end(), [](auto v) { return std::isfinite(double(v)); });
+}
+
+/// As train fits to logs: a ridge and a network on what it leaves.
+struct Physics {
+  using Scalar = float;
+  using Features = PartlyWindowed<WithColumns<PhysicsFeatures, BatteryVoltage>, AccelerationFeatures, 9,
+                                  PeriodMicroseconds<20000>, Causal>;
+  using Network = Sum<pinnquad::Network<float, InputSize<Features::size>, Dense<4>>,
+                      pinnquad::Network<float, InputSize<Features::size>, Clip, Dense<8>, Silu, Dense<4>>>;
+  using Outputs = CommandOutputs;
+  using Vehicle = PaperQuadrotor;
+};
+using PhysicsHistory = InputHistory<Physics::Features, float>;
+
+/// Calls `use(inputs)` with what a control loop's history makes of each row.
+template <class Use>
+void each_window(const std::vector<Row>& rows, const Use& use) {
+  PhysicsHistory history;
+  for (const Row& row : rows) {
+    PhysicsHistory::Present present;
+    static_cast<MotionInputs<float>&>(present) = inputs_of<MotionInputs<float>>(row);
+    present.column<BatteryVoltage>() = float(row[21]);
+    use(history.take(present, row[0]), history.inputs());
+  }
+}
+
+std::vector<unsigned char> physics_block(const std::vector<Row>& rows) {
+  TrainedModel<Physics::Network, Context<Physics::Features, Physics::Vehicle>> model;
+  std::vector<std::array<float, std::size_t(Physics::Features::size)>> all;
+  each_window(rows, [&all](Status status, const auto& inputs) {
+    if (status != Status::ok) return;
+    all.emplace_back();
+    Physics::Features::extract(inputs, all.back().data());
+    if (!finite(all.back())) all.pop_back();
+  });
+  fill<decltype(model), Physics::Features>(model, all, 4);
+  for (std::size_t i = 0; i < 4; ++i) model.output.mean[i] = 0.5f, model.output.spread[i] = 0.05f;
+  return model_block(model, {model.input.mean}, {});
+}
+
+template <class Inverse>
+void judge_windows(const std::vector<Row>& rows, const Inverse& inverse, const std::string& path) {
+  std::ofstream file(path);
+  file.precision(17);
+  each_window(rows, [&](Status, const auto& inputs) {
+    Commands<float> u{};
+    typename Inverse::Report report;
+    const Status status = inverse.predict(inputs, u, report);
+    file << to_string(status) << ' ' << to_string(report.cause);
+    for (const float command : u) file << ' ' << (has_output(status) ? double(command) : std::nan(""));
+    file << '\n';
+  });
+}
+
 struct Speeds {
   using Scalar = double;
   using Network = pinnquad::Network<double, InputSize<17>, Dense<12>, Tanh, Dense<12>, Tanh, Dense<4>>;
@@ -89,32 +166,18 @@ struct Speeds {
   using Vehicle = PaperQuadrotor;
 };
 
-/// Random weights; rows beyond 2.2 spreads lie outside its envelope.
 std::vector<unsigned char> speeds_block(const std::vector<Row>& rows) {
   TrainedModel<Speeds::Network, Context<Speeds::Features, Speeds::Vehicle, Speeds::Outputs>> model;
-  std::mt19937_64 engine(11);
-  for (double& weight : model.network.parameters) weight = uniform(engine, -0.4, 0.4);
   using Inputs = MotionInputsWithAltitude<double>;
   std::vector<std::array<double, 17>> all;
   for (const Row& row : rows) {
     std::array<double, 17> x{};
     Speeds::Features::extract(inputs_of<Inputs>(row), x.data());
-    if (std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) all.push_back(x);
+    if (finite(x)) all.push_back(x);
   }
-  for (std::size_t i = 0; i < 17; ++i) {
-    double sum = 0, squares = 0;
-    for (const auto& x : all) sum += x[i];
-    const double mean = sum / double(all.size());
-    for (const auto& x : all) squares += (x[i] - mean) * (x[i] - mean);
-    const double spread = std::sqrt(squares / double(all.size())) + 1e-3;
-    model.input.mean[i] = mean;
-    model.input.spread[i] = spread;
-    model.envelope_lower[i] = mean - 2.2 * spread;
-    model.envelope_upper[i] = mean + 2.2 * spread;
-  }
+  fill<decltype(model), Speeds::Features>(model, all, 2.2);
   for (std::size_t i = 0; i < 4; ++i) model.output.mean[i] = 140, model.output.spread[i] = 25;
-  std::array<double, 17> golden = model.input.mean;
-  return model_block(model, {golden}, {});
+  return model_block(model, {model.input.mean}, {});
 }
 
 }  // namespace
@@ -133,5 +196,13 @@ int main(int count, char** arguments) {
   if (View::open(block.data(), block.size(), view) != Status::ok) return 1;
   judge(rows, InverseDynamics<View>(view), folder + "speeds_training.txt");
   judge(rows, InverseDynamics<View, FallingBack>(view, guard), folder + "speeds_flight_stack.txt");
+  const std::vector<unsigned char> windowed = physics_block(rows);
+  write_weight_file(folder + "physics.block", windowed);
+  using WindowView = ModelView<Physics>;
+  WindowView looks_back;
+  if (WindowView::open(windowed.data(), windowed.size(), looks_back) != Status::ok) return 1;
+  judge_windows(rows, InverseDynamics<WindowView>(looks_back), folder + "physics_training.txt");
+  judge_windows(rows, InverseDynamics<WindowView, FallingBack>(looks_back, guard), folder + "physics_flight_stack.txt");
+  std::ofstream(folder + "physics.answer") << detail::description_text<Physics::Network>();
   return 0;
 }

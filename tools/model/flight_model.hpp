@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// A model that is ready to run over flights, whichever it is.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "model/block.hpp"
+#include "model/identity.hpp"
+#include "model/replayed_row.hpp"
+#include "pinnquad/data/dataset.hpp"
+
+namespace programs {
+
+/// `flight_stack`: as examples/flight_stacks: absurd commands are refused too, and the formula answers where the network
+/// declines. `training`: TrainingGuard alone, as an InverseDynamics that names no guard.
+enum class ReplayGuard { flight_stack, training };
+
+class FlightModel {
+ public:
+  FlightModel() = default;
+  FlightModel(const FlightModel&) = delete;
+  FlightModel& operator=(const FlightModel&) = delete;
+  virtual ~FlightModel() = default;
+
+  /// pinnquad::self_test(): its weights give its golden commands.
+  virtual bool tests_itself() const = 0;
+  /// Adds a row per row of the flight, the one of that number; calls `on_row()` after each. Throws std::invalid_argument for a
+  /// flight without a column that the model asks for.
+  virtual void run(const pinnquad::Flight& flight, std::size_t number, std::vector<ReplayedRow>& rows,
+                   const std::function<void()>& on_row) const = 0;
+};
+
+/// Which model a block is, of those that a row of a flight is enough for and of those that `train` fits to logs.
+Identity identify_flight_model(const Block& block, const std::string& airframe, const std::string& answer);
+
+/// Of a block that was identified so.
+std::unique_ptr<const FlightModel> flight_model(const Block& block, const Identity& identity, ReplayGuard guard);
+
+namespace detail {
+
+/// The two kinds, each a translation unit of its own. Null for another.
+std::unique_ptr<const FlightModel> plain_flight_model(const Block& block, const Identity& identity, ReplayGuard guard);
+std::unique_ptr<const FlightModel> physics_flight_model(const Block& block, const Identity& identity,
+                                                        ReplayGuard guard);
+
+}  // namespace detail
+}  // namespace programs

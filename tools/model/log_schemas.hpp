@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The feature sets of models that `train` fits to logged flights (training/log_features.hpp), with the output schema that they
+// have.
+#pragma once
+
+#include "pinnquad/inference/output_schema.hpp"
+#include "training/log_features.hpp"
+
+namespace programs {
+
+/// As each_schema().
+template <class Function>
+void each_log_schema(const Function& function) {
+  using namespace pinnquad;
+  const auto reaches = [&](auto present) {
+    using Present = decltype(present);
+    function(Present{}, CommandOutputs{});
+    function(LogCausalWindow<Present>{}, CommandOutputs{});
+    function(LogCentredWindow<Present>{}, CommandOutputs{});
+  };
+  reaches(PhysicsFeatures{});
+  reaches(PhysicsFeaturesWithoutVelocity{});
+  reaches(WithColumns<PhysicsFeatures, BatteryVoltage>{});
+  reaches(WithColumns<PhysicsFeaturesWithoutVelocity, BatteryVoltage>{});
+  function(WithColumns<PaperFeatures, BatteryVoltage>{}, CommandOutputs{});
+}
+
+}  // namespace programs
