@@ -4,22 +4,18 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "support/small_model.hpp"
+#include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
 
 namespace {
 
-/// A model whose envelope is empty: it declines always.
-struct NowhereTrained : test::SmallModel {
-  static constexpr std::array<float, 16> envelope_lower = Scaler<float, 16>::ones();
-  static constexpr std::array<float, 16> envelope_upper{};
-};
-
 using Answering = InverseDynamics<test::SmallModel, Guard<FiniteInputs, FiniteOutputs>>;
-using Declining = InverseDynamics<NowhereTrained>;
+using Declining = InverseDynamics<test::NowhereTrained>;
 
 constexpr Commands<double> earlier = {0.11, 0.22, 0.33, 0.44};
 

@@ -378,25 +378,6 @@ TEST_CASE("agreement: what is compared is what would be written, clipped") {
   CHECK(clipped);
 }
 
-namespace {
-
-constexpr std::array<float, 16> with_last(std::array<float, 16> values, float last) {
-  values[15] = last;
-  return values;
-}
-
-/// Its envelope ends at cos psi = 0.5.
-struct NeverNorth : SmallModel {
-  static constexpr std::array<float, 16> envelope_upper = with_last(SmallModel::envelope_upper, 0.5F);
-};
-
-template <class Model>
-double half_width_of(std::size_t i) {
-  return (static_cast<double>(Model::envelope_upper[i]) - static_cast<double>(Model::envelope_lower[i])) / 2;
-}
-
-}  // namespace
-
 TEST_CASE("the report says how far outside which feature lies, in half-widths") {
   const InverseDynamics<SmallModel> inverse;
   RandomStates random(189);
@@ -412,7 +393,10 @@ TEST_CASE("the report says how far outside which feature lies, in half-widths") 
   CHECK(report.cause == Status::ok);
   CHECK_FALSE(report.fallback_asked);
 
-  const auto half_width = [](std::size_t i) { return half_width_of<SmallModel>(i); };
+  const auto half_width = [](std::size_t i) {
+    return (static_cast<double>(SmallModel::envelope_upper[i]) - static_cast<double>(SmallModel::envelope_lower[i])) /
+           2;
+  };
   constexpr double tolerance = 1e-5;  // float differences of numbers up to 300
   inputs.velocity_m_s[1] = -30.0F;    // feature 7
   inputs.body_rates_rad_s[2] = 5.0F;  // feature 11
@@ -430,11 +414,13 @@ TEST_CASE("the report says how far outside which feature lies, in half-widths") 
   CHECK(inverse.predict(inputs, commands, report) == Status::outside_envelope);
   CHECK(report.worst_feature == 11);
 
-  // the last feature, cos psi, too
-  const InverseDynamics<NeverNorth> southward;
-  CHECK(southward.predict({}, commands, report) == Status::outside_envelope);
+  // the last feature, cos psi, too: an envelope that ends at 0.5
+  SmallInstance never_north;
+  never_north.envelope_upper[15] = 0.5F;
+  CHECK(InverseDynamics<SmallInstance>(never_north).predict({}, commands, report) == Status::outside_envelope);
   CHECK(report.worst_feature == 15);
-  CHECK(std::fabs(static_cast<double>(report.excess[15]) - 0.5 / half_width_of<NeverNorth>(15)) <= tolerance);
+  const double its_half_width = (0.5 - static_cast<double>(never_north.envelope_lower[15])) / 2;
+  CHECK(std::fabs(static_cast<double>(report.excess[15]) - 0.5 / its_half_width) <= tolerance);
 
   inputs.body_rates_rad_s[2] = not_a_number;  // refused before there are features
   CHECK(inverse.predict(inputs, commands, report) == Status::not_finite);

@@ -14,7 +14,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "support/small_model.hpp"
+#include "support/small_model_variants.hpp"
 
 namespace {
 
@@ -70,12 +70,6 @@ struct FakeInverseDynamics {
 };
 
 using FakeNetwork = NetworkInverse<FakeInverseDynamics>;
-
-/// A model whose envelope is empty.
-struct NowhereTrained : test::SmallModel {
-  static constexpr std::array<float, 16> envelope_lower = Scaler<float, 16>::ones();
-  static constexpr std::array<float, 16> envelope_upper{};
-};
 
 template <class FeedForward>
 TrackingResult<double> tracked(const FeedForward& feed_forward) {
@@ -134,7 +128,7 @@ TEST_CASE("where the network declines the fallback flies, and is counted by Stat
 
 TEST_CASE("one way to fall back: the guard's, in the loop too") {
   using Formula = AnalyticInverse<Vehicle>;
-  using Falling = InverseDynamics<NowhereTrained, Extend<TrainingGuard, Fallback<Formula>>>;
+  using Falling = InverseDynamics<test::NowhereTrained, Extend<TrainingGuard, Fallback<Formula>>>;
   const Formula formula(vehicle());
   const TrackingResult<double> analytic = tracked(formula);
   const TrackingResult<double> fallen = tracked(NetworkInverse<Falling>(Falling(Falling::Guard(formula))));
@@ -145,7 +139,7 @@ TEST_CASE("one way to fall back: the guard's, in the loop too") {
   CHECK(fallen.fallback.of(Status::outside_envelope) == 15000);
 
   // without a fallback the policy declines, and the flight ends where the network does
-  using Declining = InverseDynamics<NowhereTrained>;
+  using Declining = InverseDynamics<test::NowhereTrained>;
   const TrackingResult<double> declined = tracked(NetworkInverse<Declining>(Declining{}));
   CHECK(declined.status == Status::outside_envelope);
   CHECK(declined.flown_s == 0);

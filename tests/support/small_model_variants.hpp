@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The small model in double, and as an instance whose numbers are members instead of constants.
+// The small model in double, with an empty envelope, and as an instance whose numbers are members instead of constants.
 #pragma once
 
 #include "support/small_model.hpp"
@@ -37,6 +37,12 @@ struct SmallDoubleModel {
   static constexpr auto envelope_upper = detail::widened(SmallModel::envelope_upper);
   static constexpr auto golden_features = detail::widened(SmallModel::golden_features);
   static constexpr auto golden_commands = detail::widened(SmallModel::golden_commands);
+};
+
+/// Its envelope is empty: it declines always.
+struct NowhereTrained : SmallModel {
+  static constexpr std::array<float, 16> envelope_lower = Scaler<float, 16>::ones();
+  static constexpr std::array<float, 16> envelope_upper{};
 };
 
 /// What is read at run time: weights and all else can be changed, and a fault put in.
