@@ -6,14 +6,17 @@
 
 namespace programs {
 
+/// "a, b" and then "c": "a, b, c".
+inline void add_to_list(std::string& list, const std::string& item) {
+  if (!list.empty()) list += ", ";
+  list += item;
+}
+
 /// "a, b, c": what `text_of` says of each item.
 template <class Items, class TextOf>
 std::string listed(const Items& items, const TextOf& text_of) {
   std::string text;
-  for (const auto& item : items) {
-    if (!text.empty()) text += ", ";
-    text += text_of(item);
-  }
+  for (const auto& item : items) add_to_list(text, text_of(item));
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "command_line/listed.hpp"
 #include "pinnquad/simulation/flights.hpp"
 
 namespace programs {
@@ -40,7 +41,7 @@ bool with_flight(const std::string& name, const Function& function) {
 /// "d1, d2, d3"
 inline std::string flight_names() {
   std::string names;
-  each_flight([&names](auto tag) { names += (names.empty() ? "" : ", ") + std::string(decltype(tag)::type::name); });
+  each_flight([&names](auto tag) { add_to_list(names, decltype(tag)::type::name); });
   return names;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "command_line/listed.hpp"
 #include "command_line/nearest_names.hpp"
 #include "logs/mapping_file.hpp"
 #include "logs/ready_mappings.hpp"
@@ -18,9 +19,7 @@ inline bool is_mapping_file(const std::string& name) {
 
 /// "arpl, nanobench, px4": for messages and help.
 inline std::string mapping_names() {
-  std::string names;
-  for (const ReadyMapping& ready : ready_mappings) names += (names.empty() ? "" : ", ") + std::string(ready.name);
-  return names;
+  return listed(ready_mappings, [](const ReadyMapping& ready) { return std::string(ready.name); });
 }
 
 /// The mapping of that name or file. Throws InputError (the file) and std::invalid_argument (no such name), one line.

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "command_line/listed.hpp"
 #include "flight_stacks/core_record.hpp"
 #include "flight_stacks/neural_controller.hpp"
 #include "model/replayed_row.hpp"
@@ -51,7 +52,7 @@ inline constexpr std::array<const char*, 4> core_input_names = {"body rates", "a
 inline std::string input_names(std::uint8_t bits) {
   std::string names;
   for (std::size_t i = 0; i < core_input_names.size(); ++i) {
-    if ((bits >> i & 1u) != 0) names += (names.empty() ? "" : ", ") + std::string(core_input_names[i]);
+    if ((bits >> i & 1u) != 0) add_to_list(names, core_input_names[i]);
   }
   return names.empty() ? "none" : names;
 }

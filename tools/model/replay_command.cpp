@@ -19,6 +19,7 @@
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/interrupt.hpp"
+#include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "model/flight_model.hpp"
@@ -73,7 +74,7 @@ void apply_setting(const std::string& text, flight_stacks::CoreSettings& setting
   std::string known;
   flight_stacks::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& number) {
     if (std::string(of) == "timestamp") return;
-    known += (known.empty() ? "" : ", ") + std::string(of);
+    add_to_list(known, of);
     if (name != of) return;
     found = true;
     using Number = std::decay_t<decltype(number)>;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "model/flight_model.hpp"
 #include "model/flight_stack.hpp"
 #include "model/replay_reason.hpp"
@@ -97,7 +98,7 @@ class FlightReplay {
       const bool is_altitude = name == "altitude";
       const auto asks = [&name](const char* feature) { return name == feature; };
       const bool asked = !is_altitude || std::any_of(Features::names.begin(), Features::names.end(), asks);
-      if (asked && !std::isfinite(value)) names += (names.empty() ? "" : ", ") + name;
+      if (asked && !std::isfinite(value)) add_to_list(names, name);
     };
     const pinnquad::SampleValues values = pinnquad::to_values(flight[row]);
     constexpr std::size_t first_command = pinnquad::sample_value_count - pinnquad::rotor_count;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string>
 
+#include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/inference/guard.hpp"
 
@@ -57,7 +58,7 @@ class ReasonOf {
     std::string names;
     for (int i = 0; i < Features::size; ++i) {
       if (std::isfinite(x[static_cast<std::size_t>(i)])) continue;
-      names += (names.empty() ? "" : ", ") + std::string(name(i));
+      add_to_list(names, std::string(name(i)));
     }
     return names.empty() ? "an input is NaN or infinite" : "NaN or infinite: " + names;
   }
@@ -71,7 +72,7 @@ class ReasonOf {
     std::string others;
     for (std::size_t i = 0; i < report.excess.size(); ++i) {
       if (i == worst || pinnquad::detail::equal(report.excess[i], Scalar(0))) continue;
-      others += (others.empty() ? "" : ", ") + std::string(Features::names[i]);
+      add_to_list(others, std::string(Features::names[i]));
     }
     return others.empty() ? reason : reason + "; outside too: " + others;
   }

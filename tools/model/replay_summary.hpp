@@ -14,7 +14,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
+#include "pinnquad/data/printable.hpp"
 
 namespace programs {
 
@@ -128,7 +130,7 @@ inline std::string counts_in_words(const std::map<std::string, std::size_t>& cou
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string words;
   for (const auto& [name, count] : sorted) {
-    if (name != without) words += (words.empty() ? "" : ", ") + name + " " + std::to_string(count);
+    if (name != without) add_to_list(words, name + " " + std::to_string(count));
   }
   return words;
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "report/paper.hpp"
 #include "report/settings.hpp"
 
@@ -21,7 +22,7 @@ inline std::vector<std::string> missing_lines(const Study& study, const StudySet
   std::string absent_models;
   for (int model = 1; model <= study_models; ++model) {
     if (settings.plans(model)) continue;
-    absent_models += (absent_models.empty() ? "" : ", ") + std::to_string(model);
+    add_to_list(absent_models, std::to_string(model));
   }
   if (!absent_models.empty()) lines.push_back("not part of this study: models " + absent_models);
   if (study.cut_rows > 0) lines.push_back("rows.csv ends with a row that is cut off: left out");

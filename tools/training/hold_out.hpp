@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "command_line/nearest_names.hpp"
 #include "pinnquad/data/printable.hpp"
 #include "pinnquad/data/split_flights.hpp"
@@ -183,7 +184,7 @@ inline std::vector<Fold> folds_of(const pinnquad::Dataset& dataset, const HoldOu
                                     ": no flight and no trajectory of that name; " + nearest_names(name, known));
       }
       if (std::find(out.begin(), out.end(), &*group) == out.end()) out.push_back(&*group);
-      all += (all.empty() ? "" : ", ") + name;
+      add_to_list(all, name);
     }
     std::vector<const pinnquad::Flight*> tested;
     for (const detail::FlightGroup* group : out) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "pictures/drawing.hpp"
 #include "pictures/numbers.hpp"
 #include "training/log_moments.hpp"
@@ -185,8 +186,7 @@ inline std::string moment_drawing(const LogMoment& moment, const pinnquad::Fligh
     }
     text += drawing::path(said.d(), stroke_of_shown[i]);
   }
-  std::string names;
-  for (const std::size_t k : shown) names += std::string(names.empty() ? "" : ", ") + judged.kinds[k].kind.title;
+  const std::string names = listed(shown, [&judged](std::size_t k) { return judged.kinds[k].kind.title; });
   return drawing::svg(1060, top + height + 42, text,
                       "Command of motor u" + std::to_string(moment.motor + 1) + " about the moment",
                       "As flown, and as predicted by " + names + ".");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "training/log_figures.hpp"
@@ -91,7 +92,7 @@ inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Data
                                           const pinnquad::Verdict& verdict) {
   std::string flights;
   const auto add = [&flights](const std::vector<std::string>& names) {
-    for (const std::string& name : names) flights += (flights.empty() ? "" : ", ") + name;
+    for (const std::string& name : names) add_to_list(flights, name);
   };
   add(fold.train);
   std::size_t rows = fold.split.train.size();

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "command_line/nearest_names.hpp"
 #include "command_line/progress_line.hpp"
 #include "logs/dataset_folder.hpp"
@@ -99,11 +100,9 @@ inline HoldOutChoice hold_out_of(const LogTrainingOptions& options, const Import
     choice.each = options.hold_out_each == "flight" ? HoldOutEach::flight : HoldOutEach::trajectory;
   }
   if (choice.each || !choice.names.empty()) return choice;
-  std::string names;
-  for (const pinnquad::Flight& flight : dataset.flights.flights())
-    names += (names.empty() ? "" : ", ") + pinnquad::printable(flight.name);
   throw std::invalid_argument(
-      "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " + names);
+      "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " +
+      listed(dataset.flights.flights(), [](const auto& flight) { return pinnquad::printable(flight.name); }));
 }
 
 }  // namespace programs

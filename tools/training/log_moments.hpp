@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "logs/imported_dataset.hpp"
 #include "pictures/numbers.hpp"
 #include "pinnquad/core/rotation.hpp"
@@ -156,7 +157,7 @@ inline std::string what_happened(const LogMoment& moment, const ImportedDataset&
     return values[static_cast<std::size_t>(place)];
   };
   std::string told;
-  const auto say = [&told](const std::string& what) { told += (told.empty() ? "" : ", ") + what; };
+  const auto say = [&told](const std::string& what) { add_to_list(told, what); };
   if (most_command > nearly_full) say("a motor at full (" + shown::number(most_command, 2) + ")");
   if (least_command < nearly_idle) say("a motor at idle (" + shown::number(least_command, 2) + ")");
   if (dataset.sample_period_s > 0 && longest_gap_s > 1.5 * dataset.sample_period_s) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "pictures/filled_page.hpp"
 #include "training/ellipses_drawing.hpp"
 #include "training/log_drawings.hpp"
@@ -221,12 +222,6 @@ inline nlohmann::json moments_json(const LogPageInput& in, const std::vector<std
   return list;
 }
 
-inline std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 inline nlohmann::json folds_json(const LogPlan& plan) {
   nlohmann::json rows = nlohmann::json::array();
   for (const Fold& fold : plan.folds) {
@@ -253,7 +248,7 @@ inline std::string log_page(const LogPageInput& in) {
   std::size_t rows = 0;
   for (const std::size_t of_fold : in.judged.rows) rows += of_fold;
   nlohmann::json page = {
-      {"held_out", detail::or_false(in.judged.flights.size() <= most_named ? detail::listed(in.judged.flights) : "")},
+      {"held_out", detail::or_false(in.judged.flights.size() <= most_named ? listed(in.judged.flights) : "")},
       {"flight_count", in.judged.flights.size()},
       {"rows", rows},
       {"all_rows", in.dataset.flights.rows()},
@@ -272,7 +267,7 @@ inline std::string log_page(const LogPageInput& in) {
       {"warnings", in.report["warnings"]},
       {"period", shown::number(1e3 * in.dataset.sample_period_s, 1)},
       {"lag", shown::number(1e3 * in.dataset.lag_removed_s, 0)},
-      {"absent", detail::or_false(detail::listed(in.dataset.absent))},
+      {"absent", detail::or_false(listed(in.dataset.absent))},
       {"headline", false},
       {"closed_loop", false},
       {"moments", nlohmann::json::array()},

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/listed.hpp"
 #include "training/log_figures.hpp"
 #include "training/log_verdict.hpp"
 
@@ -54,16 +55,14 @@ inline void print_log_table(const LogPlan& plan, const LogJudgement& judged, con
 }
 
 inline void print_folds(const std::vector<Fold>& folds) {
-  const auto listed = [](const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + pinnquad::printable(name);
-    return text;
+  const auto names_of = [](const std::vector<std::string>& names) {
+    return listed(names, [](const std::string& name) { return pinnquad::printable(name); });
   };
   for (const Fold& fold : folds) {
-    std::printf("      held out: %s (%zu rows)\n", listed(fold.held_out).c_str(), fold.split.test.size());
+    std::printf("      held out: %s (%zu rows)\n", names_of(fold.held_out).c_str(), fold.split.test.size());
     std::printf("        validate: %s%s (%zu rows)\n", fold.part_validates ? "the last fifth of " : "",
-                listed(fold.validation).c_str(), fold.split.validation.size());
-    std::printf("        train: %s (%zu rows)\n", listed(fold.train).c_str(), fold.split.train.size());
+                names_of(fold.validation).c_str(), fold.split.validation.size());
+    std::printf("        train: %s (%zu rows)\n", names_of(fold.train).c_str(), fold.split.train.size());
   }
 }
 
