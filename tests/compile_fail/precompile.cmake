@@ -8,9 +8,14 @@ include("${CMAKE_CURRENT_LIST_DIR}/command.cmake")
 if(COMPILER_ID MATCHES "Clang")
   list(APPEND command -fpch-instantiate-templates) # here, not in each unit
 endif()
-file(WRITE "${PRECOMPILED}" "#pragma once\n#include <pinnquad/flight.hpp>\n")
-execute_process(COMMAND ${command} -x c++-header "${PRECOMPILED}" -o "${PRECOMPILED}.gch"
+# Written aside and put in its place whole: another ctest of this folder may be compiling with it.
+string(RANDOM LENGTH 12 own)
+set(written "${PRECOMPILED}.${own}")
+file(CONFIGURE OUTPUT "${PRECOMPILED}" CONTENT "#pragma once\n#include <pinnquad/flight.hpp>\n" @ONLY) # if it differs
+execute_process(COMMAND ${command} -x c++-header "${PRECOMPILED}" -o "${written}"
   RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT code EQUAL 0)
+  file(REMOVE "${written}")
   message(FATAL_ERROR "${output}")
 endif()
+file(RENAME "${written}" "${PRECOMPILED}.gch")

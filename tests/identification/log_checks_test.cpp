@@ -71,31 +71,49 @@ TEST_CASE("degrees are found over many short segments, each too short to tell") 
   CHECK(says(pinnquad::check_degrees(parts), "body rates"));
 }
 
-TEST_CASE("every convention of a quaternion is named") {
-  const std::vector<std::string> words = {"", "order x, y, z, w", "conjugate", "x, y, z, w and turns", "ENU, FLU"};
-  for (std::size_t convention = 0; convention < words.size(); ++convention) {
-    CAPTURE(convention);
-    std::array<std::vector<double>, 4> q;
-    std::array<std::vector<double>, 3> rates, force;
-    for (const Sample& sample : good_flight()) {
-      auto one = attitude(sample);
-      if ((convention & 4u) != 0) one = pinnquad::swap_enu_flu_ned_frd(one);
-      if ((convention & 2u) != 0) one = conjugate(one);
-      std::array<double, 4> parts = {one.w, one.x, one.y, one.z};
-      if ((convention & 1u) != 0) parts = {one.x, one.y, one.z, one.w};
-      for (std::size_t i = 0; i < 4; ++i) q[i].push_back(parts[i]);
-      const auto f = specific_force_m_s2(sample);
-      for (std::size_t i = 0; i < 3; ++i) {
-        rates[i].push_back(sample.body_rates_rad_s[static_cast<Eigen::Index>(i)]);
-        force[i].push_back(f[static_cast<Eigen::Index>(i)]);
+TEST_CASE("every convention of an attitude that was read as another is named") {
+  const std::vector<std::string> words = {"x, y, z, w", "world into the body", "(ENU)", "(FLU)"};
+  const std::vector<std::string> other_words = {"w, x, y, z", "body into the world", "(NED)", "(FRD)"};
+  const auto of = [](unsigned bits) {
+    return pinnquad::AttitudeConvention{(bits & 1u) != 0, (bits & 2u) != 0, (bits & 4u) != 0, (bits & 8u) != 0};
+  };
+  for (unsigned log = 0; log < 16; ++log) {
+    for (unsigned read = 0; read < 16; ++read) {
+      CAPTURE(log);
+      CAPTURE(read);
+      std::array<std::vector<double>, 4> q;
+      std::array<std::vector<double>, 3> rates, force;
+      for (const Sample& sample : good_flight()) {
+        const auto one = pinnquad::read_attitude(pinnquad::written_attitude(attitude(sample), of(log)), of(read));
+        const std::array<double, 4> parts = {one.w, one.x, one.y, one.z};
+        for (std::size_t i = 0; i < 4; ++i) q[i].push_back(parts[i]);
+        const auto f = specific_force_m_s2(sample);
+        for (std::size_t i = 0; i < 3; ++i) {
+          rates[i].push_back(sample.body_rates_rad_s[static_cast<Eigen::Index>(i)]);
+          force[i].push_back(f[static_cast<Eigen::Index>(i)]);
+        }
+      }
+      q[2][700] = std::nan("");
+      const auto found = pinnquad::check_attitude(0.01, of(read), {&q[0], &q[1], &q[2], &q[3]},
+                                                  {&rates[0], &rates[1], &rates[2]}, {&force[0], &force[1], &force[2]});
+      CHECK(found.has_value() == (log != read));
+      for (unsigned bit = 0; bit < 4 && found; ++bit) {
+        const bool differs = ((log ^ read) >> bit & 1u) != 0;
+        CHECK(says(found, (log >> bit & 1u) != 0 ? words[bit] : other_words[bit]) == differs);
+        CHECK_FALSE(says(found, (log >> bit & 1u) != 0 ? other_words[bit] : words[bit]));
       }
     }
-    q[2][700] = std::nan("");
-    const auto found = pinnquad::check_attitude(0.01, {&q[0], &q[1], &q[2], &q[3]}, {&rates[0], &rates[1], &rates[2]},
-                                                {&force[0], &force[1], &force[2]});
-    CHECK(found.has_value() == (convention != 0));
-    if (convention != 0) CHECK(says(found, words[convention]));
   }
+}
+
+TEST_CASE("a specific force that points down through the rotors is told") {
+  std::vector<double> z;
+  for (const Sample& sample : good_flight()) z.push_back(specific_force_m_s2(sample)[2]);
+  CHECK_FALSE(pinnquad::check_thrust_direction(z).has_value());
+  for (double& v : z) v = -v;
+  z.front() = std::nan("");
+  CHECK(says(pinnquad::check_thrust_direction(z), "(FLU)"));
+  CHECK_FALSE(pinnquad::check_thrust_direction({}).has_value());
 }
 
 TEST_CASE("each of the 24 orders of motors is found and its convention named; the right one is left alone") {

@@ -194,8 +194,9 @@ class Import {
       const auto& q = rows.attitude;
       const auto& w = rows.body_rates;
       const auto& f = rows.specific_force;
-      warn(name, pinnquad::check_attitude(rows.period_s, {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]},
-                                          {&f[0], &f[1], &f[2]}));
+      warn(name, pinnquad::check_thrust_direction(f[2]));
+      warn(name, pinnquad::check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
+                                          {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]}));
     }
   }
 
@@ -320,16 +321,23 @@ class Import {
                "fewer than " + std::to_string(minimum_rows) + " rows");
     dataset_.sample_period_s = *period_s_;
     for (const std::string& told : told_) dataset_.notes.push_back(told);
-    if (dataset_.flights.size() > 0) return;
-    const ImportStep* worst = &dataset_.steps.front();
-    for (const ImportStep& step : dataset_.steps) {
-      if (step.rows_before - std::min(step.rows_before, step.rows_after) >
-          worst->rows_before - std::min(worst->rows_before, worst->rows_after))
-        worst = &step;
-    }
-    throw pinnquad::InputError(
-        request_.logs.front(), 0, 0, "a flight of at least " + std::to_string(minimum_rows) + " rows",
-        std::to_string(longest) + "; most were lost to '" + worst->name + "' (" + worst->told + ")");
+    if (dataset_.flights.size() == 0) refuse_without_flight(longest);
+  }
+
+  /// The step of the rows on one clock that cost most; fewer rows for a slower clock are no loss.
+  [[noreturn]] void refuse_without_flight(std::size_t longest) const {
+    const auto lost = [](const ImportStep& step) {
+      return step.rows_before - std::min(step.rows_before, step.rows_after);
+    };
+    const auto first = std::find_if(dataset_.steps.begin(), dataset_.steps.end(),
+                                    [](const ImportStep& step) { return step.name == "incomplete rows"; });
+    const auto worst = std::max_element(
+        first, dataset_.steps.end(), [&lost](const ImportStep& a, const ImportStep& b) { return lost(a) < lost(b); });
+    std::string found = std::to_string(longest);
+    if (worst != dataset_.steps.end()) found += "; most were lost to '" + worst->name + "' (" + worst->told + ")";
+    for (const std::string& warning : dataset_.warnings) found += "; " + warning;
+    throw pinnquad::InputError(request_.logs.front(), 0, 0,
+                               "a flight of at least " + std::to_string(minimum_rows) + " rows", found);
   }
 
   void name_flight(pinnquad::Flight& flight, const std::string& name, int part) const {

@@ -12,6 +12,7 @@
 #include "logs/mapping.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/identification/attitude_convention.hpp"
 #include "pinnquad/identification/common_clock.hpp"
 
 namespace programs {
@@ -49,26 +50,29 @@ inline pinnquad::InputError wrong_cell(const LogTopic& topic, std::size_t row, c
   return pinnquad::InputError(file, line, field, expected, found);
 }
 
+/// How the attitude of a source is written.
+inline pinnquad::AttitudeConvention convention_of(const Source& source) {
+  return {!source.euler && source.scalar_last, source.world_to_body, source.world == WorldFrame::enu,
+          source.body == BodyFrame::flu};
+}
+
 namespace detail {
 
 /// Row by row from the mapping's frames to NED and FRD.
 inline void turn_attitude(const Source& source, std::vector<std::vector<double>>& values) {
-  using pinnquad::Quaternion;
-  const double h = std::sqrt(0.5);
-  const Quaternion<double> enu_to_ned{0, h, h, 0}, frd_to_flu{0, 1, 0, 0};
+  const pinnquad::AttitudeConvention convention = convention_of(source);
   const std::size_t rows = values[0].size();
   std::vector<std::vector<double>> turned(4, std::vector<double>(rows, std::nan("")));
   for (std::size_t row = 0; row < rows; ++row) {
-    Quaternion<double> q;
+    std::array<double, 4> numbers{};
     if (source.euler) {
-      q = pinnquad::from_euler(pinnquad::EulerAngles<double>{values[0][row], values[1][row], values[2][row]});
+      const auto q =
+          pinnquad::from_euler(pinnquad::EulerAngles<double>{values[0][row], values[1][row], values[2][row]});
+      numbers = {q.w, q.x, q.y, q.z};
     } else {
-      const std::size_t w = source.scalar_last ? 3 : 0, x = source.scalar_last ? 0 : 1;
-      q = {values[w][row], values[x][row], values[x + 1][row], values[x + 2][row]};
+      for (std::size_t i = 0; i < 4; ++i) numbers[i] = values[i][row];
     }
-    if (source.world_to_body) q = pinnquad::conjugate(q);
-    if (source.world == WorldFrame::enu) q = enu_to_ned * q;
-    if (source.body == BodyFrame::flu) q = q * frd_to_flu;
+    const pinnquad::Quaternion<double> q = pinnquad::read_attitude(numbers, convention);
     turned[0][row] = q.w;
     turned[1][row] = q.x;
     turned[2][row] = q.y;

@@ -192,14 +192,24 @@ Vector3<Scalar> swap_flu_frd(const Vector3<Scalar>& v) noexcept {
   return Vector3<Scalar>(v[0], -v[1], -v[2]);
 }
 
+/// Attitude body -> ENU <-> attitude body -> NED (its own inverse up to the quaternion's sign).
+template <class Scalar>
+Quaternion<Scalar> swap_enu_ned(const Quaternion<Scalar>& q) noexcept {
+  using std::sqrt;
+  const Scalar h = sqrt(Scalar(0.5));
+  return Quaternion<Scalar>{Scalar(0), h, h, Scalar(0)} * q;  // half turn about (1, 1, 0)
+}
+
+/// Attitude FLU -> world <-> attitude FRD -> world (its own inverse up to the quaternion's sign).
+template <class Scalar>
+Quaternion<Scalar> swap_flu_frd(const Quaternion<Scalar>& q) noexcept {
+  return q * Quaternion<Scalar>{Scalar(0), Scalar(1), Scalar(0), Scalar(0)};  // half turn about x
+}
+
 /// Attitude FLU -> ENU <-> attitude FRD -> NED (its own inverse up to the quaternion's sign).
 template <class Scalar>
 Quaternion<Scalar> swap_enu_flu_ned_frd(const Quaternion<Scalar>& q) noexcept {
-  using std::sqrt;
-  const Scalar h = sqrt(Scalar(0.5));
-  const Quaternion<Scalar> world{Scalar(0), h, h, Scalar(0)};                 // half turn about (1, 1, 0): ENU <-> NED
-  const Quaternion<Scalar> body{Scalar(0), Scalar(1), Scalar(0), Scalar(0)};  // half turn about x: FLU <-> FRD
-  return world * q * body;
+  return swap_flu_frd(swap_enu_ned(q));
 }
 
 }  // namespace pinnquad
