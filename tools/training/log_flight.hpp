@@ -15,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/flatness.hpp"
 #include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/simulation/flight.hpp"
@@ -25,7 +26,7 @@
 
 namespace programs {
 
-using LoggedQuadrotor = pinnquad::Quadrotor<double>;
+using LoggedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag>;
 
 /// The model as a feed-forward policy: asked with the rows of the last instants as a flight, as it was judged. Where it has no
 /// answer (its window is not complete) the formula of the vehicle answers, and that is counted.
@@ -157,7 +158,7 @@ inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& mo
                                  const pinnquad::RowSet& training, const NamedAirframe& airframe,
                                  const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs,
                                  bool has_velocity) {
-  const auto made = logged_vehicle(airframe.value, command_effects(training, signs));
+  const auto made = logged_vehicle(airframe.value, logged_effects(training, signs));
   if (!made) return {{"why_not", "the commands of the logs do not lift and turn a vehicle as they should"}};
   const auto eight = eight_within(flown_envelope(training), has_velocity);
   if (!eight) return {{"why_not", "the flights hold no figure-eight, however slow"}};

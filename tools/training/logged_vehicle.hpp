@@ -1,64 +1,74 @@
 // SPDX-License-Identifier: MIT
 // A vehicle that turns and climbs by its commands as the flights of a log do: what a model of these logs can be flown on. Its mass
-// is 1 kg and its arms are as they are given, for the logs say nothing of them: thrust per mass and torque per inertia are theirs.
+// is 1 kg and its arms are as they are given, for the logs say nothing of them: thrust and drag per mass, torque per inertia are
+// theirs.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <vector>
 
-#include "pinnquad/core/rotation.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/joint_moments.hpp"
+#include "pinnquad/identification/specific_force.hpp"
 
 namespace programs {
 
-/// What all four commands do together, by least squares.
-struct CommandEffects {
+/// What all four commands do together, and the air, by least squares.
+struct LoggedEffects {
   double thrust_m_s2 = 0;               ///< specific force along -z per sum of the commands
   std::array<double, 3> turn_rad_s2{};  ///< angular acceleration about x, y, z per signed command sum
+  std::array<double, 3> drag_per_m{};   ///< specific force along x, y, z per -|v_i| v_i; 0 where that is no drag
 };
 
-/// Specific force of a row: v_dot + omega x v - R^T g.
-inline pinnquad::Vector3<double> specific_force(const pinnquad::Sample& sample) {
-  const auto attitude =
-      pinnquad::from_euler(pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
-  return sample.linear_acceleration_m_s2 + pinnquad::cross<double>(sample.body_rates_rad_s, sample.velocity_m_s) -
-         pinnquad::standard_gravity_m_s2<double> * pinnquad::world_down_axis(attitude);
-}
-
-/// The thrust through the origin, so that the hover is right; the turns with a trim.
-inline CommandEffects command_effects(const pinnquad::RowSet& rows,
-                                      const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs) {
-  CommandEffects effects;
-  double product = 0, square = 0;
-  std::array<std::vector<double>, 3> sums, turns;
+/// Thrust and drag through the origin, so that the hover is right; the turns with a trim.
+inline LoggedEffects logged_effects(const pinnquad::RowSet& rows,
+                                    const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs) {
+  std::array<std::vector<double>, 3> sums, turns, pushes, forces;
+  std::vector<double> thrusts;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const pinnquad::Sample& sample = rows[row];
+    const pinnquad::Vector3<double> force = pinnquad::specific_force_m_s2(sample);
     double all = 0;
     for (const double u : sample.commands) all += u;
-    product -= all * specific_force(sample)[2];
-    square += all * all;
+    thrusts.push_back(-all);
     for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int i = static_cast<int>(axis);
+      pushes[axis].push_back(-std::abs(sample.velocity_m_s[i]) * sample.velocity_m_s[i]);
+      forces[axis].push_back(force[i]);
       sums[axis].push_back(pinnquad::signed_sum(signs[axis], sample.commands));
-      turns[axis].push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
+      turns[axis].push_back(sample.angular_acceleration_rad_s2[i]);
     }
   }
-  effects.thrust_m_s2 = product / square;
+  const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
+  const auto share = [](double of, double in) { return in > 0 ? of / in : 0.0; };
+  LoggedEffects effects;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const pinnquad::JointMoments moments = pinnquad::joint_moments(sums[axis], turns[axis]);
     effects.turn_rad_s2[axis] = moments.covariance / moments.variance_x;
+    effects.drag_per_m[axis] = share(product(pushes[axis], forces[axis]), product(pushes[axis], pushes[axis]));
   }
+  // along z both: the normal equations of two unknowns
+  const double thrust = product(thrusts, thrusts), drag = product(pushes[2], pushes[2]);
+  const double between = product(thrusts, pushes[2]), determinant = thrust * drag - between * between;
+  const double by_thrust = product(thrusts, forces[2]), by_drag = product(pushes[2], forces[2]);
+  effects.drag_per_m[2] = share(thrust * by_drag - between * by_thrust, determinant);
+  for (double& found : effects.drag_per_m) found = std::max(found, 0.0);
+  effects.thrust_m_s2 = share(by_thrust - effects.drag_per_m[2] * between, thrust);
   return effects;
 }
 
 /// The arms and the motor order of `like`, the effects of the rows. None where the rows show no vehicle: a command that does not
 /// lift or turns the wrong way, or one that can't hover.
 inline std::optional<pinnquad::Airframe<double>> logged_vehicle(const pinnquad::Airframe<double>& like,
-                                                                const CommandEffects& effects) {
+                                                                const LoggedEffects& effects) {
   constexpr double propeller_m = 0.2, rev_s = 100, pi = 3.141592653589793;
   const double thrust_N = effects.thrust_m_s2;  // of one rotor of a vehicle of 1 kg
   if (!(thrust_N > 0)) return {};
@@ -83,6 +93,9 @@ inline std::optional<pinnquad::Airframe<double>> logged_vehicle(const pinnquad::
   made.thrust_coefficient = thrust_N / rated;
   made.power_coefficient = 2 * pi * effects.turn_rad_s2[2] * made.inertia_kg_m2[2] / (rated * propeller_m);
   made.rotor_time_constant_s = like.rotor_time_constant_s;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    made.drag_area_m2[axis] = effects.drag_per_m[axis] / pinnquad::rated_air_density_kg_m3<double>;
+  }
   if (pinnquad::check_airframe(made) != pinnquad::Status::ok) return {};
   if (pinnquad::Rotors<double>(made).status() != pinnquad::Status::ok) return {};
   return made;
