@@ -74,7 +74,7 @@ void apply_setting(const std::string& text, flight_stacks::CoreSettings& setting
   std::string known;
   flight_stacks::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& number) {
     if (std::string(of) == "timestamp") return;
-    add_to_list(known, of);
+    programs::add_to_list(known, of);
     if (name != of) return;
     found = true;
     using Number = std::decay_t<decltype(number)>;

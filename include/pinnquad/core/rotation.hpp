@@ -194,7 +194,7 @@ Vector3<Scalar> swap_flu_frd(const Vector3<Scalar>& v) noexcept {
 
 /// Attitude body -> ENU <-> attitude body -> NED (its own inverse up to the quaternion's sign).
 template <class Scalar>
-Quaternion<Scalar> swap_enu_ned(const Quaternion<Scalar>& q) noexcept {
+Quaternion<Scalar> swap_world_enu_ned(const Quaternion<Scalar>& q) noexcept {
   using std::sqrt;
   const Scalar h = sqrt(Scalar(0.5));
   return Quaternion<Scalar>{Scalar(0), h, h, Scalar(0)} * q;  // half turn about (1, 1, 0)
@@ -202,14 +202,14 @@ Quaternion<Scalar> swap_enu_ned(const Quaternion<Scalar>& q) noexcept {
 
 /// Attitude FLU -> world <-> attitude FRD -> world (its own inverse up to the quaternion's sign).
 template <class Scalar>
-Quaternion<Scalar> swap_flu_frd(const Quaternion<Scalar>& q) noexcept {
+Quaternion<Scalar> swap_body_flu_frd(const Quaternion<Scalar>& q) noexcept {
   return q * Quaternion<Scalar>{Scalar(0), Scalar(1), Scalar(0), Scalar(0)};  // half turn about x
 }
 
 /// Attitude FLU -> ENU <-> attitude FRD -> NED (its own inverse up to the quaternion's sign).
 template <class Scalar>
 Quaternion<Scalar> swap_enu_flu_ned_frd(const Quaternion<Scalar>& q) noexcept {
-  return swap_flu_frd(swap_enu_ned(q));
+  return swap_body_flu_frd(swap_world_enu_ned(q));
 }
 
 }  // namespace pinnquad

@@ -31,14 +31,14 @@ inline Quaternion<double> read_attitude(const std::array<double, 4>& numbers, co
   Quaternion<double> q =
       as.scalar_last ? Quaternion<double>{n[3], n[0], n[1], n[2]} : Quaternion<double>{n[0], n[1], n[2], n[3]};
   if (as.world_to_body) q = conjugate(q);
-  if (as.enu) q = swap_enu_ned(q);
-  return as.flu ? swap_flu_frd(q) : q;
+  if (as.enu) q = swap_world_enu_ned(q);
+  return as.flu ? swap_body_flu_frd(q) : q;
 }
 
 /// The numbers that are read as this attitude, up to their common sign.
 inline std::array<double, 4> written_attitude(Quaternion<double> q, const AttitudeConvention& as) {
-  if (as.flu) q = swap_flu_frd(q);
-  if (as.enu) q = swap_enu_ned(q);
+  if (as.flu) q = swap_body_flu_frd(q);
+  if (as.enu) q = swap_world_enu_ned(q);
   if (as.world_to_body) q = conjugate(q);
   if (as.scalar_last) return {q.x, q.y, q.z, q.w};
   return {q.w, q.x, q.y, q.z};
