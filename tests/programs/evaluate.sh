@@ -75,6 +75,8 @@ mkdir b
 expect_line 2 'b/model.block: a network of 16 inputs, 4 outputs and 6379 parameters whose shape is unknown' \
   "$pinnquad" evaluate b/model.block --flight flight.csv
 "$pinnquad" evaluate b/model.block --flight flight.csv --airframe mine.toml >mine.txt || [ $? -eq 1 ]
+"$pinnquad" evaluate b/model.hpp --flight flight.csv >own.txt || [ $? -eq 1 ]
+sed 1d mine.txt | diff - <(sed 1d own.txt) || fail "the header brings its airframe with it: another judgement"
 grep -q 'for mine' mine.txt || fail "said: $(cat mine.txt)"
 expect_line 2 'whose shape is unknown' "$pinnquad" evaluate a/model.block --flight flight.csv --airframe mine.toml
 answer=$(sed -n 's/.*answer = "\(.*\)";/\1/p' a/model.hpp)

@@ -150,10 +150,10 @@ void print_table(const programs::Block& block, const programs::Identity& identit
 
 int evaluate(const Options& options) {
   programs::end_at_interrupt();
-  std::string answer = options.answer;
-  const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, answer));
+  programs::ModelHints hints{options.airframe, options.answer, {}};
+  const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
   programs::require_present_alone(block);
-  const programs::Identity identity = programs::identify(block, options.airframe, answer);
+  const programs::Identity identity = programs::identify(block, hints);
   if (identity.networks.size() != 1) throw InputError(block.path, 0, 0, "a network by itself", "a sum of some");
   const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows);
   const RowSet rows = chosen_rows(options, dataset);

@@ -33,7 +33,7 @@ class FlightModel {
 };
 
 /// Which model a block is, of those that a row of a flight is enough for and of those that `train` fits to logs.
-Identity identify_flight_model(const Block& block, const std::string& airframe, const std::string& answer);
+Identity identify_flight_model(const Block& block, const ModelHints& hints);
 
 /// Of a block that was identified so.
 std::unique_ptr<const FlightModel> flight_model(const Block& block, const Identity& identity, ReplayGuard guard);

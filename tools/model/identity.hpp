@@ -25,6 +25,13 @@ void each_schema(const Function& function) {
   function(PaperFeaturesWithAltitude{}, RotorSpeedOutputs{});
 }
 
+/// What a user and an exported header say of a model, to narrow what is tried; empty: all that is known.
+struct ModelHints {
+  std::string airframe;              ///< a name or a file
+  std::string answer;                ///< the network as a header states it
+  std::optional<NamedAirframe> own;  ///< that the header brings with it; `airframe` goes before it
+};
+
 /// What was found.
 struct Identity {
   std::string answer;                 ///< description of the network
@@ -76,9 +83,11 @@ inline std::vector<std::string> candidate_networks(const Block& block) {
   return all;
 }
 
-/// The airframes to try: the one that is named or in a file, else all that the program knows.
-inline std::vector<NamedAirframe> candidate_airframes(const std::string& wanted) {
+/// The airframes to try: the one that is named or in a file, else the header's own, else all that the program knows.
+inline std::vector<NamedAirframe> candidate_airframes(const ModelHints& hints) {
+  const std::string& wanted = hints.airframe;
   if (is_airframe_file(wanted)) return {read_airframe_file(wanted)};
+  if (wanted.empty() && hints.own) return {*hints.own};
   std::vector<NamedAirframe> all;
   each_airframe([&](auto tag) {
     using Vehicle = typename decltype(tag)::type;
@@ -92,14 +101,13 @@ inline std::vector<NamedAirframe> candidate_airframes(const std::string& wanted)
 
 }  // namespace detail
 
-/// Finds out which model a block is. `airframe` (a name or a file) and `answer` (as an exported header states it) narrow what is
-/// tried; empty: all that is known. `each(function)` calls it with every pair of feature set and output schema to try, as
+/// Finds out which model a block is. `each(function)` calls it with every pair of feature set and output schema to try, as
 /// each_schema() does. Throws std::invalid_argument, one line, where nothing has the block's hash.
 template <class Each>
-Identity identify(const Block& block, const std::string& airframe, const std::string& answer, const Each& each) {
-  const std::vector<NamedAirframe> airframes = detail::candidate_airframes(airframe);
-  std::vector<std::string> answers = {answer};
-  if (answer.empty()) answers = detail::candidate_networks(block);
+Identity identify(const Block& block, const ModelHints& hints, const Each& each) {
+  const std::vector<NamedAirframe> airframes = detail::candidate_airframes(hints);
+  std::vector<std::string> answers = {hints.answer};
+  if (hints.answer.empty()) answers = detail::candidate_networks(block);
   std::optional<Identity> found;
   each([&](auto features, auto outputs) {
     using Features = decltype(features);
@@ -132,8 +140,8 @@ Identity identify(const Block& block, const std::string& airframe, const std::st
   }
   return *found;
 }
-inline Identity identify(const Block& block, const std::string& airframe, const std::string& answer) {
-  return identify(block, airframe, answer, [](const auto& function) { each_schema(function); });
+inline Identity identify(const Block& block, const ModelHints& hints) {
+  return identify(block, hints, [](const auto& function) { each_schema(function); });
 }
 
 }  // namespace programs

@@ -5,8 +5,8 @@
 
 namespace programs {
 
-Identity identify_flight_model(const Block& block, const std::string& airframe, const std::string& answer) {
-  return identify(block, airframe, answer, [](const auto& function) {
+Identity identify_flight_model(const Block& block, const ModelHints& hints) {
+  return identify(block, hints, [](const auto& function) {
     each_schema(function);
     each_log_schema(function);
   });

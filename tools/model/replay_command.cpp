@@ -55,11 +55,11 @@ programs::ReplayGuard guard_of(const Options& options) {
 ReplayModel read_model(const std::string& path, const Options& options) {
   ReplayModel model;
   model.path = path;
-  std::string answer = options.answer;
-  model.bytes = programs::block_bytes(path, answer);
+  programs::ModelHints hints{options.airframe, options.answer, {}};
+  model.bytes = programs::block_bytes(path, hints);
   model.block = programs::read_block(model.path, model.bytes);
   model.block.path = path;
-  model.identity = programs::identify_flight_model(model.block, options.airframe, answer);
+  model.identity = programs::identify_flight_model(model.block, hints);
   const auto tested = programs::flight_model(model.block, model.identity, guard_of(options));
   if (tested == nullptr) throw InputError(path, 0, 0, "a model of float", "one of double with these features");
   if (!tested->tests_itself()) throw InputError(path, 0, 0, "golden commands that its weights give", "others");

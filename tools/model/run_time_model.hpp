@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/block.hpp"
+#include "model/header_airframe.hpp"
 #include "model/header_block.hpp"
 #include "model/identity.hpp"
 #include "model/run_time_answer.hpp"
@@ -22,12 +23,13 @@ namespace programs {
 
 using RunTimeAirframe = pinnquad::ContextAirframe<pinnquad::GivenAirframe>;
 
-/// The bytes of a block, whichever the file is: a block, or an exported header as one. `answer` becomes the network as a
-/// description where it was empty and the header states it.
-inline std::string block_bytes(const std::string& path, std::string& answer) {
+/// The bytes of a block, whichever the file is: a block, or an exported header as one. The hints become what the header states
+/// where they were empty.
+inline std::string block_bytes(const std::string& path, ModelHints& hints) {
   if (std::filesystem::path(path).extension() != ".hpp") return pinnquad::file_text(path);
   const HeaderFile header(path);
-  if (answer.empty()) answer = answer_of(header);
+  if (hints.answer.empty()) hints.answer = answer_of(header);
+  hints.own = own_airframe(header);
   const std::vector<unsigned char> bytes = block_of(header);
   return {bytes.begin(), bytes.end()};
 }

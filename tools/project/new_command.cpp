@@ -18,7 +18,7 @@
 #include "airframe/choice.hpp"
 #include "command_line/folders.hpp"
 #include "command_line/options.hpp"
-#include "model/header_file.hpp"
+#include "model/header_airframe.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/identifier.hpp"
@@ -112,14 +112,8 @@ Filling chosen_airframe(const std::string& name_or_file) {
 
 /// That of a header, which may bring the struct with it.
 Filling airframe_of(const programs::HeaderFile& header) {
-  const std::string& type = header.text("Vehicle");
-  if (type.compare(0, library.size(), library) == 0) return library_airframe(library_type(header, "Vehicle"));
-  const std::string text = file_text(header.path()), head = "\nstruct " + type + " {\n", tail = "\n};\n";
-  const std::size_t begin = text.find(head), end = text.find(tail, std::min(begin, text.size()));
-  if (!is_identifier(type) || begin == std::string::npos || end == std::string::npos) {
-    header.refuse("Vehicle", "an airframe of the library or of the header", "`" + printable(type) + "`");
-  }
-  return own_airframe(text.substr(begin, end + tail.size() - begin), type);
+  const std::string own = programs::airframe_struct(header);
+  return own.empty() ? library_airframe(library_type(header, "Vehicle")) : own_airframe(own, header.text("Vehicle"));
 }
 
 /// What the places of the template become.
