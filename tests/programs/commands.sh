@@ -23,7 +23,7 @@ for command in "" fly evaluate replay block import airframe "airframe list" "air
   # shellcheck disable=SC2086
   "$pinnquad" $command --help | grep -A1 '^Examples:$' | grep -qE "^  (pinnquad|cmake) " || fail "pinnquad $command --help has no example"
 done
-"$pinnquad" train --help | grep -qE '^  --flight FILE\.csv \.\.\.$' || fail "train --help says of --flight: $("$pinnquad" train --help | grep -e --flight)"
+"$pinnquad" train --help | grep -qE '^  --flight FILE\.csv \.\.\.( |$)' || fail "train --help says of --flight: $("$pinnquad" train --help | grep -e --flight)"
 
 # completion, as bash asks for it
 complete_words() { # <what the last word may become> <word>...

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,49 @@ std::string warming_up() {
   }
 }
 
+template <class Features>
+constexpr bool looks_back() {
+  if constexpr (pinnquad::is_windowed<Features>) return Features::Window::causal;
+  return false;
+}
+
+/// The inputs of a flight's rows, taken one after the other: what looks back has the history that a control loop has, what looks
+/// ahead the rows behind.
+template <class Features, class Scalar, class = void>
+class InputsInFlight {
+ public:
+  using Inputs = typename Features::template Inputs<Scalar>;
+  explicit InputsInFlight(const pinnquad::Flight& flight) : recorded_({&flight, {0, flight.size()}}) {}
+
+  /// False where the rows do not hold what these inputs need.
+  bool read(std::size_t row, Inputs& inputs) { return recorded_.read(row, inputs); }
+
+ private:
+  pinnquad::FlightInputs<Inputs> recorded_;
+};
+
+template <class Features, class Scalar>
+class InputsInFlight<Features, Scalar, std::enable_if_t<looks_back<Features>()>> {
+  using History = pinnquad::InputHistory<Features, Scalar>;
+
+ public:
+  using Inputs = typename Features::template Inputs<Scalar>;
+  explicit InputsInFlight(const pinnquad::Flight& flight) : flight_(flight), recorded_({&flight, {0, flight.size()}}) {}
+
+  bool read(std::size_t row, Inputs& inputs) {
+    typename History::Present present;
+    if (!recorded_.read(row, present)) return false;
+    static_cast<void>(history_.take(present, flight_[row].time_s));
+    inputs = history_.inputs();  // a row that is refused is one for predict() to refuse
+    return true;
+  }
+
+ private:
+  const pinnquad::Flight& flight_;
+  pinnquad::FlightInputs<typename History::Present> recorded_;
+  History history_;
+};
+
 template <class Inverse, class Features>
 class FlightReplay {
   using View = typename Inverse::Model;
@@ -48,7 +92,7 @@ class FlightReplay {
   template <class OnRow>
   void run(const pinnquad::Flight& flight, std::size_t index, std::vector<ReplayedRow>& rows,
            const OnRow& on_row) const {
-    const pinnquad::FlightInputs<Inputs> recorded({&flight, {0, flight.size()}});
+    InputsInFlight<Features, Scalar> in_flight(flight);
     for (std::size_t row = 0; row < flight.size(); ++row) {
       ReplayedRow result;
       result.flight = index;
@@ -56,14 +100,14 @@ class FlightReplay {
       result.time_s = flight[row].time_s;
       result.logged = flight[row].commands;
       Inputs inputs;
-      if (recorded.read(row, inputs)) {
+      if (in_flight.read(row, inputs)) {
         predict(inputs, result);
         const std::string columns = bad_columns(flight, row);
         if (result.cause == pinnquad::Status::not_finite && !columns.empty()) result.reason = columns;
       } else {
         result.status = result.cause = pinnquad::Status::warming_up;
-        result.reason = warming_up<Features>();
       }
+      if (result.cause == pinnquad::Status::warming_up) result.reason = warming_up<Features>();
       result.state = state_of(result);
       rows.push_back(std::move(result));
       on_row();
