@@ -15,7 +15,7 @@ for command in "${commands[@]}"; do
   # shellcheck disable=SC2086
   [ "$("$pinnquad" $command --version)" = "$version" ] || fail "pinnquad $command --version"
 done
-for command in fly train study report evaluate replay block import airframe new; do
+for command in fly import train study report evaluate replay block airframe new; do
   "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
 done
 
@@ -68,8 +68,8 @@ if command -v help2man >/dev/null; then
   fi
 fi
 
-expect_line 2 '^pinnquad: expected a command: fly, train, study, report' "$pinnquad"
-expect_line 2 "^pinnquad: no command named 'land'; known: fly, train, study, report" "$pinnquad" land --seed 1
+expect_line 2 '^pinnquad: expected a command: fly, import, train, study, report' "$pinnquad"
+expect_line 2 "^pinnquad: no command named 'land'; known: fly, import, train, study, report" "$pinnquad" land --seed 1
 expect_line 2 '^pinnquad: expected a command before --seed: fly, ' "$pinnquad" --seed 1
 expect_line 2 '^study: expected a command: paper, ablation, merge ' "$pinnquad" study
 expect_line 2 "^study: no command named 'news'; known: paper, ablation, merge" "$pinnquad" study news
