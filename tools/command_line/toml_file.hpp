@@ -6,6 +6,8 @@
 #define TOML_ASSERT(expr) static_cast<void>(0)
 #include <toml++/toml.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -17,8 +19,47 @@
 
 namespace programs {
 
+namespace detail {
+
+/// Where the text or the comment that begins at `at` ends; `at` itself where none does.
+inline std::size_t behind_toml_text(const std::string& content, std::size_t at) {
+  const char mark = content[at];
+  if (mark == '#') return std::min(content.find('\n', at), content.size());
+  if (mark != '"' && mark != '\'') return at;
+  const std::string three(3, mark);
+  const bool long_text = content.compare(at, 3, three) == 0;
+  for (std::size_t i = at + (long_text ? 3 : 1); i < content.size(); ++i) {
+    if (content[i] == '\\' && mark == '"') {
+      ++i;
+    } else if (!long_text && (content[i] == mark || content[i] == '\n')) {
+      return i + 1;
+    } else if (long_text && content.compare(i, 3, three) == 0) {
+      return std::min(content.find_first_not_of(mark, i), i + 5);  // a long text may end in two marks of its own
+    }
+  }
+  return content.size();
+}
+
+/// TOML has characters beyond ASCII in texts and comments alone, and toml++ 3.3 does not survive some of them elsewhere.
+inline void require_ascii_toml(const std::string& content, const std::string& path) {
+  const std::size_t begin = content.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0;
+  for (std::size_t i = begin; i < content.size();) {
+    const std::size_t behind = behind_toml_text(content, i);
+    if (behind == i && static_cast<unsigned char>(content[i]) >= 0x80) {
+      const std::size_t line_begin = i == 0 ? 0 : content.rfind('\n', i - 1) + 1;  // npos + 1 is 0
+      const auto line = std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(i), '\n') + 1;
+      throw pinnquad::InputError(path, static_cast<std::size_t>(line), i - line_begin + 1, "TOML",
+                                 "a character beyond ASCII outside texts and comments");
+    }
+    i = std::max(behind, i + 1);
+  }
+}
+
+}  // namespace detail
+
 /// The tables of a text; `path` names it. Throws InputError if it is no TOML.
 inline toml::table parse_toml(const std::string& content, const std::string& path) {
+  detail::require_ascii_toml(content, path);
   try {
     return toml::parse(content, path);
   } catch (const toml::parse_error& error) {

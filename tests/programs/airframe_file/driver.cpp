@@ -155,6 +155,13 @@ TEST_CASE("what a file holds is shown on one line, whatever it is; broken TOML e
   CHECK(said_of("\"paper_quadrotor\"", "\"\"") == ":3:8: expected a text on one line, found \"\"");
   CHECK(said_of("mass_kg = 1.5", "[[[[").find(":4:3: expected TOML") == 0);
   CHECK(said_of("mass_kg = 1.5", "mass_kg = \xff").find(": expected TOML") != std::string::npos);
+  // toml++ 3.3 runs into undefined behaviour on this letter where a key may stand
+  CHECK(said_of("mass_kg = 1.5", "\xCF\xBB[") ==
+        ":4:1: expected TOML, found a character beyond ASCII outside texts and comments");
+  CHECK(said_of("mass_kg = 1.5", "x = \"\"\"a\n\\\"\xCF\xBB\"\"\"\"\n  \xCF\xBB = 1")
+            .find(":6:3: expected TOML, found a character beyond ASCII") == 0);
+  CHECK(said_of("mass_kg = 1.5", "mass_kg = \"\xCF\xBB\" # \xCF\xBB").find(":4:11: expected a number") == 0);
+  CHECK(said_of("mass_kg = 1.5", "mass_kg = '\\' # \xCF\xBB 'a").find(":4:11: expected a number") == 0);
 }
 
 TEST_CASE("the airframe that an exported header brings with it is read back bit for bit, or refused") {
