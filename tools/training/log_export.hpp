@@ -2,9 +2,9 @@
 // Which of the judged models is exported, and the files it becomes.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -34,26 +34,23 @@ inline double mean_validation_error(const JudgedKind& kind) {
 
 }  // namespace detail
 
-/// The kind to export, an index of judged.kinds; none if nothing fits the choice. After a rotation it is the one whose held-out
-/// error is least: every flight was held out once, and the export is fitted anew. Else it is the one whose error on the
-/// validation flights is least: the flights held out have no say.
+/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. After a rotation by their
+/// held-out error: every flight was held out once, and the export is fitted anew. Else by their error on the validation flights:
+/// the flights held out have no say.
 /// Throws std::invalid_argument for the key of a kind that was not judged.
-inline std::optional<std::size_t> kind_to_export(const LogJudgement& judged, const std::string& choice, bool rotated) {
+inline std::vector<std::size_t> kinds_to_export(const LogJudgement& judged, const std::string& choice, bool rotated) {
   for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
     if (choice != judged.kinds[k].kind.key) continue;
-    if (judged.kinds[k].applicable()) return k;
+    if (judged.kinds[k].applicable()) return {k};
     throw std::invalid_argument("--export " + choice + ": not applicable: " + judged.kinds[k].not_applicable);
   }
-  const std::vector<std::size_t> order = ranking(judged, choice == export_centred);
-  if (order.empty()) return {};
-  if (rotated) return order.front();
-  std::optional<std::size_t> best;
-  for (const std::size_t k : order) {
-    const double error = detail::mean_validation_error(judged.kinds[k]);
-    if (!std::isfinite(error)) continue;
-    if (!best || error < detail::mean_validation_error(judged.kinds[*best])) best = k;
-  }
-  return best;
+  std::vector<std::size_t> order = ranking(judged, choice == export_centred);
+  if (rotated) return order;
+  const auto error_of = [&judged](std::size_t k) { return detail::mean_validation_error(judged.kinds[k]); };
+  order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t k) { return !std::isfinite(error_of(k)); }),
+              order.end());
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return error_of(a) < error_of(b); });
+  return order;
 }
 
 /// Of the fits of a kind the one with the least error on the validation flights, of one that was fitted to them the first; none

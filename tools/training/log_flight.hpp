@@ -198,4 +198,13 @@ inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& mo
   return result;
 }
 
+/// Whether the model lost the vehicle: the flight ended, or went further off than the figure is long and no feed-forward is off.
+inline bool lost_vehicle(const nlohmann::json& flown) {
+  if (!flown.contains("model")) return false;
+  const nlohmann::json& model = flown["model"];
+  return model["status"] != to_string(pinnquad::Status::ok) ||
+         !(model["largest_error_m"] <=
+           flown["hover_trim"]["largest_error_m"].get<double>() + 2 * flown["half_length_m"].get<double>());
+}
+
 }  // namespace programs

@@ -156,19 +156,56 @@ class LogTraining {
     return code;
   }
 
+  struct Exported {
+    std::shared_ptr<const programs::TrainedNetwork> model;
+    std::uint64_t seed = 0;
+    const programs::Fold* fold = nullptr;
+    nlohmann::json flown;  ///< what came of the closed loop
+  };
+
   int export_best() {
-    const std::optional<std::size_t> chosen = programs::kind_to_export(judged_, options_.export_choice, rotated());
-    chosen_ = chosen;
-    if (!chosen) return refuse("no model of the kind asked for was judged", programs::exit_failed);
-    const programs::JudgedKind& kind = judged_.kinds[*chosen];
-    const Verdict verdict = programs::exported_verdict(judged_, *chosen);
-    const programs::LogVerdict& beside_simpler = verdicts_[*chosen];
-    if (verdict.worse_than_mean() && !options_.allow_poor) {
+    const std::vector<std::size_t> order = programs::kinds_to_export(judged_, options_.export_choice, rotated());
+    if (order.empty()) return refuse("no model of the kind asked for was judged", programs::exit_failed);
+    chosen_ = order.front();
+    if (programs::exported_verdict(judged_, *chosen_).worse_than_mean() && !options_.allow_poor) {
+      const programs::JudgedKind& kind = judged_.kinds[*chosen_];
       return refuse(std::string(kind.kind.title) +
                         ", the best, is worse on the held-out flights than the mean of their commands (R^2 " +
-                        decimals(verdict.test_r_squared, 4) + "); --allow-poor exports it, marked",
+                        decimals(programs::exported_verdict(judged_, *chosen_).test_r_squared, 4) +
+                        "); --allow-poor exports it, marked",
                     programs::exit_failed);
     }
+    report_.write_not_exported("the export was not finished");
+    std::optional<Exported> made;
+    for (const std::size_t k : order) {
+      if (k != order.front() && programs::exported_verdict(judged_, k).worse_than_mean()) continue;
+      std::optional<Exported> next = exported(k);
+      if (!next) return tell_interrupted();
+      next->flown = fly(*next, judged_.kinds[k].kind);
+      const bool lost = programs::lost_vehicle(next->flown);
+      if (lost) {
+        report_.warn(std::string(judged_.kinds[k].kind.title) + " loses the vehicle in the closed loop (" +
+                     decimals(next->flown["model"]["largest_error_m"], 1) + " m off): not fit to fly" +
+                     (k != order.back() ? "; the next best is tried" : ""));
+      }
+      if (!lost || !made) {
+        made = std::move(next);
+        chosen_ = k;
+      }
+      if (!lost) break;
+    }
+    if (order.size() > 1 && programs::lost_vehicle(made->flown)) {
+      report_.warn(
+          "every model loses the vehicle in the closed loop: what is exported is the best by its figures alone");
+    }
+    write_with_warnings(*made);
+    return 0;
+  }
+
+  void write_with_warnings(const Exported& made) {
+    const programs::JudgedKind& kind = judged_.kinds[*chosen_];
+    const Verdict verdict = programs::exported_verdict(judged_, *chosen_);
+    const programs::LogVerdict& beside_simpler = verdicts_[*chosen_];
     if (beside_simpler.standing != programs::Standing::success &&
         beside_simpler.standing != programs::Standing::reference) {
       report_.warn(std::string("what is exported, ") + kind.kind.title + ": " + beside_simpler.sentence);
@@ -180,20 +217,10 @@ class LogTraining {
     if (kind.kind.reach == programs::TimeReach::centred) {
       report_.warn(std::string(kind.kind.title) + " looks ahead: it takes planned trajectories, not measured motion");
     }
-    report_.write_not_exported("the export was not finished");
     std::printf("[4/5] export %s\n", kind.kind.title);
     std::fflush(stdout);
-    const std::optional<Exported> made = exported(*chosen);
-    if (!made) return tell_interrupted();
-    write(*made, kind.kind, verdict);
-    return 0;
+    write(made, kind.kind, verdict);
   }
-
-  struct Exported {
-    std::shared_ptr<const programs::TrainedNetwork> model;
-    std::uint64_t seed = 0;
-    const programs::Fold* fold = nullptr;
-  };
 
   /// The model to write: after a rotation fitted to all flights, else that of the best seed. None if interrupted.
   std::optional<Exported> exported(std::size_t kind) {
@@ -210,13 +237,13 @@ class LogTraining {
           programs::best_fit(all_fits_.finished, 0, once.kinds.front().takes_validation);
       if (best == nullptr)
         throw std::invalid_argument("the fit to all flights has no finite error on " + all_->validation.front());
-      return Exported{best->model, best->seed, &*all_};
+      return Exported{best->model, best->seed, &*all_, {}};
     }
     const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation);
     if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
     programs::FinishedFit again = *best;
     if (!again.model && !programs::fit_one(plan_, again)) return {};  // known from an earlier run: the same once more
-    return Exported{again.model, again.seed, &plan_.folds[again.fold]};
+    return Exported{again.model, again.seed, &plan_.folds[again.fold], {}};
   }
 
   void write(const Exported& made, const programs::LogModelKind& kind, const Verdict& verdict) {
@@ -235,7 +262,7 @@ class LogTraining {
       write_weight_file(options_.block, block);
       std::printf("  %s: the same weights as a block of %zu bytes\n", options_.block.c_str(), block.size());
     }
-    fly(made, kind);
+    tell_flight(made.flown);
     report_.write_exported(kind, made.seed, header, options_.block);
     told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +
             (rotated() ? "fitted anew to all flights, validated on " + made.fold->validation.front() +
@@ -245,11 +272,14 @@ class LogTraining {
   }
 
   /// The model in a closed loop on the vehicle that the logs show; what looks ahead is not flown on measured motion.
-  void fly(const Exported& made, const programs::LogModelKind& kind) {
-    if (kind.reach == programs::TimeReach::centred) return;
-    const nlohmann::json flown =
-        programs::fly_logged(made.model, kind.reach, made.fold->split.train, plan_.airframe,
-                             programs::axis_signs(plan_.airframe), !dataset_.lacks("velocity"));
+  nlohmann::json fly(const Exported& made, const programs::LogModelKind& kind) const {
+    if (kind.reach == programs::TimeReach::centred) return {};
+    return programs::fly_logged(made.model, kind.reach, made.fold->split.train, plan_.airframe,
+                                programs::axis_signs(plan_.airframe), !dataset_.lacks("velocity"));
+  }
+
+  void tell_flight(const nlohmann::json& flown) {
+    if (flown.is_null()) return;
     report_.flown(flown);
     if (flown.contains("why_not")) {
       report_.warn("the model was not flown: " + flown["why_not"].get<std::string>());

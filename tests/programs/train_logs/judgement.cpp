@@ -9,6 +9,7 @@
 
 #include "data/temporary_folder.hpp"
 #include "judged_run.hpp"
+#include "training/log_export.hpp"
 #include "training/log_fit_store.hpp"
 #include "training/log_report.hpp"
 
@@ -115,6 +116,9 @@ TEST_CASE("models that look ahead are ranked apart, and are no simpler model of 
                    each_flight);
   CHECK(programs::ranking(run.judged, false) == std::vector<std::size_t>{2, 0});
   CHECK(programs::ranking(run.judged, true) == std::vector<std::size_t>{1});
+  CHECK(programs::kinds_to_export(run.judged, "causal", true) == std::vector<std::size_t>{2, 0});
+  CHECK(programs::kinds_to_export(run.judged, "centred", true) == std::vector<std::size_t>{1});
+  CHECK(programs::kinds_to_export(run.judged, "constant", true) == std::vector<std::size_t>{0});
   CHECK(run.of("linear").standing == Standing::success);
   CHECK(run.of("linear").against.size() == 1);
   // the row that the oracle leaves without an answer counts for no kind

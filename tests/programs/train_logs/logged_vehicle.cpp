@@ -6,6 +6,7 @@
 
 #include "simulated_dataset.hpp"
 #include "training/log_fits.hpp"
+#include "training/log_flight.hpp"
 #include "training/logged_vehicle.hpp"
 
 namespace {
@@ -55,6 +56,20 @@ TEST_CASE("thrust, turning and drag of a known vehicle are found in its flight")
   for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
     CHECK(of_made.commands[i] == doctest::Approx(of_truth.commands[i]).epsilon(0.02));
   }
+}
+
+TEST_CASE("a vehicle that leaves its path by more than the figure, or falls, is lost") {
+  const auto flown = [](double model_m, double trim_m, const char* status) {
+    return nlohmann::json{{"half_length_m", 0.5},
+                          {"model", {{"status", status}, {"largest_error_m", model_m}}},
+                          {"hover_trim", {{"status", "ok"}, {"largest_error_m", trim_m}}}};
+  };
+  CHECK_FALSE(programs::lost_vehicle(flown(1.9, 1, "ok")));
+  CHECK(programs::lost_vehicle(flown(2.1, 1, "ok")));
+  CHECK(programs::lost_vehicle(flown(0.1, 1, "not_finite")));
+  CHECK(programs::lost_vehicle(flown(std::nan(""), 1, "ok")));
+  CHECK_FALSE(programs::lost_vehicle({}));
+  CHECK_FALSE(programs::lost_vehicle({{"why_not", "no vehicle"}}));
 }
 
 TEST_CASE("commands that do not fly the vehicle show none; air that pushes along is no drag") {
