@@ -18,7 +18,7 @@ namespace detail {
 
 inline void print_kind(const LogJudgement& judged, const std::vector<LogVerdict>& verdicts, std::size_t k) {
   const JudgedKind& kind = judged.kinds[k];
-  std::printf("  %-38s %-8s", kind.kind.title, word_of(kind.kind.reach));
+  std::printf("  %-44s %-8s", kind.kind.title, word_of(kind.kind.reach));
   for (std::size_t i = 0; i < 4; ++i) {
     const std::vector<double> values = over_seeds(kind, log_figures[i]);
     const bool known = std::isfinite(pinnquad::summarize(values).mean);  // not where a flight ends within its first 4 s
@@ -43,9 +43,9 @@ inline void print_log_table(const LogPlan& plan, const LogJudgement& judged, con
   for (const std::size_t of_fold : judged.rows) rows += of_fold;
   std::printf("  held out: %zu rows of %zu flights%s; mean +- deviation over the seeds\n", rows, judged.flights.size(),
               plan.folds.size() > 1 ? ", in turn" : "");
-  std::printf("  %-38s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "sees", "R^2", "flight's bias", "bias of the",
+  std::printf("  %-44s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "sees", "R^2", "flight's bias", "bias of the",
               "RMSE, 1e-3", "wrong");
-  std::printf("  %-38s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "", "", "removed", "first 4 s rem.", "", "slope %");
+  std::printf("  %-44s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "", "", "removed", "first 4 s rem.", "", "slope %");
   for (const bool centred : {false, true}) {
     const std::vector<std::size_t> order = ranking(judged, centred);
     if (order.empty()) continue;
@@ -53,7 +53,7 @@ inline void print_log_table(const LogPlan& plan, const LogJudgement& judged, con
     for (const std::size_t k : order) detail::print_kind(judged, verdicts, k);
   }
   for (const JudgedKind& kind : judged.kinds) {
-    if (!kind.applicable()) std::printf("  %-38s not applicable: %s\n", kind.kind.title, kind.not_applicable.c_str());
+    if (!kind.applicable()) std::printf("  %-44s not applicable: %s\n", kind.kind.title, kind.not_applicable.c_str());
   }
 }
 
