@@ -96,7 +96,7 @@ void check_export(const Fitted& fitted, const Answer& answer, const std::string&
     Commands<float> u{}, same{};
     REQUIRE(inverse.predict_features(x.data(), u) == Status::ok);
     const Commands<float> expected = model.predict(x);
-    for (std::size_t i = 0; i < 4; ++i) CHECK(u[i] == doctest::Approx(expected[i]).epsilon(1e-5));
+    for (std::size_t i = 0; i < 4; ++i) CHECK(u[i] == doctest::Approx(double(expected[i])).epsilon(1e-5));
     ++answered;
     if (row % 50 != 3) return;
     std::vector<float> by_x(4 * std::size_t(Features::size));
@@ -110,7 +110,7 @@ void check_export(const Fitted& fitted, const Answer& answer, const std::string&
         below[k] -= step;
         for (std::size_t i = 0; i < 4; ++i) {
           const float slope = (model.predict(above)[i] - model.predict(below)[i]) / (2 * step);
-          CHECK(by_x[i * std::size_t(Features::size) + k] == doctest::Approx(slope).epsilon(2e-3).scale(0.005));
+          CHECK(by_x[i * std::size_t(Features::size) + k] == doctest::Approx(double(slope)).epsilon(2e-3).scale(0.005));
         }
       }
     }

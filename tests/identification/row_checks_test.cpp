@@ -69,7 +69,7 @@ TEST_CASE("a hop between two contacts is ground, the end of a log is not a conta
 TEST_CASE("a value like none of its neighbours is found, whatever its column; motion and turning round are not") {
   const Flight good = synthetic_flight();
   CHECK(count(pinnquad::outlier_rows(good)) == 0);
-  for (const std::size_t field : {2, 5, 8, 11, 13, 16}) {
+  for (const std::size_t field : {2u, 5u, 8u, 11u, 13u, 16u}) {
     CAPTURE(field);
     Flight flight = good;
     auto values = to_values(flight[777]);

@@ -129,8 +129,9 @@ TEST_CASE("a sum with a network adds the network's answer; what the map says is 
     affine.forward(x, first);
     network.forward(x, second);
     for (int k = 0; k < 4; ++k) {
-      CHECK(y[k] == doctest::Approx(first[k] + second[k]));
-      CHECK(data.outputs_of(row)[k] == doctest::Approx(whole.outputs_of(row)[k] - first[k]).epsilon(1e-4).scale(1));
+      CHECK(y[k] == doctest::Approx(double(first[k] + second[k])));
+      CHECK(data.outputs_of(row)[k] ==
+            doctest::Approx(double(whole.outputs_of(row)[k] - first[k])).epsilon(1e-4).scale(1));
     }
   }
   AffineMap other = map;

@@ -140,7 +140,7 @@ struct JudgedColumn {
 inline std::vector<JudgedColumn> judged_columns(const Flight& flight) {
   constexpr double smallest_scale_of_q = 0.02;
   std::vector<JudgedColumn> columns;
-  for (const std::size_t field : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16}) {
+  for (const std::size_t field : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u, 16u}) {
     columns.push_back({column_of(flight, field), column_plausibility[field].smallest_scale / 2});
   }
   const std::size_t first = columns.size();
