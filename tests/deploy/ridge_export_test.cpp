@@ -23,6 +23,7 @@
 #include "pinnquad/training/closed_form.hpp"
 #include "support/block_bytes.hpp"
 #include "support/random_network.hpp"
+#include "support/training_sets.hpp"
 
 using namespace pinnquad;
 using pinnquad::test::BlockBytes;
@@ -39,20 +40,12 @@ using Residual = Network<float, InputSize<Features::size>, Clip, Dense<6>, Silu,
 Flight flight() {
   constexpr std::size_t rows = 150;
   std::mt19937_64 engine(5);
-  Flight made(rows);
+  Flight made = test::random_flight_rows(rows, 6);
   made.name = "made";
   std::vector<double> volts;
   for (std::size_t row = 0; row < rows; ++row) {
     Sample& sample = made[row];
     sample.time_s = 0.02 * static_cast<double>(row);
-    for (int i = 0; i < 3; ++i) {
-      sample.linear_acceleration_m_s2[i] = uniform(engine, -3, 3);
-      sample.angular_acceleration_rad_s2[i] = uniform(engine, -20, 20);
-      sample.velocity_m_s[i] = uniform(engine, -2, 2);
-      sample.body_rates_rad_s[i] = uniform(engine, -2, 2);
-    }
-    sample.roll_rad = uniform(engine, -0.5, 0.5);
-    sample.pitch_rad = uniform(engine, -0.5, 0.5);
     volts.push_back(uniform(engine, 14, 16.8));
     const double s_z = sample_features<SpecificForce, double>(sample)[2];
     for (std::size_t i = 0; i < 4; ++i) {

@@ -17,6 +17,7 @@
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/training/weight_average.hpp"
 #include "support/random_network.hpp"
+#include "support/training_sets.hpp"
 
 using namespace pinnquad;
 
@@ -27,22 +28,12 @@ using Setting = Context<Window, PaperQuadrotor>;
 
 /// Commands that are affine in the specific force of now and the angular acceleration of 20 ms ago.
 Flight flight_of(const std::string& name, const std::string& trajectory, std::size_t rows, std::uint64_t seed) {
-  std::mt19937_64 engine(seed);
-  Flight flight(rows);
+  Flight flight = test::random_flight_rows(rows, seed);
   flight.name = name;
   flight.trajectory = trajectory;
   for (std::size_t row = 0; row < rows; ++row) {
     Sample& sample = flight[row];
     sample.time_s = 0.02 * static_cast<double>(row);
-    for (int i = 0; i < 3; ++i) {
-      sample.linear_acceleration_m_s2[i] = uniform(engine, -3, 3);
-      sample.angular_acceleration_rad_s2[i] = uniform(engine, -20, 20);
-      sample.velocity_m_s[i] = uniform(engine, -2, 2);
-      sample.body_rates_rad_s[i] = uniform(engine, -2, 2);
-    }
-    sample.roll_rad = uniform(engine, -0.5, 0.5);
-    sample.pitch_rad = uniform(engine, -0.5, 0.5);
-    sample.yaw_rad = uniform(engine, -3, 3);
     const double s_z = sample_features<SpecificForce, double>(sample)[2];
     const double late = row > 0 ? flight[row - 1].angular_acceleration_rad_s2[0] : 0.0;
     for (std::size_t i = 0; i < 4; ++i) sample.commands[i] = 0.1 - 0.04 * s_z + (i < 2 ? 0.002 : -0.002) * late;

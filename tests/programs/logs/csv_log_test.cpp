@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "complaint.hpp"
 #include "data/temporary_folder.hpp"
 #include "logs/csv_log.hpp"
 
@@ -36,15 +37,7 @@ LogTopic read(const std::string& text, const LogSelection& selection = {}) {
 std::string complaint(const std::string& text, const LogSelection& selection = {}) {
   const TemporaryFolder folder;
   const std::string path = folder.write("log.csv", text);
-  try {
-    read_csv_log(path, selection);
-  } catch (const pinnquad::InputError& error) {
-    const std::string what = error.what();
-    CHECK(what.find('\n') == std::string::npos);
-    CHECK(what.substr(0, path.size()) == path);
-    return what.substr(path.size());
-  }
-  return "accepted";
+  return pinnquad_test::complaint_of([&] { read_csv_log(path, selection); }, path);
 }
 
 }  // namespace

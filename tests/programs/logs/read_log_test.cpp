@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "complaint.hpp"
 #include "data/temporary_folder.hpp"
 #include "logs/read_log.hpp"
 #include "ulog_bytes.hpp"
@@ -23,15 +24,7 @@ namespace {
 
 std::string complaint(const TemporaryFolder& folder, const std::string& name, const LogSelection& selection = {}) {
   const std::string path = folder.path(name);
-  try {
-    read_log(path, selection);
-  } catch (const pinnquad::InputError& error) {
-    const std::string what = error.what();
-    CHECK(what.find('\n') == std::string::npos);
-    CHECK(what.substr(0, path.size()) == path);
-    return what.substr(path.size());
-  }
-  return "accepted";
+  return pinnquad_test::complaint_of([&] { read_log(path, selection); }, path);
 }
 
 const std::string table = "timestamp,x\n2000000,1.5\n1000000,nan\n";

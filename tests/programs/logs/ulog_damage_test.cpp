@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "complaint.hpp"
 #include "counted_memory.hpp"
 #include "logs/ulog.hpp"
 #include "ulog_bytes.hpp"
@@ -22,13 +23,7 @@ namespace {
 const std::string simple = "a:uint64_t timestamp;float x;";
 
 std::string complaint(const std::string& bytes) {
-  try {
-    parse_ulog(bytes, "x.ulg");
-  } catch (const pinnquad::InputError& error) {
-    CHECK(std::string(error.what()).find('\n') == std::string::npos);
-    return error.what();
-  }
-  return "accepted";
+  return pinnquad_test::complaint_of([&] { parse_ulog(bytes, "x.ulg"); });
 }
 
 /// Two topics, a sync message behind every fourth row, something of every kind between.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "complaint.hpp"
 #include "logs/ulog.hpp"
 #include "ulog_bytes.hpp"
 
@@ -39,13 +40,7 @@ double only_value(const LogTopic& topic, const std::string& name) {
 
 /// What is wrong with a file.
 std::string complaint(const std::string& bytes) {
-  try {
-    parse_ulog(bytes, "x.ulg");
-  } catch (const pinnquad::InputError& error) {
-    CHECK(std::string(error.what()).find('\n') == std::string::npos);
-    return error.what();
-  }
-  return "accepted";
+  return pinnquad_test::complaint_of([&] { parse_ulog(bytes, "x.ulg"); });
 }
 
 const std::string simple = "a:uint64_t timestamp;float x;";
