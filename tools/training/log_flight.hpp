@@ -26,7 +26,7 @@
 
 namespace programs {
 
-using LoggedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag>;
+using LoggedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, LoggedTorque>;
 
 /// The model as a feed-forward policy: asked with the rows of the last instants as a flight, as it was judged. Where it has no
 /// answer (its window is not complete) the formula of the vehicle answers, and that is counted.
@@ -158,11 +158,12 @@ inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& mo
                                  const pinnquad::RowSet& training, const NamedAirframe& airframe,
                                  const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs,
                                  bool has_velocity) {
-  const auto made = logged_vehicle(airframe.value, logged_effects(training, signs));
+  const LoggedEffects effects = logged_effects(training, signs);
+  const auto made = logged_vehicle(airframe.value, effects);
   if (!made) return {{"why_not", "the commands of the logs do not lift and turn a vehicle as they should"}};
   const auto eight = eight_within(flown_envelope(training), has_velocity);
   if (!eight) return {{"why_not", "the flights hold no figure-eight, however slow"}};
-  const LoggedQuadrotor vehicle(*made);
+  const LoggedQuadrotor vehicle(*made, {}, {}, LoggedTorque{effects.damping_1_s, effects.trim_rad_s2});
   pinnquad::HoverTrim<double> trim;
   if (pinnquad::hover_trim(vehicle, eight->center_m, trim) != pinnquad::Status::ok) {
     return {{"why_not", "the vehicle of the logs does not hover"}};

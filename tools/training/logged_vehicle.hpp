@@ -12,24 +12,66 @@
 #include <optional>
 #include <vector>
 
+#include "pinnquad/aero/effect.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/evaluation/joint_moments.hpp"
+#include "pinnquad/identification/ridge.hpp"
 #include "pinnquad/identification/specific_force.hpp"
 
 namespace programs {
 
 /// What all four commands do together, and the air, by least squares.
 struct LoggedEffects {
-  double thrust_m_s2 = 0;               ///< specific force along -z per sum of the commands
-  std::array<double, 3> turn_rad_s2{};  ///< angular acceleration about x, y, z per signed command sum
-  std::array<double, 3> drag_per_m{};   ///< specific force along x, y, z per -|v_i| v_i; 0 where that is no drag
+  double thrust_m_s2 = 0;              ///< specific force along -z per sum of the commands
+  std::array<double, 3> drag_per_m{};  ///< specific force along x, y, z per -|v_i| v_i; 0 where that is no drag
+  /// Angular acceleration about x, y, z: per signed command sum; per -w_i, 0 where that is no damping; without either.
+  std::array<double, 3> turn_rad_s2{}, damping_1_s{}, trim_rad_s2{};
 };
+
+/// The trim of a crooked vehicle and the damping of its turns, as an effect.
+struct LoggedTorque {
+  static constexpr pinnquad::VariesWith varies_with = pinnquad::VariesWith::motion;
+  std::array<double, 3> damping_1_s{}, trim_rad_s2{};
+
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+                                  const pinnquad::Airframe<Scalar>& airframe) const noexcept {
+    pinnquad::Wrench<Scalar> result;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Scalar rate = condition.body_rates_rad_s[static_cast<int>(axis)];
+      result.torque_N_m[static_cast<int>(axis)] =
+          airframe.inertia_kg_m2[axis] * (Scalar(trim_rad_s2[axis]) - Scalar(damping_1_s[axis]) * rate);
+    }
+    return result;
+  }
+};
+
+namespace detail {
+
+/// angular acceleration = trim + turn S - damping w about an axis; without the rate where that would be no damping.
+inline void fit_turn(const pinnquad::RowSet& rows, const std::array<double, pinnquad::rotor_count>& signs,
+                     std::size_t axis, LoggedEffects& effects) {
+  const auto i = static_cast<int>(axis);
+  pinnquad::RegressionSums sums(2, 1);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const pinnquad::Sample& sample = rows[row];
+    const std::array<double, 2> x = {pinnquad::signed_sum(signs, sample.commands), sample.body_rates_rad_s[i]};
+    sums.add(x.data(), &sample.angular_acceleration_rad_s2[i]);
+  }
+  pinnquad::AffineMap map = pinnquad::fit_ridge(sums, 0);
+  if (map.weights[1] > 0) map = pinnquad::fit_ridge(sums, 0, {true, false});
+  effects.turn_rad_s2[axis] = map.weights[0];
+  effects.damping_1_s[axis] = -map.weights[1];
+  effects.trim_rad_s2[axis] = map.intercept[0];
+}
+
+}  // namespace detail
 
 /// Thrust and drag through the origin, so that the hover is right; the turns with a trim.
 inline LoggedEffects logged_effects(const pinnquad::RowSet& rows,
                                     const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs) {
-  std::array<std::vector<double>, 3> sums, turns, pushes, forces;
+  LoggedEffects effects;
+  std::array<std::vector<double>, 3> pushes, forces;
   std::vector<double> thrusts;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const pinnquad::Sample& sample = rows[row];
@@ -38,21 +80,17 @@ inline LoggedEffects logged_effects(const pinnquad::RowSet& rows,
     for (const double u : sample.commands) all += u;
     thrusts.push_back(-all);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int i = static_cast<int>(axis);
-      pushes[axis].push_back(-std::abs(sample.velocity_m_s[i]) * sample.velocity_m_s[i]);
-      forces[axis].push_back(force[i]);
-      sums[axis].push_back(pinnquad::signed_sum(signs[axis], sample.commands));
-      turns[axis].push_back(sample.angular_acceleration_rad_s2[i]);
+      const double v = sample.velocity_m_s[static_cast<int>(axis)];
+      pushes[axis].push_back(-std::abs(v) * v);
+      forces[axis].push_back(force[static_cast<int>(axis)]);
     }
   }
   const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
   };
   const auto share = [](double of, double in) { return in > 0 ? of / in : 0.0; };
-  LoggedEffects effects;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const pinnquad::JointMoments moments = pinnquad::joint_moments(sums[axis], turns[axis]);
-    effects.turn_rad_s2[axis] = moments.covariance / moments.variance_x;
+    detail::fit_turn(rows, signs[axis], axis, effects);
     effects.drag_per_m[axis] = share(product(pushes[axis], forces[axis]), product(pushes[axis], pushes[axis]));
   }
   // along z both: the normal equations of two unknowns

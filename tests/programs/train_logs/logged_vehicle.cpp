@@ -58,6 +58,37 @@ TEST_CASE("thrust, turning and drag of a known vehicle are found in its flight")
   }
 }
 
+TEST_CASE("the damping and the trim of the turns are found apart from what the commands do, and act on the vehicle") {
+  const auto truth = paper_quadrotor().value;
+  pinnquad::Flight flight = pinnquad_test::simulated_flight("flight", 2, 3000);
+  const auto signs = programs::axis_signs(paper_quadrotor());
+  for (Sample& sample : flight) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double turn = pinnquad::signed_sum(signs[std::size_t(axis)], sample.commands);
+      sample.angular_acceleration_rad_s2[axis] =
+          (80 - 20 * axis) * turn - (3 - axis) * sample.body_rates_rad_s[axis] + axis;
+    }
+  }
+  const programs::LoggedEffects effects = effects_of(flight);
+  for (int axis = 0; axis < 3; ++axis) {
+    CAPTURE(axis);
+    CHECK(effects.turn_rad_s2[std::size_t(axis)] == doctest::Approx(80 - 20 * axis));
+    CHECK(effects.damping_1_s[std::size_t(axis)] == doctest::Approx(3 - axis));
+    CHECK(effects.trim_rad_s2[std::size_t(axis)] == doctest::Approx(axis).scale(1));
+  }
+  pinnquad::AeroCondition<double> condition;
+  condition.body_rates_rad_s = {2, -1, 0};
+  const programs::LoggedTorque torque{effects.damping_1_s, effects.trim_rad_s2};
+  const auto wrench = torque.wrench(condition, truth);
+  CHECK(wrench.torque_N_m[0] == doctest::Approx(-6 * truth.inertia_kg_m2[0]));
+  CHECK(wrench.torque_N_m[1] == doctest::Approx((1 + 2) * truth.inertia_kg_m2[1]));
+  CHECK(wrench.torque_N_m[2] == doctest::Approx(2 * truth.inertia_kg_m2[2]));
+
+  // what would drive a turn on is no damping
+  for (Sample& sample : flight) sample.angular_acceleration_rad_s2[0] += 9 * sample.body_rates_rad_s[0];
+  CHECK(effects_of(flight).damping_1_s[0] == 0);
+}
+
 TEST_CASE("a vehicle that leaves its path by more than the figure, or falls, is lost") {
   const auto flown = [](double model_m, double trim_m, const char* status) {
     return nlohmann::json{{"half_length_m", 0.5},
