@@ -210,6 +210,7 @@ if recorded ulog2csv/B_px4v117_x500v2_gps; then
     cat "$folder.txt"
   done
   grep -q 'vehicle_torque_setpoint' B_px4v117_x500v2_gps.txt || fail "commands at 10 Hz were not rebuilt"
+  grep -q 'warning: lag: the lag hardly stands out' B_px4v117_x500v2_gps.txt || fail "a calm flight's lag was not doubted"
   grep -q 'actuator_controls_0' C_px4_2016_sitl_legacy.txt || fail "commands of 2016 were not rebuilt"
   derived=$reference/ulog2csv/B_px4v117_x500v2_gps/derived/motors_reconstructed_50hz.csv
   read -r n numbers <<<"$(awk -v of="u1 u2 u3 u4" -v with="motor1_FR motor2_RL motor3_FL motor4_RR" -v clock=timestamp_sample -v ticks=1e6 \

@@ -133,7 +133,7 @@ inline double total_say(const CommandLag& lag) noexcept {
 /// 40 ms for a time constant of 50 ms; MotorLag says more. A filter's delay in what was measured counts as lag.
 inline CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s,
                                        const LagSearch& search = {}) {
-  constexpr double spread_of_doubt_s = 0.03;
+  constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
   const std::vector<detail::LagSeries> series = detail::lag_series(segments);
   const detail::LagGrid grid(search, period_s);
   CommandLag best = detail::command_lag_of(series, grid);
@@ -154,6 +154,10 @@ inline CommandLag estimate_command_lag(const std::vector<Flight>& segments, doub
                    " before the commands: the clocks of the two differ, or the commands are those of a later stage";
   } else if (best.spread_s > spread_of_doubt_s) {
     best.warning = "the motions disagree about the lag by " + detail::milliseconds(best.spread_s);
+  } else if (best.confidence < confidence_of_doubt) {
+    best.warning =
+        "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well; fly more agile "
+        "manoeuvres, or state the lag";
   }
   return best;
 }
