@@ -21,6 +21,10 @@ namespace programs {
 
 namespace detail {
 
+inline std::size_t behind_byte_order_mark(const std::string& content) {
+  return content.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0;
+}
+
 /// Where the text or the comment that begins at `at` ends; `at` itself where none does.
 inline std::size_t behind_toml_text(const std::string& content, std::size_t at) {
   const char mark = content[at];
@@ -40,10 +44,9 @@ inline std::size_t behind_toml_text(const std::string& content, std::size_t at) 
   return content.size();
 }
 
-/// TOML has characters beyond ASCII in texts and comments alone, and toml++ 3.3 does not survive some of them elsewhere.
+/// TOML has characters beyond ASCII in texts and comments alone.
 inline void require_ascii_toml(const std::string& content, const std::string& path) {
-  const std::size_t begin = content.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0;
-  for (std::size_t i = begin; i < content.size();) {
+  for (std::size_t i = behind_byte_order_mark(content); i < content.size();) {
     const std::size_t behind = behind_toml_text(content, i);
     if (behind == i && static_cast<unsigned char>(content[i]) >= 0x80) {
       const std::size_t line_begin = i == 0 ? 0 : content.rfind('\n', i - 1) + 1;  // npos + 1 is 0
@@ -55,12 +58,23 @@ inline void require_ascii_toml(const std::string& content, const std::string& pa
   }
 }
 
+/// The same tables and texts, ASCII alone behind the byte order mark.
+inline std::string in_ascii(std::string content) {
+  for (std::size_t i = behind_byte_order_mark(content); i < content.size(); ++i) {
+    if (static_cast<unsigned char>(content[i]) >= 0x80) content[i] = 'x';
+  }
+  return content;
+}
+
 }  // namespace detail
 
 /// The tables of a text; `path` names it. Throws InputError if it is no TOML.
 inline toml::table parse_toml(const std::string& content, const std::string& path) {
   detail::require_ascii_toml(content, path);
   try {
+    // toml++ 3.3 does not survive letters beyond ASCII where something is wrong: the tables are looked at without them first
+    const std::string plain = detail::in_ascii(content);
+    if (plain != content) static_cast<void>(toml::parse(plain, path));
     return toml::parse(content, path);
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;

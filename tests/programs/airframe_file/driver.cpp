@@ -160,6 +160,10 @@ TEST_CASE("what a file holds is shown on one line, whatever it is; broken TOML e
         ":4:1: expected TOML, found a character beyond ASCII outside texts and comments");
   CHECK(said_of("mass_kg = 1.5", "x = \"\"\"a\n\\\"\xCF\xBB\"\"\"\"\n  \xCF\xBB = 1")
             .find(":6:3: expected TOML, found a character beyond ASCII") == 0);
+  CHECK(said_of("mass_kg = 1.5", "mass_kg = 4rrt:0ta\"----\xCF\x9D.ttz").find(": expected TOML") != std::string::npos);
+  CHECK(said_of("# Table 1",
+                "\xEF\xBB\xBF# T\xC3\xA4"
+                "ble 1") == "accepted");
   CHECK(said_of("mass_kg = 1.5", "mass_kg = \"\xCF\xBB\" # \xCF\xBB").find(":4:11: expected a number") == 0);
   CHECK(said_of("mass_kg = 1.5", "mass_kg = '\\' # \xCF\xBB 'a").find(":4:11: expected a number") == 0);
 }
