@@ -70,11 +70,13 @@ inline std::string in_ascii(std::string content) {
 
 /// The tables of a text; `path` names it. Throws InputError if it is no TOML.
 inline toml::table parse_toml(const std::string& content, const std::string& path) {
-  detail::require_ascii_toml(content, path);
   try {
     // toml++ 3.3 does not survive letters beyond ASCII where something is wrong: the tables are looked at without them first
     const std::string plain = detail::in_ascii(content);
-    if (plain != content) static_cast<void>(toml::parse(plain, path));
+    if (plain != content) {
+      detail::require_ascii_toml(content, path);
+      static_cast<void>(toml::parse(plain, path));
+    }
     return toml::parse(content, path);
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;

@@ -89,8 +89,8 @@ inline LoggedEffects logged_effects(const pinnquad::RowSet& rows,
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
   };
   const auto share = [](double of, double in) { return in > 0 ? of / in : 0.0; };
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    detail::fit_turn(rows, signs[axis], axis, effects);
+  for (std::size_t axis = 0; axis < 3; ++axis) detail::fit_turn(rows, signs[axis], axis, effects);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
     effects.drag_per_m[axis] = share(product(pushes[axis], forces[axis]), product(pushes[axis], pushes[axis]));
   }
   // along z both: the normal equations of two unknowns
