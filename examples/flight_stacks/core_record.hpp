@@ -35,15 +35,23 @@ struct CoreRecord {
   float wanted_jerk_m_s3[3]{};
   float wanted_yaw_rad{0};
   float wanted_yaw_rate_rad_s{0};
+  float bias_m_s2[3]{};               ///< acceleration besides the model's that this tick reckoned with, NED
+  float predicted_velocity_m_s[3]{};  ///< of the bias estimate
+  float jump_position_m[3]{};         ///< by how much the estimator moved its estimate before this tick, NED; 0: not
+  float jump_velocity_m_s[3]{};
+  float jump_yaw_rad{0};
+  float lift{1};             ///< how much of its thrust it used, 0 to 1: below 1 while it takes off
   float commands[4]{};       ///< NaN where there were none
   float envelope_excess{0};  ///< how far the worst feature lay outside, in half-widths of its range
   std::int8_t envelope_feature{-1};
-  std::uint8_t came{0};          ///< which inputs came since the tick before, as bits
-  std::uint8_t asked{0};         ///< 0: the stack asked nothing of the controller: off, or flown by hand
-  std::uint8_t reaction{0};      ///< Reaction
-  std::uint8_t status{0};        ///< pinnquad::Status
-  std::uint8_t cause{0};         ///< pinnquad::Status of the network alone
-  std::uint8_t stale_inputs{0};  ///< as bits
+  std::uint8_t came{0};           ///< which inputs came since the tick before, as bits
+  std::uint8_t asked{0};          ///< 0: the stack asked nothing of the controller: off, or flown by hand
+  std::uint8_t drives_motors{0};  ///< its commands reached the motors
+  std::uint8_t landed{0};         ///< the stack said so
+  std::uint8_t reaction{0};       ///< Reaction
+  std::uint8_t status{0};         ///< pinnquad::Status
+  std::uint8_t cause{0};          ///< pinnquad::Status of the network alone
+  std::uint8_t stale_inputs{0};   ///< as bits
 
   /// Calls `visit(name, unit, number or array)` for each, in their order. No more noexcept than `visit`.
   template <class Self, class Visit>
@@ -66,11 +74,19 @@ struct CoreRecord {
     visit("wanted_jerk_m_s3", "m/s^3", self.wanted_jerk_m_s3);
     visit("wanted_yaw_rad", "rad", self.wanted_yaw_rad);
     visit("wanted_yaw_rate_rad_s", "rad/s", self.wanted_yaw_rate_rad_s);
+    visit("bias_m_s2", "m/s^2", self.bias_m_s2);
+    visit("predicted_velocity_m_s", "m/s", self.predicted_velocity_m_s);
+    visit("jump_position_m", "m", self.jump_position_m);
+    visit("jump_velocity_m_s", "m/s", self.jump_velocity_m_s);
+    visit("jump_yaw_rad", "rad", self.jump_yaw_rad);
+    visit("lift", "1", self.lift);
     visit("commands", "1", self.commands);
     visit("envelope_excess", "1", self.envelope_excess);
     visit("envelope_feature", "1", self.envelope_feature);
     visit("came", "bits", self.came);
     visit("asked", "1", self.asked);
+    visit("drives_motors", "1", self.drives_motors);
+    visit("landed", "1", self.landed);
     visit("reaction", "1", self.reaction);
     visit("status", "1", self.status);
     visit("cause", "1", self.cause);
@@ -100,6 +116,14 @@ struct CoreSettings {
   float yaw_1_s{0};
   float roll_pitch_rate_1_s{0};
   float yaw_rate_1_s{0};
+  // SpeedLimits
+  float horizontal_speed_m_s{0};
+  float climb_m_s{0};
+  float descent_m_s{0};
+  float take_off_s{0};
+  // pinnquad::BiasSettings
+  float bias_bandwidth_1_s{0};
+  float most_bias_m_s2{0};
 
   /// As CoreRecord's.
   template <class Self, class Visit>
@@ -119,6 +143,12 @@ struct CoreSettings {
     visit("yaw_1_s", "1/s", self.yaw_1_s);
     visit("roll_pitch_rate_1_s", "1/s", self.roll_pitch_rate_1_s);
     visit("yaw_rate_1_s", "1/s", self.yaw_rate_1_s);
+    visit("horizontal_speed_m_s", "m/s", self.horizontal_speed_m_s);
+    visit("climb_m_s", "m/s", self.climb_m_s);
+    visit("descent_m_s", "m/s", self.descent_m_s);
+    visit("take_off_s", "s", self.take_off_s);
+    visit("bias_bandwidth_1_s", "1/s", self.bias_bandwidth_1_s);
+    visit("most_bias_m_s2", "m/s^2", self.most_bias_m_s2);
   }
 };
 

@@ -78,6 +78,8 @@ class Input {
     return came_ && now_us - time_us_ <= limit_us;
   }
   const Value& value() const noexcept { return value_; }
+  /// As old as it was.
+  void replace(const Value& value) noexcept { value_ = value; }
   std::uint32_t refused() const noexcept { return refused_; }
 
  private:

@@ -9,6 +9,8 @@
 #include "flight_stacks/core_record.hpp"
 #include "flight_stacks/inputs.hpp"
 #include "flight_stacks/model_slots.hpp"
+#include "flight_stacks/situation.hpp"
+#include "flight_stacks/take_off.hpp"
 
 namespace flight_stacks {
 
@@ -16,11 +18,6 @@ namespace flight_stacks {
 struct AbsurdCommands {
   static constexpr double lower = -0.5;
   static constexpr double upper = 1.5;
-};
-
-struct OutputLimits {
-  float lower = 0.02f;  ///< rotors keep turning
-  float upper = 1.0f;
 };
 
 /// What a step did, and why.
@@ -43,11 +40,13 @@ struct StepReport {
 };
 
 /// `Shape` says what a model block must hold: an exported header. `View` opens the block; on the ground it may be one whose
-/// network is known at run time alone (tools/model/replay_core.hpp).
-template <class Shape, class View = pinnquad::ModelView<Shape>>
+/// network is known at run time alone (tools/model/replay_core.hpp). `VehicleType`: airframe and effects that the formula knows,
+/// a pinnquad::Quadrotor.
+template <class Shape, class View = pinnquad::ModelView<Shape>,
+          class VehicleType = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>>
 class NeuralController {
  public:
-  using Vehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
+  using Vehicle = VehicleType;
   using Formula = pinnquad::AnalyticInverse<Vehicle>;
   using Guard =
       pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<AbsurdCommands>, pinnquad::Fallback<Formula>>;
@@ -55,16 +54,26 @@ class NeuralController {
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
 
   explicit NeuralController(const AgeLimits& ages = {}, const OutputLimits& outputs = {},
-                            const pinnquad::FlightGains<float>& gains = {}) noexcept
-      : NeuralController(pinnquad::airframe_value<typename Shape::Vehicle, float>(), ages, outputs, gains) {}
+                            const pinnquad::FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
+                            const pinnquad::BiasSettings<float>& bias = {}) noexcept
+      : NeuralController(pinnquad::airframe_value<typename Shape::Vehicle, float>(), ages, outputs, gains, speeds,
+                         bias) {}
   /// Of an airframe that is known at run time alone.
   explicit NeuralController(const pinnquad::Airframe<float>& airframe, const AgeLimits& ages = {},
-                            const OutputLimits& outputs = {}, const pinnquad::FlightGains<float>& gains = {}) noexcept
+                            const OutputLimits& outputs = {}, const pinnquad::FlightGains<float>& gains = {},
+                            const SpeedLimits& speeds = {}, const pinnquad::BiasSettings<float>& bias = {}) noexcept
+      : NeuralController(Vehicle(airframe), ages, outputs, gains, speeds, bias) {}
+  /// Of a vehicle whose effects have values of their own.
+  explicit NeuralController(const Vehicle& vehicle, const AgeLimits& ages = {}, const OutputLimits& outputs = {},
+                            const pinnquad::FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
+                            const pinnquad::BiasSettings<float>& bias = {}) noexcept
       : ages_(ages),
         outputs_(outputs),
-        vehicle_(airframe),
-        outer_loop_(gains, pinnquad::flight_limits(vehicle_.airframe(), 1.0f, gains)),
-        models_(Guard(Formula(vehicle_))) {}
+        vehicle_(vehicle),
+        outer_loop_(gains, flight_limits(vehicle_, gains, speeds), vehicle_.site().gravity_m_s2),
+        models_(Guard(Formula(vehicle_))),
+        bias_(bias),
+        take_off_(speeds.take_off_s) {}
   NeuralController(const NeuralController&) = delete;  // slots are pointed to
   NeuralController& operator=(const NeuralController&) = delete;
 
@@ -111,6 +120,35 @@ class NeuralController {
     return set_point_.accept(time_us, wanted, checked);
   }
 
+  /// Said before each step, by a stack that knows. Until then: its commands drive nothing, the vehicle is not on the ground.
+  /// Who takes over holds the place where that was, not one from before.
+  void situation(const Situation& now) noexcept {
+    if (now.drives_motors && !situation_.drives_motors) holding_ = false;
+    situation_ = now;
+  }
+  const Situation& situation() const noexcept { return situation_; }
+
+  /// The estimator has moved its origin under the vehicle: what is held, or was asked for before, moves with it.
+  void jump(const EstimateJump& by) noexcept {
+    pinnquad::TrajectoryPoint<float> wanted = set_point_.value();
+    wanted.position_m += by.position_m;
+    wanted.yaw_rad += by.yaw_rad;
+    set_point_.replace(wanted);
+    held_.position_m += by.position_m;
+    held_.yaw_rad += by.yaw_rad;
+    bias_.resume(bias_.acceleration_m_s2(), bias_.predicted_velocity_m_s() + by.velocity_m_s);
+  }
+
+  const pinnquad::BiasEstimate<float>& bias() const noexcept { return bias_; }
+  /// 0 to 1: how much of its thrust it uses while it takes off.
+  float lift() const noexcept { return take_off_.lift(); }
+  /// Goes on from what was logged (replay).
+  void resume(const pinnquad::Vector3<float>& bias_m_s2, const pinnquad::Vector3<float>& predicted_velocity_m_s,
+              float lift) noexcept {
+    bias_.resume(bias_m_s2, predicted_velocity_m_s);
+    take_off_.resume(lift);
+  }
+
   /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
   /// the reaction is gives_up. The time between two calls does not matter; `now_us` is of the samples' clock.
   Reaction step(std::uint64_t now_us, pinnquad::Commands<float>& commands, StepReport& report) noexcept {
@@ -118,11 +156,18 @@ class NeuralController {
     const Inverse* inverse = models_.take();
     checksum_ = models_.checksum(inverse);
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
+    estimate_bias(now_us, reaction);
+    take_off_.update(now_us, situation_, reaction == Reaction::flies && asks_to_climb());
     if (reaction <= Reaction::levels) {
       pinnquad::Commands<float> answer{};
       report.status = ask(*inverse, reaction, answer, report);
       if (pinnquad::has_output(report.status)) {
-        last_commands_ = within_limits(answer);
+        last_commands_ = pinnquad::keep_torque(vehicle_.rotors(), {outputs_.lower, outputs_.upper}, answer);
+        const float lift = take_off_.lift();
+        if (lift < 1.0f) {
+          for (float& u : last_commands_) u = outputs_.lower + lift * (u - outputs_.lower);
+        }
+        expected_us_ = lift < 1.0f || at_an_end(last_commands_) ? 0 : now_us;
         answered_us_ = now_us;
         answered_ = true;
       } else {
@@ -138,7 +183,10 @@ class NeuralController {
   }
 
   /// A tick in which the stack asks nothing: off, or flown by hand. For who writes down every tick (recorded_controller.hpp).
-  void skip(std::uint64_t /*now_us*/) noexcept {}
+  void skip(std::uint64_t /*now_us*/) noexcept {
+    expected_us_ = 0;
+    take_off_.skip();
+  }
 
   /// What it was made with.
   CoreSettings settings() const noexcept {
@@ -159,6 +207,12 @@ class NeuralController {
     all.yaw_1_s = gains.yaw_1_s;
     all.roll_pitch_rate_1_s = gains.roll_pitch_rate_1_s;
     all.yaw_rate_1_s = gains.yaw_rate_1_s;
+    all.horizontal_speed_m_s = outer_loop_.limits().max_horizontal_speed_m_s;
+    all.climb_m_s = outer_loop_.limits().max_climb_m_s;
+    all.descent_m_s = outer_loop_.limits().max_descent_m_s;
+    all.take_off_s = take_off_.duration_s();
+    all.bias_bandwidth_1_s = bias_.settings().bandwidth_1_s;
+    all.most_bias_m_s2 = bias_.settings().max_bias_m_s2;
     return all;
   }
 
@@ -204,8 +258,43 @@ class NeuralController {
     return {local_.value().position_m, local_.value().velocity_m_s, attitude_.value(), rates_.value()};
   }
 
+  static pinnquad::FlightLimits<float> flight_limits(const Vehicle& vehicle, const pinnquad::FlightGains<float>& gains,
+                                                     const SpeedLimits& speeds) noexcept {
+    pinnquad::FlightLimits<float> limits = pinnquad::flight_limits(vehicle.airframe(), 1.0f, gains);
+    limits.max_horizontal_speed_m_s = speeds.horizontal_m_s;
+    limits.max_climb_m_s = speeds.climb_m_s;
+    limits.max_descent_m_s = speeds.descent_m_s;
+    return limits;
+  }
+
+  bool at_an_end(const pinnquad::Commands<float>& commands) const noexcept {
+    bool at_end = false;
+    for (const float u : commands) at_end = at_end || !(u > outputs_.lower && u < outputs_.upper);
+    return at_end;
+  }
+
+  /// Compares what the last answer was to do with what the vehicle did. Only in flight, off the actuators' ends, with a velocity.
+  void estimate_bias(std::uint64_t now_us, Reaction reaction) noexcept {
+    if (reaction <= Reaction::holds_position && situation_.in_flight() && expected_us_ != 0) {
+      const float step_s = 1e-6f * static_cast<float>(now_us - expected_us_);
+      bias_.update(local_.value().velocity_m_s, expected_m_s2_, step_s);
+    } else {
+      bias_.freeze(local_.value().velocity_m_s);
+    }
+    expected_us_ = 0;
+  }
+
+  /// By 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
+  bool asks_to_climb() const noexcept {
+    constexpr float noise = 0.1f;
+    const pinnquad::TrajectoryPoint<float>& wanted = set_point_.value();
+    return local_.value().position_m[2] - wanted.position_m[2] > noise || wanted.velocity_m_s[2] < -noise ||
+           wanted.acceleration_m_s2[2] < -noise;
+  }
+
   /// The point of a trajectory that a reaction flies to; what was not asked for is what the vehicle does already.
-  pinnquad::TrajectoryPoint<float> target(Reaction reaction, const pinnquad::State<float>& now) noexcept {
+  PINNQUAD_NOINLINE pinnquad::TrajectoryPoint<float> target(Reaction reaction,
+                                                            const pinnquad::State<float>& now) noexcept {
     pinnquad::TrajectoryPoint<float> point;
     const pinnquad::Heading<float> heading = pinnquad::heading(now.attitude);
     point.yaw_rad = std::atan2(heading.sine, heading.cosine);
@@ -230,7 +319,6 @@ class NeuralController {
       point.acceleration_m_s2[i] = or_else(wanted.acceleration_m_s2[i], 0.0f);
       point.jerk_m_s3[i] = or_else(wanted.jerk_m_s3[i], 0.0f);
     }
-    point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
     point.yaw_rad = or_else(wanted.yaw_rad, point.yaw_rad);
     point.yaw_rate_rad_s = or_else(wanted.yaw_rate_rad_s, 0.0f);
     return point;
@@ -241,9 +329,32 @@ class NeuralController {
   /// Outer loop, then the inverse. The network answers the whole demand, feed-forward and feedback together.
   pinnquad::Status ask(const Inverse& inverse, Reaction reaction, pinnquad::Commands<float>& commands,
                        StepReport& report) noexcept {
+    pinnquad::MotionInputs<float> wanted;
+    const pinnquad::Status outer = want(reaction, wanted);
+    if (outer != pinnquad::Status::ok) return outer;
+    typename Inverse::Report why;
+    const pinnquad::Status status = inverse.predict(wanted, commands, why);
+    count_.add(why.cause);
+    report.cause = why.cause;
+    report.worst_feature = why.worst_feature;
+    if (why.worst_feature >= 0) report.worst_excess = why.excess[static_cast<std::size_t>(why.worst_feature)];
+    return status;
+  }
+
+  /// The motion that a reaction wants. Out of line, as target() is: what it needs of the stack is free again below network and
+  /// formula, where the stack is as deep.
+  PINNQUAD_NOINLINE pinnquad::Status want(Reaction reaction, pinnquad::MotionInputs<float>& motion) noexcept {
     const pinnquad::State<float> now = state();
     pinnquad::TrackingDemand<float> demand;
-    const pinnquad::Status outer = outer_loop_(now, target(reaction, now), demand);
+    pinnquad::TrajectoryPoint<float> point = target(reaction, now);
+    const pinnquad::Vector3<float>& bias = bias_.acceleration_m_s2();
+    if (reaction == Reaction::levels) {
+      point.acceleration_m_s2[2] -= bias[2];  // thrust alone: level stays level
+    } else {
+      point.acceleration_m_s2 -= bias;
+    }
+    point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
+    const pinnquad::Status outer = outer_loop_(now, point, demand);
     if (outer != pinnquad::Status::ok) return outer;
     pinnquad::Accelerations<float> wanted;
     wanted.linear_m_s2 = demand.reference.linear_m_s2 + demand.feedback_acceleration_m_s2;
@@ -253,19 +364,9 @@ class NeuralController {
     const pinnquad::Vector3<float> free = pinnquad::body_derivative<float>(now, {0.0f, 0.0f, gravity});
     wanted.linear_m_s2[0] = free[0];
     wanted.linear_m_s2[1] = free[1];
-    typename Inverse::Report why;
-    const pinnquad::Status status = inverse.predict(pinnquad::motion_inputs(now, wanted), commands, why);
-    count_.add(why.cause);
-    report.cause = why.cause;
-    report.worst_feature = why.worst_feature;
-    if (why.worst_feature >= 0) report.worst_excess = why.excess[static_cast<std::size_t>(why.worst_feature)];
-    return status;
-  }
-
-  pinnquad::Commands<float> within_limits(const pinnquad::Commands<float>& commands) const noexcept {
-    pinnquad::Commands<float> result = pinnquad::keep_torque(vehicle_.rotors(), commands);
-    for (float& u : result) u = u < outputs_.lower ? outputs_.lower : (u > outputs_.upper ? outputs_.upper : u);
-    return result;
+    expected_m_s2_ = pinnquad::world_acceleration<float>(now, wanted.linear_m_s2);
+    motion = pinnquad::motion_inputs(now, wanted);
+    return pinnquad::Status::ok;
   }
 
   AgeLimits ages_;
@@ -280,6 +381,11 @@ class NeuralController {
   pinnquad::TrajectoryPoint<float> held_;
   bool holding_ = false;
   pinnquad::Commands<float> last_commands_{};
+  pinnquad::BiasEstimate<float> bias_;
+  pinnquad::Vector3<float> expected_m_s2_ = pinnquad::Vector3<float>::Zero();  ///< of the last answer, NED
+  std::uint64_t expected_us_ = 0;                                              ///< 0: nothing to compare with
+  Situation situation_{};
+  TakeOff take_off_;
   std::uint64_t answered_us_ = 0;
   bool answered_ = false;
   bool ready_ = false;

@@ -48,6 +48,16 @@ class Recorded : public Controller {
     return Controller::set_point(time_us, wanted);
   }
 
+  void jump(const EstimateJump& by) noexcept {
+    begin();
+    Controller::jump(by);
+    for (int i = 0; i < 3; ++i) {
+      record_.jump_position_m[i] += by.position_m[i];
+      record_.jump_velocity_m_s[i] += by.velocity_m_s[i];
+    }
+    record_.jump_yaw_rad += by.yaw_rad;
+  }
+
   Reaction step(std::uint64_t now_us, pinnquad::Commands<float>& commands, StepReport& report) noexcept {
     const Reaction reaction = Controller::step(now_us, commands, report);
     finish(now_us, report, 1);
@@ -69,7 +79,11 @@ class Recorded : public Controller {
     for (int i = 0; i < 3; ++i) to[i] = from[i];
   }
   void begin() noexcept {
-    if (finished_) record_.came = 0;
+    if (finished_) {
+      record_.came = 0;
+      record_.jump_yaw_rad = 0;
+      for (int i = 0; i < 3; ++i) record_.jump_position_m[i] = record_.jump_velocity_m_s[i] = 0;
+    }
     finished_ = false;
   }
   void note(std::uint8_t bit) noexcept {
@@ -84,6 +98,11 @@ class Recorded : public Controller {
     record_.model = Controller::model_checksum();
     record_.refused_samples = Controller::refused_samples();
     record_.asked = asked;
+    record_.drives_motors = Controller::situation().drives_motors ? 1 : 0;
+    record_.landed = Controller::situation().landed ? 1 : 0;
+    record_.lift = Controller::lift();
+    copy(Controller::bias().acceleration_m_s2(), record_.bias_m_s2);
+    copy(Controller::bias().predicted_velocity_m_s(), record_.predicted_velocity_m_s);
     record_.reaction = static_cast<std::uint8_t>(report.reaction);
     record_.status = static_cast<std::uint8_t>(report.status);
     record_.cause = static_cast<std::uint8_t>(report.cause);

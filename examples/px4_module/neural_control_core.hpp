@@ -19,6 +19,7 @@ struct VehicleAngularVelocity {
   float xyz[3]{};  ///< FRD, rad/s
 };
 
+/// The counters go up by one when the estimator moved its estimate by the delta beside them.
 struct VehicleLocalPosition {
   std::uint64_t timestamp_sample{0};
   bool xy_valid{false};
@@ -31,6 +32,16 @@ struct VehicleLocalPosition {
   float vx{0};  ///< NED, m/s
   float vy{0};
   float vz{0};
+  std::uint8_t xy_reset_counter{0};
+  std::uint8_t z_reset_counter{0};
+  std::uint8_t vxy_reset_counter{0};
+  std::uint8_t vz_reset_counter{0};
+  std::uint8_t heading_reset_counter{0};
+  float delta_xy[2]{};     ///< m
+  float delta_z{0};        ///< m
+  float delta_vxy[2]{};    ///< m/s
+  float delta_vz{0};       ///< m/s
+  float delta_heading{0};  ///< rad
 };
 
 /// NaN: not asked for.
@@ -74,9 +85,10 @@ class NeuralControl {
   using ClockUs = std::uint64_t (*)();
 
   /// `clock` is that of the messages: hrt_absolute_time.
-  explicit NeuralControl(ClockUs clock, const flight_stacks::AgeLimits& ages = {},
-                         const flight_stacks::OutputLimits& outputs = {}) noexcept
-      : clock_(clock), controller_(ages, outputs) {}
+  /// With the settings that the controller is made with.
+  template <class... Settings>
+  explicit NeuralControl(ClockUs clock, const Settings&... settings) noexcept
+      : clock_(clock), controller_(settings...) {}
 
   /// Before the module registers its mode, and with the next model in flight, from another thread: opens the block,
   /// checks every number, replays the golden vectors. The module may register once this was ok.
@@ -88,13 +100,16 @@ class NeuralControl {
   bool model_settled() const noexcept { return controller_.model_settled(); }
 
   pinnquad::Status take(const VehicleAngularVelocity& m) noexcept {
+    rates_us_ = m.timestamp_sample;
     return controller_.body_rates(m.timestamp_sample, {m.xyz[0], m.xyz[1], m.xyz[2]});
   }
   pinnquad::Status take(const VehicleAttitude& m) noexcept {
     return controller_.attitude(m.timestamp_sample, {m.q[0], m.q[1], m.q[2], m.q[3]});
   }
-  /// `out_of_range` where the estimator itself calls a part of it invalid.
+  /// `out_of_range` where the estimator itself calls a part of it invalid. Before the set point of the same tick: what was asked
+  /// for before a reset moves with it.
   pinnquad::Status take(const VehicleLocalPosition& m) noexcept {
+    take_resets(m);
     if (!(m.xy_valid && m.z_valid && m.v_xy_valid && m.v_z_valid)) return pinnquad::Status::out_of_range;
     return controller_.local(m.timestamp_sample, {{m.x, m.y, m.z}, {m.vx, m.vy, m.vz}});
   }
@@ -108,6 +123,9 @@ class NeuralControl {
     wanted.yaw_rate_rad_s = m.yawspeed;
     return controller_.set_point(m.timestamp, wanted);
   }
+
+  /// Whose the motors are, and whether the vehicle stands (vehicle_status, vehicle_land_detected).
+  void situation(const flight_stacks::Situation& now) noexcept { controller_.situation(now); }
 
   const Controller& controller() const noexcept { return controller_; }
 
@@ -124,7 +142,7 @@ class NeuralControl {
     status.inference_time_us = static_cast<std::uint32_t>(end_us - start_us);
     if (reaction == flight_stacks::Reaction::gives_up) return false;
     motors.timestamp = end_us;
-    motors.timestamp_sample = start_us;
+    motors.timestamp_sample = rates_us_;
     for (std::size_t i = 0; i < commands.size(); ++i) motors.control[i] = commands[i];
     return true;
   }
@@ -132,8 +150,38 @@ class NeuralControl {
  private:
   static pinnquad::Vector3<float> vector(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
 
+  void take_resets(const VehicleLocalPosition& m) noexcept {
+    flight_stacks::EstimateJump by;
+    bool jumps = false;
+    const auto reset = [&](std::uint8_t counter, std::uint8_t before) noexcept {
+      const bool moved = has_local_ && counter != before;
+      jumps = jumps || moved;
+      return moved;
+    };
+    if (reset(m.xy_reset_counter, local_.xy_reset_counter)) {
+      by.position_m[0] = m.delta_xy[0];
+      by.position_m[1] = m.delta_xy[1];
+    }
+    if (reset(m.z_reset_counter, local_.z_reset_counter)) by.position_m[2] = m.delta_z;
+    if (reset(m.vxy_reset_counter, local_.vxy_reset_counter)) {
+      by.velocity_m_s[0] = m.delta_vxy[0];
+      by.velocity_m_s[1] = m.delta_vxy[1];
+    }
+    if (reset(m.vz_reset_counter, local_.vz_reset_counter)) by.velocity_m_s[2] = m.delta_vz;
+    if (reset(m.heading_reset_counter, local_.heading_reset_counter)) by.yaw_rad = m.delta_heading;
+    local_ = m;
+    has_local_ = true;
+    if (jumps && pinnquad::all_finite(by.position_m) && pinnquad::all_finite(by.velocity_m_s) &&
+        pinnquad::is_finite(by.yaw_rad)) {
+      controller_.jump(by);
+    }
+  }
+
   ClockUs clock_;
   Controller controller_;
+  VehicleLocalPosition local_{};  ///< the last one, whose counters the next is compared with
+  bool has_local_ = false;
+  std::uint64_t rates_us_ = 0;
 };
 
 }  // namespace pinnquad_px4

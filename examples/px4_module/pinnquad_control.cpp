@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The glue between PX4 and neural_control_core.hpp. Not built in this repository; see README.md.
+// The glue between PX4 and neural_control_core.hpp; see pinnquad_control.hpp.
 #include "pinnquad_control.hpp"
 
 #include <fcntl.h>
@@ -7,12 +7,21 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "record_messages.hpp"
+
 namespace {
 
 constexpr const char* mode_name = "Pinnquad";
 constexpr const char* default_model = PX4_STORAGEDIR "/etc/pinnquad/model.block";
-constexpr uint64_t request_id = 0x70696e6e;  // ours among the replies
+constexpr uint64_t request_head = 0x70696e6eull << 32;  // ours among the replies; below it, which of ours
 constexpr uint32_t fallback_interval_us = 10'000;
+constexpr uint64_t register_again_us = 500'000;
+constexpr uint64_t configure_again_us = 1'000'000;
+constexpr uint64_t ask_again_us = 10'000;
+constexpr uint64_t settings_again_us = 1'000'000;
+constexpr uint64_t known_after_us = 2'000'000;  // by then vehicle_status has the mode, or PX4 has dropped it
+
+px4::atomic_bool in_command{false};  // selected and armed: what `stop` asks
 
 uint64_t clock_us() { return hrt_absolute_time(); }
 
@@ -22,11 +31,25 @@ PinnquadControl::PinnquadControl()
     : ModuleParams(nullptr),
       ScheduledWorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl),
       _core(&clock_us,
-            {static_cast<uint64_t>(_param_age_rates.get()) * 1000,
-             static_cast<uint64_t>(_param_age_attitude.get()) * 1000,
-             static_cast<uint64_t>(_param_age_position.get()) * 1000,
-             static_cast<uint64_t>(_param_age_setpoint.get()) * 1000},
-            {_param_out_min.get(), 1.0f}) {}
+            flight_stacks::AgeLimits{static_cast<uint64_t>(_param_age_rates.get()) * 1000,
+                                     static_cast<uint64_t>(_param_age_attitude.get()) * 1000,
+                                     static_cast<uint64_t>(_param_age_position.get()) * 1000,
+                                     static_cast<uint64_t>(_param_age_setpoint.get()) * 1000},
+            flight_stacks::OutputLimits{_param_out_min.get(), 1.0f},
+            pinnquad::FlightGains<float>{_param_gain_position.get(), _param_gain_velocity.get(), _param_gain_tilt.get(),
+                                         _param_gain_yaw.get(), _param_gain_rate.get(), _param_gain_yaw_rate.get()},
+            flight_stacks::SpeedLimits{_param_speed_horizontal.get(), _param_speed_up.get(), _param_speed_down.get(),
+                                       _param_take_off.get()},
+            pinnquad::BiasSettings<float>{_param_bias_bandwidth.get(), _param_bias_most.get()}),
+      _source(pinnquad_px4::StickSpeeds{_param_stick_horizontal.get(), _param_stick_vertical.get(),
+                                        _param_stick_vertical.get() / 2, _param_stick_yaw.get()}) {}
+
+PinnquadControl::Publications* PinnquadControl::publications() {
+  static Publications* const all = new Publications;  // the shell starts modules one at a time
+  return all;
+}
+
+bool PinnquadControl::flies() { return in_command.load(); }
 
 pinnquad::Status PinnquadControl::load_model(const char* path) {
   if (!_core.model_settled()) return pinnquad::Status::out_of_range;  // the block to be written may still be read
@@ -55,35 +78,64 @@ bool PinnquadControl::init() {
 }
 
 void PinnquadControl::Run() {
-  if (should_exit()) {
+  ScheduleDelayed(fallback_interval_us);  // body rates that stop would else stop the staleness check as well
+  read_vehicle();
+  if (should_exit() && !flies()) {
     _angular_velocity_sub.unregisterCallback();
     ScheduleClear();
     unregister_mode();
     exit_and_cleanup();
     return;
   }
-  ScheduleDelayed(fallback_interval_us);  // body rates that stop would else stop the staleness check as well
-  if (!_asked_to_register) {
-    register_mode();
-    return;
-  }
-  if (_mode_id < 0) {
-    read_registration();
-    return;
-  }
+  keep_registered();
+  if (_mode_id < 0) return;
   answer_arming_check();
-
-  vehicle_status_s vehicle_status;
-  if (_vehicle_status_sub.update(&vehicle_status)) _selected = vehicle_status.nav_state == _mode_id;
-
   take_samples();
+  _core.situation({flies(), _landed});
   pinnquad_px4::ActuatorMotors motors;
   pinnquad_px4::PinnquadStatus status;
-  const bool had_commands = _has_commands;
   _has_commands = _core.run(motors, status);  // selected or not: the status says whether it could fly
+  _stale_inputs = status.stale_inputs;
   if (_selected && _has_commands) publish(motors);
-  if (_selected && had_commands && !_has_commands) ask_for_hold();
+  if (_selected && (!_has_commands || should_exit() || _takeover.asking())) {
+    ask_for_takeover();
+  } else {
+    _takeover.heard();
+  }
   publish(status);
+  if (_param_record.get() != 0) {
+    publish_record();
+    publish_settings();
+  }
+}
+
+void PinnquadControl::read_vehicle() {
+  vehicle_status_s vehicle_status;
+  if (_vehicle_status_sub.update(&vehicle_status)) {
+    _selected = _mode_id >= 0 && vehicle_status.nav_state == static_cast<uint8_t>(_mode_id);
+    _armed = vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED;
+    _valid_modes = vehicle_status.valid_nav_states_mask;
+    in_command.store(_selected && _armed);
+  }
+  vehicle_land_detected_s land_detected;
+  if (_land_detected_sub.update(&land_detected)) _landed = land_detected.landed;
+  failsafe_flags_s flags;
+  if (_failsafe_flags_sub.update(&flags)) {
+    _failsafe_flags.mode_req_angular_velocity = flags.mode_req_angular_velocity;
+    _failsafe_flags.mode_req_attitude = flags.mode_req_attitude;
+    _failsafe_flags.mode_req_local_alt = flags.mode_req_local_alt;
+    _failsafe_flags.mode_req_local_position = flags.mode_req_local_position;
+    _failsafe_flags.mode_req_local_position_relaxed = flags.mode_req_local_position_relaxed;
+    _failsafe_flags.mode_req_global_position = flags.mode_req_global_position;
+    _failsafe_flags.mode_req_manual_control = flags.mode_req_manual_control;
+    _failsafe_flags.angular_velocity_invalid = flags.angular_velocity_invalid;
+    _failsafe_flags.attitude_invalid = flags.attitude_invalid;
+    _failsafe_flags.local_altitude_invalid = flags.local_altitude_invalid;
+    _failsafe_flags.local_position_invalid = flags.local_position_invalid;
+    _failsafe_flags.local_position_invalid_relaxed = flags.local_position_invalid_relaxed;
+    _failsafe_flags.global_position_invalid = flags.global_position_invalid;
+    _failsafe_flags.manual_control_signal_lost = flags.manual_control_signal_lost;
+  }
 }
 
 void PinnquadControl::take_samples() {
@@ -99,6 +151,8 @@ void PinnquadControl::take_samples() {
     pinnquad_px4::VehicleAttitude sample;
     sample.timestamp_sample = attitude.timestamp_sample;
     memcpy(sample.q, attitude.q, sizeof sample.q);
+    const float(&q)[4] = sample.q;
+    _heading_rad = atan2f(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
     static_cast<void>(_core.take(sample));
   }
   vehicle_local_position_s local;
@@ -109,20 +163,47 @@ void PinnquadControl::take_samples() {
     sample.v_xy_valid = local.v_xy_valid, sample.v_z_valid = local.v_z_valid;
     sample.x = local.x, sample.y = local.y, sample.z = local.z;
     sample.vx = local.vx, sample.vy = local.vy, sample.vz = local.vz;
+    sample.xy_reset_counter = local.xy_reset_counter, sample.z_reset_counter = local.z_reset_counter;
+    sample.vxy_reset_counter = local.vxy_reset_counter, sample.vz_reset_counter = local.vz_reset_counter;
+    sample.heading_reset_counter = local.heading_reset_counter;
+    memcpy(sample.delta_xy, local.delta_xy, sizeof sample.delta_xy);
+    memcpy(sample.delta_vxy, local.delta_vxy, sizeof sample.delta_vxy);
+    sample.delta_z = local.delta_z, sample.delta_vz = local.delta_vz, sample.delta_heading = local.delta_heading;
     static_cast<void>(_core.take(sample));
+    _velocity_m_s[0] = local.vx, _velocity_m_s[1] = local.vy, _velocity_m_s[2] = local.vz;
   }
-  trajectory_setpoint_s wanted;
-  if (_trajectory_setpoint_sub.update(&wanted)) {
+  take_set_point();
+}
+
+void PinnquadControl::take_set_point() {
+  trajectory_setpoint_s trajectory;
+  if (_trajectory_setpoint_sub.update(&trajectory)) {
     pinnquad_px4::TrajectorySetpoint sample;
-    sample.timestamp = wanted.timestamp;
-    memcpy(sample.position, wanted.position, sizeof sample.position);
-    memcpy(sample.velocity, wanted.velocity, sizeof sample.velocity);
-    memcpy(sample.acceleration, wanted.acceleration, sizeof sample.acceleration);
-    memcpy(sample.jerk, wanted.jerk, sizeof sample.jerk);
-    sample.yaw = wanted.yaw;
-    sample.yawspeed = wanted.yawspeed;
-    static_cast<void>(_core.take(sample));
+    sample.timestamp = trajectory.timestamp;
+    memcpy(sample.position, trajectory.position, sizeof sample.position);
+    memcpy(sample.velocity, trajectory.velocity, sizeof sample.velocity);
+    memcpy(sample.acceleration, trajectory.acceleration, sizeof sample.acceleration);
+    memcpy(sample.jerk, trajectory.jerk, sizeof sample.jerk);
+    sample.yaw = trajectory.yaw;
+    sample.yawspeed = trajectory.yawspeed;
+    _source.take(sample);
   }
+  goto_setpoint_s place;
+  if (_goto_setpoint_sub.update(&place)) {
+    pinnquad_px4::GotoSetpoint sample;
+    sample.timestamp = place.timestamp;
+    memcpy(sample.position, place.position, sizeof sample.position);
+    sample.flag_control_heading = place.flag_control_heading;
+    sample.heading = place.heading;
+    _source.take(sample);
+  }
+  manual_control_setpoint_s sticks;
+  if (_manual_control_sub.update(&sticks)) {
+    _source.take(pinnquad_px4::ManualControlSetpoint{sticks.timestamp, sticks.valid, sticks.roll, sticks.pitch,
+                                                     sticks.yaw, sticks.throttle});
+  }
+  pinnquad_px4::TrajectorySetpoint wanted;
+  if (_source.choose(hrt_absolute_time(), _heading_rad, _velocity_m_s, wanted)) static_cast<void>(_core.take(wanted));
 }
 
 void PinnquadControl::publish(const pinnquad_px4::ActuatorMotors& motors) {
@@ -131,7 +212,7 @@ void PinnquadControl::publish(const pinnquad_px4::ActuatorMotors& motors) {
   message.timestamp_sample = motors.timestamp_sample;
   for (float& control : message.control) control = NAN;
   for (int i = 0; i < 4; ++i) message.control[i] = motors.control[i];
-  _actuator_motors_pub.publish(message);
+  _publications.actuator_motors.publish(message);
 }
 
 void PinnquadControl::publish(const pinnquad_px4::PinnquadStatus& status) {
@@ -147,33 +228,73 @@ void PinnquadControl::publish(const pinnquad_px4::PinnquadStatus& status) {
   message.status = status.status;
   message.cause = status.cause;
   message.stale_inputs = status.stale_inputs;
-  _status_pub.publish(message);
+  _publications.status.publish(message);
 }
 
-void PinnquadControl::register_mode() {
+void PinnquadControl::publish_record() {
+  pinnquad_record_s message{};
+  pinnquad_px4::copy_record(_core.controller().record(), message);
+  _publications.record.publish(message);
+}
+
+void PinnquadControl::publish_settings() {
+  const uint64_t now_us = hrt_absolute_time();
+  if (_settings_us != 0 && now_us - _settings_us < settings_again_us) return;
+  _settings_us = now_us;
+  pinnquad_settings_s message{};
+  pinnquad_px4::copy_settings(_core.controller().settings(), message);
+  message.timestamp = now_us;
+  _publications.settings.publish(message);
+}
+
+void PinnquadControl::keep_registered() {
+  const uint64_t now_us = hrt_absolute_time();
+  read_registration();
+  if (_mode_id >= 0) {
+    const bool dropped = (_valid_modes & (uint32_t{1} << _mode_id)) == 0;
+    if (_selected || !dropped || now_us - _registered_us < known_after_us) {
+      if (!_armed && now_us - _configured_us > configure_again_us)
+        configure_mode();  // it is one of a topic without a queue
+      return;
+    }
+    _mode_id = _arming_check_id = -1;
+    _asked_to_register_us = 0;
+  }
+  const bool asked = _asked_to_register_us != 0 && now_us - _asked_to_register_us < register_again_us;
+  if (_armed || asked) return;  // PX4 registers nobody while it is armed
+  _asked_to_register_us = now_us;
   register_ext_component_request_s request{};
-  request.timestamp = hrt_absolute_time();
-  request.request_id = request_id;
+  request.timestamp = now_us;
+  _request_id = request_head | (now_us & 0xffffffffu);  // the reply to an earlier one may still be there to be read
+  request.request_id = _request_id;
   strncpy(request.name, mode_name, sizeof request.name - 1);
   request.px4_ros2_api_version = register_ext_component_request_s::LATEST_PX4_ROS2_API_VERSION;
   request.register_arming_check = true;
   request.register_mode = true;
-  _register_pub.publish(request);
-  _asked_to_register = true;
+  _publications.register_mode.publish(request);
 }
 
 void PinnquadControl::read_registration() {
   register_ext_component_reply_s reply;
   while (_register_reply_sub.update(&reply)) {
-    if (reply.request_id != request_id || !reply.success) continue;
+    if (reply.request_id != _request_id || strncmp(reply.name, mode_name, sizeof reply.name) != 0) continue;
+    if (!reply.success || _mode_id >= 0)
+      continue;  // refused: asked again later; a second yes is for a request sent twice
     _arming_check_id = reply.arming_check_id;
     _mode_id = reply.mode_id;
-    vehicle_control_mode_s config{};  // nothing of PX4's cascade runs: the module writes to the motors
-    config.timestamp = hrt_absolute_time();
-    config.source_id = static_cast<uint8_t>(_mode_id);
-    config.flag_control_termination_enabled = true;
-    _config_control_setpoints_pub.publish(config);
+    _registered_us = hrt_absolute_time();
+    configure_mode();
   }
+}
+
+/// Nothing of PX4's cascade runs in this mode: the module writes to the motors.
+void PinnquadControl::configure_mode() {
+  _configured_us = hrt_absolute_time();
+  vehicle_control_mode_s config{};
+  config.timestamp = _configured_us;
+  config.source_id = static_cast<uint8_t>(_mode_id);
+  config.flag_control_termination_enabled = true;
+  _publications.config_control_setpoints.publish(config);
 }
 
 void PinnquadControl::answer_arming_check() {
@@ -189,17 +310,20 @@ void PinnquadControl::answer_arming_check() {
   reply.mode_req_attitude = true;
   reply.mode_req_local_alt = true;
   reply.mode_req_local_position = true;
-  _arming_check_reply_pub.publish(reply);
+  _publications.arming_check_reply.publish(reply);
 }
 
-/// Sooner than the next arming check: without commands every tick counts. PX4 itself goes on from there.
-void PinnquadControl::ask_for_hold() {
+/// Sooner than the next arming check: without commands every tick counts. Again until the mode is another one.
+void PinnquadControl::ask_for_takeover() {
+  const bool position_stale = (_stale_inputs & flight_stacks::local_bit) != 0;
   vehicle_command_s command{};
   command.timestamp = hrt_absolute_time();
   command.command = vehicle_command_s::VEHICLE_CMD_SET_NAV_STATE;
-  command.param1 = vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
+  command.param1 = _takeover.ask(command.timestamp, _failsafe_flags, position_stale);
   command.source_component = static_cast<uint16_t>(vehicle_command_s::COMPONENT_MODE_EXECUTOR_START);
-  _vehicle_command_pub.publish(command);
+  if (command.timestamp - _asked_for_takeover_us < ask_again_us) return;
+  _asked_for_takeover_us = command.timestamp;
+  _publications.vehicle_command.publish(command);
 }
 
 void PinnquadControl::unregister_mode() {
@@ -209,7 +333,8 @@ void PinnquadControl::unregister_mode() {
   strncpy(message.name, mode_name, sizeof message.name - 1);
   message.arming_check_id = _arming_check_id;
   message.mode_id = _mode_id;
-  _unregister_pub.publish(message);
+  message.mode_executor_id = -1;
+  _publications.unregister_mode.publish(message);
 }
 
 int PinnquadControl::task_spawn(int /*argc*/, char* /*argv*/[]) {
@@ -251,4 +376,10 @@ int PinnquadControl::print_usage(const char* reason) {
   return 0;
 }
 
-extern "C" __EXPORT int pinnquad_control_main(int argc, char* argv[]) { return PinnquadControl::main(argc, argv); }
+extern "C" __EXPORT int pinnquad_control_main(int argc, char* argv[]) {
+  if (argc > 1 && strcmp(argv[1], "stop") == 0 && PinnquadControl::flies()) {
+    PX4_ERR("it has the motors: select another mode first");
+    return PX4_ERROR;
+  }
+  return PinnquadControl::main(argc, argv);
+}

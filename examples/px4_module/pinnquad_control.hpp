@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The glue between PX4 and neural_control_core.hpp: topics, parameters, mode registration, the model's file.
-// Not built in this repository; see README.md.
+// The glue between PX4 and neural_control_core.hpp: topics, parameters, mode registration, the model's file. Compiled and run here
+// against a small uORB of ours (tests/flight_stacks/px4), not in PX4's tree; see README.md.
 #pragma once
 
 #include <drivers/drv_hrt.h>
@@ -12,6 +12,11 @@
 #include <uORB/topics/actuator_motors.h>
 #include <uORB/topics/arming_check_reply.h>
 #include <uORB/topics/arming_check_request.h>
+#include <uORB/topics/failsafe_flags.h>
+#include <uORB/topics/goto_setpoint.h>
+#include <uORB/topics/manual_control_setpoint.h>
+#include <uORB/topics/pinnquad_record.h>
+#include <uORB/topics/pinnquad_settings.h>
 #include <uORB/topics/pinnquad_status.h>
 #include <uORB/topics/register_ext_component_reply.h>
 #include <uORB/topics/register_ext_component_request.h>
@@ -21,14 +26,18 @@
 #include <uORB/topics/vehicle_attitude.h>
 #include <uORB/topics/vehicle_command.h>
 #include <uORB/topics/vehicle_control_mode.h>
+#include <uORB/topics/vehicle_land_detected.h>
 #include <uORB/topics/vehicle_local_position.h>
 #include <uORB/topics/vehicle_status.h>
 #include <uORB/Publication.hpp>
 #include <uORB/Subscription.hpp>
 #include <uORB/SubscriptionCallback.hpp>
 
+#include "flight_stacks/recorded_controller.hpp"
 #include "model.hpp"  // the exported header: what pinnquad train wrote
 #include "neural_control_core.hpp"
+#include "set_point_source.hpp"
+#include "takeover.hpp"
 
 class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams, public px4::ScheduledWorkItem {
  public:
@@ -43,9 +52,13 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
   /// False, and nothing is registered, if the model was refused.
   bool init();
 
+  /// True while the motors of an armed vehicle are this module's: it must not be stopped then.
+  static bool flies();
+
  private:
   using Model = TrainedQuadModel;
-  using Core = pinnquad_px4::NeuralControl<Model>;
+  using Controller = flight_stacks::Recorded<flight_stacks::NeuralController<Model>>;
+  using Core = pinnquad_px4::NeuralControl<Model, Controller>;
 
   /// Room for one block of this model, golden vectors included.
   static constexpr size_t block_bytes = pinnquad::ModelBlockLayout<Model>::length(pinnquad::loaded_golden_vectors) +
@@ -54,37 +67,65 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
   void Run() override;
   /// Reads, opens and tests a model; the one that flies stays where it is. Of the shell's thread.
   pinnquad::Status load_model(const char* path);
-  void register_mode();
+  /// Who has the motors, whether the vehicle stands, what other modes need.
+  void read_vehicle();
+  /// Registers the mode, and again until PX4 says yes; once more if it has dropped it.
+  void keep_registered();
   void read_registration();
+  void configure_mode();
   void answer_arming_check();
   void take_samples();
+  /// The set point of whoever asks for one: a trajectory, a place, the sticks.
+  void take_set_point();
   void publish(const pinnquad_px4::ActuatorMotors& motors);
   void publish(const pinnquad_px4::PinnquadStatus& status);
-  void ask_for_hold();
+  /// What the core received and answered in this tick, for pinnquad replay.
+  void publish_record();
+  /// What it was made with, where a log that begins later finds it too.
+  void publish_settings();
+  void ask_for_takeover();
   void unregister_mode();
 
   uORB::SubscriptionCallbackWorkItem _angular_velocity_sub{this, ORB_ID(vehicle_angular_velocity)};
   uORB::Subscription _attitude_sub{ORB_ID(vehicle_attitude)};
   uORB::Subscription _local_position_sub{ORB_ID(vehicle_local_position)};
   uORB::Subscription _trajectory_setpoint_sub{ORB_ID(trajectory_setpoint)};
+  uORB::Subscription _goto_setpoint_sub{ORB_ID(goto_setpoint)};
+  uORB::Subscription _manual_control_sub{ORB_ID(manual_control_setpoint)};
   uORB::Subscription _vehicle_status_sub{ORB_ID(vehicle_status)};
+  uORB::Subscription _land_detected_sub{ORB_ID(vehicle_land_detected)};
+  uORB::Subscription _failsafe_flags_sub{ORB_ID(failsafe_flags)};
   uORB::Subscription _arming_check_request_sub{ORB_ID(arming_check_request)};
   uORB::Subscription _register_reply_sub{ORB_ID(register_ext_component_reply)};
 
-  uORB::Publication<actuator_motors_s> _actuator_motors_pub{ORB_ID(actuator_motors)};
-  uORB::Publication<pinnquad_status_s> _status_pub{ORB_ID(pinnquad_status)};
-  uORB::Publication<register_ext_component_request_s> _register_pub{ORB_ID(register_ext_component_request)};
-  uORB::Publication<unregister_ext_component_s> _unregister_pub{ORB_ID(unregister_ext_component)};
-  uORB::Publication<arming_check_reply_s> _arming_check_reply_pub{ORB_ID(arming_check_reply)};
-  uORB::Publication<vehicle_command_s> _vehicle_command_pub{ORB_ID(vehicle_command)};
-  uORB::Publication<vehicle_control_mode_s> _config_control_setpoints_pub{ORB_ID(config_control_setpoints)};
+  /// Outlive the module and are never destroyed: a destroyed publication takes its topic from under its readers. The motors'
+  /// outputs would freeze, and the commander would not hear that the mode is unregistered.
+  struct Publications {
+    uORB::Publication<actuator_motors_s> actuator_motors{ORB_ID(actuator_motors)};
+    uORB::Publication<pinnquad_status_s> status{ORB_ID(pinnquad_status)};
+    uORB::Publication<pinnquad_record_s> record{ORB_ID(pinnquad_record)};
+    uORB::Publication<pinnquad_settings_s> settings{ORB_ID(pinnquad_settings)};
+    uORB::Publication<register_ext_component_request_s> register_mode{ORB_ID(register_ext_component_request)};
+    uORB::Publication<unregister_ext_component_s> unregister_mode{ORB_ID(unregister_ext_component)};
+    uORB::Publication<arming_check_reply_s> arming_check_reply{ORB_ID(arming_check_reply)};
+    uORB::Publication<vehicle_command_s> vehicle_command{ORB_ID(vehicle_command)};
+    uORB::Publication<vehicle_control_mode_s> config_control_setpoints{ORB_ID(config_control_setpoints)};
+  };
+  static Publications* publications();
 
   // before the core, which is made of them
-  DEFINE_PARAMETERS((ParamFloat<px4::params::PQ_OUT_MIN>)_param_out_min,
-                    (ParamInt<px4::params::PQ_AGE_RATES>)_param_age_rates,
-                    (ParamInt<px4::params::PQ_AGE_ATT>)_param_age_attitude,
-                    (ParamInt<px4::params::PQ_AGE_POS>)_param_age_position,
-                    (ParamInt<px4::params::PQ_AGE_SP>)_param_age_setpoint)
+  DEFINE_PARAMETERS(
+      (ParamFloat<px4::params::PQ_OUT_MIN>)_param_out_min, (ParamInt<px4::params::PQ_AGE_RATES>)_param_age_rates,
+      (ParamInt<px4::params::PQ_AGE_ATT>)_param_age_attitude, (ParamInt<px4::params::PQ_AGE_POS>)_param_age_position,
+      (ParamInt<px4::params::PQ_AGE_SP>)_param_age_setpoint, (ParamFloat<px4::params::PQ_G_POS>)_param_gain_position,
+      (ParamFloat<px4::params::PQ_G_VEL>)_param_gain_velocity, (ParamFloat<px4::params::PQ_G_TILT>)_param_gain_tilt,
+      (ParamFloat<px4::params::PQ_G_YAW>)_param_gain_yaw, (ParamFloat<px4::params::PQ_G_RATE>)_param_gain_rate,
+      (ParamFloat<px4::params::PQ_G_YAWRATE>)_param_gain_yaw_rate,
+      (ParamFloat<px4::params::PQ_V_XY>)_param_speed_horizontal, (ParamFloat<px4::params::PQ_V_UP>)_param_speed_up,
+      (ParamFloat<px4::params::PQ_V_DN>)_param_speed_down, (ParamFloat<px4::params::PQ_TKO_T>)_param_take_off,
+      (ParamFloat<px4::params::PQ_BIAS_W>)_param_bias_bandwidth, (ParamFloat<px4::params::PQ_BIAS_MAX>)_param_bias_most,
+      (ParamInt<px4::params::PQ_RECORD>)_param_record, (ParamFloat<px4::params::PQ_STK_XY>)_param_stick_horizontal,
+      (ParamFloat<px4::params::PQ_STK_Z>)_param_stick_vertical, (ParamFloat<px4::params::PQ_STK_YAW>)_param_stick_yaw)
 
   Core _core;
   struct alignas(pinnquad::model_block_alignment) Block {
@@ -93,7 +134,22 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
   Block _blocks[2]{};  ///< the core's model looks into one of them
   int _next_block{0};
 
-  bool _asked_to_register{false};
+  Publications& _publications{*publications()};
+  pinnquad_px4::FailsafeFlags _failsafe_flags{};
+  pinnquad_px4::Takeover _takeover{};
+  pinnquad_px4::SetPointSource _source;
+  float _heading_rad{0};
+  float _velocity_m_s[3]{};
+  uint64_t _asked_to_register_us{0};
+  uint64_t _request_id{0};
+  uint64_t _configured_us{0};
+  uint64_t _registered_us{0};
+  uint64_t _asked_for_takeover_us{0};
+  uint64_t _settings_us{0};
+  uint8_t _stale_inputs{0};  ///< of the last step, as bits
+  uint32_t _valid_modes{0};  ///< as bits by nav_state
+  bool _armed{false};
+  bool _landed{false};
   bool _selected{false};
   bool _has_commands{true};  ///< what the next arming check is told
   int8_t _arming_check_id{-1};

@@ -340,3 +340,38 @@ TEST_CASE("numbers so large that a sum overflows: a Status, and the demand is le
   CHECK(controller(state, TrajectoryPoint<float>{}, tracking) == Status::output_not_finite);
   CHECK(tracking.feedback_acceleration_m_s2[0] == 42);
 }
+
+TEST_CASE(
+    "speed: no limit asks for as much as the error is large; with limits no more than can be braked, in the error's "
+    "direction") {
+  const double unlimited = std::numeric_limits<double>::max();
+  FlightLimits<double> limits;
+  CHECK(limits.max_horizontal_speed_m_s == unlimited);
+  const Vector3<double> reference(1, -2, 0.5), error(30, -40, 20);
+  const FlightGains<double> gains;
+  CHECK(FlightController<double>().wanted_velocity(reference, error) ==
+        Vector3<double>(reference + error * gains.position_1_s));
+  limits.max_horizontal_speed_m_s = 8;
+  limits.max_climb_m_s = 3;
+  limits.max_descent_m_s = 2;
+  const FlightController<double> controller(gains, limits);
+  std::mt19937_64 engine(4);
+  for (int i = 0; i < 1000; ++i) {
+    Vector3<double> far, moving;
+    for (int k = 0; k < 3; ++k) far[k] = uniform(engine, -20, 20), moving[k] = uniform(engine, -10, 10);
+    const Vector3<double> v = controller.wanted_velocity(moving, far);
+    CHECK(std::hypot(v[0], v[1]) <= 8 + 1e-12);
+    CHECK(v[2] <= 2);
+    CHECK(v[2] >= -3);
+    const Vector3<double> still = controller.wanted_velocity(Vector3<double>(0, 0, 0), far);
+    CHECK(still[0] * far[1] == doctest::Approx(still[1] * far[0]));
+    CHECK(still[2] * far[2] >= 0);
+    // d(v^2 / 2)/ds: what it must brake on its way
+    const double d = std::hypot(far[0], far[1]), h = 1e-4;
+    const auto speed = [&](double at) { return controller.wanted_velocity({0, 0, 0}, {at, 0, 0})[0]; };
+    const double braking = (speed(d + h) * speed(d + h) - speed(d - h) * speed(d - h)) / (4 * h);
+    CHECK(braking <= 0.4 * limits.max_horizontal_acceleration_m_s2 * (1 + 1e-6));
+  }
+  const Vector3<double> near(0.3, -0.2, 0.1);
+  CHECK((controller.wanted_velocity({0, 0, 0}, near) - near * gains.position_1_s).norm() <= 1e-15);
+}

@@ -4,10 +4,13 @@
 
 #include <doctest/doctest.h>
 
-#include "support/uneven_airframe.hpp"
-
 #include <cmath>
 #include <limits>
+#include <random>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/uneven_airframe.hpp"
 
 using pinnquad::Commands;
 using pinnquad::keep_torque;
@@ -81,4 +84,80 @@ TEST_CASE("equal rotors: the shift of all commands together, to the last bit") {
         pinnquad::Commands<double>{0.1, 0.9, 0.5, 1.0}}) {
     CHECK(keep_torque(rotors, u) == keep_torque(u));
   }
+}
+
+namespace {
+
+/// The paper's quadrotor with its centre of gravity 2 cm ahead of the rotors' middle.
+pinnquad::Airframe<double> nose_heavy() {
+  pinnquad::Airframe<double> a = pinnquad::PaperQuadrotor::value<double>();
+  for (auto& r : a.rotors) r.x_m -= 0.02;
+  return a;
+}
+
+constexpr pinnquad::CommandRange<double> turning_on{0.02, 1.0};
+constexpr double rounding = 1e-9;
+
+}  // namespace
+
+TEST_CASE("within a range: what torque can be had is had, in its direction, whatever gives way") {
+  for (const pinnquad::Airframe<double>& a :
+       {nose_heavy(), pinnquad::test::uneven_airframe<double>(), pinnquad::PaperQuadrotor::value<double>()}) {
+    const pinnquad::Rotors<double> rotors(a);
+    std::mt19937_64 engine(8);
+    int thrust_gave = 0, yaw_gave = 0, tilt_gave = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      Commands<double> wanted{};
+      for (double& u : wanted) u = pinnquad::uniform(engine, 0.0, 1.15);
+      const Commands<double> given = keep_torque(rotors, turning_on, wanted);
+      for (const double u : given) REQUIRE((u >= turning_on.lower && u <= turning_on.upper));
+      const pinnquad::Wrench<double> before = rotors.wrench(wanted, 1.0), after = rotors.wrench(given, 1.0);
+      const auto &w = before.torque_N_m, &g = after.torque_N_m;
+      const bool same_tilt = std::abs(w[0] - g[0]) <= rounding && std::abs(w[1] - g[1]) <= rounding;
+      const bool same_yaw = std::abs(w[2] - g[2]) <= rounding;
+      REQUIRE((same_yaw || w[2] * g[2] >= -rounding));
+      REQUIRE(std::abs(g[2]) <= std::abs(w[2]) + rounding);
+      REQUIRE(std::abs(w[0] * g[1] - w[1] * g[0]) <= rounding);  // the axis about which it tilts
+      REQUIRE(w[0] * g[0] + w[1] * g[1] >= -rounding);
+      thrust_gave += same_tilt && same_yaw && std::abs(before.force_N[2] - after.force_N[2]) > rounding;
+      yaw_gave += same_tilt && !same_yaw;
+      tilt_gave += !same_tilt;
+    }
+    CHECK(thrust_gave > 100);
+    CHECK(yaw_gave > 100);
+    MESSAGE("thrust gave way ", thrust_gave, ", yaw ", yaw_gave, ", roll and pitch ", tilt_gave, " times");
+  }
+}
+
+TEST_CASE("a spread that no thrust carries: yaw gives way, then roll and pitch by one share, no further than needed") {
+  const pinnquad::Rotors<double> rotors(nose_heavy());
+  pinnquad::Wrench<double> rolling;
+  rolling.force_N[2] = -15;
+  rolling.torque_N_m = {3 * 1.0, 3 * 0.5, 0.1};  // more than the rotors have
+  const Commands<double> given = keep_torque(rotors, turning_on, rotors.commands(rolling, 1.0));
+  const pinnquad::Wrench<double> made = rotors.wrench(given, 1.0);
+  CHECK(made.torque_N_m[0] == doctest::Approx(2 * made.torque_N_m[1]).epsilon(1e-9));
+  CHECK(std::abs(made.torque_N_m[2]) <= rounding);
+  double largest = 0, smallest = 1;
+  for (const double u : given) largest = std::max(largest, u), smallest = std::min(smallest, u);
+  CHECK(largest == doctest::Approx(1.0).epsilon(1e-9));  // both ends are reached: no more roll could be had
+  CHECK(smallest == doctest::Approx(0.02).epsilon(1e-9));
+}
+
+TEST_CASE("commands within the range stay, to the bit; a floor does not turn the vehicle") {
+  const pinnquad::Airframe<double> a = nose_heavy();
+  const pinnquad::Rotors<double> rotors(a);
+  const Commands<double> fits{0.02, 1.0, 0.3, 0.7};
+  CHECK(keep_torque(rotors, turning_on, fits) == fits);
+  // nearly no thrust asked for: the floor under each rotor alone would pitch the nose by several rad/s^2
+  pinnquad::Wrench<double> falling;
+  falling.force_N[2] = -0.3;
+  const Commands<double> wanted = rotors.commands(falling, 1.0);
+  Commands<double> clipped_alone = wanted;
+  for (double& u : clipped_alone) u = std::max(u, 0.02);
+  const auto pitch_rad_s2 = [&](const Commands<double>& u) {
+    return rotors.wrench(u, 1.0).torque_N_m[1] / a.inertia_kg_m2[1];
+  };
+  CHECK(std::abs(pitch_rad_s2(clipped_alone)) > 0.3);
+  CHECK(std::abs(pitch_rad_s2(keep_torque(rotors, turning_on, wanted))) <= 1e-9);
 }

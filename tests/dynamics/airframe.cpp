@@ -12,6 +12,7 @@
 
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/px4_sih.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 
@@ -57,11 +58,13 @@ TEST_CASE_TEMPLATE("the airframes of the library are valid and carry their names
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::ReferenceQuadrotor10, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Racer5Inch, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Crazyflie, Scalar>()) == Status::ok);
+  CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Px4Sih, Scalar>()) == Status::ok);
   CHECK(std::string(pinnquad::PaperQuadrotor::name) == "paper_quadrotor");
   CHECK(std::string(pinnquad::ReferenceQuadrotor15::name) == "reference_1.5kg");
   CHECK(std::string(pinnquad::ReferenceQuadrotor10::name) == "reference_1.0kg");
   CHECK(std::string(pinnquad::Racer5Inch::name) == "racer_5_inch");
   CHECK(std::string(pinnquad::Crazyflie::name) == "crazyflie_2_1");
+  CHECK(std::string(pinnquad::Px4Sih::name) == "px4_sih");
 }
 
 TEST_CASE_TEMPLATE("check_airframe refuses each bad field", Scalar, float, double) {
@@ -220,6 +223,14 @@ TEST_CASE("racer_5_inch: each number as its source has it") {
                    5 * 0.0254,
                    4.6},
                   0.002);
+}
+
+TEST_CASE("px4_sih: each number as PX4's parameters have it") {
+  constexpr double full_rad_s = 100 * 6.283185307179586, square = full_rad_s * full_rad_s;
+  check_published(
+      pinnquad::Px4Sih::value<double>(),
+      {1.0, 0.025, 0.025, 0.030, 0.2, 0.2, 5.0 / square, 0.1 / square, full_rad_s, 0.05, {0, 0, 0}, 1, 0.25, 2.0394},
+      0.002);
 }
 
 TEST_CASE("crazyflie_2_1: each number as its sources have it") {

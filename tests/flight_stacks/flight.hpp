@@ -92,6 +92,7 @@ class FaultyFlight {
       }
       feed(ms, now_us, target(time_s_));
       stack_.fly_by_hand(faulty(FaultKind::flown_by_hand));
+      stack_.situation({!own_flies_ && !faulty(FaultKind::commands_lost) && ms > 0, false});
       const Answer answer = stack_.run(now_us);
       on_tick(stack_.record());
       note(answer, faults);

@@ -112,7 +112,7 @@ TEST_CASE("without the age limits a module falls") {
   AgeLimits none;
   none.body_rates_us = none.attitude_us = none.local_us = none.set_point_us = 1'000'000'000;
   for (const FaultKind kind : {FaultKind::attitude_stops, FaultKind::rates_stop}) {
-    const std::array<Fault, 1> outage = {{{6, 4, kind, 0, "outage", Reaction::flies}}};
+    const std::array<Fault, 1> outage = {{{6, 6, kind, 0, "outage", Reaction::flies}}};
     FaultyFlight<Px4Stack> with, without(none);
     FaultyFlight<CrazyflieStack> small_with, small_without(none);
     REQUIRE((with.boot() && without.boot() && small_with.boot() && small_without.boot()));

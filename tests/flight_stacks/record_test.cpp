@@ -4,9 +4,12 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <random>
 #include <sstream>
 
 #include "model_blocks.hpp"
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/core/rotation.hpp"
 #include "record_csv.hpp"
 #include "stacks.hpp"
 

@@ -48,7 +48,8 @@ class Px4StackOf {
   static constexpr const char* name = "px4_module";
   static constexpr int period_ms = 1;
 
-  explicit Px4StackOf(const AgeLimits& ages = {}) : core_(&Px4StackOf::clock, ages) {}
+  template <class... Settings>
+  explicit Px4StackOf(const Settings&... settings) : core_(&Px4StackOf::clock, settings...) {}
 
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
@@ -92,6 +93,7 @@ class Px4StackOf {
 
   /// The module runs unselected too.
   void fly_by_hand(bool /*by_hand*/) {}
+  void situation(const Situation& now) { core_.situation(now); }
 
   Answer run(std::uint64_t now_us) {
     now_us_ = now_us;
@@ -120,7 +122,8 @@ class CrazyflieStackOf {
   static constexpr const char* name = "crazyflie_app";
   static constexpr int period_ms = 2;
 
-  explicit CrazyflieStackOf(const AgeLimits& ages = {}) : core_(ages) {}
+  template <class... Settings>
+  explicit CrazyflieStackOf(const Settings&... settings) : core_(settings...) {}
 
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
@@ -173,6 +176,10 @@ class CrazyflieStackOf {
   }
 
   void fly_by_hand(bool by_hand) { by_hand_ = by_hand; }
+  void situation(const Situation& now) {
+    state_.drives_motors = now.drives_motors;
+    state_.landed = now.landed;
+  }
 
   Answer run(std::uint64_t now_us) {
     float m[4] = {};

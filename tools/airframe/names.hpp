@@ -7,6 +7,7 @@
 
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/px4_sih.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 
@@ -24,7 +25,7 @@ struct AirframeList {};
 
 /// The airframes that programs know by name; a new one is added here.
 using Airframes = AirframeList<pinnquad::PaperQuadrotor, pinnquad::ReferenceQuadrotor10, pinnquad::ReferenceQuadrotor15,
-                               pinnquad::Crazyflie, pinnquad::Racer5Inch>;
+                               pinnquad::Crazyflie, pinnquad::Racer5Inch, pinnquad::Px4Sih>;
 
 template <class Function, class... Vehicles>
 void each_airframe(const Function& function, AirframeList<Vehicles...> /*list*/) {
@@ -65,6 +66,9 @@ constexpr const char* airframe_source(AirframeTag<pinnquad::Crazyflie> /*tag*/) 
 }
 constexpr const char* airframe_source(AirframeTag<pinnquad::Racer5Inch> /*tag*/) {
   return "Song et al. 2020 (Flightmare), Foehn et al. 2022 (Agilicious)";
+}
+constexpr const char* airframe_source(AirframeTag<pinnquad::Px4Sih> /*tag*/) {
+  return "the quadrotor of PX4's simulation in hardware, default parameters; its damping is linear";
 }
 
 /// "paper_quadrotor, reference_1.0kg, ...": for messages and help.

@@ -20,8 +20,10 @@ struct CrazyflieState {
   uint32_t attitude_timestamp;
   float attitude_quaternion[4]; /* x, y, z, w: body to world, as state_t has it */
   uint32_t position_timestamp;
-  float position[3]; /* m, world */
-  float velocity[3]; /* m/s, world */
+  float position[3];  /* m, world */
+  float velocity[3];  /* m/s, world */
+  bool drives_motors; /* the forces of the last step reached the motors */
+  bool landed;
 };
 
 enum CrazyflieMode { crazyflie_mode_disable = 0, crazyflie_mode_abs = 1, crazyflie_mode_velocity = 2 };
@@ -52,15 +54,20 @@ struct CrazyflieReport {
 };
 
 /* Opens and tests a model block; its address is a multiple of 8 and it stays there. 0, or a pinnquad::Status.
- * The first call is the first of all; a later model takes the place of the one that flies, at the next step. */
+ * A later model takes the place of the one that flies, at the next step. */
 uint8_t pinnquad_flight_offer_model(const void* block, size_t length);
+
+/* The first call of all, whoever makes it; a later one changes nothing. `most_thrust_N`: what the platform gives of one motor,
+ * where its normalised force is 1; forces stay within it. What a force of pinnquad_flight_step is to be multiplied by, to be one
+ * of the platform: the greatest thrust of a rotor of the model's airframe over the platform's. */
+float pinnquad_flight_start(float most_thrust_N);
 
 /* True once a model was accepted. */
 bool pinnquad_flight_ready(void);
 
 /* One tick. `forces`: thrust of motors M1..M4 over their greatest, 0..1. False: the controller has none, `forces` is
- * untouched and another controller must take over. `report` is written either way. A set point whose three modes
- * are all disabled (motors off, or flown by hand) is not this controller's: false. */
+ * untouched and another controller must take over. `report` is written either way. A set point that leaves one
+ * of the three axes disabled (motors off, or flown by hand) is not this controller's: false. */
 bool pinnquad_flight_step(uint32_t now_ms, const struct CrazyflieState* state, const struct CrazyflieSetpoint* setpoint,
                           float forces[4], struct CrazyflieReport* report);
 

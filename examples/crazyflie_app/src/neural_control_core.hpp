@@ -19,7 +19,9 @@ inline constexpr std::size_t rotor_of_motor[4] = {0, 3, 1, 2};
 template <class Model, class Controller = flight_stacks::NeuralController<Model>>
 class NeuralControl {
  public:
-  explicit NeuralControl(const flight_stacks::AgeLimits& ages = {}) noexcept : controller_(ages) {}
+  /// With the settings that the controller is made with.
+  template <class... Settings>
+  explicit NeuralControl(const Settings&... settings) noexcept : controller_(settings...) {}
 
   pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
     return controller_.offer_model(block, length);
@@ -27,21 +29,23 @@ class NeuralControl {
   bool ready() const noexcept { return controller_.ready(); }
   const Controller& controller() const noexcept { return controller_; }
 
-  bool step(std::uint32_t now_ms, const CrazyflieState& state, const CrazyflieSetpoint& setpoint, float (&forces)[4],
+  /// `forces`: 4 of them, untouched where it has none.
+  bool step(std::uint32_t now_ms, const CrazyflieState& state, const CrazyflieSetpoint& setpoint, float* forces,
             CrazyflieReport& report) noexcept {
-    flight_stacks::StepReport why;
-    pinnquad::Commands<float> commands{};
+    why_ = {};
     bool has_commands = false;
     if (asks_for_a_place(setpoint)) {
+      controller_.situation({state.drives_motors, state.landed});
       take(state);
       take(setpoint);
-      has_commands = controller_.step(in_us(now_ms), commands, why) != flight_stacks::Reaction::gives_up;
+      has_commands = controller_.step(in_us(now_ms), commands_, why_) != flight_stacks::Reaction::gives_up;
     } else {
+      controller_.situation({false, state.landed});
       controller_.skip(in_us(now_ms));
     }
-    controller_.describe(why, report);
+    controller_.describe(why_, report);
     if (!has_commands) return false;
-    for (std::size_t motor = 0; motor < 4; ++motor) forces[motor] = commands[rotor_of_motor[motor]];
+    for (std::size_t motor = 0; motor < 4; ++motor) forces[motor] = commands_[rotor_of_motor[motor]];
     return true;
   }
 
@@ -50,8 +54,9 @@ class NeuralControl {
   static pinnquad::Vector3<float> ned(const float (&v)[3]) noexcept {
     return pinnquad::swap_enu_ned<float>({v[0], v[1], v[2]});
   }
+  /// Where one axis is the pilot's, attitude and thrust are asked for, which this controller does not fly.
   static bool asks_for_a_place(const CrazyflieSetpoint& s) noexcept {
-    return s.mode[0] != crazyflie_mode_disable || s.mode[1] != crazyflie_mode_disable ||
+    return s.mode[0] != crazyflie_mode_disable && s.mode[1] != crazyflie_mode_disable &&
            s.mode[2] != crazyflie_mode_disable;
   }
 
@@ -91,6 +96,8 @@ class NeuralControl {
   }
 
   Controller controller_;
+  flight_stacks::StepReport why_{};  ///< of the last step; here, not on the stack of a task that has little
+  pinnquad::Commands<float> commands_{};
   pinnquad::Heading<float> heading_{};  ///< of the body in the firmware's world
 };
 

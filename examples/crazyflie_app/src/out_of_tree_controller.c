@@ -1,22 +1,45 @@
 /* SPDX-License-Identifier: MIT
- * The glue between the Crazyflie's firmware and neural_control_core.h: structures, model, log variables.
- * Not built in this repository; see README.md. */
+ * The glue between the Crazyflie's firmware and neural_control_core.h: structures, model, who flies, log variables.
+ * Compiled and run here against stand-ins of the firmware's headers (tests/flight_stacks/crazyflie). */
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "FreeRTOS.h"
 #include "app.h"
+#include "autoconf.h"
+#include "config.h"
 #include "controller.h"
 #include "controller_pid.h"
 #include "log.h"
 #include "neural_control_core.h"
 #include "param.h"
+#include "platform_defaults.h"
+#include "sample_clock.h"
 #include "stabilizer_types.h"
+#include "supervisor.h"
 #include "task.h"
 #include "usec_time.h"
 
 #define DEBUG_MODULE "PINNQUAD"
 #include "debug.h"
+
+#ifndef CONFIG_CONTROLLER_OOT
+#error "pinnquad: CONFIG_CONTROLLER_OOT must be set (app-config)"
+#endif
+#if !defined(CONFIG_ESTIMATOR_KALMAN_ENABLE) && !defined(CONFIG_ESTIMATOR_UKF_ENABLE)
+#error "pinnquad: needs the Kalman estimator: the complementary one estimates no x and y (app-config)"
+#endif
+#ifndef CONFIG_ENABLE_THRUST_BAT_COMPENSATED
+#error \
+    "pinnquad: needs CONFIG_ENABLE_THRUST_BAT_COMPENSATED: without it controlModeForce sets voltages, not thrusts (app-config)"
+#endif
+/* What a step needs below the stabilizer's own frames, and what those, interrupts and the PID controller take. The first is
+ * checked against the compiler's own count (tests/flight_stacks/stack_depth.py). */
+#define PINNQUAD_STEP_STACK_BYTES 1400
+#define STABILIZER_OWN_STACK_BYTES 400
+_Static_assert(STABILIZER_TASK_STACKSIZE * sizeof(StackType_t) >=
+                   PINNQUAD_STEP_STACK_BYTES + STABILIZER_OWN_STACK_BYTES,
+               "pinnquad: the stabilizer's task has too little stack: raise STABILIZER_TASK_STACKSIZE in config.h");
 
 /* model_block.S */
 extern const unsigned char pinnquad_model_block[];
@@ -28,12 +51,21 @@ static volatile bool ready;        /* a model was accepted: before, the stabiliz
 static uint8_t gave_up;            /* until the next set point that is off or by hand */
 static uint8_t pid_flies = 1;      /* no model, given up, off or by hand */
 static uint16_t step_us;           /* inference time: outer loop and inverse */
-static float force_scale = 1.0f;   /* greatest thrust of the airframe's rotor over the platform's THRUST_MAX */
+static float force_scale;          /* greatest thrust of the model's rotor over the platform's THRUST_MAX */
+
+/* Not on the stabilizer's stack. */
+static struct CrazyflieState at;
+static struct CrazyflieSetpoint wanted;
+static float forces[STABILIZER_NR_OF_MOTORS];
+static struct CrazyflieSampleClock attitude_clock, position_clock;
+/* The PID controller's own: its output holds state between its slower steps, and forces lie in the same bytes. */
+static control_t pid_control;
 
 static uint32_t now_ms(void) { return T2M(xTaskGetTickCount()); }
 
 /* In the app's task, whose stack is ours to choose: opening and testing a model takes some. */
 void appMain(void) {
+  force_scale = pinnquad_flight_start(THRUST_MAX);
   model_status =
       pinnquad_flight_offer_model(pinnquad_model_block, (size_t)(pinnquad_model_block_end - pinnquad_model_block));
   ready = model_status == 0;
@@ -51,61 +83,68 @@ static void copy(float to[3], float x, float y, float z) {
   to[2] = z;
 }
 
-static void copy_state(struct CrazyflieState* to, const sensorData_t* sensors, const state_t* state) {
+static void copy_state(const sensorData_t* sensors, const state_t* state) {
+  const uint32_t now = now_ms();
   /* the gyro has a time of its own, in us */
   const uint32_t gyro_age_ms = (uint32_t)((usecTimestamp() - sensors->interruptTimestamp) / 1000);
-  to->gyro_timestamp = now_ms() - gyro_age_ms;
-  copy(to->gyro, sensors->gyro.x, sensors->gyro.y, sensors->gyro.z);
-  to->attitude_timestamp = state->attitude.timestamp;
-  to->attitude_quaternion[0] = state->attitudeQuaternion.x;
-  to->attitude_quaternion[1] = state->attitudeQuaternion.y;
-  to->attitude_quaternion[2] = state->attitudeQuaternion.z;
-  to->attitude_quaternion[3] = state->attitudeQuaternion.w;
-  to->position_timestamp = state->position.timestamp;
-  copy(to->position, state->position.x, state->position.y, state->position.z);
-  copy(to->velocity, state->velocity.x, state->velocity.y, state->velocity.z);
+  at.gyro_timestamp = now - gyro_age_ms;
+  copy(at.gyro, sensors->gyro.x, sensors->gyro.y, sensors->gyro.z);
+  at.attitude_quaternion[0] = state->attitudeQuaternion.x;
+  at.attitude_quaternion[1] = state->attitudeQuaternion.y;
+  at.attitude_quaternion[2] = state->attitudeQuaternion.z;
+  at.attitude_quaternion[3] = state->attitudeQuaternion.w;
+  at.attitude_timestamp =
+      crazyflie_sample_time(&attitude_clock, state->attitude.timestamp, now, at.attitude_quaternion, 4);
+  copy(at.position, state->position.x, state->position.y, state->position.z);
+  copy(at.velocity, state->velocity.x, state->velocity.y, state->velocity.z);
+  const float local[6] = {at.position[0], at.position[1], at.position[2],
+                          at.velocity[0], at.velocity[1], at.velocity[2]};
+  at.position_timestamp = crazyflie_sample_time(&position_clock, state->position.timestamp, now, local, 6);
+  at.landed = !supervisorIsFlying();
+  at.drives_motors = !pid_flies && supervisorAreMotorsAllowedToRun();
 }
 
-static void copy_setpoint(struct CrazyflieSetpoint* to, const setpoint_t* setpoint) {
-  to->timestamp = setpoint->timestamp;
-  copy(to->position, setpoint->position.x, setpoint->position.y, setpoint->position.z);
-  copy(to->velocity, setpoint->velocity.x, setpoint->velocity.y, setpoint->velocity.z);
-  copy(to->acceleration, setpoint->acceleration.x, setpoint->acceleration.y, setpoint->acceleration.z);
-  to->yaw = setpoint->attitude.yaw;
-  to->yaw_rate = setpoint->attitudeRate.yaw;
-  to->velocity_body = setpoint->velocity_body;
-  to->mode[0] = (uint8_t)setpoint->mode.x;
-  to->mode[1] = (uint8_t)setpoint->mode.y;
-  to->mode[2] = (uint8_t)setpoint->mode.z;
-  to->mode_yaw = (uint8_t)setpoint->mode.yaw;
+static void copy_setpoint(const setpoint_t* setpoint) {
+  wanted.timestamp = setpoint->timestamp;
+  copy(wanted.position, setpoint->position.x, setpoint->position.y, setpoint->position.z);
+  copy(wanted.velocity, setpoint->velocity.x, setpoint->velocity.y, setpoint->velocity.z);
+  copy(wanted.acceleration, setpoint->acceleration.x, setpoint->acceleration.y, setpoint->acceleration.z);
+  wanted.yaw = setpoint->attitude.yaw;
+  wanted.yaw_rate = setpoint->attitudeRate.yaw;
+  wanted.velocity_body = setpoint->velocity_body;
+  wanted.mode[0] = (uint8_t)setpoint->mode.x;
+  wanted.mode[1] = (uint8_t)setpoint->mode.y;
+  wanted.mode[2] = (uint8_t)setpoint->mode.z;
+  wanted.mode_yaw = (uint8_t)setpoint->mode.yaw;
 }
 
 void controllerOutOfTree(control_t* control, const setpoint_t* setpoint, const sensorData_t* sensors,
                          const state_t* state, const stabilizerStep_t stabilizerStep) {
+  /* The PID controller is stepped while the network flies: its filters follow, and taking over is warm. */
+  controllerPid(&pid_control, setpoint, sensors, state, stabilizerStep);
   if (ready && RATE_DO_EXECUTE(RATE_500_HZ, stabilizerStep)) {
-    struct CrazyflieState at;
-    struct CrazyflieSetpoint wanted;
-    float forces[STABILIZER_NR_OF_MOTORS];
-    copy_state(&at, sensors, state);
-    copy_setpoint(&wanted, setpoint);
+    copy_state(sensors, state);
+    copy_setpoint(setpoint);
     const uint64_t start_us = usecTimestamp();
     const bool has_forces = pinnquad_flight_step(now_ms(), &at, &wanted, forces, &report);
     step_us = (uint16_t)(usecTimestamp() - start_us);
     /* Off, or flown by hand: the PID controller's, and the module may fly again afterwards. Given up: the PID
      * controller's until then. */
     const bool by_hand =
-        setpoint->mode.x == modeDisable && setpoint->mode.y == modeDisable && setpoint->mode.z == modeDisable;
+        setpoint->mode.x == modeDisable || setpoint->mode.y == modeDisable || setpoint->mode.z == modeDisable;
     if (by_hand) gave_up = 0;
     if (!by_hand && !has_forces) gave_up = 1;
     pid_flies = by_hand || gave_up;
-    if (!pid_flies) {
-      control->controlMode = controlModeForce;
-      for (int motor = 0; motor < STABILIZER_NR_OF_MOTORS; motor++) {
-        control->normalizedForces[motor] = forces[motor] * force_scale;
-      }
-    }
   }
-  if (pid_flies) controllerPid(control, setpoint, sensors, state, stabilizerStep);
+  if (pid_flies) {
+    *control = pid_control;
+    return;
+  }
+  /* Not more than 1 of any: the platform would clip each motor for itself, and torque with it. */
+  control->controlMode = controlModeForce;
+  for (int motor = 0; motor < STABILIZER_NR_OF_MOTORS; motor++) {
+    control->normalizedForces[motor] = forces[motor] * force_scale;
+  }
 }
 
 PARAM_GROUP_START(pinnquad)

@@ -26,7 +26,9 @@ struct FlightGains {
   Scalar yaw_rate_1_s = Scalar(8);          ///< the same for yaw
 };
 
-/// What the controller may ask for: limits on the specific force (thrust / mass, NED), on turning and on its onset.
+/// What the controller may ask for: limits on the specific force (thrust / mass, NED), on turning and on its onset, and on the
+/// speed of a trajectory's point and the position error together. No speed limit by default: a position error asks for as much
+/// as it is large, and a vehicle far from its place arrives faster than it can stop.
 template <class Scalar>
 struct FlightLimits {
   Scalar max_tilt_rad = Scalar(0.85);  ///< of the thrust wanted, 49 degrees
@@ -36,6 +38,9 @@ struct FlightLimits {
   Scalar max_roll_pitch_rate_rad_s = Scalar(4);  ///< of what an attitude error asks for
   Scalar max_roll_pitch_acceleration_rad_s2 = Scalar(100);
   Scalar max_yaw_acceleration_rad_s2 = Scalar(4);
+  Scalar max_horizontal_speed_m_s = std::numeric_limits<Scalar>::max();
+  Scalar max_climb_m_s = std::numeric_limits<Scalar>::max();
+  Scalar max_descent_m_s = std::numeric_limits<Scalar>::max();
 };
 
 namespace detail {
@@ -162,7 +167,8 @@ class FlightController {
   }
 
   /// Trajectory loop. Reference: the point's world acceleration in the current attitude, angular accelerations from
-  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory.
+  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory. Speed within the
+  /// limits, where there are any.
   /// `not_finite`, `no_solution` (flatness.hpp), `output_not_finite`; `demand` is untouched unless the Status is ok.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point,
                     TrackingDemand<Scalar>& demand) const noexcept {
@@ -174,7 +180,7 @@ class FlightController {
     FlatMotion<Scalar> flat;
     Status status = flat_motion(point, gravity_m_s2_, flat);
     if (status != Status::ok) return status;
-    const Vector3<Scalar> velocity = point.velocity_m_s + (point.position_m - state.position_m) * gains_.position_1_s;
+    const Vector3<Scalar> velocity = wanted_velocity(point.velocity_m_s, point.position_m - state.position_m);
     const Vector3<Scalar> acceleration =
         limited(point.acceleration_m_s2 + (velocity - state.velocity_m_s) * gains_.velocity_1_s);
     Quaternion<Scalar> error;
@@ -193,6 +199,34 @@ class FlightController {
     }
     demand = asked;
     return Status::ok;
+  }
+
+  /// The velocity (NED) that closes a position error on top of a reference, within the speed limits: the point's velocity and
+  /// position_1_s times the error; under a limit no more than can be braked by 0.4 of what limited() leaves,
+  /// sqrt(2 a (e - a / (2 k^2))) beyond e = a / k^2.
+  Vector3<Scalar> wanted_velocity(const Vector3<Scalar>& reference_m_s, const Vector3<Scalar>& error_m) const noexcept {
+    using std::sqrt;
+    Vector3<Scalar> approach = error_m * gains_.position_1_s;
+    constexpr Scalar none = std::numeric_limits<Scalar>::max(), brakes = Scalar(0.4);
+    if (limits_.max_horizontal_speed_m_s < none) {
+      const Scalar far = sqrt(error_m[0] * error_m[0] + error_m[1] * error_m[1]);
+      const Scalar asked = gains_.position_1_s * far;
+      const Scalar most = stoppable(far, brakes * limits_.max_horizontal_acceleration_m_s2);
+      if (most < asked) shorten(approach, most);
+    }
+    const bool up = error_m[2] < Scalar(0);
+    if ((up ? limits_.max_climb_m_s : limits_.max_descent_m_s) < none) {
+      const Scalar far = up ? -error_m[2] : error_m[2];
+      const Scalar most_brake = up ? gravity_m_s2_ - limits_.min_vertical_specific_force_m_s2
+                                   : limits_.max_specific_force_m_s2 - gravity_m_s2_;
+      const Scalar most = stoppable(far, brakes * most_brake);
+      if (most < gains_.position_1_s * far) approach[2] = up ? -most : most;
+    }
+    Vector3<Scalar> result = reference_m_s + approach;
+    shorten(result, limits_.max_horizontal_speed_m_s);
+    if (result[2] > limits_.max_descent_m_s) result[2] = limits_.max_descent_m_s;
+    if (result[2] < -limits_.max_climb_m_s) result[2] = -limits_.max_climb_m_s;
+    return result;
   }
 
   /// The acceleration (NED) within the limits: the vertical part first, then as much of the horizontal as thrust and
@@ -215,6 +249,15 @@ class FlightController {
   }
 
  private:
+  /// The speed at this distance from which the position loop stops with no more than this deceleration.
+  Scalar stoppable(Scalar far_m, Scalar deceleration_m_s2) const noexcept {
+    using std::sqrt;
+    const Scalar a = deceleration_m_s2 > Scalar(0.1) ? deceleration_m_s2 : Scalar(0.1);
+    const Scalar knee = a / (gains_.position_1_s * gains_.position_1_s);
+    if (!(far_m > knee)) return gains_.position_1_s * far_m;
+    return sqrt(Scalar(2) * a * (far_m - Scalar(0.5) * knee));
+  }
+
   /// Rotation from the attitude that points the thrust along `acceleration` - gravity, into the current one.
   Status attitude_error(const State<Scalar>& state, const Vector3<Scalar>& acceleration, const Heading<Scalar>& yaw,
                         Quaternion<Scalar>& error) const noexcept {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// What a core wrote down (flight_stacks/core_record.hpp) as messages of PX4: same names, same order, other types.
+#pragma once
+
+#include <string.h>
+
+#include "flight_stacks/core_record.hpp"
+
+namespace pinnquad_px4 {
+
+/// `Message`: pinnquad_record_s.
+template <class Message>
+void copy_record(const flight_stacks::CoreRecord& from, Message& to) {
+  to.timestamp = from.timestamp;
+  to.body_rates_us = from.body_rates_us;
+  to.attitude_us = from.attitude_us;
+  to.local_us = from.local_us;
+  to.set_point_us = from.set_point_us;
+  to.tick = from.tick;
+  to.model = from.model;
+  to.refused_samples = from.refused_samples;
+  memcpy(to.body_rates_rad_s, from.body_rates_rad_s, sizeof to.body_rates_rad_s);
+  memcpy(to.attitude, from.attitude, sizeof to.attitude);
+  memcpy(to.position_m, from.position_m, sizeof to.position_m);
+  memcpy(to.velocity_m_s, from.velocity_m_s, sizeof to.velocity_m_s);
+  memcpy(to.wanted_position_m, from.wanted_position_m, sizeof to.wanted_position_m);
+  memcpy(to.wanted_velocity_m_s, from.wanted_velocity_m_s, sizeof to.wanted_velocity_m_s);
+  memcpy(to.wanted_acceleration_m_s2, from.wanted_acceleration_m_s2, sizeof to.wanted_acceleration_m_s2);
+  memcpy(to.wanted_jerk_m_s3, from.wanted_jerk_m_s3, sizeof to.wanted_jerk_m_s3);
+  to.wanted_yaw_rad = from.wanted_yaw_rad;
+  to.wanted_yaw_rate_rad_s = from.wanted_yaw_rate_rad_s;
+  memcpy(to.bias_m_s2, from.bias_m_s2, sizeof to.bias_m_s2);
+  memcpy(to.predicted_velocity_m_s, from.predicted_velocity_m_s, sizeof to.predicted_velocity_m_s);
+  memcpy(to.jump_position_m, from.jump_position_m, sizeof to.jump_position_m);
+  memcpy(to.jump_velocity_m_s, from.jump_velocity_m_s, sizeof to.jump_velocity_m_s);
+  to.jump_yaw_rad = from.jump_yaw_rad;
+  to.lift = from.lift;
+  memcpy(to.commands, from.commands, sizeof to.commands);
+  to.envelope_excess = from.envelope_excess;
+  to.envelope_feature = from.envelope_feature;
+  to.came = from.came;
+  to.asked = from.asked;
+  to.drives_motors = from.drives_motors;
+  to.landed = from.landed;
+  to.reaction = from.reaction;
+  to.status = from.status;
+  to.cause = from.cause;
+  to.stale_inputs = from.stale_inputs;
+}
+
+/// `Message`: pinnquad_settings_s.
+template <class Message>
+void copy_settings(const flight_stacks::CoreSettings& from, Message& to) {
+  to.timestamp = from.timestamp;
+  to.body_rates_us = from.body_rates_us;
+  to.attitude_us = from.attitude_us;
+  to.local_us = from.local_us;
+  to.set_point_us = from.set_point_us;
+  to.keep_us = from.keep_us;
+  to.level_us = from.level_us;
+  to.lowest_command = from.lowest_command;
+  to.highest_command = from.highest_command;
+  to.position_1_s = from.position_1_s;
+  to.velocity_1_s = from.velocity_1_s;
+  to.tilt_1_s = from.tilt_1_s;
+  to.yaw_1_s = from.yaw_1_s;
+  to.roll_pitch_rate_1_s = from.roll_pitch_rate_1_s;
+  to.yaw_rate_1_s = from.yaw_rate_1_s;
+  to.horizontal_speed_m_s = from.horizontal_speed_m_s;
+  to.climb_m_s = from.climb_m_s;
+  to.descent_m_s = from.descent_m_s;
+  to.take_off_s = from.take_off_s;
+  to.bias_bandwidth_1_s = from.bias_bandwidth_1_s;
+  to.most_bias_m_s2 = from.most_bias_m_s2;
+}
+
+}  // namespace pinnquad_px4

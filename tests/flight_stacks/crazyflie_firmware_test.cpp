@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// The Crazyflie app's own glue (examples/crazyflie_app/src/out_of_tree_controller.c), flown by a stand-in of the firmware's
+// stabilizer loop: time stamps as each estimator sets them, the PID controller's output held between its slower steps, forces
+// clipped motor by motor over the platform's greatest thrust.
+#include <doctest/doctest.h>
+
+#include <csetjmp>
+#include <cstring>
+#include <deque>
+
+#include "crazyflie/firmware.h"
+#include "model_blocks.hpp"
+#include "models/crazyflie_2_1.hpp"
+#include "pinnquad/core/rotation.hpp"
+#include "pinnquad/flight.hpp"
+
+// the symbols of model_block.S, around room for a block
+extern "C" unsigned char pinnquad_model_block[];
+__asm__(
+    ".pushsection .data\n .balign 8\n .global pinnquad_model_block\n pinnquad_model_block: .space 32768\n"
+    " .global pinnquad_model_block_end\n pinnquad_model_block_end:\n .popsection\n");
+
+namespace {
+
+using namespace flight_stacks::test;
+using pinnquad::Vector3;
+
+enum class Estimator { kalman, complementary, ukf };
+
+std::uint32_t tick_ms = 0;
+bool is_flying = false;
+std::jmp_buf app_waits;
+
+/// Of the PID controller: an integrator, so that a cold one is not a warm one, written at 500 Hz as the firmware's is.
+struct Pid {
+  long steps = 0;
+  float integral = 0;
+} pid, twin;
+
+void step_pid(Pid& of, control_t* control, const state_t* state, stabilizerStep_t step) {
+  ++of.steps;
+  control->controlMode = controlModeLegacy;
+  if (step % 2 != 0) return;  // what was written stays
+  of.integral += 0.1f * (1.0f - state->position.z);
+  control->roll = static_cast<std::int16_t>(7 + of.integral);
+  control->pitch = 8;
+  control->yaw = 9;
+  control->thrust = 30000 + of.integral;
+}
+
+/// The stabilizer's loop around the app, and the vehicle.
+class Firmware {
+ public:
+  using Vehicle = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag>;
+  using Model = CrazyflieModel;
+
+  explicit Firmware(Estimator estimator)
+      : estimator_(estimator), vehicle_(pinnquad::airframe_value<Model::Vehicle, double>()) {
+    static bool booted = false;  // the app has one controller, in static memory
+    if (!booted) {
+      const Block block = sound_block<Model>();
+      REQUIRE(block.size() <= 32768);
+      std::memcpy(pinnquad_model_block, block.data(), block.size());
+      controllerOutOfTreeInit();
+      REQUIRE(controllerOutOfTreeTest());
+      if (setjmp(app_waits) == 0) appMain();
+      booted = true;
+    }
+    tick_ms += 100'000;  // whatever came before is stale
+    pid = twin = {};
+    body_.body.position_m = {0, 0, -1};
+    const double hover = 1 / vehicle_.airframe().thrust_to_weight();
+    body_.rotors = {hover, hover, hover, hover};
+    is_flying = true;
+    setpoint_ = {};
+    run(20);  // off: whoever gave up may fly again
+    place(1);
+  }
+
+  void place(float z) {
+    setpoint_ = {};
+    setpoint_.mode.x = setpoint_.mode.y = setpoint_.mode.z = setpoint_.mode.yaw = modeAbs;
+    setpoint_.position.z = z;
+  }
+  void attitude_by_hand() {  // height hold: roll and pitch are the pilot's
+    setpoint_.mode.x = setpoint_.mode.y = modeDisable;
+  }
+  void estimator_stops() { stopped_ = true; }
+
+  void run(int ms, bool flies = false) {
+    for (int i = 0; i < ms; ++i) {
+      ++tick_ms;
+      ++step_;
+      sensors_.interruptTimestamp = std::uint64_t{tick_ms} * 1000 - 300;
+      sense();
+      if (!stopped_) estimate();
+      setpoint_.timestamp = tick_ms / 10 * 10;  // a commander at 100 Hz
+      controllerOutOfTree(&control_, &setpoint_, &sensors_, &state_, step_);
+      step_pid(twin, &twin_control_, &state_, step_);
+      if (by_network()) ++ticks_by_network_;
+      ++ticks_;
+      for (const float f : control_.normalizedForces) {
+        if (by_network() && f > most_force_) most_force_ = f;
+      }
+      if (flies) fly();
+    }
+  }
+
+  bool by_network() const { return control_.controlMode == controlModeForce; }
+  bool as_the_twin() const {
+    return control_.controlMode == controlModeLegacy && control_.roll == twin_control_.roll &&
+           control_.pitch == twin_control_.pitch && control_.yaw == twin_control_.yaw &&
+           !(control_.thrust < twin_control_.thrust) && !(control_.thrust > twin_control_.thrust);
+  }
+  double total_thrust_N() const {
+    double sum = 0;
+    for (const float f : control_.normalizedForces)
+      sum += static_cast<double>(f < 0 ? 0 : (f > 1 ? 1 : f) * THRUST_MAX);
+    return sum;
+  }
+  const Vehicle& vehicle() const { return vehicle_; }
+  double height_m() const { return -body_.body.position_m[2]; }
+  float most_force() const { return most_force_; }
+  long ticks() const { return ticks_; }
+  long ticks_by_network() const { return ticks_by_network_; }
+
+ private:
+  void sense() {
+    constexpr double deg = 57.29577951308232;
+    const Vector3<double>& w = body_.body.body_rates_rad_s;
+    sensors_.gyro = {static_cast<float>(w[0] * deg), static_cast<float>(-w[1] * deg), static_cast<float>(-w[2] * deg)};
+  }
+  /// Every estimator's state has noise of its own; Kalman writes at its task's pace, the complementary one at 250 and 100 Hz.
+  void estimate() {
+    noise_ = 1e-6f * static_cast<float>(tick_ms % 7);
+    const bool attitude_now = estimator_ != Estimator::complementary || step_ % 4 == 0;
+    const bool position_now = estimator_ == Estimator::complementary ? step_ % 10 == 0 : step_ % 4 == 0;
+    if (attitude_now) {
+      const pinnquad::Quaternion<double> q = pinnquad::swap_enu_flu_ned_frd(body_.body.attitude);
+      state_.attitudeQuaternion = {static_cast<float>(q.x) + noise_, static_cast<float>(q.y), static_cast<float>(q.z),
+                                   static_cast<float>(q.w)};
+      if (estimator_ == Estimator::ukf) state_.attitude.timestamp = tick_ms;
+    }
+    if (position_now) {
+      const Vector3<double>&p = body_.body.position_m, &v = body_.body.velocity_m_s;
+      state_.position = {0, static_cast<float>(p[1]) + noise_, static_cast<float>(p[0]), static_cast<float>(-p[2])};
+      state_.velocity = {0, static_cast<float>(v[1]), static_cast<float>(v[0]), static_cast<float>(-v[2])};
+      if (estimator_ == Estimator::ukf) state_.position.timestamp = tick_ms;
+    }
+  }
+  /// M1 front right, M2 rear right, M3 rear left, M4 front left; pinnquad: front right, rear left, front left, rear right.
+  void fly() {
+    constexpr int motor_of_rotor[4] = {0, 2, 3, 1};
+    pinnquad::Commands<double> u{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const float force = control_.normalizedForces[motor_of_rotor[i]];
+      u[i] = static_cast<double>(force < 0 ? 0 : (force > 1 ? 1 : force)) * static_cast<double>(THRUST_MAX) /
+             vehicle_.airframe().max_rotor_thrust_N();
+    }
+    REQUIRE(vehicle_.step(body_, u, 1e-3) == pinnquad::Status::ok);
+  }
+
+  Estimator estimator_;
+  Vehicle vehicle_;
+  pinnquad::VehicleState<double> body_{};
+  setpoint_t setpoint_{};
+  sensorData_t sensors_{};
+  state_t state_{};
+  control_t control_{}, twin_control_{};
+  stabilizerStep_t step_ = 0;
+  float noise_ = 0, most_force_ = 0;
+  bool stopped_ = false;
+  long ticks_ = 0, ticks_by_network_ = 0;
+};
+
+}  // namespace
+
+extern "C" {
+uint32_t xTaskGetTickCount(void) { return tick_ms; }
+uint64_t usecTimestamp(void) { return std::uint64_t{tick_ms} * 1000; }
+void vTaskDelay(uint32_t) { std::longjmp(app_waits, 1); }
+bool supervisorIsFlying(void) { return is_flying; }
+bool supervisorAreMotorsAllowedToRun(void) { return true; }
+void controllerPidInit(void) { pid = {}; }
+bool controllerPidTest(void) { return true; }
+void controllerPid(control_t* control, const setpoint_t*, const sensorData_t*, const state_t* state,
+                   stabilizerStep_t step) {
+  step_pid(pid, control, state, step);
+}
+}
+
+TEST_CASE("with every estimator, stamped or not, the network takes control and keeps it") {
+  for (const Estimator estimator : {Estimator::kalman, Estimator::complementary, Estimator::ukf}) {
+    CAPTURE(static_cast<int>(estimator));
+    Firmware firmware(estimator);
+    firmware.run(20);
+    CHECK(firmware.by_network());
+    const long before = firmware.ticks_by_network(), ticks = firmware.ticks();
+    firmware.run(2000);
+    CHECK(firmware.ticks_by_network() - before == firmware.ticks() - ticks);
+  }
+}
+
+TEST_CASE(
+    "at rest the forces carry the weight on the platform's scale; it hovers where it should, no motor beyond its end") {
+  Firmware firmware(Estimator::kalman);
+  firmware.run(40);
+  REQUIRE(firmware.by_network());
+  const double weight_N = firmware.vehicle().airframe().mass_kg * 9.80665;
+  CHECK(firmware.total_thrust_N() == doctest::Approx(weight_N).epsilon(0.06));
+  firmware.run(6000, true);
+  CHECK(firmware.height_m() == doctest::Approx(1.0).epsilon(0.03));
+  firmware.place(3);  // as much thrust as there is
+  firmware.run(4000, true);
+  CHECK(firmware.height_m() == doctest::Approx(3.0).epsilon(0.03));
+  CHECK(firmware.most_force() <= 1.0f + 1e-6f);
+  CHECK(firmware.most_force() > 0.8f);
+}
+
+TEST_CASE("an estimator that stops is noticed; the PID controller that takes over is warm, to the bit") {
+  for (const Estimator estimator : {Estimator::kalman, Estimator::complementary, Estimator::ukf}) {
+    CAPTURE(static_cast<int>(estimator));
+    Firmware firmware(estimator);
+    firmware.run(1001, false);
+    REQUIRE(firmware.by_network());
+    firmware.estimator_stops();
+    int until_ms = 0;
+    for (; firmware.by_network() && until_ms < 500; ++until_ms) firmware.run(1);
+    CHECK(until_ms >= 40);
+    CHECK(until_ms <= 70);  // attitude stale after 20 ms, commands kept for 40
+    CHECK(pid.steps == twin.steps);
+    for (int i = 0; i < 5; ++i) {  // between the PID's own steps too
+      CHECK(firmware.as_the_twin());
+      firmware.run(1);
+    }
+    firmware.run(200);
+    CHECK_FALSE(firmware.by_network());  // until it was off, or by hand
+  }
+}
+
+TEST_CASE("roll and pitch by hand are not the network's, whatever the height is") {
+  Firmware firmware(Estimator::kalman);
+  firmware.run(100);
+  REQUIRE(firmware.by_network());
+  firmware.attitude_by_hand();
+  firmware.run(2);
+  CHECK(firmware.as_the_twin());
+  firmware.place(1);
+  firmware.run(20);
+  CHECK(firmware.by_network());
+}
+
+TEST_CASE("on the ground the motors idle until a place above is asked for") {
+  Firmware firmware(Estimator::kalman);
+  is_flying = false;
+  firmware.run(50);
+  REQUIRE(firmware.by_network());
+  CHECK(firmware.total_thrust_N() < 0.05 * firmware.vehicle().airframe().mass_kg * 9.80665 * 2.25);
+  firmware.place(2);
+  firmware.run(300);
+  const double early_N = firmware.total_thrust_N();
+  firmware.run(900);
+  CHECK(early_N < 0.6 * firmware.total_thrust_N());
+  is_flying = true;
+}

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+// PX4's module, its glue included (examples/px4_module/pinnquad_control.cpp), against a small uORB of ours and a stand-in of what
+// PX4 does around a mode: the commander registers, unregisters, checks, changes modes; the allocator has the motors in PX4's own.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "px4/world.hpp"
+#include "px4_module/pinnquad_control.hpp"
+
+using namespace flight_stacks::test;
+
+TEST_CASE("it registers although nobody listens at first, and when it was refused; config and arming check follow") {
+  Px4World world;
+  world.deaf = true;
+  REQUIRE(shell("start") == PX4_OK);
+  SUBCASE("nobody listens for 3 s") {
+    world.run(3000);
+    world.deaf = false;
+  }
+  SUBCASE("refused for 2 s") {
+    world.deaf = false;
+    world.refuses = true;
+    world.run(2000);
+    CHECK(world.mode_id == -1);
+    world.refuses = false;
+  }
+  SUBCASE("started while armed: nobody is registered then") {
+    world.deaf = false;
+    world.armed = true;
+    world.run(2000);
+    CHECK(world.mode_id == -1);
+    world.armed = false;
+  }
+  world.run(1500);
+  CHECK(world.mode_id >= 0);
+  CHECK(world.config.source_id == world.mode_id);
+  CHECK(world.config.flag_control_termination_enabled);
+  CHECK(world.can_arm);
+}
+
+TEST_CASE("dropped by PX4, it registers again") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(3000);
+  REQUIRE(world.registrations == 1);
+  world.mode_id = -1;
+  world.run(2000);
+  CHECK(world.mode_id >= 0);
+  CHECK(world.registrations == 2);
+}
+
+TEST_CASE("stop is refused while it has the motors; they get commands all the while") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  world.longest_gap_us = 0;
+  CHECK(shell("stop") == PX4_ERROR);
+  world.run(500);
+  CHECK(PinnquadControl::is_running());
+  CHECK(world.longest_gap_us <= 2000);
+  CHECK(world.nav_state == world.mode_id);
+}
+
+TEST_CASE("stopped, it takes no topic with it: the motors are PX4's within 50 ms, the mode is gone") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  world.longest_gap_us = 0;
+  SUBCASE("in the air, after another mode was selected") {
+    world.nav_state = Px4World::hold;
+    world.run(20);
+    CHECK(shell("stop") == PX4_OK);
+    CHECK_FALSE(PinnquadControl::is_running());
+    world.run(1000);
+    CHECK(world.unregistrations == 0);  // PX4 does not look while it is armed
+    world.armed = false;                // and finds it all the same
+    world.run(50);
+  }
+  SUBCASE("on the ground, disarmed") {
+    world.armed = false;
+    world.run(20);
+    CHECK(shell("stop") == PX4_OK);
+    world.run(50);
+    CHECK(world.nav_state == Px4World::hold);
+  }
+  CHECK_FALSE(PinnquadControl::is_running());
+  CHECK(world.unregistrations == 1);
+  CHECK(world.mode_id == -1);
+  CHECK(world.longest_gap_us <= 50'000);
+  CHECK(uORB::nodes()["actuator_motors"].advertisers == 2);  // the module's publication is still there
+  CHECK(uORB::nodes()["unregister_ext_component"].advertisers == 1);
+  REQUIRE(shell("start") == PX4_OK);  // and once more: the reply of the first time is still there to be read
+  world.run(1500);
+  CHECK(world.mode_id >= 0);
+  CHECK(world.registrations == 2);
+}
+
+TEST_CASE("giving up it asks for what PX4 can grant, until it is heard; the motors wait 50 ms at most") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  world.longest_gap_us = 0;
+  SUBCASE("an attitude that stops: Hold") {
+    world.attitude_stops = true;
+    world.run(200);
+    CHECK(world.nav_state == Px4World::hold);
+  }
+  SUBCASE("PX4 has no position: Altitude") {
+    world.attitude_stops = true;
+    world.flags.local_position_invalid = true;
+    world.run(200);
+    CHECK(world.nav_state == Px4World::altitude);
+  }
+  SUBCASE("no position and no sticks: Descend") {
+    world.attitude_stops = true;
+    world.flags.local_position_invalid = world.flags.manual_control_signal_lost = true;
+    world.run(200);
+    CHECK(world.nav_state == Px4World::descend);
+  }
+  SUBCASE("its own position stopped, whatever PX4 says: not Hold") {
+    world.local_stops = true;
+    world.run(1500);  // levels for 1 s first
+    CHECK(world.nav_state == Px4World::altitude);
+    for (const uint8_t mode : world.asked_for) CHECK(mode != Px4World::hold);
+  }
+  CHECK(world.longest_gap_us <= 50'000);
+  world.run(400);
+  CHECK_FALSE(world.can_arm);
+}
+
+TEST_CASE("nobody hears it for 300 ms: it asks again; a mode that PX4 does not grant is not asked for for ever") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  world.attitude_stops = true;
+  SUBCASE("deaf") {
+    world.deaf = true;
+    world.run(300);
+    world.deaf = false;
+    world.run(20);
+    CHECK(world.nav_state < vehicle_status_s::NAVIGATION_STATE_EXTERNAL1);
+  }
+  SUBCASE("flags that say there is a position, and there is none") {
+    world.lies = true;
+    world.run(400);
+    CHECK(world.nav_state == Px4World::altitude);
+    CHECK(world.asked_for.front() == Px4World::hold);
+  }
+}
+
+TEST_CASE("the sample that the motors answer is the gyro's") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  CHECK(world.last.timestamp_sample == world.gyro_sample_us);
+  CHECK(world.last.timestamp >= world.last.timestamp_sample);
+  CHECK(std::isnan(world.last.control[4]));
+}
+
+TEST_CASE("a GPS reset of 3 m and a heading reset are no steps") {
+  Px4World world;
+  world.sends_set_points = false;  // it holds its place
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  const actuator_motors_s before = world.last;
+  world.local.x += 3, world.local.y -= 1;
+  world.local.delta_xy[0] = 3, world.local.delta_xy[1] = -1;
+  ++world.local.xy_reset_counter;
+  world.local.z += 0.5f;
+  world.local.delta_z = 0.5f;
+  ++world.local.z_reset_counter;
+  world.run(20);
+  for (int i = 0; i < 4; ++i) CHECK(world.last.control[i] == doctest::Approx(double(before.control[i])).epsilon(0.01));
+  world.local.x += 0.5f;  // the same without a counter is a step
+  world.run(20);
+  float furthest = 0;
+  for (int i = 0; i < 4; ++i) furthest = std::max(furthest, std::abs(world.last.control[i] - before.control[i]));
+  CHECK(furthest > 0.02f);
+}
+
+TEST_CASE("without set points it holds the place where it was selected, not where it was started") {
+  Px4World world;
+  world.sends_set_points = false;
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(3000);
+  world.local.x = 5;
+  world.fly();
+  for (int i = 1; i < 4; ++i) CHECK(std::abs(world.last.control[i] - world.last.control[0]) < 0.02f);
+}
+
+TEST_CASE("on the ground the motors idle; told to go up, thrust comes over a second") {
+  Px4World world;
+  world.landed = true;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  for (int i = 0; i < 4; ++i) CHECK(world.last.control[i] == doctest::Approx(0.02));
+  world.set_point.position[2] = -2;
+  world.run(300);
+  CHECK(world.last.control[0] < 0.35f);
+  CHECK(world.last.control[0] > 0.05f);
+  world.run(900);
+  CHECK(world.last.control[0] > 0.5f);
+}
+
+TEST_CASE("each step's record is published, and the settings once a second: what replay needs") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)}, settings_sub{ORB_ID(pinnquad_settings)};
+  pinnquad_record_s record{};
+  static_cast<void>(record_sub.update(&record));
+  pinnquad_settings_s settings{};
+  static_cast<void>(settings_sub.update(&settings));
+  int published = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const uint32_t before = record.tick;
+    world.run(1);
+    REQUIRE(record_sub.update(&record));
+    CHECK(record.tick == before + 1);
+    for (int motor = 0; motor < 4; ++motor) CHECK(record.commands[motor] == world.last.control[motor]);
+    CHECK(record.body_rates_us == world.gyro_sample_us);
+    CHECK(record.drives_motors == 1);
+    if (settings_sub.update(&settings)) ++published;
+  }
+  CHECK(record.attitude[0] == 1);
+  CHECK(record.model != 0);
+  CHECK(published >= 1);
+  CHECK(published <= 2);
+  CHECK(settings.horizontal_speed_m_s == px4::parameter_values()["PQ_V_XY"]);
+  CHECK(settings.lowest_command == doctest::Approx(px4::parameter_values()["PQ_OUT_MIN"]));
+  world.attitude_stops = true;
+  world.run(30);
+  REQUIRE(record_sub.update(&record));
+  CHECK((record.stale_inputs & 2) != 0);
+}
+
+TEST_CASE("told not to, it publishes no record") {
+  Px4World world;
+  px4::parameter_values()["PQ_RECORD"] = 0;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
+  pinnquad_record_s record{};
+  static_cast<void>(record_sub.update(&record));
+  world.run(20);
+  CHECK_FALSE(record_sub.update(&record));
+}
+
+TEST_CASE("without a trajectory the sticks fly it along its heading; released, it holds where it came to stand") {
+  Px4World world;
+  world.sends_set_points = false;
+  world.yaw = 0.5f;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
+  pinnquad_record_s record{};
+  manual_control_setpoint_s sticks{};
+  sticks.valid = true;
+  const auto fly_by = [&](int ms) {
+    for (int i = 0; i < ms; i += 10) {
+      sticks.timestamp = World::now_us;
+      sticks_pub.publish(sticks);
+      world.run(10);
+      static_cast<void>(record_sub.update(&record));
+    }
+  };
+  constexpr uint8_t flies = 0, holds = 1;
+  fly_by(700);
+  CHECK(record.reaction == holds);  // centred sticks ask for nothing
+  const double full = px4::parameter_values()["PQ_STK_XY"];
+  sticks.pitch = 1;
+  sticks.yaw = -1;
+  fly_by(100);
+  CHECK(record.reaction == flies);
+  CHECK(record.wanted_velocity_m_s[0] == doctest::Approx(full * std::cos(0.5)));
+  CHECK(record.wanted_velocity_m_s[1] == doctest::Approx(full * std::sin(0.5)));
+  CHECK(record.wanted_velocity_m_s[2] == 0);
+  CHECK(record.wanted_yaw_rate_rad_s == doctest::Approx(-px4::parameter_values()["PQ_STK_YAW"]));
+  CHECK(std::isnan(record.wanted_position_m[0]));
+  sticks.pitch = sticks.yaw = 0;
+  sticks.roll = 1;
+  sticks.throttle = 1;
+  world.local.vx = 2;
+  fly_by(100);
+  CHECK(record.wanted_velocity_m_s[0] == doctest::Approx(-full * std::sin(0.5)));
+  CHECK(record.wanted_velocity_m_s[2] == doctest::Approx(-px4::parameter_values()["PQ_STK_Z"]));
+  sticks.roll = sticks.throttle = 0.04f;  // within the dead zone: released
+  fly_by(700);
+  CHECK(record.reaction == flies);  // brakes
+  CHECK(record.wanted_velocity_m_s[0] == 0);
+  world.local.vx = 0.1f;
+  fly_by(700);
+  CHECK(record.reaction == holds);
+  sticks.pitch = 1;
+  sticks.valid = false;
+  fly_by(100);
+  CHECK(record.reaction == holds);  // a radio that is lost flies nothing
+}
+
+TEST_CASE("a place to go to goes before the sticks, a trajectory before both") {
+  Px4World world;
+  world.sends_set_points = false;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  uORB::Publication<goto_setpoint_s> goto_pub{ORB_ID(goto_setpoint)};
+  uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
+  pinnquad_record_s record{};
+  goto_setpoint_s place{};
+  place.position[0] = 3, place.position[2] = -1;
+  place.flag_control_heading = true;
+  place.heading = 0.25f;
+  manual_control_setpoint_s sticks{};
+  sticks.valid = true;
+  sticks.pitch = 1;
+  const auto run = [&](int ms, bool sends_places) {
+    for (int i = 0; i < ms; i += 10) {
+      sticks.timestamp = place.timestamp = World::now_us;
+      sticks_pub.publish(sticks);
+      if (sends_places) goto_pub.publish(place);
+      world.run(10);
+      static_cast<void>(record_sub.update(&record));
+    }
+  };
+  run(100, true);
+  CHECK(record.wanted_position_m[0] == 3);
+  CHECK(record.wanted_yaw_rad == 0.25f);
+  CHECK(std::isnan(record.wanted_velocity_m_s[0]));
+  world.sends_set_points = true;
+  world.set_point.position[0] = 1;
+  run(100, true);
+  CHECK(record.wanted_position_m[0] == 1);
+  world.sends_set_points = false;
+  run(400, true);
+  CHECK(record.wanted_position_m[0] == 1);  // silent for less than half a second
+  run(200, true);
+  CHECK(record.wanted_position_m[0] == 3);
+  run(700, false);
+  CHECK(std::isnan(record.wanted_position_m[0]));
+  CHECK(record.wanted_velocity_m_s[0] == doctest::Approx(px4::parameter_values()["PQ_STK_XY"]));
+}

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+// What the shared controller does with a far place, a weak battery, the ground and an estimator that moves: flown in the simulator
+// without noise, sample by sample, without a flight stack's messages.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "flight_stacks/recorded_controller.hpp"
+#include "model_blocks.hpp"
+#include "models/crazyflie_2_1.hpp"
+#include "models/demo_quadrotor.hpp"
+
+namespace {
+
+using namespace flight_stacks::test;
+using flight_stacks::Reaction;
+using flight_stacks::SpeedLimits;
+using pinnquad::TrajectoryPoint;
+using pinnquad::Vector3;
+
+constexpr flight_stacks::AgeLimits ages{};
+constexpr flight_stacks::OutputLimits outputs{};
+constexpr pinnquad::FlightGains<float> gains{};
+
+/// A battery that is weaker than the airframe says.
+struct WeakBattery {
+  static constexpr pinnquad::VariesWith varies_with = pinnquad::VariesWith::motion;
+  double thrust_scale{1};
+  template <class Scalar>
+  void surroundings(pinnquad::Surroundings<Scalar>& air) const noexcept {
+    air.thrust_scale *= Scalar(thrust_scale);
+  }
+};
+
+struct Track {
+  double fastest_m_s = 0, overshoot_m = 0, deepest_m = 0, late_height_error_m = 0, error_m = 0;
+  float bias_down_m_s2 = 0;
+};
+
+/// From hover at 30 m to another place, 2 ms a step.
+template <class Model>
+class Flight {
+ public:
+  using Vehicle = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, WeakBattery>;
+
+  template <class... Settings>
+  explicit Flight(double thrust_scale, const Settings&... settings)
+      : vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), {}, {}, WeakBattery{thrust_scale}),
+        controller_(settings...) {
+    REQUIRE(controller_.offer_model(block_.data(), block_.size()) == pinnquad::Status::ok);
+    body_.body.position_m = start_m;
+    const double hover = 1 / vehicle_.airframe().thrust_to_weight();
+    body_.rotors = {hover, hover, hover, hover};
+    controller_.situation({true, false});
+  }
+
+  /// `late_s`: from then on errors count as late ones.
+  Track fly(const Vector3<double>& place_m, double duration_s, double late_s) {
+    Track track;
+    const Vector3<double> way = place_m - start_m;
+    const double far = way.norm();
+    for (int tick = 0; 0.002 * tick < duration_s; ++tick) {
+      const auto now_us = static_cast<std::uint64_t>(1'000'000 + 2000 * tick);
+      tell(now_us, place_m);
+      pinnquad::Commands<float> commands{};
+      flight_stacks::StepReport report;
+      REQUIRE(controller_.step(now_us, commands, report) == Reaction::flies);
+      pinnquad::Commands<double> u{};
+      for (std::size_t i = 0; i < u.size(); ++i) u[i] = static_cast<double>(commands[i]);
+      for (int i = 0; i < 2; ++i) REQUIRE(vehicle_.step(body_, u, 1e-3) == pinnquad::Status::ok);
+      const Vector3<double>& p = body_.body.position_m;
+      track.fastest_m_s = std::max(track.fastest_m_s, body_.body.velocity_m_s.norm());
+      if (far > 0) track.overshoot_m = std::max(track.overshoot_m, (p - start_m).dot(way) / far - far);
+      track.deepest_m = std::max(track.deepest_m, p[2] - place_m[2]);
+      track.error_m = (p - place_m).norm();
+      if (0.002 * tick >= late_s)
+        track.late_height_error_m = std::max(track.late_height_error_m, std::abs(p[2] - place_m[2]));
+    }
+    track.bias_down_m_s2 = controller_.bias().acceleration_m_s2()[2];
+    return track;
+  }
+
+  static inline const Vector3<double> start_m{0, 0, -30};
+
+ private:
+  void tell(std::uint64_t now_us, const Vector3<double>& place_m) {
+    const auto& b = body_.body;
+    const auto vector = [](const Vector3<double>& v) { return Vector3<float>(v.cast<float>()); };
+    REQUIRE(controller_.body_rates(now_us, vector(b.body_rates_rad_s)) == pinnquad::Status::ok);
+    REQUIRE(controller_.attitude(now_us, {static_cast<float>(b.attitude.w), static_cast<float>(b.attitude.x),
+                                          static_cast<float>(b.attitude.y), static_cast<float>(b.attitude.z)}) ==
+            pinnquad::Status::ok);
+    REQUIRE(controller_.local(now_us, {vector(b.position_m), vector(b.velocity_m_s)}) == pinnquad::Status::ok);
+    TrajectoryPoint<float> wanted;
+    wanted.position_m = vector(place_m);
+    REQUIRE(controller_.set_point(now_us, wanted) == pinnquad::Status::ok);
+  }
+
+  const Block block_ = sound_block<Model>();
+  Vehicle vehicle_;
+  pinnquad::VehicleState<double> body_{};
+  flight_stacks::NeuralController<Model> controller_;
+};
+
+template <class Model>
+void far_places(const SpeedLimits& limits) {
+  constexpr double most_overshoot_m = 0.5, rounding = 1.05;
+  const auto fly = [&](const Vector3<double>& way, double most_m_s) {
+    const Track track = Flight<Model>(1.0, ages, outputs, gains, limits)
+                            .fly(Flight<Model>::start_m + way, way.norm() / most_m_s + 10, 1e9);
+    MESSAGE("step of ", way.norm(), " m: up to ", track.fastest_m_s, " m/s, ", track.overshoot_m, " m too far");
+    CHECK(track.fastest_m_s <= most_m_s * rounding);
+    CHECK(track.fastest_m_s >= 0.8 * most_m_s);
+    CHECK(track.overshoot_m <= most_overshoot_m);
+    CHECK(track.error_m <= 0.1);
+  };
+  fly({50, 0, 0}, static_cast<double>(limits.horizontal_m_s));
+  fly({30, -40, 0}, static_cast<double>(limits.horizontal_m_s));
+  fly({0, 0, -25}, static_cast<double>(limits.climb_m_s));
+  fly({0, 0, 25}, static_cast<double>(limits.descent_m_s));
+}
+
+/// Hovering, told everything at 1 s.
+struct Standing {
+  const Block block = sound_block<DemoQuadModel>();
+  flight_stacks::Recorded<flight_stacks::NeuralController<DemoQuadModel>> controller;
+  TrajectoryPoint<float> wanted;
+  flight_stacks::LocalState local;
+  std::uint64_t now_us = 1'000'000;
+  pinnquad::Commands<float> commands{};
+
+  template <class... Settings>
+  explicit Standing(const Settings&... settings) : controller(settings...) {
+    REQUIRE(controller.offer_model(block.data(), block.size()) == pinnquad::Status::ok);
+  }
+  void step() {
+    REQUIRE(controller.body_rates(now_us, {0, 0, 0}) == pinnquad::Status::ok);
+    REQUIRE(controller.attitude(now_us, {}) == pinnquad::Status::ok);
+    REQUIRE(controller.local(now_us, local) == pinnquad::Status::ok);
+    tick();
+  }
+  void tick() {
+    flight_stacks::StepReport report;
+    REQUIRE(controller.step(now_us, commands, report) != Reaction::gives_up);
+    now_us += 2000;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a place 50 m away: within the speed limit, and no more than half a metre too far") {
+  far_places<DemoQuadModel>({});
+  far_places<DemoQuadModel>({6, 3, 1.5f});
+  far_places<CrazyflieModel>({5, 2, 1});
+}
+
+TEST_CASE("a battery a fifth too weak: the droop is gone after 3 s; without the estimate it stays") {
+  constexpr double most_m = 0.01;
+  const Vector3<double> here = Flight<DemoQuadModel>::start_m;
+  const Track with = Flight<DemoQuadModel>(0.8).fly(here, 8, 3);
+  const Track without =
+      Flight<DemoQuadModel>(0.8, ages, outputs, gains, SpeedLimits{}, pinnquad::BiasSettings<float>{0, 3})
+          .fly(here, 8, 3);
+  const Track small = Flight<CrazyflieModel>(0.8).fly(here, 8, 3);
+  MESSAGE("sinks ", with.deepest_m, " m, after 3 s ", with.late_height_error_m, " m too high or low; without ",
+          without.late_height_error_m, " m; Crazyflie after 3 s ", small.late_height_error_m, " m");
+  CHECK(with.late_height_error_m <= most_m);
+  CHECK(without.late_height_error_m > 0.3);
+  CHECK(small.late_height_error_m <= most_m);
+  // 1 / 0.8 of the thrust is asked for; the network is a few percent off besides
+  CHECK(with.bias_down_m_s2 == doctest::Approx(0.25 * 9.80665).epsilon(0.25));
+}
+
+TEST_CASE("the bias is estimated in flight alone, and never beyond its bound") {
+  Standing standing;
+  standing.wanted.position_m = {0, 0, 0};
+  REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+  const auto fall = [&](int steps) {  // falls by 2 m/s^2, whatever is done
+    for (int i = 0; i < steps; ++i) {
+      standing.local.velocity_m_s[2] += 2 * 0.002f;
+      REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+      standing.step();
+    }
+    return standing.controller.bias().acceleration_m_s2().norm();
+  };
+  standing.controller.situation({false, false});
+  CHECK(fall(100) == 0);
+  standing.controller.situation({true, true});
+  CHECK(fall(100) == 0);
+  standing.controller.situation({true, false});
+  standing.local.velocity_m_s[2] = 0;
+  CHECK(fall(1200) > 0.5f);  // a second of them takes off
+  const float bound = standing.controller.bias().settings().max_bias_m_s2;
+  standing.local.velocity_m_s[2] = 0;
+  CHECK(fall(3000) <= bound * 1.0001f);  // to 12 m/s: much faster drag alone is more than the weight
+  standing.controller.situation({true, true});
+  const Vector3<float> before = standing.controller.bias().acceleration_m_s2();
+  static_cast<void>(fall(200));
+  CHECK(standing.controller.bias().acceleration_m_s2() == before);
+}
+
+TEST_CASE("at the motors' ends the bias stays") {
+  constexpr flight_stacks::OutputLimits little{0.02f, 0.8f};
+  Standing standing(ages, little);
+  standing.controller.situation({true, false});
+  standing.wanted.position_m = {0, 0, -1000};  // as much thrust as there is
+  standing.wanted.acceleration_m_s2 = {9, 0, -30};
+  for (int i = 0; i < 500; ++i) {
+    REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+    standing.step();
+  }
+  float largest = 0;
+  for (const float u : standing.commands) largest = std::max(largest, u);
+  REQUIRE(largest >= little.upper);
+  CHECK(standing.controller.bias().acceleration_m_s2().norm() == 0);
+}
+
+TEST_CASE("on the ground the rotors idle until a set point asks to go up; then thrust comes over a second") {
+  Standing standing;
+  const auto thrust = [&] {
+    float sum = 0;
+    for (const float u : standing.commands) sum += u / 4;
+    return sum;
+  };
+  standing.controller.situation({false, true});
+  standing.step();
+  standing.controller.situation({true, true});
+  for (int i = 0; i < 200; ++i) {
+    REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+    standing.step();
+    REQUIRE(thrust() == doctest::Approx(double(outputs.lower)));
+  }
+  standing.wanted.position_m[2] = -2;
+  float before = thrust(), steepest = 0;
+  for (int i = 0; i < 600; ++i) {
+    REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+    standing.step();
+    steepest = std::max(steepest, thrust() - before);
+    before = thrust();
+  }
+  CHECK(steepest < 0.01f);  // a straight ramp to full thrust has 0.002 per step
+  CHECK(thrust() > 0.5f);
+  CHECK(standing.controller.lift() == 1);
+  standing.wanted.position_m[2] = 1;  // landed again, and told to go down
+  REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+  standing.step();
+  CHECK(thrust() == doctest::Approx(double(outputs.lower)));
+  standing.controller.situation({false, false});  // taken over in the air: all of the thrust at once
+  standing.step();
+  standing.controller.situation({true, false});
+  standing.step();
+  CHECK(standing.controller.lift() == 1);
+}
+
+TEST_CASE("an estimator that moves its estimate by 3 m and 0.4 rad moves nothing else") {
+  Standing standing;
+  standing.controller.situation({true, false});
+  const flight_stacks::EstimateJump by{{3, -1, 0.5f}, {0.2f, 0, -0.1f}, 0.4f};
+  const auto turned = [&](float yaw_rad) { return pinnquad::from_euler<float>({0, 0, yaw_rad}); };
+  const auto step = [&](float yaw_rad) {
+    REQUIRE(standing.controller.body_rates(standing.now_us, {0, 0, 0}) == pinnquad::Status::ok);
+    REQUIRE(standing.controller.attitude(standing.now_us, turned(yaw_rad)) == pinnquad::Status::ok);
+    REQUIRE(standing.controller.local(standing.now_us, standing.local) == pinnquad::Status::ok);
+    standing.tick();
+    return standing.commands;
+  };
+  const auto unmoved = [&] {
+    const pinnquad::Commands<float> before = step(0);
+    standing.controller.jump(by);
+    standing.local.position_m += by.position_m;
+    const pinnquad::Commands<float> after = step(by.yaw_rad);
+    CHECK(standing.controller.record().jump_position_m[0] == 3);
+    for (std::size_t i = 0; i < after.size(); ++i) CHECK(after[i] == doctest::Approx(double(before[i])).epsilon(0.01));
+    step(by.yaw_rad);
+    CHECK(standing.controller.record().jump_position_m[0] == 0);
+  };
+  SUBCASE("on its way to a set point") {
+    REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+    unmoved();
+  }
+  SUBCASE("holding its place") { unmoved(); }
+}
+
+TEST_CASE("the formula knows the effects that the vehicle is said to have") {
+  using Dragging = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag, pinnquad::RotorDrag>;
+  using View = pinnquad::ModelView<DemoQuadModel>;
+  const Dragging vehicle(pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>(), {}, {},
+                         pinnquad::RotorDrag{0.02});
+  flight_stacks::NeuralController<DemoQuadModel> plain;
+  flight_stacks::NeuralController<DemoQuadModel, View, Dragging> dragging(vehicle);
+  const Block block = narrow_block<DemoQuadModel>();  // all answers are the formula's
+  const auto commands = [&](auto& controller) {
+    REQUIRE(controller.offer_model(block.data(), block.size()) == pinnquad::Status::ok);
+    constexpr std::uint64_t now_us = 1'000'000;
+    TrajectoryPoint<float> wanted;
+    wanted.velocity_m_s = {5, 0, 0};
+    REQUIRE(controller.body_rates(now_us, {0, 0, 2}) == pinnquad::Status::ok);
+    REQUIRE(controller.attitude(now_us, {}) == pinnquad::Status::ok);
+    REQUIRE(controller.local(now_us, {{0, 0, 0}, {5, 0, 0}}) == pinnquad::Status::ok);
+    REQUIRE(controller.set_point(now_us, wanted) == pinnquad::Status::ok);
+    pinnquad::Commands<float> u{};
+    flight_stacks::StepReport report;
+    REQUIRE(controller.step(now_us, u, report) == Reaction::flies);
+    REQUIRE(report.status == pinnquad::Status::fell_back);
+    return u;
+  };
+  const pinnquad::Commands<float> a = commands(plain), b = commands(dragging);
+  float furthest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) furthest = std::max(furthest, std::abs(a[i] - b[i]));
+  CHECK(furthest > 0.005f);
+}
