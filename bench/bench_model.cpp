@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "../examples/models/demo_quadrotor.hpp"
+#include "../examples/models/structured_quadrotor.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/inference/monitored_inverse.hpp"
 #include "support/program.hpp"
 
 namespace {
@@ -26,6 +28,20 @@ using Analytic = AnalyticInverse<Vehicle>;
 using Clipped = Extend<TrainingGuard, ClipCommands<>>;
 using Backed = Extend<Clipped, Fallback<Analytic>>;
 
+/// Wide enough for a motion of ordinary flight: what is measured is the time.
+constexpr std::array<float, 136> any_factor() {
+  std::array<float, 136> factor{};
+  for (std::size_t i = 0; i < factor.size(); ++i) factor[i] = 0.01F * static_cast<float>(1 + i % 7);
+  return factor;
+}
+struct Trust {
+  static constexpr std::array<float, 16> distribution_mean{};
+  static constexpr std::array<float, 136> whitening = any_factor();
+  static constexpr double distance_limit = 1e6;
+  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+};
+using Measuring = Extend<TrainingGuard, JointDistance<Trust>>;
+
 Vehicle vehicle() { return Vehicle(airframe_value<Model::Vehicle, double>(), paper_site<double>(), QuadraticDrag{}); }
 
 /// A motion of ordinary flight.
@@ -36,6 +52,15 @@ Model::Inputs ordinary() {
   inputs.velocity_m_s = Vector3<float>(2.0f, -1.0f, 0.4f);
   inputs.body_rates_rad_s = Vector3<float>(0.2f, 0.1f, -0.3f);
   inputs.attitude = from_euler<float>({0.1f, -0.05f, 0.7f});
+  return inputs;
+}
+
+/// Of a flight: hardly any specific force but along the thrust.
+Model::Inputs upright() {
+  Model::Inputs inputs = ordinary();
+  inputs.linear_acceleration_m_s2 = Vector3<float>(0.1f, -0.1f, 0.2f);
+  inputs.body_rates_rad_s = Vector3<float>(0.01f, 0.01f, -0.01f);
+  inputs.attitude = from_euler<float>({0.0f, 0.0f, 0.7f});
   return inputs;
 }
 
@@ -71,7 +96,9 @@ void register_guards() {
   broken.body_rates_rad_s[1] = std::numeric_limits<float>::quiet_NaN();
   const Analytic analytic{vehicle()};
   add("predict", InverseDynamics<Model>{}, ordinary(), Status::ok);
+  add("predict_structured", InverseDynamics<StructuredQuadModel>{}, upright(), Status::ok);
   add("predict_clipped", InverseDynamics<Model, Clipped>{}, ordinary(), Status::ok);
+  add("predict_joint_distance", InverseDynamics<Model, Measuring>{}, ordinary(), Status::ok);
   add("predict_with_fallback", InverseDynamics<Model, Backed>(Backed(analytic)), ordinary(), Status::ok);
   add("fell_back", InverseDynamics<Model, Backed>(Backed(analytic)), beyond, Status::fell_back);
   add("refused_outside_envelope", InverseDynamics<Model>{}, beyond, Status::outside_envelope);
@@ -79,6 +106,18 @@ void register_guards() {
 }
 
 void register_features() {
+  benchmark::RegisterBenchmark("Model/observe", [](benchmark::State& state) {
+    MonitoredInverse<InverseDynamics<Model>, Trust> monitored;
+    Model::Inputs inputs = ordinary();
+    const float start = inputs.velocity_m_s[0];
+    for (auto _ : state) {
+      Status status = monitored.observe(inputs, {0.5f, 0.5f, 0.5f, 0.5f});
+      inputs.velocity_m_s[0] = start + 0.01f * monitored.monitor().mean();
+      benchmark::DoNotOptimize(status);
+      benchmark::DoNotOptimize(&inputs);
+      benchmark::ClobberMemory();
+    }
+  });
   benchmark::RegisterBenchmark("Model/predict_features", [](benchmark::State& state) {
     const InverseDynamics<Model> inverse;
     auto x = Model::golden_features[1];

@@ -21,6 +21,10 @@
 // CASE FEATURES_ALONE: pinnquad: Agreement compares with an inverse that needs the inputs
 // CASE BATCH_ALONE: pinnquad: Agreement compares with an inverse that needs the inputs
 // CASE FALLBACK_MAY_THROW: pinnquad: a fallback's or reference's call must be noexcept
+// CASE DISTANCE_LIMIT_INFINITE: pinnquad: the distance limit of a JointDistance must be a positive number
+// CASE DISTRIBUTION_OF_FEWER: pinnquad: the distribution of a JointDistance has another size than the model's features
+// CASE TWO_DISTRIBUTIONS: pinnquad: a policy of a Guard is named twice
+// CASE DISTRIBUTION_OF_OTHER_DATA: pinnquad: the distribution of a JointDistance is that of other training data than the model's
 // CASE NOT_A_GUARD: pinnquad: the second argument of InverseDynamics is a Guard
 // CASE FALLBACK_OF_OTHER_INPUTS: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
 // CASE FALLBACK_NEEDS_TIME: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
@@ -52,6 +56,21 @@ struct Limits {
                      : double(of);
   }
   static constexpr double lower = value(Lower), upper = value(Upper), largest_difference = upper;
+};
+
+/// Of so many features.
+template <int Size, int Limit>
+struct Distribution {
+  static constexpr std::array<float, std::size_t(Size)> distribution_mean{};
+  static constexpr std::array<float, std::size_t(Size) * (Size + 1) / 2> whitening{};
+  static constexpr double distance_limit = Limits<0, Limit>::upper;
+};
+
+struct Described : test::SmallModel {
+  static constexpr std::uint64_t training_data_hash = 1;
+};
+struct OtherData : Distribution<16, 1> {
+  static constexpr std::uint64_t training_data_hash = 2;
 };
 
 struct MayThrow {
@@ -112,6 +131,14 @@ using Policies = Extend<TrainingGuard, Agreement<Limits<0, 2>>, Fallback<Analyti
 using Policies = Extend<TrainingGuard, Agreement<Limits<0, 0>>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
 #elif defined(FEATURES_ALONE) || defined(BATCH_ALONE)
 using Policies = Extend<TrainingGuard, Agreement<>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
+#elif defined(DISTANCE_LIMIT_INFINITE)
+using Policies = Extend<TrainingGuard, JointDistance<Distribution<16, 2>>>;
+#elif defined(DISTRIBUTION_OF_FEWER)
+using Policies = Extend<TrainingGuard, JointDistance<Distribution<15, 1>>>;
+#elif defined(TWO_DISTRIBUTIONS)
+using Policies = Extend<TrainingGuard, JointDistance<Distribution<16, 1>>, JointDistance<Distribution<15, 1>>>;
+#elif defined(DISTRIBUTION_OF_OTHER_DATA)
+using Policies = Extend<TrainingGuard, JointDistance<OtherData>>;
 #elif defined(FALLBACK_MAY_THROW)
 using Policies = Extend<TrainingGuard, Fallback<MayThrow>>;
 #elif defined(NOT_A_GUARD)
@@ -123,7 +150,8 @@ using Policies = Extend<TrainingGuard, Fallback<NeedsTime>>;
 #elif defined(GROUND_WITHOUT_HEIGHT)
 using Policies = Extend<TrainingGuard, Fallback<AnalyticInverse<NearGround>>>;
 #else
-using Policies = Extend<TrainingGuard, RefuseCommands<>, ClipCommands<>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
+using Policies = Extend<TrainingGuard, RefuseCommands<>, ClipCommands<>, JointDistance<Distribution<16, 1>>,
+                        Fallback<AnalyticInverse<Quadrotor<float>>>>;
 #endif
 
 template <class Vehicle>
@@ -141,12 +169,13 @@ int main() {
     defined(TWICE) || defined(TWO_LIMITS) || defined(NOT_A_POLICY) || defined(LIMITS_REVERSED) ||                      \
     defined(NOT_A_GUARD) || defined(CLIPS_TO_INFINITY) || defined(CLIPS_TO_NAN) || defined(REFUSES_INFINITY) ||        \
     defined(CLIPS_REVERSED) || defined(CLIPS_BEYOND_FLOAT) || defined(AGREES_WITH_NOTHING) ||                          \
-    defined(FALLBACK_MAY_THROW)
+    defined(FALLBACK_MAY_THROW) || defined(DISTANCE_LIMIT_INFINITE) || defined(DISTRIBUTION_OF_FEWER) ||               \
+    defined(TWO_DISTRIBUTIONS) || defined(DISTRIBUTION_OF_OTHER_DATA)
   const Policies guard{};
 #else
   const Policies guard(by_formula<Quadrotor<float>>());
 #endif
-  const InverseDynamics<test::SmallModel, Policies> inverse(guard);
+  const InverseDynamics<Described, Policies> inverse(guard);
   Commands<float> commands{};
   Status status = inverse.predict({}, commands);
 #if defined(FEATURES_ALONE)

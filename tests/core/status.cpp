@@ -51,7 +51,9 @@ TEST_CASE("a Status prints as the word that documents and code use: its enumerat
                        PINNQUAD_NAMED(block_incompatible),
                        PINNQUAD_NAMED(block_corrupt),
                        PINNQUAD_NAMED(disagreement),
-                       PINNQUAD_NAMED(warming_up)};
+                       PINNQUAD_NAMED(warming_up),
+                       PINNQUAD_NAMED(outside_distribution),
+                       PINNQUAD_NAMED(distrusted)};
   CHECK(std::size(all) == static_cast<std::size_t>(pinnquad::status_count));
   for (const Named& each : all) CHECK(std::string(pinnquad::to_string(each.status)) == each.name);
 }

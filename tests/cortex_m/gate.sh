@@ -40,5 +40,29 @@ for optimisation in -Os -O2 -O3; do
     "($(smallest instructions "$name.predict.txt") for a bad input), $(largest stack "$name.predict.txt") B stack," \
     "$(ram_bytes "$name.predict.elf") B RAM of the C library; roll and pitch $angles ulp," \
     "sine and cosine of yaw $others ulp, commands $commands ulp from the host"
+
+  # monotone by construction, with the residual that the recipe may keep, and as shipped: fewer instructions than the
+  # paper's network
+  for model in structured shipped; do
+    flags=${model}_flags[@]
+    build_target "$target" "$optimisation" predict "$name.$model.elf" "$model" "${!flags}"
+    run_image "$target" "$name.$model.elf" "$name.$model.txt"
+    judge_symbols "$name.$model.elf"
+    if ! cmp -s <(grep '^status' "$name.$model.txt") <(grep '^status' "$work/host_$model.txt"); then
+      reject "status" "predict() of the $model model or its self-test says something else than on the host"
+    fi
+    if [ "$(grep -c '^status ordinary 0$' "$name.$model.txt")" != 48 ] || ! grep -q '^status self_test 0$' "$name.$model.txt"; then
+      reject "status" "an ordinary state has no commands of the $model model, or its self-test fails"
+    fi
+    commands=$(ulps commands "$name.$model.txt" "$work/host_$model.txt" 0 3)
+    at_most "ulps of the $model model's commands" "$commands" 16
+    at_most "instructions of the $model model" "$(largest instructions "$name.$model.txt")" \
+      "$(largest instructions "$name.predict.txt")"
+    # the residual's copies of what it is shown and its wider layers lie on the stack too
+    case $model in structured) stack=832 ;; *) stack=$(largest stack "$name.predict.txt") ;; esac
+    at_most "stack of the $model model" "$(largest stack "$name.$model.txt")" "$stack"
+    echo "$target $optimisation predict, $model model: $(largest instructions "$name.$model.txt") instructions," \
+      "$(largest stack "$name.$model.txt") B stack, commands $commands ulp from the host"
+  done
 done
 if [ "$rejected" -gt 0 ]; then exit 1; fi

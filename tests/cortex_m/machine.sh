@@ -68,18 +68,27 @@ run_image() {
   }
 }
 
-# What under_test.cpp and planted.cpp are compiled with: the model that write_model.cpp wrote.
+# What under_test.cpp and planted.cpp are compiled with: a model that write_model.cpp wrote, or a shipped one.
 model_flags=(-DMODEL=PaperModel "-DMODEL_HEADER=\"paper_model.hpp\"")
+structured_flags=(-DMODEL=StructuredModel "-DMODEL_HEADER=\"structured_model.hpp\"")
+shipped_flags=(-DTRAINED_ON_A_FLIGHT -DMODEL=StructuredQuadModel "-DMODEL_HEADER=\"$root/examples/models/structured_quadrotor.hpp\"")
 
-# build_target <target> <optimisation> <what: forward or predict> <image>
+# build_target <target> <optimisation> <what: forward or predict> <image> [name flag...]: of the paper's network, or of
+# the model of that name and these flags.
 build_target() {
   local target=$1 optimisation=$2 what=$3 image=$4 common=$work/$1
-  local part object
+  local part object name= flags=("${model_flags[@]}")
+  shift 4
+  if [ $# -gt 0 ]; then
+    name=.$1
+    shift
+    flags=("$@")
+  fi
   for part in start_up measure_"$what"; do
     [ "$common.$part.o" -nt "$here/$part.cpp" ] || compile "$target" -O1 "$here/$part.cpp" "$common.$part.o"
   done
-  object=$work/$target$optimisation.o
-  [ -f "$object" ] || compile "$target" "$optimisation" "$here/under_test.cpp" "$object" "${model_flags[@]}"
+  object=$work/$target$optimisation$name.o
+  [ -f "$object" ] || compile "$target" "$optimisation" "$here/under_test.cpp" "$object" "${flags[@]}"
   link_image "$target" "$image" "$common.start_up.o" "$common.measure_$what.o" "$object"
 }
 

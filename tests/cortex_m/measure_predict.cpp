@@ -7,7 +7,15 @@
 
 namespace {
 
-constexpr int states = 48;
+constexpr int states = 48, most_features = 32;
+
+void fill(std::uint32_t seed, float (&raw)[16]) {
+  if (pinnquad_wants_gentle_states()) {
+    samples::fill_gentle_raw(seed, raw);
+  } else {
+    samples::fill_raw(seed, raw);
+  }
+}
 
 void print_status(const char* name, unsigned char status) {
   board::print("status ");
@@ -47,9 +55,9 @@ void print_counts(const char* name, const float* raw) {
 }  // namespace
 
 extern "C" int board_main() {
-  float raw[16], x[16], commands[4];
+  float raw[16], x[most_features], commands[4];
   for (int i = 0; i < states; ++i) {
-    samples::fill_raw(static_cast<std::uint32_t>(i), raw);
+    fill(static_cast<std::uint32_t>(i), raw);
     pinnquad_features(raw, x);
     print_all("features", x, 16);
     for (float& v : commands) v = -1.0F;
@@ -57,7 +65,7 @@ extern "C" int board_main() {
     print_all("commands", commands, 4);
   }
   print_status("self_test", pinnquad_self_test());
-  samples::fill_raw(1, raw);
+  fill(1, raw);
 #if defined(__ARM_ARCH_7EM__)
   print_counts("ordinary", raw);
 #endif

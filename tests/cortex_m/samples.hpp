@@ -64,4 +64,18 @@ inline void fill_raw(std::uint32_t seed, float (&raw)[16]) {
   for (int i = 12; i < 16; ++i) raw[i] /= norm;
 }
 
+/// The same, gently and near upright: inside the envelope of a model that was trained on flights.
+inline void fill_gentle_raw(std::uint32_t seed, float (&raw)[16]) {
+  Numbers numbers(seed);
+  for (int i = 0; i < 12; ++i) raw[i] = 0.1F * numbers.next();
+  float sum = 0.0F;
+  for (int i = 12; i < 16; ++i) {
+    raw[i] = i == 12 ? 1.0F : 0.004F * numbers.next();
+    const float square = raw[i] * raw[i];
+    sum += square;
+  }
+  const float norm = __builtin_sqrtf(sum);
+  for (int i = 12; i < 16; ++i) raw[i] /= norm;
+}
+
 }  // namespace samples

@@ -19,11 +19,21 @@ MODEL::Inputs inputs_from(const float* raw) noexcept {
   return inputs;
 }
 
+/// Of an answer that is no network nothing is said.
+template <class Answer, class = void>
+struct WorkspaceOf {
+  static constexpr unsigned bytes = 0;
+};
+template <class Answer>
+struct WorkspaceOf<Answer, std::void_t<decltype(Answer::workspace_bytes)>> {
+  static constexpr unsigned bytes = Answer::workspace_bytes;
+};
+
 }  // namespace
 
 void pinnquad_forward(const float* x, float* y) { MODEL::Network::forward(MODEL::parameters.data(), x, y); }
 
-unsigned pinnquad_workspace_bytes() { return MODEL::Network::workspace_bytes; }
+unsigned pinnquad_workspace_bytes() { return WorkspaceOf<MODEL::Network>::bytes; }
 
 unsigned char pinnquad_predict(const float* raw, float* commands) {
   pinnquad::Commands<float> result{};
@@ -35,6 +45,14 @@ unsigned char pinnquad_predict(const float* raw, float* commands) {
 }
 
 void pinnquad_features(const float* raw, float* x) { MODEL::Features::extract<float>(inputs_from(raw), x); }
+
+bool pinnquad_wants_gentle_states() {
+#ifdef TRAINED_ON_A_FLIGHT
+  return true;
+#else
+  return false;
+#endif
+}
 
 unsigned char pinnquad_self_test() {
   return static_cast<unsigned char>(pinnquad::self_test(pinnquad::InverseDynamics<MODEL>{}));

@@ -18,6 +18,9 @@ unsigned char pinnquad_predict(const float* raw, float* commands);
 /// The model's feature vector from the same raw inputs.
 void pinnquad_features(const float* raw, float* x);
 
+/// True where the model's envelope is that of a flight: states have to be gentle.
+bool pinnquad_wants_gentle_states();
+
 /// Replays the model's golden vectors; returns the Status.
 unsigned char pinnquad_self_test();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the model that is measured to the file named, by the library's own header writer: random weights that keep
+// Writes the models that are measured to the files named, by the library's own header writer: random weights that keep
 // activations alive, scalers and an envelope of an agile multirotor, golden vectors.
 #include <random>
 #include <string>
@@ -7,6 +7,9 @@
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/inference/axis_aligned.hpp"
+#include "pinnquad/inference/inverse_features.hpp"
+#include "pinnquad/inference/signed_sum_outputs.hpp"
 #include "pinnquad/nn/relu.hpp"
 
 namespace {
@@ -45,10 +48,43 @@ void write(const std::string& path, const std::string& name) {
   write_model_header(path, name, model, golden, {"random weights", 0, 0, 7, 0, "none"});
 }
 
+/// A base and a residual of the recipe `structured`.
+void write_structured(const std::string& path, const std::string& name) {
+  using Features = InverseFeatures;
+  using Residual = Mlp<float, InputSize<residual_inputs<Features>>, Hidden<2, 32>, OutputSize<4>, Relu>;
+  using Answer = MonotoneAnswer<Features, Residual>;
+  using Model = TrainedModel<Answer, Context<Features, PaperQuadrotor, SignedSumOutputs>>;
+  std::mt19937_64 engine(8);
+  Model model;
+  for (float& v : model.network.parameters) v = float(uniform(engine, -0.2, 0.2));
+  for (std::size_t i = 0; i < 3; ++i) model.network.parameters[i] = float(uniform(engine, 0.2, 0.8));  // slopes
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t bounds = std::size_t(MonotoneBase<Features>::parameter_count);
+    model.network.parameters[bounds + k] = -0.3F;
+    model.network.parameters[bounds + 4 + k] = 0.3F;
+  }
+  for (std::size_t i = 0; i < model.input.mean.size(); ++i) {
+    model.input.mean[i] = float(uniform(engine, -0.2, 0.2));
+    model.input.spread[i] = 8.0F;
+    model.envelope_lower[i] = -200.0F;
+    model.envelope_upper[i] = 200.0F;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    model.output.mean[i] = i == 0 ? 2.0F : 0.0F;
+    model.output.spread[i] = 0.1F;
+  }
+  std::vector<Model::FeatureVector> golden(4);
+  for (auto& x : golden) {
+    for (float& v : x) v = float(8 * uniform(engine, -1.0, 1.0));
+  }
+  write_model_header(path, name, model, golden, {"random weights", 0, 0, 8, 0, "none"});
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) return 2;
+  if (count != 3) return 2;
   write(arguments[1], "PaperModel");
+  write_structured(arguments[2], "StructuredModel");
   return 0;
 }

@@ -77,6 +77,10 @@ TEST_CASE("which pairs count, and which violate") {
   CHECK(sign_violation_share({0, 0, 1}, {0, 1, 2}) == 0);  // a sum that stands still: no violation
   CHECK(sign_violation_share({0, 1, 0}, {0, 0, 1}) == 1);  // the first pair does not count
   CHECK(sign_violation_share({0, -1, 0, 1}, {0, 1, 2, 3}) == 1.0 / 3);
+  CHECK(sign_violation_share({0, -1, 0, 1}, {0, 1, 3, 6}, 0.5) == 1.0 / 3);
+  CHECK(sign_violation_share({0, -1, 0, 1}, {0, 1, 3, 6}, 1) == 0);  // a step of 1 is none above 1
+  CHECK(sign_violation_share({0, -1, 0, -1}, {0, 1, 3, 6}, 2) == 1);
+  CHECK(std::isnan(sign_violation_share({0, 1}, {0, 1}, 1)));
   CHECK(sign_violation_share({0, -1e-200}, {0, 1e-200}) == 1);  // the product would be 0
   CHECK(std::isnan(sign_violation_share({1, 2, 3}, {4, 4, 4})));
   CHECK(std::isnan(sign_violation_share({1}, {1})));

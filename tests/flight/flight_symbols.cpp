@@ -94,6 +94,18 @@ using Guarded = pinnquad::InverseDynamics<
 
 Guarded guarded() noexcept { return Guarded(pinnquad::AnalyticInverse<Everything<float>>(everything<float>())); }
 
+/// A unit distribution, and limits of a monitor.
+struct Trust {
+  static constexpr std::array<float, 16> distribution_mean{};
+  static constexpr std::array<float, 136> whitening{1};
+  static constexpr double distance_limit = 100;
+  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+};
+using Trusting =
+    pinnquad::InverseDynamics<SmallModel,
+                              pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::JointDistance<Trust>,
+                                               pinnquad::Fallback<pinnquad::AnalyticInverse<Everything<float>>>>>;
+
 template <class Inverse>
 unsigned char predict_and_report(const Inverse& inverse, const float* state, const float* wanted, float* u) noexcept {
   const auto vehicle = read(state);
@@ -152,6 +164,16 @@ unsigned char pinnquad_flight_predict_guarded(const float* state, const float* w
 
 unsigned char pinnquad_flight_predict_reported(const float* state, const float* wanted, float* u) {
   return predict_and_report(guarded(), state, wanted, u);
+}
+
+unsigned char pinnquad_flight_predict_monitored(const float* state, const float* wanted, float* u) {
+  const auto vehicle = read(state);
+  pinnquad::MonitoredInverse<Trusting, Trust> monitored(
+      Trusting(pinnquad::AnalyticInverse<Everything<float>>(everything<float>())));
+  const Status observed =
+      monitored.observe(pinnquad::motion_inputs(vehicle.body, motion(wanted)), {u[0], u[1], u[2], u[3]});
+  return observed == Status::ok ? predict_and_report(monitored, state, wanted, u)
+                                : static_cast<unsigned char>(observed);
 }
 
 unsigned char pinnquad_flight_predict_clamped(const float* state, const float* wanted, float* u) {

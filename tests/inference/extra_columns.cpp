@@ -20,11 +20,11 @@ struct PackCurrent {
   static constexpr const char* unit = "A";
 };
 using Measured = WithColumns<PaperFeaturesWithAltitude, BatteryVoltage, RotorSpeed<2>, PackCurrent>;
-using Inputs = Measured::Inputs<float>;
+using MeasuredInputs = Measured::Inputs<float>;
 
-Inputs sound_inputs(std::uint64_t seed) {
+MeasuredInputs sound_inputs(std::uint64_t seed) {
   RandomStates random(seed);
-  Inputs inputs;
+  MeasuredInputs inputs;
   static_cast<MotionInputs<float>&>(inputs) = motion_inputs(random.state<float>(), random.motion<float>());
   inputs.altitude_m = 3;
   inputs.column<BatteryVoltage>() = 15.5F;
@@ -39,7 +39,7 @@ TEST_CASE("columns stand behind the features of the set that they extend, with t
   CHECK(is_feature_set<Measured>);
   CHECK(Measured::size == 20);
   CHECK(Measured::angular_acceleration == PaperFeatures::angular_acceleration);
-  const Inputs inputs = sound_inputs(1);
+  const MeasuredInputs inputs = sound_inputs(1);
   std::array<float, 20> x{};
   std::array<float, 17> inner{};
   Measured::extract(inputs, x.data());
@@ -71,22 +71,22 @@ TEST_CASE("a set of columns around another one has the columns of both") {
 }
 
 TEST_CASE("a column that is not finite is refused, and so is one that was never set; motion and attitude as ever") {
-  const Inputs good = sound_inputs(2);
+  const MeasuredInputs good = sound_inputs(2);
   CHECK(Measured::check(good) == Status::ok);
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     for (std::size_t i = 0; i < 3; ++i) {
-      Inputs inputs = good;
+      MeasuredInputs inputs = good;
       inputs.columns[i] = bad;
       CHECK(Measured::check(inputs) == Status::not_finite);
     }
-    Inputs inputs = good;
+    MeasuredInputs inputs = good;
     inputs.altitude_m = bad;
     CHECK(Measured::check(inputs) == Status::not_finite);
   }
-  Inputs turned = good;
+  MeasuredInputs turned = good;
   turned.attitude.w += 2;
   CHECK(Measured::check(turned) == Status::not_unit_quaternion);
-  Inputs unset;
+  MeasuredInputs unset;
   static_cast<MotionInputsWithAltitude<float>&>(unset) = good;
   CHECK(Measured::check(unset) == Status::not_finite);
   // and its feature is not finite: what a guard without FiniteInputs goes by

@@ -11,6 +11,7 @@
 #include <memory>
 #include <residual.hpp>
 #include <ridge.hpp>
+#include <structured.hpp>
 #include <sum.hpp>
 #include <wrench.hpp>
 
@@ -19,6 +20,7 @@
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
+#include "pinnquad/inference/hover_slopes.hpp"
 #include "pinnquad/inference/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/simulation/tracking.hpp"
@@ -217,7 +219,8 @@ TEST_CASE("a block of one meaning is none of another: six accelerations, a wrenc
   CHECK(ModelView<ResidualModel>::open(bytes.data(), bytes.size(), view) == Status::block_incompatible);
 }
 
-TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumModel, EnsembleModel, HeadsModel) {
+TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumModel, EnsembleModel, HeadsModel,
+                   StructuredModel) {
   const test::BlockBytes bytes(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
@@ -232,6 +235,40 @@ TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumMode
   check_batch(Model{});
   check_batch(*loaded);
   MESSAGE(std::string(Model::name), ": ", 100 * flown_error_m(Model{}), " cm");
+}
+
+TEST_CASE("a structured model brings its certificate, and its block none that its numbers do not keep") {
+  static_assert(has_certificate<StructuredModel> && !has_certificate<DirectModel>);
+  constexpr Certificate certificate = certificate_of<StructuredModel>();
+  static_assert(certificate.proven());
+  static_assert(detail::same_signs(StructuredModel::slope_signs, motor_torque_signs<PaperQuadrotor>()));
+  for (std::size_t k = 0; k < 4; ++k) {
+    CHECK(double(StructuredModel::residual_lower[k]) == doctest::Approx(certificate.residual_lower[k]));
+    CHECK(double(StructuredModel::residual_upper[k]) == doctest::Approx(certificate.residual_upper[k]));
+  }
+  const AxisSlopes own = hover_slopes(PaperQuadrotor::value<double>());
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    CHECK(certificate.slope[axis] == doctest::Approx(own[axis]).epsilon(0.2));
+
+  test::BlockBytes bytes(model_block<StructuredModel>());
+  ModelView<StructuredModel> view;
+  REQUIRE(ModelView<StructuredModel>::open(bytes.data(), bytes.size(), view) == Status::ok);
+  CHECK(view.records.has_slope_signs);
+  CHECK(view.records.has_residual_range);
+  using Layout = ModelBlockLayout<StructuredModel>;
+  const std::size_t first = Layout::parameters(StructuredModel::golden_features.size());
+  const std::size_t bounds = first + MonotoneBase<PhysicsFeatures>::parameter_count;
+  const auto opened_with = [&](std::size_t at, float value) {
+    test::BlockBytes changed(model_block<StructuredModel>());
+    changed.set_scalar(at, value);
+    changed.seal();
+    return ModelView<StructuredModel>::open(changed.data(), changed.size(), view);
+  };
+  CHECK(opened_with(first, 1e-3F) == Status::ok);
+  CHECK(opened_with(first, -1e-3F) == Status::block_corrupt);
+  CHECK(opened_with(first + 2, 0.0F) == Status::block_corrupt);
+  CHECK(opened_with(first + 3, -1.0F) == Status::ok);  // of another feature
+  CHECK(opened_with(bounds, 1e3F) == Status::block_corrupt);
 }
 
 TEST_CASE("a formula and a network as a sum are that network's outputs on that formula; an ensemble is the mean") {

@@ -10,11 +10,13 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/evaluation/linear_regression.hpp"
 #include "pinnquad/inference/composition.hpp"
+#include "pinnquad/inference/motion_parts.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/schedule/constant.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/monotone_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
 
 namespace {
@@ -121,6 +123,27 @@ void write_heads(const Flight& flight, const Trained& from, const std::string& f
   compose<Whole>(joined<Whole>({cut}), from, flight, file, "HeadsModel");
 }
 
+/// Monotone by construction: a base in closed form and a residual, whether it helps here or not.
+void write_structured(const Flight& flight, const std::string& file) {
+  using Surroundings = Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>;
+  using Residual = Mlp<float, InputSize<residual_inputs<PhysicsFeatures>>, Hidden<2, 20>, OutputSize<4>, Tanh>;
+  const RowSet training(flight, {0, flight.size() * 3 / 4}), validation(flight, {flight.size() * 3 / 4, flight.size()});
+  const auto context = make_context<Surroundings>(training);
+  std::mt19937_64 engine(5);
+  ResidualTraining how;
+  how.epochs = 40;
+  const auto fit = fit_monotone<Residual>(context, training, validation, fit_monotone_base(context, training), how,
+                                          engine, [](int) { return true; });
+  const auto model = make_trained_model(fit.answer, context, training);
+  using Model = std::decay_t<decltype(model)>;
+  std::vector<typename Model::FeatureVector> golden;
+  for (std::size_t i = 0; i < 4; ++i) {
+    golden.push_back(sample_features<PhysicsFeatures, float>(flight[100 + 700 * i]));
+  }
+  write_model_header(file, "StructuredModel", model, golden,
+                     {"simulated flight", content_hash(flight), training.size(), 5, how.epochs, "structured"});
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -139,6 +162,7 @@ int main(int count, char** arguments) {
     const auto residual =
         train<ResidualOutputs<LinearizedInverse>>(recorded.flight, folder, "residual.hpp", "ResidualModel");
     const auto direct = train<CommandOutputs>(recorded.flight, folder, "direct.hpp", "DirectModel");
+    write_structured(recorded.flight, folder + "/structured.hpp");
     write_ridge(recorded.flight, residual, folder + "/ridge.hpp");
     write_heads(recorded.flight, direct, folder + "/heads.hpp");
     using Part = Scaled<std::decay_t<decltype(residual.network)>>;

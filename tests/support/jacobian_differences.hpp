@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pinnquad/inference/axis_aligned.hpp"
 #include "pinnquad/inference/composition.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 
@@ -39,6 +40,18 @@ struct InDouble<Heads<Part...>> {
 template <class Inner>
 struct InDouble<Scaled<Inner>> {
   using type = Scaled<InDoubleOf<Inner>>;
+};
+template <class Scalar, int FeatureCount, int... First>
+struct InDouble<AxisAligned<Scalar, FeatureCount, First...>> {
+  using type = AxisAligned<double, FeatureCount, First...>;
+};
+template <class Inner, int FeatureCount, int... First>
+struct InDouble<Withheld<Inner, FeatureCount, First...>> {
+  using type = Withheld<InDoubleOf<Inner>, FeatureCount, First...>;
+};
+template <class Inner>
+struct InDouble<Bounded<Inner>> {
+  using type = Bounded<InDoubleOf<Inner>>;
 };
 template <class Scalar, int InputCount, class Formula, class Vehicle>
 struct InDouble<Analytic<Scalar, InputCount, Formula, Vehicle>> {

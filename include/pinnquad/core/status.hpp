@@ -27,10 +27,12 @@ enum class [[nodiscard]] Status : std::uint8_t{
     block_corrupt,        ///< a block whose checksum or contents are wrong
     disagreement,         ///< the network's commands are further from another inverse's than the guard allows
     warming_up,  ///< a model with a past has not seen enough of it yet, or lost it in a gap (inference/windowed.hpp)
+    outside_distribution,  ///< the features lie further from the training rows than the guard allows, taken together
+    distrusted,            ///< the model has lately been wrong about what was flown (inference/monitored_inverse.hpp)
 };
 
 /// Number of Status values, for counters by Status.
-inline constexpr int status_count = static_cast<int>(Status::warming_up) + 1;
+inline constexpr int status_count = static_cast<int>(Status::distrusted) + 1;
 
 /// True where the output was written: `ok`, `limited`, `fell_back`.
 PINNQUAD_ALWAYS_INLINE constexpr bool has_output(Status status) noexcept {
@@ -57,6 +59,8 @@ constexpr const char* to_string(Status status) noexcept {
     case Status::block_corrupt: return "block_corrupt";
     case Status::disagreement: return "disagreement";
     case Status::warming_up: return "warming_up";
+    case Status::outside_distribution: return "outside_distribution";
+    case Status::distrusted: return "distrusted";
   }
   return "unknown status";
 }

@@ -2,7 +2,13 @@
 // Matrix and vector aliases: the vocabulary of every interface.
 // The only file that includes Eigen. Its vectors and matrices are not over-aligned, and what is made of them may be copied into
 // any buffer; the weights for a vector unit are (PackedNetwork, LoadedModel: 64 bytes).
+// Without exceptions, as firmware is built, Eigen's asserts are off: they print and abort, and flight code has neither. Who wants
+// them defines eigen_assert, or includes Eigen first.
 #pragma once
+
+#if !defined(__cpp_exceptions) && !defined(EIGEN_NO_DEBUG) && !defined(eigen_assert)
+#define EIGEN_NO_DEBUG
+#endif
 
 #include <Eigen/Core>
 

@@ -20,6 +20,7 @@
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/deploy/record_writer.hpp"
 #include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/inference/certificate.hpp"
 #include "pinnquad/inference/model.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/version.hpp"
@@ -60,13 +61,41 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
   return commands;
 }
 
+/// The records of a trained model; of one with a certificate what is proven is among them. Throws std::invalid_argument where
+/// nothing is proven of a model that has the structure.
+template <class Model>
+ExportedTerms exported_terms(const Model& model, Provenance provenance) {
+  const Airframe<double> airframe = model.template airframe<double>();
+  if constexpr (has_certificate<Model>) {
+    const Certificate certificate =
+        certificate_of<Model>(model.template output_setting<SignedSumOutputs, typename Model::Scalar>(),
+                              model.network.parameters.data(), model.input.spread.data(), model.output.spread.data());
+    if (!certificate.proven()) {
+      throw std::invalid_argument("export: " + std::string(certificate.bounded
+                                                               ? "a slope of the model is not above 0"
+                                                               : "the bounds of the residual are none"));
+    }
+    provenance.slope_signs = motor_torque_signs(airframe);
+    ResidualRange range;
+    using Scalar = typename Model::Scalar;
+    const auto outward = [](double bound, double to) {  // as the model's Scalar holds it
+      const auto rounded = static_cast<Scalar>(bound);
+      return std::abs(bound) > 0 ? static_cast<double>(std::nextafter(rounded, static_cast<Scalar>(to))) : 0.0;
+    };
+    for (const double bound : certificate.residual_lower) range.lower.push_back(outward(bound, -1e30));
+    for (const double bound : certificate.residual_upper) range.upper.push_back(outward(bound, 1e30));
+    provenance.residual_range = range;
+  }
+  return exported_terms<typename Model::Features, typename Model::Outputs>(provenance, airframe);
+}
+
 }  // namespace detail
 
 /// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
 /// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp; no locale plays
 /// a part. A GivenAirframe stands before the
 /// model as a struct of its own. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
-/// name that no struct may have, for no golden vector, for one outside the envelope, for a number that is not finite, and for terms that no model has (deploy/provenance.hpp).
+/// name that no struct may have, for no golden vector, for one outside the envelope, for a number that is not finite, for terms that no model has (deploy/provenance.hpp), and for a model of proven structure that has no certificate.
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& stream, const std::string& struct_name,
                  const TrainedModel<NetworkType, ContextType>& model,
@@ -76,8 +105,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   using Scalar = typename Model::Scalar;
   if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
   const auto golden_commands = detail::golden_commands(model, golden);
-  const auto terms = detail::exported_terms<typename Model::Features, typename Model::Outputs>(
-      provenance, model.template airframe<double>());
+  const auto terms = detail::exported_terms(model, provenance);
   constexpr bool own_airframe = std::is_same_v<typename Model::Vehicle, GivenAirframe>;
   const std::string vehicle_name = model.airframe_name();
   std::ostringstream out;
@@ -181,6 +209,9 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
   array(scalar, "parameters", model.network.parameters);
   out << "};\n\nstatic_assert(pinnquad::require_model<" << struct_name << ">());\n";
+  if constexpr (has_certificate<Model>) {
+    out << "static_assert(pinnquad::require_certificate<" << struct_name << ">());  // docs/certificate.md\n";
+  }
   stream << out.str();
 }
 

@@ -67,8 +67,7 @@ std::vector<unsigned char> model_block(
     const Provenance& provenance) {
   using Model = TrainedModel<NetworkType, ContextType>;
   const auto golden_commands = detail::golden_commands(model, golden);
-  const auto terms = detail::exported_terms<typename Model::Features, typename Model::Outputs>(
-      provenance, model.template airframe<double>());
+  const auto terms = detail::exported_terms(model, provenance);
   const std::uint64_t shape = detail::hash_of_shape<Model>(printable(model.airframe_name()),
                                                            motor_torque_signs(model.template airframe<double>()));
   return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, terms, shape,

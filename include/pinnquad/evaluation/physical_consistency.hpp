@@ -29,17 +29,19 @@ inline double slope_error(const std::vector<double>& target_sum, const std::vect
 ///   #{i : dS_i d_omega_dot_i < 0} / #{i : d_omega_dot_i != 0},   d x_i = x_{i+1} - x_i,  i = 0 .. n-2
 /// A sum that stands still is no violation. Rows must be in time order and follow each other. Twice this share is the
 /// local monotonicity loss (Alg. 1) with the sign as step if no difference is 0. NaN if no pair counts.
+/// `above`: pairs count whose |d_omega_dot_i| is larger, rad/s^2.
 /// Throws std::invalid_argument for series of different length.
 inline double sign_violation_share(const std::vector<double>& predicted_sum,
-                                   const std::vector<double>& angular_acceleration) {
+                                   const std::vector<double>& angular_acceleration, double above = 0) {
   detail::require_equal_length("sign_violation_share", predicted_sum.size(), angular_acceleration.size());
   std::size_t pairs = 0;
   std::size_t violations = 0;
   const std::size_t rows = std::min(predicted_sum.size(), angular_acceleration.size());  // equal; gcc 12 can't see it
   for (std::size_t i = 0; i + 1 < rows; ++i) {
     // by comparison: the product of two small differences could underflow to 0
-    const bool rises = angular_acceleration[i + 1] > angular_acceleration[i];
-    const bool falls = angular_acceleration[i + 1] < angular_acceleration[i];
+    const bool large = std::abs(angular_acceleration[i + 1] - angular_acceleration[i]) > above;
+    const bool rises = large && angular_acceleration[i + 1] > angular_acceleration[i];
+    const bool falls = large && angular_acceleration[i + 1] < angular_acceleration[i];
     const bool sum_rises = predicted_sum[i + 1] > predicted_sum[i];
     const bool sum_falls = predicted_sum[i + 1] < predicted_sum[i];
     pairs += rises || falls ? 1 : 0;

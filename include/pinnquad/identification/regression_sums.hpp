@@ -51,6 +51,16 @@ class RegressionSums {
     return *this;
   }
 
+  /// The same rows with one of the outputs.
+  RegressionSums of_output(int output) const {
+    RegressionSums one(inputs_, 1);
+    const int from = 1 + inputs_ + output, to = 1 + inputs_;
+    one.products_.topLeftCorner(to, to) = products_.topLeftCorner(to, to);
+    one.products_.row(to).head(to) = products_.row(from).head(to);
+    one.products_(to, to) = products_(from, from);
+    return one;
+  }
+
   int inputs() const noexcept { return inputs_; }
   int outputs() const noexcept { return outputs_; }
   double rows() const { return products_(0, 0); }

@@ -14,14 +14,20 @@
 
 namespace pinnquad {
 
+namespace detail {
+inline void require_penalty(double penalty) {
+  if (!(penalty >= 0) || penalty > 1e12) {
+    throw std::invalid_argument("ridge: expected a penalty from 0, found " + std::to_string(penalty));
+  }
+}
+}  // namespace detail
+
 /// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A feature that
 /// stands still, or that the others repeat, does no harm, without a penalty too (identification/symmetric_system.hpp).
 /// Throws std::invalid_argument for no rows and for a penalty that is no number from 0.
 inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken = {}) {
   if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
-  if (!(penalty >= 0) || penalty > 1e12) {
-    throw std::invalid_argument("ridge: expected a penalty from 0, found " + std::to_string(penalty));
-  }
+  detail::require_penalty(penalty);
   std::vector<int> columns;
   for (int i = 0; i < sums.inputs(); ++i) {
     if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);

@@ -73,7 +73,12 @@ void predict_batch(const InverseDynamics<Model, GuardType, CallerType>& inverse,
       Scalar outputs[Model::Network::outputs], sample[rotor_count];
       Pipeline::command(scales, x + first + s, samples, answers + s, lanes, outputs, sample);
       const Status checked = GuardType::check_commands(sample);
-      const Status status = outside[s] != 0 ? Status::outside_envelope : checked;
+      Status status = outside[s] != 0 ? Status::outside_envelope : checked;
+      if constexpr (GuardType::measures_distance) {
+        Scalar features[size], squared(0);
+        for (int k = 0; k < size; ++k) features[k] = x[k * samples + first + s];
+        if (outside[s] == 0 && !inverse.inside_distribution(features, squared)) status = Status::outside_distribution;
+      }
       statuses[first + s] = status;
       if (has_output(status)) {
         for (int i = 0; i < rotor_count; ++i) commands[i * samples + first + s] = sample[i];

@@ -12,7 +12,7 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// commands = u(x) and jacobian[i * Features::size + k] = du_i / dx_k, 4 x Features::size, row-major, in physical units
 /// (for the angular accelerations: per rad/s^2). Exact derivatives of network and output schema.
-/// Of the guard, the envelope and the checks of the commands apply; a fallback has no derivatives here and is not asked. Where
+/// Of the guard, the envelope, the distance and the checks of the commands apply; a fallback has no derivatives here and is not asked. Where
 /// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a
 /// header's, a ModelView, a LoadedModel. Both outputs are untouched unless has_output(status).
 template <class Model, class GuardType, class CallerType>
@@ -28,6 +28,8 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType, CallerType>
   using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;
   constexpr int size = Model::Features::size;
   if (!inverse.inside_envelope(x)) return Status::outside_envelope;
+  Scalar squared_distance(0);
+  if (!inverse.inside_distribution(x, squared_distance)) return Status::outside_distribution;
 
   const detail::Scales<Scalar> scales = detail::ModelNumbers<Model>::scales(inverse.model());
   Scalar outputs[Network::outputs] = {}, slopes[Network::outputs * size];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What stands between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>, a list of
 // policies that the compiler checks for sense. The order in the list has no meaning: inputs are checked first, then the
-// envelope, then the outputs' numbers and limits; what passes may have to agree with another inverse; where all that declines,
+// envelope, then the distance from the training rows, then the outputs' numbers and limits; what passes may have to agree with another inverse; where all that declines,
 // the fallback is asked.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
 #include "pinnquad/inference/held.hpp"
+#include "pinnquad/inference/joint_distance.hpp"
 #include "pinnquad/inference/place_and_time.hpp"
 
 namespace pinnquad {
@@ -26,7 +27,7 @@ struct FiniteInputs {};
 /// A box, feature by feature: it does not know which features came together. A motion whose features are each within it can lie
 /// far from every motion of the training data: in level hover a pure roll demand of 30 to 60 rad/s^2 passes the envelope of
 /// examples/models/demo_quadrotor.hpp, and the commands make 5 to 36 % too little torque. Agreement finds the worst of such
-/// motions.
+/// motions; JointDistance knows which features came together.
 struct TrainingEnvelope {};
 
 /// Features outside the envelope are moved to its border: `limited`. The network is asked for another motion then, which a
@@ -86,6 +87,7 @@ struct GuardReport {
   bool fallback_asked{false};
   bool features_clamped{false};
   bool commands_clipped{false};  ///< the network's or the fallback's
+  Scalar squared_distance{0};    ///< that JointDistance measured; 0 if none was
   Scalar disagreement{0};  ///< largest |network's - other's command| that Agreement found; 0 if nothing was compared
   /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that isn't.
   /// All zero if the inputs were refused before there were features.
@@ -140,6 +142,15 @@ template <class I>
 struct PolicyTraits<Reference<I>> {
   static constexpr bool known = true;
 };
+template <class D>
+struct PolicyTraits<JointDistance<D>> {
+  static constexpr bool known = true;
+};
+
+/// Stands for a distribution where the guard measures no distance.
+struct NoDistribution {
+  static constexpr double distance_limit = 1;
+};
 
 /// Both limits are numbers; what is compared with NaN or infinity is neither clipped nor refused.
 template <class Limits>
@@ -182,10 +193,13 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   using FallenBack = detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>;
   using Referred = detail::ArgumentOf<Reference, detail::NoFallback, Policies...>;
   using Agreed = detail::ArgumentOf<Agreement, AgreedCommands, Policies...>;
+  using Distributed = detail::ArgumentOf<JointDistance, detail::NoDistribution, Policies...>;
 
  public:
   /// The fallback's type, or the reference's.
   using FallbackInverse = typename detail::OtherInverse<Policies...>::type;
+  /// Of JointDistance.
+  using Distribution = typename Distributed::type;
 
   static constexpr bool checks_inputs = count<FiniteInputs> > 0;
   static constexpr bool refuses_outside_envelope = count<TrainingEnvelope> > 0;
@@ -194,6 +208,7 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   static constexpr bool clips_commands = Clipped::count > 0;
   static constexpr bool falls_back = FallenBack::count > 0;
   static constexpr bool compares = Agreed::count > 0;
+  static constexpr bool measures_distance = Distributed::count > 0;
 
   static_assert((detail::PolicyTraits<Policies>::known && ...),
                 "pinnquad: this type is not a policy of a Guard (inference/guard.hpp)");
@@ -208,7 +223,7 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   static_assert(!(refuses_outside_envelope && clamps_to_envelope),
                 "pinnquad: a Guard either refuses what is outside the envelope or clamps it, not both");
   static_assert(((count<Policies> == 1) && ...) && Refused::count <= 1 && Clipped::count <= 1 &&
-                    FallenBack::count <= 1 && Referred::count <= 1 && Agreed::count <= 1,
+                    FallenBack::count <= 1 && Referred::count <= 1 && Agreed::count <= 1 && Distributed::count <= 1,
                 "pinnquad: a policy of a Guard is named twice");
   static_assert(detail::finite_limits<typename Refused::type>() && detail::finite_limits<typename Clipped::type>(),
                 "pinnquad: a Guard's command limits must be numbers: NaN or infinity would let every command pass");
@@ -221,6 +236,9 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
                 "pinnquad: Reference is what Agreement compares with in a Guard without Fallback");
   static_assert(is_finite_constant(double(Agreed::type::largest_difference)) && Agreed::type::largest_difference > 0,
                 "pinnquad: the largest difference of an Agreement must be a positive number");
+
+  static_assert(is_finite_constant(double(Distribution::distance_limit)) && Distribution::distance_limit > 0,
+                "pinnquad: the distance limit of a JointDistance must be a positive number");
 
   Guard() = default;
   /// A fallback that has values of its own must be given.

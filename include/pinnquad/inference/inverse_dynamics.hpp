@@ -41,6 +41,15 @@ PINNQUAD_ALWAYS_INLINE const PackedNetwork<typename Model::Network>& packed_weig
 /// What is written to where nobody asked why.
 struct NoReport {};
 
+/// The distribution of a guard's JointDistance is that of the model.
+template <class Model, class Guard>
+constexpr bool require_distribution_of_model() noexcept {
+  if constexpr (is_guard<Guard>) {
+    if constexpr (Guard::measures_distance) return require_distribution<typename Guard::Distribution, Model>();
+  }
+  return true;
+}
+
 /// A model that brings its own forward() is an instance with weights elsewhere, checked by whoever loads it.
 template <class Model>
 constexpr bool check_model() noexcept {
@@ -64,6 +73,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   static_assert(detail::require_caller<ModelType, CallerType>());
   static_assert(is_guard<GuardType>,
                 "pinnquad: the second argument of InverseDynamics is a Guard (inference/guard.hpp)");
+  static_assert(detail::require_distribution_of_model<ModelType, GuardType>());
 
  public:
   using Model = ModelType;
@@ -87,7 +97,8 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
 
   /// Commands that make the motion asked for; not clipped to 0..1 unless the guard does (the rotor clips).
   /// `ok`, `limited`: the network's. `fell_back`: the fallback's. `not_finite`, `not_unit_quaternion`: a bad input.
-  /// `outside_envelope`: a feature beyond the training data. `outside_limits`: the guard refuses the commands.
+  /// `outside_envelope`: a feature beyond the training data. `outside_distribution`: all of them together too far from it
+  /// (JointDistance). `outside_limits`: the guard refuses the commands.
   /// `output_not_finite`: the network's weights are broken. `disagreement`: too far from another inverse's (Agreement).
   Status predict(const Inputs& inputs, Commands<Scalar>& commands) const noexcept {
     detail::NoReport none;
@@ -109,6 +120,23 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
                  Report& report) const noexcept {
     report = {};
     return guarded(inputs, commands, report, place);
+  }
+
+  /// What predict() comes to where the network must not be asked, for a reason that the caller knows: the fallback's commands
+  /// (`fell_back`), or `cause`. `cause` is a Status without output.
+  Status without_network(Status cause, const Inputs& inputs, Commands<Scalar>& commands,
+                         Report& report) const noexcept {
+    report = {};
+    report.cause = cause;
+    return declined(cause, inputs, commands, report);
+  }
+  /// The same for a fallback that needs to know where and when.
+  template <class Real>
+  Status without_network(Status cause, const Inputs& inputs, const PlaceAndTime<Real>& place,
+                         Commands<Scalar>& commands, Report& report) const noexcept {
+    report = {};
+    report.cause = cause;
+    return declined(cause, inputs, commands, report, place);
   }
 
   /// The network's answer to a feature vector X, physical units, under all of the guard but its fallback, which needs the
@@ -146,6 +174,17 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     return inside;
   }
 
+  /// True if the features together lie as near to the training rows as the guard asks; leaves the squared distance.
+  /// Always true of a guard without JointDistance.
+  PINNQUAD_ALWAYS_INLINE bool inside_distribution(const Scalar* x, Scalar& squared) const noexcept {
+    if constexpr (Guard::measures_distance) {
+      squared = squared_joint_distance<typename Guard::Distribution>(x);
+      return is_finite(squared) && squared <= Scalar(Guard::Distribution::distance_limit);
+    } else {
+      return true;
+    }
+  }
+
   /// The bare network, standardised in and out: the model's own forward() if it has one; else the vector unit's kernel where
   /// there is one, else the portable one. Out of line: all ways to the network share its code.
   PINNQUAD_NOINLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
@@ -178,11 +217,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
         for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
         return status;
       }
-      if constexpr (Guard::falls_back) {
-        return fall_back(inputs, commands, report, place...) ? Status::fell_back : status;
-      } else {
-        return status;
-      }
+      return declined(status, inputs, commands, report, place...);
     }
   }
 
@@ -210,13 +245,34 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
       Scalar nearest[Features::size];
       moved = clamp(x, nearest);
       if constexpr (reports<ReportType>) report.features_clamped = moved;
+      if (!near_enough(nearest, report)) return Status::outside_distribution;
       evaluate(nearest, commands);
     } else {
+      if (!near_enough(x, report)) return Status::outside_distribution;
       evaluate(x, commands);
     }
     const Status checked = Guard::check_commands(commands);
     if constexpr (reports<ReportType>) report.commands_clipped = checked == Status::limited;
     return checked == Status::ok && moved ? Status::limited : checked;
+  }
+
+  template <class ReportType>
+  PINNQUAD_ALWAYS_INLINE bool near_enough(const Scalar* x, ReportType& report) const noexcept {
+    Scalar squared(0);
+    const bool inside = inside_distribution(x, squared);
+    if constexpr (reports<ReportType>) report.squared_distance = squared;
+    return inside;
+  }
+
+  /// The fallback's commands, or `cause`.
+  template <class ReportType, class... Place>
+  Status declined(Status cause, const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
+                  const Place&... place) const noexcept {
+    if constexpr (Guard::falls_back) {
+      return fall_back(inputs, commands, report, place...) ? Status::fell_back : cause;
+    } else {
+      return cause;
+    }
   }
 
   /// x moved into the envelope; true if anything had to move. x is finite.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/inference/certificate.hpp"
 #include "pinnquad/inference/model_block.hpp"
 
 namespace pinnquad {
@@ -86,7 +87,7 @@ class ModelView : public ModelScales<ShapeType> {
   /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
   /// another shape or caller, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
   /// not fit their place, no golden vector, a value that is NaN or Inf, a spread that is
-  /// not positive, an envelope upside down. `view` is untouched unless the Status is ok.
+  /// not positive, an envelope upside down, a model of proven structure whose certificate its numbers don't fulfil. `view` is untouched unless the Status is ok.
   /// Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
@@ -156,6 +157,12 @@ class ModelView : public ModelScales<ShapeType> {
       sound &= scalars[Layout::envelope_lower + i] <= scalars[Layout::envelope_upper + i];
     }
     for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_spread + i] > Scalar(0);
+    if constexpr (has_certificate<ShapeType>) {
+      constexpr auto mix = detail::signed_mix(airframe_value<typename ShapeType::Vehicle, Scalar>());
+      const Certificate certificate = certificate_of<ShapeType>(
+          mix, scalars + Layout::parameters(golden), scalars + Layout::input_spread, scalars + Layout::output_spread);
+      sound &= certificate.proven();
+    }
     return sound;
   }
 

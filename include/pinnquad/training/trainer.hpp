@@ -80,7 +80,7 @@ class Trainer {
   double epoch(const Data& data, const Progress& progress, Engine& engine) {
     return epoch(data, progress, engine, [](const Trainer&) {});
   }
-  /// The same; `after_batch(*this)` is called after each step.
+  /// The same; `after_batch(*this)` is called after each step. It may project() the network.
   template <class Engine, class Observer>
   double epoch(const Data& data, const Progress& progress, Engine& engine, const Observer& after_batch) {
     if (progress.epoch < 0 || progress.epoch >= progress.epochs) {
@@ -200,6 +200,14 @@ class Trainer {
     Network result;
     gradient_.store(result.parameters);
     return result;
+  }
+  /// The parameters as `projection(parameters)` leaves them; the optimiser's moments stay.
+  template <class Projection>
+  void project(const Projection& projection) {
+    typename Network::Parameters parameters{};
+    gradient_.store(parameters);
+    projection(parameters);
+    gradient_.load(parameters);
   }
   /// Gradient of the last differentiated batch, in the layout of Network::parameters.
   typename Network::Parameters parameter_gradient() const {

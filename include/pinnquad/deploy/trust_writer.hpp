@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Writes the limits of a model's trust as a struct beside the model: what JointDistance and InnovationMonitor are
+// given.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <locale>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "pinnquad/deploy/identifier.hpp"
+#include "pinnquad/deploy/literal.hpp"
+#include "pinnquad/data/decimal.hpp"
+#include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/training/trust_limits.hpp"
+
+namespace pinnquad {
+
+/// Writes `struct <model_name>Trust`, to follow what write_model() wrote under that name: the header's contract is
+/// unchanged, and a header without it is whole. `Scalar`: the model's. Throws std::invalid_argument, and writes
+/// nothing, for a name that no struct may have and a number that is not finite as the model's Scalar has it.
+template <class Scalar, int Size>
+void write_trust(std::ostream& stream, const std::string& model_name, const FittedTrust<Size>& trust,
+                 std::uint64_t training_data_hash) {
+  if (!is_identifier(model_name)) throw std::invalid_argument("export: '" + model_name + "' is not a C++ identifier");
+  const auto rounded = [](const auto& values) {
+    std::array<Scalar, std::tuple_size_v<std::decay_t<decltype(values)>>> result{};
+    for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<Scalar>(values[i]);
+    return result;
+  };
+  const auto mean = rounded(trust.distribution.mean);
+  const auto whitening = rounded(trust.distribution.whitening);
+  detail::require_finite(mean, "the distribution's mean");
+  detail::require_finite(whitening, "the distribution's whitening");
+  detail::require_finite(std::array<double, 5>{trust.distance_limit, trust.innovation_factor, trust.innovation_limit,
+                                               trust.innovation_cleared, trust.update_period_s},
+                         "the trust's limits");
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  const std::string scalar = type_name<Scalar>();
+  const auto array = [&](const char* name, const auto& values) {
+    out << "  static constexpr std::array<" << scalar << ", " << values.size() << "> " << name << " = {";
+    detail::write_braced(out, values, "  ");
+    out << "};\n";
+  };
+  const auto number = [&](const char* name, double value) {
+    out << "  static constexpr double " << name << " = " << detail::literal(value) << ";\n";
+  };
+  out << "\n// When the model is not to be trusted: JointDistance<" << model_name << "Trust> for its Guard, "
+      << "InnovationMonitor<" << model_name << "Trust>.\n"
+      << "struct " << model_name << "Trust {\n"
+      << "  static constexpr std::uint64_t training_data_hash = " << hexadecimal(training_data_hash) << ";\n";
+  array("distribution_mean", mean);
+  out << "  // lower triangular, column after column\n";
+  array("whitening", whitening);
+  number("distance_limit", trust.distance_limit);
+  out << "  // of the mean absolute error of the commands, updated every update_period_s\n";
+  number("innovation_factor", trust.innovation_factor);
+  number("innovation_limit", trust.innovation_limit);
+  number("innovation_cleared", trust.innovation_cleared);
+  number("update_period_s", trust.update_period_s);
+  out << "};\n";
+  stream << out.str();
+}
+
+}  // namespace pinnquad

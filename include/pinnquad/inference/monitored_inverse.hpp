@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// An InverseDynamics that remembers how right it was: observe() what was flown, predict() what to fly. While the
+// innovation is above its limit the model is not asked: the guard's fallback flies, or nobody (`distrusted`).
+#pragma once
+
+#include "pinnquad/inference/innovation.hpp"
+#include "pinnquad/inference/inverse_dynamics.hpp"
+
+namespace pinnquad {
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// `Inverse`: an InverseDynamics, with or without JointDistance and Fallback. `Trust`: InnovationMonitor's. The monitor
+/// goes on while the fallback flies, so that a model which is right again flies again.
+template <class Inverse, class Trust>
+class MonitoredInverse : private detail::Held<Inverse> {
+ public:
+  using Scalar = typename Inverse::Scalar;
+  using Features = typename Inverse::Features;
+  using Inputs = typename Inverse::Inputs;
+  using Report = typename Inverse::Report;
+  using Monitor = InnovationMonitor<Trust, Scalar>;
+
+  MonitoredInverse() = default;
+  explicit MonitoredInverse(const Inverse& inverse) noexcept : detail::Held<Inverse>(inverse) {}
+
+  const Inverse& inverse() const noexcept { return detail::Held<Inverse>::held(); }
+  const Monitor& monitor() const noexcept { return monitor_; }
+  bool trusted() const noexcept { return monitor_.trusted(); }
+  void reset() noexcept { monitor_.reset(); }
+
+  /// A motion that was measured, and the commands behind it. The bare network is asked, inside the envelope or not.
+  /// `ok`; else a Status of the features' check, `output_not_finite` or `not_finite`, and nothing changes.
+  Status observe(const Inputs& measured, const Commands<Scalar>& flown) noexcept {
+    const Status checked = Features::check(measured);
+    if (checked != Status::ok) return checked;
+    Scalar x[Features::size];
+    Features::extract(measured, x);
+    return observe_features(x, flown);
+  }
+  /// The same of features in physical units.
+  Status observe_features(const Scalar* x, const Commands<Scalar>& flown) noexcept {
+    if (!all_finite(x, Features::size)) return Status::not_finite;
+    Commands<Scalar> predicted{};
+    inverse().evaluate(x, predicted.data());
+    if (!all_finite(predicted)) return Status::output_not_finite;
+    return monitor_.update(predicted, flown);
+  }
+
+  /// As Inverse::predict(); while the model is distrusted `fell_back` or `distrusted`.
+  Status predict(const Inputs& inputs, Commands<Scalar>& commands, Report& report) const noexcept {
+    return trusted() ? inverse().predict(inputs, commands, report)
+                     : inverse().without_network(Status::distrusted, inputs, commands, report);
+  }
+  Status predict(const Inputs& inputs, Commands<Scalar>& commands) const noexcept {
+    if (trusted()) return inverse().predict(inputs, commands);
+    Report report;
+    return inverse().without_network(Status::distrusted, inputs, commands, report);
+  }
+  /// The same for a fallback that needs to know where and when.
+  template <class Real>
+  Status predict(const Inputs& inputs, const PlaceAndTime<Real>& place, Commands<Scalar>& commands,
+                 Report& report) const noexcept {
+    return trusted() ? inverse().predict(inputs, place, commands, report)
+                     : inverse().without_network(Status::distrusted, inputs, place, commands, report);
+  }
+  template <class Real>
+  Status predict(const Inputs& inputs, const PlaceAndTime<Real>& place, Commands<Scalar>& commands) const noexcept {
+    if (trusted()) return inverse().predict(inputs, place, commands);
+    Report report;
+    return inverse().without_network(Status::distrusted, inputs, place, commands, report);
+  }
+
+ private:
+  Monitor monitor_{};
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad

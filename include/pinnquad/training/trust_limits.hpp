@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// When a model is not to be trusted: the distribution of its training rows, and limits of distance and innovation that
+// validation flights pass with a false-alarm rate of one's choice (docs/trust.md).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pinnquad/training/joint_distribution.hpp"
+#include "pinnquad/training/trained_model.hpp"
+
+namespace pinnquad {
+
+/// What is asked of the two limits, and how the innovation's mean forgets.
+struct TrustSettings {
+  double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
+  double block_s = 10;              ///< alarms less than this apart are one
+  double innovation_factor = 0.2;
+  double shrinkage = usual_shrinkage;
+};
+
+/// Limits and what they are limits of; values in double.
+template <int Size>
+struct FittedTrust {
+  JointDistribution<Size> distribution{};
+  double distance_limit = 0;  ///< of the squared distance
+  double innovation_factor = 0;
+  double innovation_limit = 0;
+  double innovation_cleared = 0;  ///< half-way from the usual mean to the limit
+  double update_period_s = 0;     ///< of the rows that the innovation was fitted on
+};
+
+/// The greatest value of each `rows` values that follow each other; what is left at the end is no block.
+inline std::vector<double> block_maxima(const std::vector<double>& values, std::size_t rows) {
+  std::vector<double> maxima;
+  for (std::size_t first = 0; rows > 0 && first + rows <= values.size(); first += rows) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    maxima.push_back(*std::max_element(begin, begin + static_cast<std::ptrdiff_t>(rows)));
+  }
+  return maxima;
+}
+
+/// A limit that one block in `blocks_per_alarm` exceeds, judged by the maxima of n blocks of the same kind. If a new
+/// block is as likely as each of the n to hold any rank among them, it exceeds the k-th greatest with the probability k
+/// / (n + 1), whatever the distribution: k = floor((n + 1) / blocks_per_alarm). Where n is too small for k = 1 the tail
+/// of the greatest m = max(4, n / 10) maxima is continued as a power law (Weissman 1978, exponent by Hill 1975): a
+/// guess, on the side of few alarms where the tail is exponential. Throws std::invalid_argument for fewer than 8 blocks
+/// and for maxima that are not above 0.
+inline double alarm_limit(std::vector<double> maxima, double blocks_per_alarm) {
+  constexpr std::size_t least_blocks = 8, least_tail = 4;
+  if (maxima.size() < least_blocks) {
+    throw std::invalid_argument("alarm limit: expected at least " + std::to_string(least_blocks) +
+                                " blocks of rows, found " + std::to_string(maxima.size()));
+  }
+  std::sort(maxima.begin(), maxima.end(), std::greater<>());
+  const auto count = static_cast<double>(maxima.size());
+  const double rank = std::floor((count + 1) / blocks_per_alarm);
+  if (rank >= 1) return maxima[std::min(maxima.size(), static_cast<std::size_t>(rank)) - 1];
+  const std::size_t tail = std::max(least_tail, maxima.size() / 10);
+  const double start = maxima[tail];
+  if (!(start > 0)) throw std::invalid_argument("alarm limit: expected values above 0");
+  double exponent = 0;
+  for (std::size_t i = 0; i < tail; ++i) exponent += std::log(maxima[i] / start) / static_cast<double>(tail);
+  return start * std::pow(blocks_per_alarm * static_cast<double>(tail) / count, exponent);
+}
+
+/// m <- m + factor (e - m), from 0: InnovationMonitor's means of a flight's errors.
+inline std::vector<double> innovation_means(const std::vector<double>& errors, double factor) {
+  std::vector<double> means;
+  double mean = 0;
+  for (const double error : errors) means.push_back(mean += factor * (error - mean));
+  return means;
+}
+
+/// What the limits of a piece of a flight are judged by, row by row.
+struct TrustSeries {
+  std::vector<double> squared_distances;
+  std::vector<double> errors;  ///< mean over the rotors of |command predicted - command flown|
+};
+
+/// Of the rows that have features.
+template <class Model>
+TrustSeries trust_series(const Model& model, const JointDistribution<Model::Features::size>& distribution,
+                         const RowSet& rows) {
+  TrustSeries series;
+  each_features<typename Model::Features, typename Model::Scalar>(
+      rows, [&](const Flight& flight, std::size_t row, const auto& x) {
+        series.squared_distances.push_back(distribution.squared_distance(x));
+        const auto predicted = model.predict(x);
+        double error = 0;
+        for (std::size_t i = 0; i < rotor_count; ++i) {
+          error += std::abs(static_cast<double>(predicted[i]) - flight[row].commands[i]) / rotor_count;
+        }
+        series.errors.push_back(error);
+      });
+  return series;
+}
+
+/// The distribution of the training rows, and limits by validation rows that the model was not trained on; each piece
+/// of a flight is a flight of its own to the innovation. Throws std::invalid_argument for rows that are too few.
+template <class Model>
+FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
+                                             const TrustSettings& settings = {}) {
+  FittedTrust<Model::Features::size> trust;
+  trust.distribution = fit_joint_distribution<typename Model::Features>(training, settings.shrinkage);
+  trust.innovation_factor = settings.innovation_factor;
+  std::vector<double> distances, innovations, usual;
+  for (const FlightRows& piece : validation.pieces()) {
+    if (piece.rows.size() < 2) continue;
+    const Flight& flight = *piece.flight;
+    const double lasts_s = flight[piece.rows.end - 1].time_s - flight[piece.rows.begin].time_s;
+    trust.update_period_s = lasts_s / static_cast<double>(piece.rows.size() - 1);
+    const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(settings.block_s / trust.update_period_s)));
+    const TrustSeries series = trust_series(model, trust.distribution, RowSet(flight, piece.rows));
+    const std::vector<double> means = innovation_means(series.errors, settings.innovation_factor);
+    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(distances, block_maxima(series.squared_distances, rows));
+    append(innovations, block_maxima(means, rows));
+    append(usual, means);
+  }
+  const double blocks_per_alarm = settings.seconds_per_alarm / settings.block_s;
+  trust.distance_limit = alarm_limit(distances, blocks_per_alarm);
+  trust.innovation_limit = alarm_limit(innovations, blocks_per_alarm);
+  double sum = 0;
+  for (const double mean : usual) sum += mean;
+  trust.innovation_cleared = (sum / static_cast<double>(usual.size()) + trust.innovation_limit) / 2;
+  return trust;
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// A network that is shown the angular acceleration, trained beside a base: what it may not do, however much the rows ask
+// for it; what it learns that one which is not shown it can't; and what a projection leaves alone. Rows that say what a
+// derivative should be.
+#include "pinnquad/training/path_bounded_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/inference/certificate.hpp"
+#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/training/tangent_rows.hpp"
+
+using namespace pinnquad;
+
+namespace {
+
+using Setting = Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>;
+using Seeing = Network<float, InputSize<PhysicsFeatures::size>, Dense<16>, Relu, Dense<4>>;
+using Blind = Network<float, InputSize<residual_inputs<PhysicsFeatures>>, Dense<16>, Relu, Dense<4>>;
+
+constexpr double own_slope = 0.004;  ///< s^2/rad of each rotor
+
+/// The roll acceleration's share of the roll sum, a function of it: `shape(wdot_x)` per rotor.
+template <class Shape>
+Flight flight_of(const Shape& shape, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  Flight flight(1200);
+  flight.name = "made";
+  const auto airframe = PaperQuadrotor::value<double>();
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    Sample& sample = flight[row];
+    sample.time_s = 0.02 * static_cast<double>(row);
+    for (int i = 0; i < 3; ++i) {
+      sample.linear_acceleration_m_s2[i] = uniform(engine, -3, 3);
+      sample.angular_acceleration_rad_s2[i] = uniform(engine, -20, 20);
+      sample.body_rates_rad_s[i] = uniform(engine, -2, 2);
+    }
+    sample.roll_rad = uniform(engine, -0.5, 0.5);
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      double u = 0.5 + 0.03 * sample.linear_acceleration_m_s2[2] + 0.001 * uniform(engine, -1, 1);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double asked = sample.angular_acceleration_rad_s2[axis];
+        u += allocation_signs(airframe, axis)[rotor] * (axis == 0 ? shape(asked) : own_slope * asked);
+      }
+      sample.commands[rotor] = u;
+    }
+  }
+  return flight;
+}
+
+struct Fitted {
+  PathBoundedFit<PhysicsFeatures, Seeing> fit;
+  Certificate certificate;
+  double blind_error;
+};
+
+template <class Shape>
+Fitted fitted(const Shape& shape) {
+  const Flight flight = flight_of(shape, 1);
+  const RowSet training(flight, {0, 900}), validation(flight, {900, 1200});
+  const auto context = make_context<Setting>(training);
+  const AffineMap map = fit_monotone_base(context, training);
+  ResidualTraining how;
+  how.epochs = 100;
+  how.learning_rate = 1e-2;
+  how.weight_decay = 1e-5;
+  const auto on = [](int) { return true; };
+  std::mt19937_64 engine(1), again(1);
+  const auto fit = fit_path_bounded<Seeing>(context, training, validation, map, how, engine, on);
+  const auto blind = fit_monotone<Blind>(context, training, validation, map, how, again, on);
+  const auto model = make_trained_model(fit.answer, context, training);
+  using Model = std::decay_t<decltype(model)>;
+  return {fit,
+          certificate_of<Model>(detail::signed_mix(PaperQuadrotor::value<float>()), model.network.parameters.data(),
+                                model.input.spread.data(), model.output.spread.data()),
+          blind.error};
+}
+
+}  // namespace
+
+TEST_CASE("a curve of the angular acceleration that rises is learnt, which a network that is not shown it can't") {
+  const Fitted found = fitted([](double a) { return own_slope * (a < 0 ? 0.5 * a : 1.5 * a); });
+  CHECK(found.certificate.proven());
+  CHECK(found.fit.residual_kept);
+  CHECK(found.fit.error < 0.8 * found.blind_error);
+}
+
+TEST_CASE("rows that fall with the angular acceleration do not turn the slope: it stays proven") {
+  const Fitted found = fitted([](double a) { return own_slope * (a - 14 * std::tanh(a / 4)); });
+  CHECK(found.certificate.proven());
+  for (int axis = 0; axis < 3; ++axis) {
+    CHECK(found.certificate.slope[axis] > found.certificate.other_sums[axis]);
+  }
+}
+
+TEST_CASE("without a projection the same rows do turn it; with one a network that keeps its bound is left as it is") {
+  const Flight flight = flight_of([](double a) { return own_slope * (a - 14 * std::tanh(a / 4)); }, 1);
+  const RowSet rows(flight, {0, flight.size()});
+  const auto context = make_context<Setting>(rows);
+  const AffineMap map = fit_monotone_base(context, rows);
+  const PathProjection<Setting, Seeing> projection(context, map);
+  std::mt19937_64 engine(2);
+  auto network = initialised<Seeing>(engine);
+  const auto before = network.parameters;
+  projection(network.parameters);
+  CHECK(network.parameters != before);
+  int changed = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const auto column = i % std::size_t(Seeing::inputs);
+    const bool of_acceleration = i < 16 * std::size_t(Seeing::inputs) && column >= 3 && column < 6;
+    if (network.parameters[i] == before[i]) continue;
+    CHECK(of_acceleration);
+    ++changed;
+  }
+  CHECK(changed >= 16);
+  const auto projected = network.parameters;
+  PathProjection<Setting, Seeing>(context, map, 0.91)(network.parameters);  // a little more is allowed
+  CHECK(network.parameters == projected);
+
+  const auto answer_of = [&](const Seeing& trained) {
+    PathBoundedAnswer<PhysicsFeatures, Seeing> answer;
+    const auto base = monotone_base<Setting>(map);
+    auto* to = std::copy(base.parameters.begin(), base.parameters.end(), answer.parameters.begin());
+    std::fill_n(to, 4, -1.0F);
+    std::fill_n(to + 4, 4, 1.0F);
+    std::copy(trained.parameters.begin(), trained.parameters.end(), to + 8);
+    const auto model = make_trained_model(answer, context, rows);
+    using Model = std::decay_t<decltype(model)>;
+    return certificate_of<Model>(detail::signed_mix(PaperQuadrotor::value<float>()), model.network.parameters.data(),
+                                 model.input.spread.data(), model.output.spread.data());
+  };
+  Seeing free;
+  free.parameters = before;
+  CHECK(answer_of(network).proven());
+  CHECK(!answer_of(free).proven());
+  CHECK_THROWS_AS((PathProjection<Setting, Seeing>(context, map, 1.0)), std::invalid_argument);
+}
+
+TEST_CASE("project() changes the trainer's network and nothing else") {
+  using Only = Trainer<Seeing, Mse, Adam, Setting>;
+  const Flight flight = flight_of([](double a) { return own_slope * a; }, 3);
+  const RowSet rows(flight, {0, flight.size()});
+  const auto context = make_context<Setting>(rows);
+  const auto data = standardised<float>(context, rows);
+  std::mt19937_64 engine(4), again(4);
+  const auto network = initialised<Seeing>(engine);
+  static_cast<void>(initialised<Seeing>(again));
+  const auto one = std::make_unique<Only>(network, Mse{}, Adam{}, context);
+  const auto other = std::make_unique<Only>(network, Mse{}, Adam{}, context);
+  one->epoch(data, {0, 1}, engine);
+  other->epoch(data, {0, 1}, again, [](auto& trained) { trained.project([](auto&) {}); });
+  CHECK(one->network().parameters == other->network().parameters);
+  one->project([](auto& parameters) { parameters[7] = 0.25F; });
+  CHECK(one->network().parameters[7] == 0.25F);
+}
+
+TEST_CASE("tangent rows: each is a row moved along the angular acceleration, its sums by the slopes") {
+  const Flight flight = flight_of([](double a) { return own_slope * a; }, 5);
+  const RowSet rows(flight, {0, 200});
+  const auto context = make_context<Setting>(rows);
+  const auto data = standardised<double>(context, rows);
+  std::mt19937_64 engine(6);
+  const AxisSlopes slopes = {4 * own_slope, 4 * own_slope, 4 * own_slope};  // the law's own
+  const auto both = with_tangent_rows(context, data, slopes, 0.5, engine);
+  REQUIRE(both.size() == 2 * data.size());
+  for (int row = 0; row < data.size(); ++row) {
+    const double *x = both.features_of(row), *moved = both.features_of(data.size() + row), *y = both.outputs_of(row),
+                 *other = both.outputs_of(data.size() + row);
+    double length = 0;
+    for (int i = 0; i < PhysicsFeatures::size; ++i) {
+      if (i < 3 || i > 5) CHECK(moved[i] == x[i]);
+      length += (moved[i] - x[i]) * (moved[i] - x[i]);
+    }
+    CHECK(std::sqrt(length) == doctest::Approx(0.5).epsilon(1e-9));
+    CHECK(other[0] == y[0]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double change = (other[1 + axis] - y[1 + axis]) * context.output.spread[1 + axis];
+      const double step = (moved[3 + axis] - x[3 + axis]) * context.input.spread[3 + axis];
+      CHECK(change == doctest::Approx(4 * own_slope * step).epsilon(1e-9).scale(1e-3));
+    }
+  }
+}

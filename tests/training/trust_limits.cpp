@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/training/trust_limits.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/inference/innovation.hpp"
+#include "pinnquad/inference/motion_parts.hpp"
+
+using namespace pinnquad;
+
+TEST_CASE("block maxima: whole blocks alone") {
+  CHECK(block_maxima({1, 5, 2, -3, -4, -2, 9}, 3) == std::vector<double>{5, -2});
+  CHECK(block_maxima({1, 2}, 3).empty());
+  CHECK(block_maxima({1, 2}, 0).empty());
+}
+
+TEST_CASE("a limit by enough blocks is exceeded by new ones as often as asked, whatever their distribution") {
+  std::mt19937_64 engine(11);
+  constexpr int trials = 4000, blocks = 99, fresh = 20;
+  for (const double blocks_per_alarm : {25.0, 50.0, 100.0}) {
+    int exceeded = 0;
+    const auto draw = [&] { return std::exp(2 * standard_normal(engine)); };
+    for (int trial = 0; trial < trials; ++trial) {
+      std::vector<double> maxima;
+      for (int i = 0; i < blocks; ++i) maxima.push_back(draw());
+      const double limit = alarm_limit(maxima, blocks_per_alarm);
+      for (int i = 0; i < fresh; ++i) exceeded += draw() > limit ? 1 : 0;
+    }
+    CHECK(exceeded * blocks_per_alarm / (trials * fresh) == doctest::Approx(1).epsilon(0.15));
+  }
+}
+
+TEST_CASE("with fewer blocks the tail is continued: right for a power law, beyond it for an exponential tail") {
+  std::vector<double> power, exponential;
+  constexpr int blocks = 1000;
+  for (int i = 0; i < blocks; ++i) {
+    const double beyond = (i + 0.5) / blocks;
+    power.push_back(std::pow(beyond, -0.5));
+    exponential.push_back(-std::log(beyond));
+  }
+  CHECK(alarm_limit(power, 10000) == doctest::Approx(100).epsilon(0.1));
+  CHECK(alarm_limit(exponential, 10000) > std::log(10000.0));
+  CHECK(alarm_limit(exponential, 10000) < 4 * std::log(10000.0));
+  CHECK_THROWS_AS(alarm_limit(std::vector<double>(7, 1.0), 60), std::invalid_argument);
+  CHECK_THROWS_AS(alarm_limit(std::vector<double>(20, 0.0), 60), std::invalid_argument);
+}
+
+namespace {
+
+using Features = Joined<AngularAcceleration, BodyRates>;
+
+struct Limits {
+  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+};
+
+/// Says 0.5 always.
+struct Stub {
+  using Features = ::Features;
+  using Scalar = float;
+  Commands<float> predict(const std::array<float, 6>&) const noexcept { return {0.5F, 0.5F, 0.5F, 0.5F}; }
+};
+
+Flight noisy(std::size_t rows, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  Flight flight(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    flight[row].time_s = 0.05 * static_cast<double>(row);
+    for (int i = 0; i < 3; ++i) {
+      flight[row].angular_acceleration_rad_s2[i] = standard_normal(engine);
+      flight[row].body_rates_rad_s[i] = standard_normal(engine);
+    }
+    for (double& u : flight[row].commands) u = 0.5 + 0.02 * standard_normal(engine);
+  }
+  return flight;
+}
+
+}  // namespace
+
+TEST_CASE("the innovation's means are those of the monitor that flies") {
+  std::mt19937_64 engine(12);
+  std::vector<double> errors;
+  InnovationMonitor<Limits> monitor;
+  std::vector<double> flown;
+  for (int i = 0; i < 300; ++i) {
+    const auto error = static_cast<float>(uniform(engine, 0, 0.1));
+    errors.push_back(static_cast<double>(error));
+    REQUIRE(monitor.update({error, -error, error, -error}, {}) == Status::ok);
+    flown.push_back(static_cast<double>(monitor.mean()));
+  }
+  const auto means = innovation_means(errors, 0.2);
+  for (std::size_t i = 0; i < means.size(); ++i) CHECK(means[i] == doctest::Approx(flown[i]).epsilon(1e-5));
+}
+
+TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as asked, others many") {
+  const Flight training = noisy(2000, 21), validation = noisy(20000, 22), fresh = noisy(100000, 23);
+  TrustSettings settings;
+  settings.seconds_per_alarm = 100;
+  const auto trust =
+      fit_trust(Stub{}, RowSet(training, {0, training.size()}), RowSet(validation, {0, validation.size()}), settings);
+  CHECK(trust.update_period_s == doctest::Approx(0.05));
+  CHECK(trust.innovation_cleared < trust.innovation_limit);
+  CHECK(trust.innovation_cleared > 0.0159);  // mean |error| = 0.02 sqrt(2 / pi)
+  const auto alarms = [&](const Flight& flight) {
+    const TrustSeries series = trust_series(Stub{}, trust.distribution, RowSet(flight, {0, flight.size()}));
+    std::array<int, 2> count{};
+    for (const double most : block_maxima(series.squared_distances, 200))
+      count[0] += most > trust.distance_limit ? 1 : 0;
+    for (const double most : block_maxima(innovation_means(series.errors, 0.2), 200)) {
+      count[1] += most > trust.innovation_limit ? 1 : 0;
+    }
+    return count;
+  };
+  for (const int count : alarms(fresh)) {  // of 500 blocks 50, as far as 100 blocks tell
+    CHECK(count > 15);
+    CHECK(count < 100);
+  }
+  Flight other = noisy(2000, 24);
+  for (Sample& sample : other) {
+    sample.body_rates_rad_s[0] = 5 + sample.angular_acceleration_rad_s2[0];
+    for (double& u : sample.commands) u += 0.1;
+  }
+  CHECK(alarms(other)[0] == 10);
+  CHECK(alarms(other)[1] == 10);
+}
