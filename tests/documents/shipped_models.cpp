@@ -7,6 +7,7 @@
 
 #include "models/crazyflie_2_1.hpp"
 #include "models/demo_quadrotor.hpp"
+#include "models/structured_quadrotor.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/split.hpp"
@@ -32,7 +33,8 @@ int main(int argc, char** argv) {
   try {
     const bool demo = trained_on<DemoQuadModel>(argv[1], "examples/models/demo_quadrotor.hpp");
     const bool crazyflie = trained_on<CrazyflieModel>(argv[2], "examples/models/crazyflie_2_1.hpp");
-    return demo && crazyflie ? 0 : 1;
+    const bool structured = trained_on<StructuredQuadModel>(argv[1], "examples/models/structured_quadrotor.hpp");
+    return demo && crazyflie && structured ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

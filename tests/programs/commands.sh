@@ -4,7 +4,7 @@ source "$(dirname "$0")/common.sh" "$@"
 
 number() { sed -n "s/^#define PINNQUAD_VERSION_$1 \([0-9]*\)$/\1/p" "$source_dir/include/pinnquad/version.hpp"; }
 version="pinnquad $(number MAJOR).$(number MINOR).$(number PATCH)"
-commands=("" fly train study evaluate replay block import airframe "airframe list" "airframe check" "airframe convert" new "study paper" "study ablation" "study merge" report)
+commands=("" fly train study evaluate certify replay block import airframe "airframe list" "airframe check" "airframe convert" new "study paper" "study ablation" "study merge" report)
 for command in "${commands[@]}"; do
   # shellcheck disable=SC2086 # several words
   "$pinnquad" $command --help >help.txt 2>stderr.txt || fail "pinnquad $command --help: exit code $?"
@@ -15,11 +15,11 @@ for command in "${commands[@]}"; do
   # shellcheck disable=SC2086
   [ "$("$pinnquad" $command --version)" = "$version" ] || fail "pinnquad $command --version"
 done
-for command in fly import train study report evaluate replay block airframe new; do
+for command in fly import train study report evaluate certify replay block airframe new; do
   "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
 done
 
-for command in "" fly evaluate replay block import airframe "airframe list" "airframe check" "airframe convert" new "study paper"; do
+for command in "" fly evaluate certify replay block import airframe "airframe list" "airframe check" "airframe convert" new "study paper"; do
   # shellcheck disable=SC2086
   "$pinnquad" $command --help | grep -A1 '^Examples:$' | grep -qE "^  (pinnquad|cmake) " || fail "pinnquad $command --help has no example"
 done
@@ -71,8 +71,8 @@ fi
 expect_line 2 '^pinnquad: expected a command: fly, import, train, study, report' "$pinnquad"
 expect_line 2 "^pinnquad: no command named 'land'; known: fly, import, train, study, report" "$pinnquad" land --seed 1
 expect_line 2 '^pinnquad: expected a command before --seed: fly, ' "$pinnquad" --seed 1
-expect_line 2 '^study: expected a command: paper, ablation, merge ' "$pinnquad" study
-expect_line 2 "^study: no command named 'news'; known: paper, ablation, merge" "$pinnquad" study news
+expect_line 2 '^study: expected a command: paper, ablation, beyond, merge ' "$pinnquad" study
+expect_line 2 "^study: no command named 'news'; known: paper, ablation, beyond, merge" "$pinnquad" study news
 expect_line 2 '^fly: The following argument was not expected: train' "$pinnquad" fly d1 train --out f.csv
 expect_line 2 '^fly: The following argument was not expected: --epochs' "$pinnquad" fly d1 --out f.csv --epochs
 expect_line 2 '^study: The following argument was not expected: ablation' "$pinnquad" study paper --out o ablation

@@ -25,7 +25,9 @@ assert int(sys.argv[3]) == (1 if verdict["worse_than_mean"] else 0), sys.argv[3]
 
 # the report for scripts: its names, each figure over the seeds, and that of the exported network as evaluate has it
 axes = ["pitch", "roll", "yaw"]
-plain, by_axis = ["mean_absolute_error", "rmse", "r2"], ["wrong_derivative_share", "pair_violations", "slope_error"]
+plain = ["mean_absolute_error", "rmse", "r2"]
+by_axis = ["wrong_derivative_share", "least_derivative_over_nominal", "pair_violations", "pair_violations_flown",
+           "large_step_violations", "large_step_violations_flown", "slope_error"]
 assert sorted(report["models"]) == ["linearized", "physics_informed", "vanilla"], list(report["models"])
 exported = [r["seed"] for r in report["results"] if r["model"] == verdict["model"]].index(verdict["seed"])
 for model, seeds in {"linearized": 1, "vanilla": 2, "physics_informed": 2}.items():
@@ -47,6 +49,8 @@ for model, seeds in {"linearized": 1, "vanilla": 2, "physics_informed": 2}.items
             assert abs(each[exported] - of_one) <= 1e-6, (name, each, of_one)
 for axis in axes:
     assert report["models"]["linearized"]["wrong_derivative_share"][axis]["mean"] == 0, axis
+    assert report["models"]["linearized"]["large_step_violations"][axis]["mean"] == 0, axis
+    assert 0.98 < report["models"]["linearized"]["least_derivative_over_nominal"][axis]["mean"] < 1.02, axis
 assert report["exported"] is True and report["header"] == "a/model.hpp" and report["block"] == "a/model.block"
 assert report["not_exported_because"] is None
 EOF

@@ -45,7 +45,7 @@ grep -q 'constant weight' small/model.hpp || fail "the header does not say its l
 
 mkdir out
 refused() { expect_line 2 "$1" "$pinnquad" train --flight flight.csv --out out --epochs 1 --seeds 1 "${@:2}"; }
-refused "^train: no recipe named 'worst'; known: paper, best, small$" --recipe worst
+refused "^train: no recipe named 'worst'; known: paper, best, small, structured$" --recipe worst
 refused "^train: --loss: no loss named 'mse'; known: vanilla, physics_informed, constant_weight, pearson$" --loss vanilla,mse
 [ -z "$(ls -A out)" ] || fail "something was left in the output folder: $(ls -A out)"
 "$pinnquad" train --help >help.txt

@@ -143,7 +143,7 @@ differs '^DIFFERS .* first at 13.*levels' $log "${models[@]}" --set local_us=200
 differs '^DIFFERS .* in 1 of' $log "${models[@]}" --tolerance 1 --set keep_us=39000
 mkdir gain
 cp $log gain/
-sed '2s/,9,3,22,8$/,9,3,22,8.01/' $f/flight_pinnquad_settings_0.csv >gain/flight_pinnquad_settings_0.csv
+sed '2s/,9,3,22,8,/,9,3,22,8.01,/' $f/flight_pinnquad_settings_0.csv >gain/flight_pinnquad_settings_0.csv
 differs '^DIFFERS .* first at ' gain "${models[@]}"
 # one cell of the log
 head -9001 $log >short.csv

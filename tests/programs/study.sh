@@ -184,7 +184,7 @@ expect_line 2 'expected i/n' "$pinnquad" study paper --shard 4/3 --out no
 expect_line 2 '--out DIR is needed' "$pinnquad" study paper --seeds 1
 expect_line 2 "no variant .z.; known: vanilla, " "$pinnquad" study ablation --variants vanilla,z --out no
 expect_line 2 '--seeds' "$pinnquad" study paper --seeds 0 --out no
-expect_line 2 'expected a command before --models: paper, ablation, merge' "$pinnquad" study --models 2 --seeds 1 --out no
+expect_line 2 'expected a command before --models: paper, ablation, beyond, merge' "$pinnquad" study --models 2 --seeds 1 --out no
 expect_line 2 'not expected: ' "$pinnquad" study --models 2 ablation --seeds 1 --epochs 1 --out no
 expect_line 2 'not expected: ablation' "$pinnquad" study paper ablation --seeds 1 --epochs 1 --out no
 expect_line 2 'not expected: ' "$pinnquad" study --epochs 3 merge part1 --out no

@@ -22,9 +22,10 @@
 
 namespace programs {
 
-/// Flights, each named by its file. Throws InputError, and std::invalid_argument for too few rows in all and
+/// Flights, each named by its file, with the extra columns asked for. Throws InputError, and std::invalid_argument for too few rows in all and
 /// for a flight that comes twice: it would be tested on what it was trained on.
-inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows) {
+inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows,
+                                      const std::vector<pinnquad::ColumnName>& extra = {}) {
   const bool one = paths.size() == 1;
   pinnquad::Dataset dataset;
   std::vector<std::uint64_t> hashes;
@@ -39,7 +40,8 @@ inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std
   for (const std::string& path : paths) {
     progress.update(all_bytes > 0 ? bytes_read / all_bytes : 0);
     bytes_read += bytes_of(path);
-    pinnquad::Flight flight = pinnquad::read_flight_csv(path, one ? minimum_rows : pinnquad::minimum_flight_rows);
+    pinnquad::Flight flight =
+        pinnquad::read_flight_csv(path, one ? minimum_rows : pinnquad::minimum_flight_rows, extra);
     pinnquad::require_plausible(path, flight);
     const std::uint64_t hash = pinnquad::content_hash(flight);
     const auto same = std::find(hashes.begin(), hashes.end(), hash);

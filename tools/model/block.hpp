@@ -22,8 +22,7 @@ struct Block {
   std::size_t parameter_count = 0, golden_count = 0;
   std::uint32_t training_rows = 0;
   std::uint64_t shape_hash = 0, training_data_hash = 0;
-  bool has_window = false;     ///< of instants: it looks beyond the present row
-  bool has_columns = false;    ///< beyond those of every flight
+  std::string base;            ///< description of what its outputs are added to; empty: nothing
   bool has_judgement = false;  ///< it says how it was judged before it was exported
   std::uint32_t judged = 0;    ///< bits of pinnquad::Judged
   std::vector<double> input_mean, input_spread, output_mean, output_spread, envelope_lower, envelope_upper;
@@ -85,15 +84,14 @@ inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, 
     switch (static_cast<BlockRecord>(type)) {
       case BlockRecord::window:
         if (length != 8) broken();
-        block.has_window = bytes.u32(body) != 1;
         break;
-      case BlockRecord::columns: block.has_columns = true; break;
-      case BlockRecord::base: bytes.refuse("a model by itself", "one that adds to a formula");
+      case BlockRecord::base: block.base.assign(reinterpret_cast<const char*>(bytes.at(body)), length); break;
       case BlockRecord::verdict:
         if (length != 8) broken();
         block.has_judgement = true;
         block.judged = bytes.u32(body);
         break;
+      case BlockRecord::columns:
       case BlockRecord::commands:
       case BlockRecord::clock:
       case BlockRecord::allocation:
@@ -111,8 +109,7 @@ inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, 
 
 }  // namespace detail
 
-/// Checks the bytes of a block and takes them apart; `path` is for messages. Throws InputError: no block, cut short, changed, of a newer version, or of a kind that only
-/// compiled code runs (an answer added to a formula).
+/// Checks the bytes of a block and takes them apart; `path` is for messages. Throws InputError: no block, cut short, changed or of a newer version.
 inline Block read_block(const std::string& path, const std::string& content) {
   using Header = pinnquad::ModelBlockHeader;
   Block block;
@@ -177,14 +174,5 @@ inline Block read_block(const std::string& path, const std::string& content) {
 }
 
 inline Block read_block(const std::string& path) { return read_block(path, pinnquad::file_text(path)); }
-
-/// Throws InputError for a model that a row of a flight alone is not enough for: one with a window, or further columns.
-inline void require_present_alone(const Block& block) {
-  const auto refuse = [&block](const char* expected, const char* found) {
-    throw pinnquad::InputError(block.path, 0, 0, expected, found);
-  };
-  if (block.has_window) refuse("a model of the present alone", "one with a window of instants");
-  if (block.has_columns) refuse("a model of a flight's own columns", "one with further columns");
-}
 
 }  // namespace programs

@@ -34,6 +34,14 @@ inline pinnquad::FlightGains<float> flight_gains(const flight_stacks::CoreSettin
   return {s.position_1_s, s.velocity_1_s, s.tilt_1_s, s.yaw_1_s, s.roll_pitch_rate_1_s, s.yaw_rate_1_s};
 }
 
+inline flight_stacks::SpeedLimits speed_limits(const flight_stacks::CoreSettings& s) {
+  return {s.horizontal_speed_m_s, s.climb_m_s, s.descent_m_s, s.take_off_s};
+}
+
+inline pinnquad::BiasSettings<float> bias_settings(const flight_stacks::CoreSettings& s) {
+  return {s.bias_bandwidth_1_s, s.most_bias_m_s2};
+}
+
 /// The numbers that a log holds may be those of a newer core.
 inline std::string reaction_name(std::uint8_t number) {
   const auto last = static_cast<std::uint8_t>(flight_stacks::Reaction::gives_up);

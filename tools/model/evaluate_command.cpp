@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,8 @@
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "logs/training_flights.hpp"
-#include "model/run_time_model.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
-#include "training/derivatives.hpp"
+#include "model/asked_model.hpp"
+#include "model/model_file.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
 
@@ -39,71 +39,28 @@ struct Options {
 
 /// What was found.
 struct Evaluation {
-  double golden_difference = 0;  ///< the largest of the golden vectors' commands
-  programs::Predictions predictions;
+  std::size_t without_features = 0;  ///< rows without a whole window
   std::size_t outside_envelope = 0;
-  std::array<double, 3> wrong_derivatives{};  ///< see wrong_derivative_shares()
+  programs::PredictedRows answered;
+  programs::DerivativeFigures derivatives;
 };
 
-template <class Features, class Outputs, class Scalar>
-Evaluation evaluated(const programs::Block& block, const programs::Identity& identity, const RowSet& rows) {
-  using Model = programs::RunTimeModel<Features, Outputs, Scalar>;
-  const Model model(block, identity);
+Evaluation evaluated(const programs::AskedModel& model, const RowSet& rows) {
   Evaluation result;
-  for (std::size_t vector = 0; vector < block.golden_count; ++vector) {
-    typename Model::FeatureVector x{};
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] = static_cast<Scalar>(block.golden_features[vector * x.size() + i]);
-    }
-    const Commands<Scalar> commands = model.predict(x);
-    for (std::size_t rotor = 0; rotor < commands.size(); ++rotor) {
-      const double golden = block.golden_commands[vector * commands.size() + rotor];
-      result.golden_difference =
-          std::max(result.golden_difference, std::abs(static_cast<double>(commands[rotor]) - golden));
-    }
-  }
+  programs::Predictions predictions(rows.size());
+  std::vector<bool> counts(rows.size(), false);
+  programs::DerivativeSigns signs;
   programs::ProgressLine progress("judging " + std::to_string(rows.size()) + " rows");
-  std::size_t steps_done = 0;  // two per row
-  const auto advance = [&] {
-    progress.update(static_cast<double>(steps_done++) / (2 * static_cast<double>(rows.size())));
-  };
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    advance();
-    const auto x = sample_features<Features, Scalar>(rows[row]);
-    bool inside = true;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const auto value = static_cast<double>(x[i]);
-      inside = inside && value >= block.envelope_lower[i] && value <= block.envelope_upper[i];
-    }
-    result.outside_envelope += inside ? 0 : 1;
-    const Commands<Scalar> u = model.predict(x);
-    result.predictions.push_back(
-        {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2]), static_cast<double>(u[3])});
-  }
-  using Derivatives = programs::NetworkDerivatives<Features, Outputs>;
-  const Derivatives derivatives(
-      identity.networks.front(), block.parameters,
-      programs::scaler_of<typename Derivatives::InputScaler>(block.input_mean, block.input_spread),
-      programs::scaler_of<typename Derivatives::OutputScaler>(block.output_mean, block.output_spread),
-      programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value));
-  result.wrong_derivatives = programs::wrong_derivative_shares(rows, [&](const Sample& sample) {
-    advance();
-    return derivatives(sample);
+  model.answer(rows, [&](std::size_t row, const programs::AnsweredRow& answer) {
+    progress.update(static_cast<double>(row) / static_cast<double>(rows.size()));
+    predictions[row] = answer.commands;
+    counts[row] = true;
+    signs.add(answer.derivatives);
+    result.outside_envelope += answer.inside_envelope ? 0 : 1;
   });
-  return result;
-}
-
-Evaluation evaluated(const programs::Block& block, const programs::Identity& identity, const RowSet& rows) {
-  Evaluation result;
-  programs::each_schema([&](auto features, auto outputs) {
-    using Features = decltype(features);
-    using Outputs = decltype(outputs);
-    if (programs::detail::shape_hash_of<Features, Outputs>(identity.answer, identity.airframe) != block.shape_hash) {
-      return;
-    }
-    result = block.is_double ? evaluated<Features, Outputs, double>(block, identity, rows)
-                             : evaluated<Features, Outputs, float>(block, identity, rows);
-  });
+  result.answered = programs::rows_that_count(rows, predictions, counts);
+  result.without_features = rows.size() - result.answered.rows.size();
+  result.derivatives = signs.figures();
   return result;
 }
 
@@ -119,7 +76,7 @@ RowSet chosen_rows(const Options& options, const Dataset& dataset) {
 }
 
 void print_json(const Options& options, const programs::Block& block, const programs::Identity& identity,
-                const Dataset& dataset, const RowSet& rows, const Evaluation& evaluation,
+                const Dataset& dataset, double golden_difference, const Evaluation& evaluation,
                 const programs::Judgement& judged) {
   nlohmann::json all = nlohmann::json::object();
   for (const programs::Figure& figure : programs::figures()) all[figure.name] = figure.of(judged, figure.index);
@@ -127,47 +84,56 @@ void print_json(const Options& options, const programs::Block& block, const prog
                            {"answer", identity.answer},
                            {"airframe", identity.airframe.name},
                            {"flight", programs::flight_names(dataset)},
-                           {"rows", rows.size()},
+                           {"rows", evaluation.answered.rows.size()},
+                           {"rows_without_features", evaluation.without_features},
                            {"rows_judged", options.rows},
                            {"rows_outside_envelope", evaluation.outside_envelope},
                            {"golden_vectors", block.golden_count},
-                           {"golden_difference", evaluation.golden_difference},
+                           {"golden_difference", golden_difference},
                            {"figures", all}};
   report.update(programs::figures_of_model(judged));
   std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void print_table(const programs::Block& block, const programs::Identity& identity, const Dataset& dataset,
-                 const RowSet& rows, const Evaluation& evaluation, const programs::Judgement& judged) {
+                 const Evaluation& evaluation, const programs::Judgement& judged) {
   std::printf("model       %s: %s, for %s\n", printable(block.path).c_str(), identity.answer.c_str(),
               identity.airframe.name.c_str());
-  std::printf("rows        %zu of %s, %zu outside the training envelope\n", rows.size(),
+  std::printf("rows        %zu of %s, %zu outside the training envelope\n", evaluation.answered.rows.size(),
               programs::flight_names(dataset).c_str(), evaluation.outside_envelope);
+  if (evaluation.without_features > 0) {
+    std::printf("            %zu more without a whole window of instants, which count for nothing\n",
+                evaluation.without_features);
+  }
   const std::vector<programs::Result> results = {{"model", 0, judged, 0, 0}};
   programs::print_table(results, {"model"});
-  programs::print_wrong_derivatives(results, {"model"});
+  programs::print_signs(results, {"model"});
 }
 
 int evaluate(const Options& options) {
   programs::end_at_interrupt();
   programs::ModelHints hints{options.airframe, options.answer, {}};
   const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
-  programs::require_present_alone(block);
   const programs::Identity identity = programs::identify(block, hints);
-  if (identity.networks.size() != 1) throw InputError(block.path, 0, 0, "a network by itself", "a sum of some");
-  const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows);
-  const RowSet rows = chosen_rows(options, dataset);
-  const Evaluation evaluation = evaluated(block, identity, rows);
-  if (!(evaluation.golden_difference <= golden_tolerance)) {
+  const auto model = programs::asked_model(block, identity);
+  const double difference = programs::golden_difference(block, *model);
+  if (!(difference <= golden_tolerance)) {
     throw InputError(block.path, 0, 0, "golden commands that its weights give", "others");
   }
-  programs::Judgement judged = programs::judge(
-      programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value), rows, evaluation.predictions);
-  judged.wrong_derivative_share = evaluation.wrong_derivatives;
+  const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model->columns);
+  const Evaluation evaluation = evaluated(*model, chosen_rows(options, dataset));
+  if (evaluation.answered.rows.empty()) {
+    throw std::invalid_argument("--flight: no row of " + programs::flight_names(dataset) +
+                                " has the whole window of instants that the model asks for");
+  }
+  programs::Judgement judged =
+      programs::judge(programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value),
+                      evaluation.answered.rows, evaluation.answered.predictions);
+  judged.derivatives = evaluation.derivatives;
   if (options.json) {
-    print_json(options, block, identity, dataset, rows, evaluation, judged);
+    print_json(options, block, identity, dataset, difference, evaluation, judged);
   } else {
-    print_table(block, identity, dataset, rows, evaluation, judged);
+    print_table(block, identity, dataset, evaluation, judged);
   }
   const double r_squared = judged.errors.mean.r_squared;
   if (std::isfinite(r_squared) && r_squared >= 0) return 0;

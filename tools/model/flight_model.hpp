@@ -32,10 +32,7 @@ class FlightModel {
                    const std::function<void()>& on_row) const = 0;
 };
 
-/// Which model a block is, of those that a row of a flight is enough for and of those that `train` fits to logs.
-Identity identify_flight_model(const Block& block, const ModelHints& hints);
-
-/// Of a block that was identified so.
+/// Of a block that was identified.
 std::unique_ptr<const FlightModel> flight_model(const Block& block, const Identity& identity, ReplayGuard guard);
 
 namespace detail {

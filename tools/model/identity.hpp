@@ -11,7 +11,11 @@
 #include "airframe/choice.hpp"
 #include "model/block.hpp"
 #include "model/run_time_answer.hpp"
+#include "pinnquad/deploy/record_writer.hpp"
 #include "pinnquad/inference/features.hpp"
+#include "pinnquad/inference/inverse_features.hpp"
+#include "pinnquad/inference/signed_sum_outputs.hpp"
+#include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {
 
@@ -23,6 +27,8 @@ void each_schema(const Function& function) {
   function(PaperFeatures{}, RotorSpeedOutputs{});
   function(PaperFeaturesWithAltitude{}, CommandOutputs{});
   function(PaperFeaturesWithAltitude{}, RotorSpeedOutputs{});
+  function(PhysicsFeatures{}, SignedSumOutputs{});
+  function(InverseFeatures{}, SignedSumOutputs{});
 }
 
 /// What a user and an exported header say of a model, to narrow what is tried; empty: all that is known.
@@ -31,6 +37,8 @@ struct ModelHints {
   std::string answer;                ///< the network as a header states it
   std::optional<NamedAirframe> own;  ///< that the header brings with it; `airframe` goes before it
 };
+
+using RunTimeAirframe = pinnquad::ContextAirframe<pinnquad::GivenAirframe>;
 
 /// What was found.
 struct Identity {
@@ -41,6 +49,12 @@ struct Identity {
 };
 
 namespace detail {
+
+/// Description of what outputs are added to; "" where they stand alone.
+template <class Outputs>
+std::string base_of() {
+  return pinnquad::detail::description_text<typename pinnquad::detail::BaseOf<Outputs>::type>();
+}
 
 /// As pinnquad::detail::hash_of_shape, for an answer that is a text.
 template <class Features, class Outputs>
@@ -54,32 +68,63 @@ std::uint64_t shape_hash_of(const std::string& answer, const NamedAirframe& airf
 }
 
 /// "Network<float, Inputs<16>, Dense<25>, Relu, ..., Dense<4>>" with hidden layers of one width.
-inline std::string uniform_network(const Block& block, int layers, int width, const char* activation) {
-  std::string text = std::string("pinnquad::Network<") + (block.is_double ? "double" : "float") +
-                     ", pinnquad::Inputs<" + std::to_string(block.inputs) + ">";
+inline std::string uniform_network(bool is_double, long long inputs, long long outputs, int layers, int width,
+                                   const char* activation) {
+  std::string text = std::string("pinnquad::Network<") + (is_double ? "double" : "float") + ", pinnquad::Inputs<" +
+                     std::to_string(inputs) + ">";
   for (int i = 0; i < layers; ++i) {
     text += ", pinnquad::Dense<" + std::to_string(width) + ">, ";
     text += activation;
   }
-  return text + ", pinnquad::Dense<" + std::to_string(block.outputs) + ">>";
+  return text + ", pinnquad::Dense<" + std::to_string(outputs) + ">>";
 }
 
-/// Networks with hidden layers of one width that have as many parameters as the block.
-inline std::vector<std::string> candidate_networks(const Block& block) {
+/// Networks with hidden layers of one width that have `wanted` parameters.
+inline std::vector<std::string> uniform_networks(bool is_double, long long in, long long out, long long wanted) {
   constexpr int most_layers = 64, widest = 4096;
   std::vector<std::string> all;
-  const long long in = block.inputs, out = block.outputs, wanted = static_cast<long long>(block.parameter_count);
-  if (in * out + out == wanted) all.push_back(uniform_network(block, 0, 0, ""));
+  if (in * out + out == wanted) all.push_back(uniform_network(is_double, in, out, 0, 0, ""));
   for (int layers = 1; layers <= most_layers; ++layers) {
     for (long long width = 1; width <= widest; ++width) {
       const long long count = (in + 1) * width + (layers - 1) * (width + 1) * width + (width + 1) * out;
       if (count > wanted) break;
       if (count < wanted) continue;
       for (const Activation<double>& activation : activations<double>()) {
-        all.push_back(uniform_network(block, layers, static_cast<int>(width), activation.description));
+        all.push_back(uniform_network(is_double, in, out, layers, static_cast<int>(width), activation.description));
       }
     }
   }
+  return all;
+}
+
+/// Monotone models of `Features`, by themselves or with a uniform network, that have as many parameters as the block.
+template <class Features>
+void add_monotone_answers(const Block& block, std::vector<std::string>& all) {
+  if (block.inputs != Features::size || block.outputs != pinnquad::SignedSumOutputs::size) return;
+  const auto wanted = static_cast<long long>(block.parameter_count);
+  const std::string places =
+      ", " + std::to_string(Features::size) + ", " + std::to_string(Features::angular_acceleration) + ">";
+  const std::string base = std::string("pinnquad::AxisAligned<") + (block.is_double ? "double" : "float") + places;
+  const long long left = wanted - parse_network(base)->parameter_count();
+  if (left == 0) all.push_back(base);
+  for (const std::string& residual :
+       uniform_networks(block.is_double, block.inputs - 3, block.outputs, left - 2 * block.outputs)) {
+    all.push_back("pinnquad::Sum<" + base + ", pinnquad::Bounded<pinnquad::Withheld<" + residual + places + ">>");
+  }
+  for (const std::string& residual :
+       uniform_networks(block.is_double, block.inputs, block.outputs, left - 2 * block.outputs)) {
+    const std::string answer =
+        "pinnquad::Sum<" + base + ", pinnquad::Bounded<pinnquad::PathBounded<" + residual + ">>>";
+    if (parse_answer(answer)) all.push_back(answer);
+  }
+}
+
+/// Answers that have as many parameters as the block: uniform networks, and monotone models with one.
+inline std::vector<std::string> candidate_answers(const Block& block) {
+  std::vector<std::string> all =
+      uniform_networks(block.is_double, block.inputs, block.outputs, static_cast<long long>(block.parameter_count));
+  add_monotone_answers<pinnquad::PhysicsFeatures>(block, all);
+  add_monotone_answers<pinnquad::InverseFeatures>(block, all);
   return all;
 }
 
@@ -107,13 +152,14 @@ template <class Each>
 Identity identify(const Block& block, const ModelHints& hints, const Each& each) {
   const std::vector<NamedAirframe> airframes = detail::candidate_airframes(hints);
   std::vector<std::string> answers = {hints.answer};
-  if (hints.answer.empty()) answers = detail::candidate_networks(block);
+  if (hints.answer.empty()) answers = detail::candidate_answers(block);
   std::optional<Identity> found;
   each([&](auto features, auto outputs) {
     using Features = decltype(features);
     using Outputs = decltype(outputs);
     using Map = pinnquad::OutputMap<Outputs>;
     if (found || Features::size != block.inputs || Map::size != block.outputs) return;
+    if (detail::base_of<Outputs>() != block.base) return;
     for (const std::string& text : answers) {
       for (const NamedAirframe& candidate : airframes) {
         if (detail::shape_hash_of<Features, Outputs>(text, candidate) != block.shape_hash) continue;
@@ -140,8 +186,8 @@ Identity identify(const Block& block, const ModelHints& hints, const Each& each)
   }
   return *found;
 }
-inline Identity identify(const Block& block, const ModelHints& hints) {
-  return identify(block, hints, [](const auto& function) { each_schema(function); });
-}
+
+/// Of those that `train` exports: which a row of a flight is enough for, and which it fits to logs.
+Identity identify(const Block& block, const ModelHints& hints);
 
 }  // namespace programs

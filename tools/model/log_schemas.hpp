@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The feature sets of models that `train` fits to logged flights (training/log_features.hpp), with the output schema that they
-// have.
+// The feature sets of models that `train` fits to logged flights (training/log_features.hpp), with the output schemas that
+// they have; and those of monotone models on a formula and on windows.
 #pragma once
 
 #include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/inference/residual_outputs.hpp"
+#include "pinnquad/inference/rigid_body_inverse.hpp"
+#include "pinnquad/inference/signed_sum_outputs.hpp"
 #include "training/log_features.hpp"
 
 namespace programs {
@@ -23,6 +26,10 @@ void each_log_schema(const Function& function) {
   reaches(WithColumns<PhysicsFeatures, BatteryVoltage>{});
   reaches(WithColumns<PhysicsFeaturesWithoutVelocity, BatteryVoltage>{});
   function(WithColumns<PaperFeatures, BatteryVoltage>{}, CommandOutputs{});
+  function(PaperFeatures{}, ResidualOutputs<LinearizedInverse>{});
+  function(PhysicsFeatures{}, SignedSumsOn<RigidBodyInverse>{});
+  function(LogCausalWindow<PhysicsFeatures>{}, SignedSumOutputs{});
+  function(LogCentredWindow<PhysicsFeatures>{}, SignedSumOutputs{});
 }
 
 }  // namespace programs

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Models that a row of a flight is enough for; and which model a block is.
-#include "model/log_schemas.hpp"
+// Models that a row of a flight is enough for.
 #include "model/replay_flight.hpp"
 
 namespace programs {
-
-Identity identify_flight_model(const Block& block, const ModelHints& hints) {
-  return identify(block, hints, [](const auto& function) {
-    each_schema(function);
-    each_log_schema(function);
-  });
-}
 
 std::unique_ptr<const FlightModel> flight_model(const Block& block, const Identity& identity, ReplayGuard guard) {
   std::unique_ptr<const FlightModel> model = detail::plain_flight_model(block, identity, guard);

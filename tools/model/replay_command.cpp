@@ -23,6 +23,7 @@
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "model/flight_model.hpp"
+#include "model/model_file.hpp"
 #include "model/replay_core.hpp"
 #include "model/replay_input.hpp"
 #include "model/replay_summary.hpp"
@@ -59,7 +60,7 @@ ReplayModel read_model(const std::string& path, const Options& options) {
   model.bytes = programs::block_bytes(path, hints);
   model.block = programs::read_block(model.path, model.bytes);
   model.block.path = path;
-  model.identity = programs::identify_flight_model(model.block, hints);
+  model.identity = programs::identify(model.block, hints);
   const auto tested = programs::flight_model(model.block, model.identity, guard_of(options));
   if (tested == nullptr) throw InputError(path, 0, 0, "a model of float", "one of double with these features");
   if (!tested->tests_itself()) throw InputError(path, 0, 0, "golden commands that its weights give", "others");

@@ -75,13 +75,19 @@ class CoreReplay {
   ReplayedRow run(const Record& record, std::optional<std::size_t> model, Replayed& replayed) {
     take_gap(record);
     take_model(model);
+    controller_->jump({vector(record.jump_position_m), vector(record.jump_velocity_m_s), record.jump_yaw_rad});
     ReplayedRow row;
     row.row = record.tick;
     row.time_s = static_cast<double>(record.timestamp) / 1e6;
     take_inputs(record, record.came);
     flight_stacks::StepReport report;
     pinnquad::Commands<float> commands{};
-    if (record.asked != 0) controller_->step(record.timestamp, commands, report);
+    controller_->situation({record.drives_motors != 0, record.landed != 0});
+    if (record.asked != 0) {
+      controller_->step(record.timestamp, commands, report);
+    } else {
+      controller_->skip(record.timestamp);
+    }
     describe(record, report, commands, model, row);
     const bool known = is_known(record, report);
     if (known) {
@@ -90,14 +96,21 @@ class CoreReplay {
     }
     if (!report.set_point_stale) holding_unknown_ = false;
     if (row.answerer == Answerer::model || row.answerer == Answerer::formula) answer_unknown_ = false;
+    // each tick is judged by itself: the next one starts from what this one logged
+    resume(record);
     last_tick_ = record.tick;
     return row;
   }
 
  private:
+  static pinnquad::Vector3<float> vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+  void resume(const Record& r) { controller_->resume(vector(r.bias_m_s2), vector(r.predicted_velocity_m_s), r.lift); }
+
   void restart() {
     controller_.emplace(airframe_, age_limits(options_.settings), output_limits(options_.settings),
-                        flight_gains(options_.settings));
+                        flight_gains(options_.settings), speed_limits(options_.settings),
+                        bias_settings(options_.settings));
     flown_.reset();
     words_.forget();
     refused_base_ = 0;
@@ -113,6 +126,7 @@ class CoreReplay {
     restart();
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
+    resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 15));
     for (int i = 0; i < 4; ++i) {  // what was refused hides the good one before it
       if (words_.refused(i)) unknown_inputs_ = static_cast<std::uint8_t>(unknown_inputs_ | (1 << i));
@@ -130,7 +144,6 @@ class CoreReplay {
 
   void take_inputs(const Record& r, std::uint8_t which) {
     using pinnquad::Status;
-    const auto vector = [](const float(&v)[3]) { return pinnquad::Vector3<float>(v[0], v[1], v[2]); };
     const auto note = [&](int input, std::uint64_t time_us, Status status, const std::string& what) {
       words_.came(input, time_us, status, what);
       if (status == Status::ok) unknown_inputs_ = static_cast<std::uint8_t>(unknown_inputs_ & ~(1 << input));
@@ -250,6 +263,14 @@ class CoreReplay {
     if (refused + refused_base_ != record.refused_samples) {
       say(in_words("%u samples refused, logged %u", refused + refused_base_, record.refused_samples));
       refused_base_ = record.refused_samples - refused;
+    }
+    const pinnquad::Vector3<float>& bias = controller_->bias().acceleration_m_s2();
+    for (int i = 0; i < 3; ++i) {
+      constexpr float rounding_m_s2 = 1e-4f;
+      if (!(std::fabs(bias[i] - record.bias_m_s2[i]) <= rounding_m_s2)) {
+        say(in_words("bias[%d] %.6g m/s^2, logged %.6g", i, static_cast<double>(bias[i]),
+                     static_cast<double>(record.bias_m_s2[i])));
+      }
     }
     bool commands_differ = false;
     for (std::size_t i = 0; i < 4; ++i) {

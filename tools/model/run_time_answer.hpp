@@ -52,18 +52,26 @@ inline long long parameter_count(const std::vector<NetworkSpec>& networks) {
   return count;
 }
 
-/// y = the sum of networks(x). Their parameters lie one network after the other.
+/// Each network with its own of the parameters, which lie one network after the other.
+template <class Scalar>
+std::vector<RunTimeNetwork<Scalar>> summands(const std::vector<NetworkSpec>& networks,
+                                             const std::vector<double>& parameters) {
+  std::vector<RunTimeNetwork<Scalar>> all;
+  auto own = parameters.begin();
+  for (const NetworkSpec& network : networks) {
+    const auto end = own + network.parameter_count();
+    all.emplace_back(network, std::vector<double>(own, end));
+    own = end;
+  }
+  return all;
+}
+
+/// y = the sum of networks(x).
 template <class Scalar>
 class RunTimeAnswer {
  public:
-  RunTimeAnswer(const std::vector<NetworkSpec>& networks, const std::vector<double>& parameters) {
-    auto own = parameters.begin();
-    for (const NetworkSpec& network : networks) {
-      const auto end = own + network.parameter_count();
-      networks_.emplace_back(network, std::vector<double>(own, end));
-      own = end;
-    }
-  }
+  RunTimeAnswer(const std::vector<NetworkSpec>& networks, const std::vector<double>& parameters)
+      : networks_(summands<Scalar>(networks, parameters)) {}
 
   std::vector<Scalar> forward(const std::vector<Scalar>& x) const {
     std::vector<Scalar> y = networks_.front().forward(x);

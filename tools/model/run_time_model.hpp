@@ -5,13 +5,10 @@
 
 #include <array>
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "model/block.hpp"
-#include "model/header_airframe.hpp"
-#include "model/header_block.hpp"
 #include "model/identity.hpp"
 #include "model/run_time_answer.hpp"
 #include "pinnquad/inference/output_schema.hpp"
@@ -20,19 +17,6 @@
 #include "training/derivatives.hpp"
 
 namespace programs {
-
-using RunTimeAirframe = pinnquad::ContextAirframe<pinnquad::GivenAirframe>;
-
-/// The bytes of a block, whichever the file is: a block, or an exported header as one. The hints become what the header states
-/// where they were empty.
-inline std::string block_bytes(const std::string& path, ModelHints& hints) {
-  if (std::filesystem::path(path).extension() != ".hpp") return pinnquad::file_text(path);
-  const HeaderFile header(path);
-  if (hints.answer.empty()) hints.answer = answer_of(header);
-  hints.own = own_airframe(header);
-  const std::vector<unsigned char> bytes = block_of(header);
-  return {bytes.begin(), bytes.end()};
-}
 
 /// A block's answer between its scalers, in the block's scalar.
 template <class Features, class Outputs, class Scalar>

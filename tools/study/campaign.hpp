@@ -63,13 +63,15 @@ inline std::vector<Job> jobs_of_shard(const std::vector<Job>& jobs, const Shard&
 inline Flights fly_all(const Plan& plan) {
   Flights flights;
   for (const Contender& contender : plan.contenders) {
-    for (const std::uint64_t seed : flight_seeds(plan, contender)) flights[{contender.flight, seed}];
+    for (const std::uint64_t seed : flight_seeds(plan, contender)) {
+      for (const programs::StudyFlight& id : flights_of(contender, seed)) flights[id];
+    }
   }
   programs::ProgressLine progress("flying " + std::to_string(flights.size()) + " flights");
   double done = 0;
   for (auto& [id, flight] : flights) {
     if (programs::interrupted()) break;
-    flight = flown(id);
+    flight = plan.fly(id);
     progress.update(++done / static_cast<double>(flights.size()));
   }
   return flights;
@@ -172,7 +174,7 @@ class Campaign {
     }
     earlier_s_ = earlier_s;
     configuration_["started"] = started;
-    stored_ = read_rows(folder_.rows());
+    stored_ = read_rows(folder_.rows(), plan_.format.header);
     std::map<RowId, int> own;
     for (const Job& job : jobs_) own[job.id()] = job.assignment.epochs;
     require_own_rows(folder_.rows(), stored_, own, plan_.best_weights);
@@ -181,7 +183,7 @@ class Campaign {
                                       (stored_.broken == 1 ? " row is" : " rows are") + " not whole; run again");
     }
     note_run();
-    write_rows(folder_.rows(), lines());
+    write_rows(folder_.rows(), lines(), plan_.format.header);
   }
 
   /// Lines of the rows that there are, in the order of the plan.
@@ -219,7 +221,7 @@ class Campaign {
     std::mutex mutex;
     bool failed = false;
     const auto finish = [&](const Job& job, const Outcome& outcome) {
-      const std::string row = row_text(job.id(), job.assignment.epochs, outcome);
+      const std::string row = plan_.format.text(job.id(), job.assignment.epochs, outcome);
       if (is_shown(job)) {
         write_series(folder_.series(job.contender->id),
                      workshop.flights().at({job.contender->flight, job.assignment.flight_seed}), outcome);
@@ -248,13 +250,13 @@ class Campaign {
 
   /// Its predictions are kept: the first seed of each model on the main flight.
   bool is_shown(const Job& job) const {
-    return job.assignment.flight_seed == plan_.flight_seed &&
+    return !job.contender->flights && job.assignment.flight_seed == plan_.flight_seed &&
            (!job.contender->trained || job.assignment.seed == first_seed);
   }
 
   /// Rows in the order of the plan, and the facts of this run.
   void settle() {
-    write_rows(folder_.rows(), lines());
+    write_rows(folder_.rows(), lines(), plan_.format.header);
     note_run();
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -27,7 +28,7 @@ inline const std::set<std::string>& run_facts() {
   return names;
 }
 
-/// What decides the rows. `kind` is "table 2" or "ablation".
+/// What decides the rows. `kind` is "table 2", "ablation" or "beyond".
 struct Plan {
   std::string kind;
   std::vector<Contender> contenders;
@@ -38,7 +39,16 @@ struct Plan {
   bool best_weights = false;  ///< judged are the weights of the least validation error, where a data set validates
   int patience = 0;           ///< epochs without a lesser validation error after which a training ends; 0: none does
   Shard shard;
+  RowFormat format;
+  std::function<pinnquad::Flight(const programs::StudyFlight&)> fly = flown;  ///< or read, made noisy, made heavier
+  nlohmann::json facts = nlohmann::json::object();  ///< entries of study.json in place of, and beside, the usual
 };
+
+/// The flights that a contender asks for under one seed.
+inline std::vector<programs::StudyFlight> flights_of(const Contender& contender, std::uint64_t seed) {
+  if (contender.flights) return contender.flights(seed);
+  return {{contender.flight, seed}};
+}
 
 /// Seeds of a contender's flights: one, or as many as the main comparison has.
 inline std::vector<std::uint64_t> flight_seeds(const Plan& plan, const Contender& contender) {
@@ -61,24 +71,26 @@ inline nlohmann::json configuration(const Plan& plan, const Flights& flights) {
                      {"rows", rows.size()},
                      {"content_hash", pinnquad::hexadecimal(pinnquad::content_hash(rows))}});
   }
-  return {{"kind", plan.kind},
-          {"version", PINNQUAD_VERSION},
-          {"epochs", plan.epochs},
-          {"seeds", plan.seeds},
-          {"first_seed", first_seed},
-          {"flight_seed", plan.flight_seed},
-          {"flights_of_main_comparison", plan.flights},
-          {"shard", std::to_string(plan.shard.index) + "/" + std::to_string(plan.shard.count)},
-          {"airframe", Airframe::name},
-          {"network", "10 x 25 ReLU"},
-          {"weights", weights_name(plan.best_weights)},
-          {"patience", plan.patience},
-          {"recipe", recipe_description()},
-          {"models", models},
-          {"flights", flown},
-          {"compiler", programs::compiler_name()},
-          {"flags", programs::compiler_flags()},
-          {"instruction_set", programs::instruction_set()}};
+  nlohmann::json result = {{"kind", plan.kind},
+                           {"version", PINNQUAD_VERSION},
+                           {"epochs", plan.epochs},
+                           {"seeds", plan.seeds},
+                           {"first_seed", first_seed},
+                           {"flight_seed", plan.flight_seed},
+                           {"flights_of_main_comparison", plan.flights},
+                           {"shard", std::to_string(plan.shard.index) + "/" + std::to_string(plan.shard.count)},
+                           {"airframe", Airframe::name},
+                           {"network", "10 x 25 ReLU"},
+                           {"weights", weights_name(plan.best_weights)},
+                           {"patience", plan.patience},
+                           {"recipe", recipe_description()},
+                           {"models", models},
+                           {"flights", flown},
+                           {"compiler", programs::compiler_name()},
+                           {"flags", programs::compiler_flags()},
+                           {"instruction_set", programs::instruction_set()}};
+  result.update(plan.facts);
+  return result;
 }
 
 /// Where two configurations differ, in words: "epochs is 300 there and 100 here"; empty if they don't. Facts of the run

@@ -104,7 +104,8 @@ struct Outcome {
   programs::Judgement test;
   double validation_mae = std::numeric_limits<double>::quiet_NaN();  ///< NaN where nothing is left to validate with
   double training_s = 0;
-  bool best_weights = false;  ///< which weights were judged
+  bool best_weights = false;   ///< which weights were judged
+  bool residual_kept = false;  ///< of a model that is a base and a network on it
   pinnquad::IndexRange test_rows;
   programs::Predictions predictions;  ///< of the test rows
 };
@@ -116,6 +117,8 @@ struct Contender {
   bool more_flights = false;      ///< part of the main comparison
   std::size_t training_rows = 0;  ///< of the flight's plan: what an epoch costs
   nlohmann::json description;
+  /// Of a seed; empty: the one of that name.
+  std::function<std::vector<programs::StudyFlight>(std::uint64_t flight_seed)> flights{};
   /// False if it was stopped.
   std::function<bool(Workshop&, const Assignment&, Outcome&)> run;
 };

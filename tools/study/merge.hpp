@@ -60,7 +60,7 @@ inline Part read_part(const std::string& path) {
   } catch (const nlohmann::json::exception&) {
     throw pinnquad::InputError(path + "/study.json", 0, 0, "the settings of a study", "something else");
   }
-  part.stored = read_rows(path + "/rows.csv");
+  part.stored = read_rows(path + "/rows.csv", part.configuration.value("columns", rows_header()));
   if (part.stored.broken > 0) {
     programs::complain("study", path + "/rows.csv: " + std::to_string(part.stored.broken) + " not whole; left out");
   }
@@ -201,7 +201,7 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   joined["trainings_finished"] = lines.size();
   if (missing != nullptr) joined["finished"] = nlohmann::json();
   write_configuration(folder.configuration(), joined);
-  write_rows(folder.rows(), lines);
+  write_rows(folder.rows(), lines, joined.value("columns", rows_header()));
   std::printf("%zu of %zu trainings from %zu folders are in %s, %zu of them from before\n", lines.size(),
               expected.size(), named, folder.rows().c_str(), held);
   if (missing == nullptr) return 0;

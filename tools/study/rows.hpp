@@ -56,7 +56,7 @@ inline std::string rows_header() {
 }
 
 /// The line of a finished training, without a line end.
-inline std::string row_text(const RowId& id, int epochs, const Outcome& outcome) {
+inline std::string table_row(const RowId& id, int epochs, const Outcome& outcome) {
   using pinnquad::number_text;
   std::string text = id.model + "," + id.flight + "," + std::to_string(id.flight_seed) + "," + std::to_string(id.seed) +
                      "," + std::to_string(epochs) + "," + weights_name(outcome.best_weights);
@@ -64,6 +64,12 @@ inline std::string row_text(const RowId& id, int epochs, const Outcome& outcome)
     text += "," + number_text(figure.of(outcome.test, figure.index));
   return text + "," + number_text(outcome.validation_mae) + "," + number_text(outcome.training_s);
 }
+
+/// What a study's rows.csv says of a training: its first six columns are those of study_columns(), its last the time.
+struct RowFormat {
+  std::string header = rows_header();
+  std::string (*text)(const RowId&, int epochs, const Outcome&) = table_row;
+};
 
 /// The same line without its last column, the time: what is equal for the same training on the same build.
 inline std::string without_time(const std::string& row) { return row.substr(0, row.rfind(',')); }
@@ -105,12 +111,11 @@ struct StoredRows {
 
 /// Reads a rows.csv; an absent or empty file has no rows. Throws InputError: not readable, another
 /// header, two rows of one training with different figures.
-inline StoredRows read_rows(const std::string& path) {
+inline StoredRows read_rows(const std::string& path, const std::string& header = rows_header()) {
   StoredRows stored;
   std::error_code error;
   if (!std::filesystem::exists(path, error) && !error) return stored;
   const std::string text = pinnquad::file_text(path);
-  const std::string header = rows_header();
   const auto columns = static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1;
   std::size_t begin = 0, line_number = 0;
   while (begin < text.size()) {
@@ -162,8 +167,9 @@ inline void require_own_rows(const std::string& path, const StoredRows& stored, 
 }
 
 /// Replaces a rows.csv by these lines; the file appears whole or not at all.
-inline void write_rows(const std::string& path, const std::vector<std::string>& lines) {
-  std::string text = rows_header() + '\n';
+inline void write_rows(const std::string& path, const std::vector<std::string>& lines,
+                       const std::string& header = rows_header()) {
+  std::string text = header + '\n';
   for (const std::string& line : lines) text += line + '\n';
   pinnquad::AtomicFile file(path);
   file.stream() << text;

@@ -3,6 +3,7 @@
 //   pinnquad study paper --seeds 20 --out DIR
 //   pinnquad study merge DIR... --out DIR
 //   pinnquad study ablation --out DIR
+//   pinnquad study beyond --out DIR
 #include "study/study_command.hpp"
 
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include "report/paper.hpp"
 #include "report/report.hpp"
 #include "study/ablation.hpp"
+#include "study/beyond_command.hpp"
 #include "study/campaign.hpp"
 #include "study/merge.hpp"
 #include "study/pictures.hpp"
@@ -152,6 +154,7 @@ programs::Command merge_command(CLI::App& parent) {
 programs::Command programs::study_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("study", "The paper's campaign: its models trained and judged, seed by seed");
   line->footer(exit_codes);
-  const std::vector<Command> commands = {paper_command(*line), ablation_command(*line), merge_command(*line)};
+  const std::vector<Command> commands = {paper_command(*line), ablation_command(*line), beyond_command(*line),
+                                         merge_command(*line)};
   return {line, [commands] { return run_chosen(commands); }};
 }

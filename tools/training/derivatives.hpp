@@ -24,34 +24,38 @@ namespace programs {
 /// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, in 1 / (rad/s^2).
 using AxisDerivatives = std::array<double, 3>;
 
-/// Counts rows in which the derivative is negative, per axis.
-class WrongDerivatives {
+/// Counts rows in which the derivative is negative, and keeps the least, per axis.
+class DerivativeSigns {
  public:
   void add(const AxisDerivatives& derivatives) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(derivatives[axis])) wrong_[axis] = std::numeric_limits<double>::quiet_NaN();
-      wrong_[axis] += derivatives[axis] < 0 ? 1 : 0;
+      const double derivative = derivatives[axis];
+      if (!std::isfinite(derivative)) wrong_[axis] = least_[axis] = pinnquad::not_a_number;
+      wrong_[axis] += derivative < 0 ? 1 : 0;
+      if (derivative < least_[axis]) least_[axis] = derivative;
     }
     ++rows_;
   }
   /// NaN where the derivative is not finite in a row, or there are no rows.
-  std::array<double, 3> shares() const {
-    std::array<double, 3> shares = wrong_;
-    for (double& share : shares) share /= static_cast<double>(rows_);
-    return shares;
+  DerivativeFigures figures() const {
+    if (rows_ == 0) return {};
+    DerivativeFigures result{wrong_, least_};
+    for (double& share : result.wrong_share) share /= static_cast<double>(rows_);
+    return result;
   }
 
  private:
-  std::array<double, 3> wrong_{};
+  static constexpr double above_all = std::numeric_limits<double>::infinity();
+  AxisDerivatives wrong_{}, least_ = {above_all, above_all, above_all};
   std::size_t rows_ = 0;
 };
 
-/// Share of rows in which the derivative is negative, per axis. `derivatives_of(sample)` gives a row's AxisDerivatives.
+/// Over rows. `derivatives_of(sample)` gives a row's AxisDerivatives.
 template <class DerivativesOf>
-std::array<double, 3> wrong_derivative_shares(const pinnquad::RowSet& rows, const DerivativesOf& derivatives_of) {
-  WrongDerivatives wrong;
-  for (std::size_t row = 0; row < rows.size(); ++row) wrong.add(derivatives_of(rows[row]));
-  return wrong.shares();
+DerivativeFigures derivative_figures(const pinnquad::RowSet& rows, const DerivativesOf& derivatives_of) {
+  DerivativeSigns signs;
+  for (std::size_t row = 0; row < rows.size(); ++row) signs.add(derivatives_of(rows[row]));
+  return signs.figures();
 }
 
 /// A scaler of numbers of another scalar, or of a list as long as the scaler.
@@ -75,6 +79,7 @@ class NetworkDerivatives {
  public:
   using Features = FeatureSet;
   using FeatureVector = std::array<double, static_cast<std::size_t>(Features::size)>;
+  static constexpr int all_taps = pinnquad::detail::WindowOf<Features>::taps;
   using InputScaler = pinnquad::Scaler<double, Features::size>;
   using OutputScaler = pinnquad::Scaler<double, Map::size>;
 
@@ -93,13 +98,14 @@ class NetworkDerivatives {
   AxisDerivatives operator()(const pinnquad::Sample& sample) const {
     return (*this)(pinnquad::sample_features<Features, double>(sample));
   }
-  AxisDerivatives operator()(const FeatureVector& features) const {
+  /// `last_tap`: of a window the taps from the present to this one move, the others stand.
+  AxisDerivatives operator()(const FeatureVector& features, int last_tap = all_taps - 1) const {
     FeatureVector standardised{};
     input_.standardise(features.data(), standardised.data());
     std::vector<std::array<double, 4>> x(standardised.size());  // a value, and its derivatives by three features
     for (std::size_t i = 0; i < x.size(); ++i) x[i][0] = standardised[i];
     each_angular_acceleration(
-        [&](std::size_t axis, std::size_t feature) { x[feature][axis + 1] = 1 / input_.spread[feature]; });
+        last_tap, [&](std::size_t axis, std::size_t feature) { x[feature][axis + 1] = 1 / input_.spread[feature]; });
     std::vector<std::array<double, 4>> y = summands_.front().pushed_forward(x);
     for (std::size_t part = 1; part < summands_.size(); ++part) {
       const std::vector<std::array<double, 4>> more = summands_[part].pushed_forward(x);
@@ -127,7 +133,7 @@ class NetworkDerivatives {
       std::array<double, static_cast<std::size_t>(pinnquad::rotor_count * Features::size)> by_x{};
       Map::template feature_slopes<Features::size>(features.data(), static_cast<const double*>(outputs.data()),
                                                    setting_, by_x.data());
-      each_angular_acceleration([&](std::size_t axis, std::size_t feature) {
+      each_angular_acceleration(last_tap, [&](std::size_t axis, std::size_t feature) {
         for (std::size_t rotor = 0; rotor < by_acceleration[axis].size(); ++rotor) {
           by_acceleration[axis][rotor] += by_x[rotor * features.size() + feature];
         }
@@ -142,8 +148,8 @@ class NetworkDerivatives {
 
  private:
   template <class Visit>
-  static void each_angular_acceleration(const Visit& visit) {
-    for (int tap = 0; tap < pinnquad::detail::WindowOf<Features>::taps; ++tap) {
+  static void each_angular_acceleration(int last_tap, const Visit& visit) {
+    for (int tap = 0; tap <= last_tap; ++tap) {
       const int first = pinnquad::angular_acceleration_at<Features>(tap);
       if (first < 0) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) visit(axis, static_cast<std::size_t>(first) + axis);
@@ -158,14 +164,14 @@ class NetworkDerivatives {
   std::array<std::array<double, pinnquad::rotor_count>, 3> signs_;
 };
 
-/// Share of the rows that have features in which the derivative is negative, per axis.
+/// Over the rows that have features.
 template <class Features, class Outputs>
-std::array<double, 3> wrong_derivative_shares(const pinnquad::RowSet& rows,
-                                              const NetworkDerivatives<Features, Outputs>& derivatives) {
-  WrongDerivatives wrong;
+DerivativeFigures derivative_figures(const pinnquad::RowSet& rows,
+                                     const NetworkDerivatives<Features, Outputs>& derivatives) {
+  DerivativeSigns signs;
   pinnquad::each_features<Features, double>(
-      rows, [&](const pinnquad::Flight&, std::size_t, const auto& x) { wrong.add(derivatives(x)); });
-  return wrong.shares();
+      rows, [&](const pinnquad::Flight&, std::size_t, const auto& x) { signs.add(derivatives(x)); });
+  return signs.figures();
 }
 
 namespace detail {

@@ -20,10 +20,10 @@ inline std::vector<Result> judge_all(const TrainingPlan& plan, const std::vector
   std::vector<Result> results(trainings.size() + 1);
   predictions.assign(results.size(), {});
   std::atomic<std::size_t> judged{0};
-  const auto judge_one = [&](std::size_t i, const auto& predict, const auto& wrong_derivatives) {
+  const auto judge_one = [&](std::size_t i, const auto& predict, const auto& derivatives) {
     predictions[i] = predict(plan.split.test);
     results[i].test = judge(plan.airframe, plan.split.test, predictions[i]);
-    results[i].test.wrong_derivative_share = wrong_derivatives(plan.split.test);
+    results[i].test.derivatives = derivatives(plan.split.test);
     results[i].validation_error =
         judge(plan.airframe, plan.split.validation, predict(plan.split.validation)).errors.mean.mean_absolute;
     judged.fetch_add(1);
@@ -37,9 +37,7 @@ inline std::vector<Result> judge_all(const TrainingPlan& plan, const std::vector
           const pinnquad::Airframe<double> airframe = plan.airframe.airframe<double>();
           judge_one(
               i, [&](const pinnquad::RowSet& rows) { return linear_predictions(airframe, rows); },
-              [&](const pinnquad::RowSet& rows) {
-                return wrong_derivative_shares(rows, LinearDerivatives(plan.airframe));
-              });
+              [&](const pinnquad::RowSet& rows) { return derivative_figures(rows, LinearDerivatives(plan.airframe)); });
           return true;
         }
         const Training& training = trainings[i - 1];
@@ -48,7 +46,7 @@ inline std::vector<Result> judge_all(const TrainingPlan& plan, const std::vector
         results[i].training_s = training.training_s;
         judge_one(
             i, [&](const pinnquad::RowSet& rows) { return training.network->predictions(rows); },
-            [&](const pinnquad::RowSet& rows) { return training.network->wrong_derivatives(rows); });
+            [&](const pinnquad::RowSet& rows) { return training.network->derivatives(rows); });
         return true;
       });
   return results;

@@ -17,6 +17,7 @@
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/inference/hover_slopes.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {
@@ -26,13 +27,31 @@ constexpr std::array<const char*, 3> axis_names = {"roll", "pitch", "yaw"};
 /// Commands of every row of a block, one model's.
 using Predictions = std::vector<std::array<double, pinnquad::rotor_count>>;
 
+/// Roll, pitch, yaw.
+using AxisFigures = std::array<double, 3>;
+inline constexpr AxisFigures no_axis_figures = {pinnquad::not_a_number, pinnquad::not_a_number, pinnquad::not_a_number};
+
+/// Exact derivatives of the signed command sums over the rows (training/derivatives.hpp).
+struct DerivativeFigures {
+  AxisFigures wrong_share = no_axis_figures;  ///< of the rows: where it is below 0
+  AxisFigures least = no_axis_figures;        ///< s^2/rad
+};
+
+/// Signs of pairs of rows that follow each other (sign_violation_share()), docs/monotonicity.md.
+struct PairSigns {
+  AxisFigures all = no_axis_figures;
+  AxisFigures of_flown = no_axis_figures;        ///< of the commands that were flown themselves
+  AxisFigures large = no_axis_figures;           ///< among steps of more than half a deviation
+  AxisFigures large_of_flown = no_axis_figures;  ///< of the commands that were flown themselves
+};
+
 /// One model on one block of rows.
 struct Judgement {
   pinnquad::PredictionErrors<pinnquad::rotor_count> errors;
   std::array<pinnquad::PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
-  /// Roll, pitch, yaw: see wrong_derivative_shares() (training/derivatives.hpp); NaN until it was asked.
-  std::array<double, 3> wrong_derivative_share = {pinnquad::not_a_number, pinnquad::not_a_number,
-                                                  pinnquad::not_a_number};
+  PairSigns pairs;
+  DerivativeFigures derivatives;                 ///< NaN until they were asked
+  AxisFigures nominal_slopes = no_axis_figures;  ///< hover_slopes() of the airframe, s^2/rad
 };
 
 /// Signed command sum and angular acceleration about one axis, row by row.
@@ -61,6 +80,49 @@ std::array<AxisSeries, 3> axis_series(const pinnquad::ContextAirframe<Vehicle>& 
   return series;
 }
 
+/// A step of an angular acceleration counts as large above this share of its standard deviation over the rows.
+inline constexpr double large_step_share = 0.5;
+
+inline PairSigns pair_signs(const std::array<AxisSeries, 3>& series) {
+  PairSigns result;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisSeries& s = series[axis];
+    const double large =
+        large_step_share * std::sqrt(pinnquad::joint_moments(s.angular_acceleration, s.target).variance_x);
+    result.all[axis] = pinnquad::sign_violation_share(s.predicted, s.angular_acceleration);
+    result.of_flown[axis] = pinnquad::sign_violation_share(s.target, s.angular_acceleration);
+    result.large[axis] = pinnquad::sign_violation_share(s.predicted, s.angular_acceleration, large);
+    result.large_of_flown[axis] = pinnquad::sign_violation_share(s.target, s.angular_acceleration, large);
+  }
+  return result;
+}
+
+/// Rows of a set, and what was predicted for them.
+struct PredictedRows {
+  pinnquad::RowSet rows;
+  Predictions predictions;
+};
+
+/// Those that count.
+inline PredictedRows rows_that_count(const pinnquad::RowSet& rows, const Predictions& predictions,
+                                     const std::vector<bool>& counts) {
+  PredictedRows result;
+  std::size_t row = 0;
+  for (const pinnquad::FlightRows& piece : rows.pieces()) {
+    std::size_t begin = piece.rows.begin;
+    for (std::size_t i = piece.rows.begin; i < piece.rows.end; ++i, ++row) {
+      if (counts[row]) {
+        result.predictions.push_back(predictions[row]);
+        continue;
+      }
+      result.rows.add(*piece.flight, {begin, i});
+      begin = i + 1;
+    }
+    result.rows.add(*piece.flight, {begin, piece.rows.end});
+  }
+  return result;
+}
+
 template <class Vehicle>
 Judgement judge(const pinnquad::ContextAirframe<Vehicle>& airframe, const pinnquad::RowSet& rows,
                 const Predictions& predictions) {
@@ -73,6 +135,8 @@ Judgement judge(const pinnquad::ContextAirframe<Vehicle>& airframe, const pinnqu
     result.axes[axis] =
         pinnquad::physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);
   }
+  result.pairs = pair_signs(series);
+  result.nominal_slopes = pinnquad::hover_slopes(airframe.template airframe<double>());
   return result;
 }
 

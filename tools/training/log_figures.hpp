@@ -59,6 +59,21 @@ inline KindSlopes slopes_of(const JudgedKind& kind) {
   return result;
 }
 
+/// Signs of pairs of rows that follow each other: means over the fits.
+inline PairSigns pair_signs_of(const JudgedKind& kind) {
+  PairSigns result{{}, {}, {}, {}};
+  for (const JudgedFit& fit : kind.fits) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double share = 1.0 / static_cast<double>(kind.fits.size());
+      for (AxisFigures PairSigns::*const of :
+           {&PairSigns::all, &PairSigns::of_flown, &PairSigns::large, &PairSigns::large_of_flown}) {
+        (result.*of)[axis] += share * (fit.pairs.*of)[axis];
+      }
+    }
+  }
+  return result;
+}
+
 inline const char* word_of(TimeReach reach) {
   switch (reach) {
     case TimeReach::present: return "present";

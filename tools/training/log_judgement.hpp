@@ -22,6 +22,7 @@ struct JudgedFit {
   LogErrors errors;
   std::vector<double> by_flight;  ///< error_by_flight() of the parting's held-out flights
   LogSlopes slopes;
+  PairSigns pairs;
   double validation_error = pinnquad::not_a_number;
   double fit_s = 0;
 };
@@ -84,6 +85,13 @@ inline double answered_share(const FinishedFit& fit) {
   return static_cast<double>(count) / static_cast<double>(fit.held_out.size());
 }
 
+inline PairSigns pair_signs(const LogPlan& plan, const pinnquad::RowSet& rows, const Predictions& held_out,
+                            const std::vector<bool>& counts) {
+  const PredictedRows counted = rows_that_count(rows, held_out, counts);
+  const pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe{plan.airframe.name, plan.airframe.value};
+  return programs::pair_signs(axis_series(airframe, counted.rows, counted.predictions));
+}
+
 inline std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 }  // namespace detail
@@ -139,8 +147,8 @@ inline LogJudgement judge_fits(const LogPlan& plan, const LogFits& fits) {
         const pinnquad::RowSet& rows = plan.folds[fit->fold].split.test;
         const std::vector<bool>& counts = result.counts[fit->fold];
         kind.fits.push_back({fit->fold, seed, log_errors(rows, fit->held_out, counts),
-                             error_by_flight(rows, fit->held_out, counts), fit->slopes, fit->validation_error,
-                             fit->fit_s});
+                             error_by_flight(rows, fit->held_out, counts), fit->slopes,
+                             detail::pair_signs(plan, rows, fit->held_out, counts), fit->validation_error, fit->fit_s});
       }
     }
     if (kind.seeds.empty()) kind.not_applicable = "not finished: interrupted before every parting had a fit";

@@ -79,7 +79,7 @@ inline const char* badge_of(Standing standing) {
 
 inline nlohmann::json table_rows(const LogPageInput& in, bool centred) {
   nlohmann::json rows = nlohmann::json::array();
-  const std::array<double, 3> nominal = nominal_slopes(in.plan.airframe);
+  const std::array<double, 3> nominal = pinnquad::hover_slopes(in.plan.airframe.value);
   for (const std::size_t k : ranking(in.judged, centred)) {
     const JudgedKind& kind = in.judged.kinds[k];
     nlohmann::json row = {{"title", kind.kind.title},
@@ -105,6 +105,8 @@ inline nlohmann::json table_rows(const LogPageInput& in, bool centred) {
                                {"least", shown::number(slopes.least[axis] / nominal[axis], 2)},
                                {"median", shown::number(slopes.median[axis] / nominal[axis], 2)}});
     }
+    const PairSigns pairs = pair_signs_of(kind);
+    for (std::size_t axis = 0; axis < 3; ++axis) row["pairs"].push_back(shown::number(100 * pairs.large[axis], 1));
     row["motors"] = nlohmann::json::array();
     for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
       row["motors"].push_back({{"r2", shown_figure(over_seeds(kind, log_figures[0], motor), 1, 3)},

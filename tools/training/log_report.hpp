@@ -15,6 +15,7 @@
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/printable.hpp"
+#include "pinnquad/inference/hover_slopes.hpp"
 #include "pinnquad/version.hpp"
 #include "training/log_figures.hpp"
 #include "training/log_verdict.hpp"
@@ -63,6 +64,14 @@ inline nlohmann::json slopes_json(const JudgedKind& kind, const std::array<doubl
           {"least_derivative_over_nominal", by_axis(ratio)}};
 }
 
+inline nlohmann::json pair_signs_json(const JudgedKind& kind) {
+  const PairSigns pairs = pair_signs_of(kind);
+  return {{"pair_violations", by_axis(pairs.all)},
+          {"pair_violations_flown", by_axis(pairs.of_flown)},
+          {"large_step_violations", by_axis(pairs.large)},
+          {"large_step_violations_flown", by_axis(pairs.large_of_flown)}};
+}
+
 inline nlohmann::json compared(const pinnquad::PairedComparison& c) {
   return {{"pairs", c.pairs}, {"lower", c.wins}, {"relative_difference", c.relative_difference}, {"p", c.p_value}};
 }
@@ -88,11 +97,6 @@ inline nlohmann::json printable_names(const std::vector<std::string>& names) {
 }
 
 }  // namespace detail
-
-/// d(signed command sum) / d(angular acceleration) of the linearized model of the airframe: what it was built to do.
-inline std::array<double, 3> nominal_slopes(const NamedAirframe& airframe) {
-  return LinearDerivatives({airframe.name, airframe.value})(pinnquad::Sample{});
-}
 
 /// Builds report.json; a training that fails later leaves what was written last.
 class LogReport {
@@ -151,7 +155,7 @@ class LogReport {
   }
 
   void judged(const LogPlan& plan, const LogJudgement& judgement, const std::vector<LogVerdict>& verdicts) {
-    const std::array<double, 3> nominal = nominal_slopes(plan.airframe);
+    const std::array<double, 3> nominal = pinnquad::hover_slopes(plan.airframe.value);
     json_["rows_judged"] = judgement.rows;
     for (std::size_t k = 0; k < judgement.kinds.size(); ++k) {
       const JudgedKind& kind = judgement.kinds[k];
@@ -163,6 +167,7 @@ class LogReport {
       if (kind.applicable()) {
         model.update(detail::figures_of(plan, kind));
         model["slopes"] = detail::slopes_json(kind, nominal);
+        model["pairs"] = detail::pair_signs_json(kind);
         model["verdict"] = detail::verdict_json(judgement, verdicts[k]);
         nlohmann::json flights = nlohmann::json::object();
         const std::vector<double> errors = error_of_flights(kind);

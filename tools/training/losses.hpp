@@ -26,6 +26,11 @@ inline constexpr std::array<LossName, 4> loss_names = {
 inline constexpr const LossName& vanilla = loss_names[0];
 inline constexpr const LossName& physics_informed = loss_names[1];
 
+/// No loss of a network but a model of another kind, in the same tables: the recipe `structured`.
+inline constexpr LossName structured = {
+    "structured", "structured",
+    "least squares, slopes above 0; MSE of the residual, which sees no angular acceleration"};
+
 /// The losses of that name, each once, in the order of the list above. Throws std::invalid_argument, one line, for a
 /// name that is none.
 inline std::vector<LossName> chosen_losses(const std::vector<std::string>& names) {
@@ -46,10 +51,12 @@ inline std::vector<LossName> chosen_losses(const std::vector<std::string>& names
   return chosen;
 }
 
-/// Whose best network is exported: the physics-informed ones', else the first.
+/// Whose best network is exported: the structured ones', else the physics-informed ones', else the first.
 inline const LossName& exported_loss(const std::vector<LossName>& losses) {
-  for (const LossName& loss : losses) {
-    if (loss.key == std::string(physics_informed.key)) return loss;
+  for (const LossName* wanted : {&structured, &physics_informed}) {
+    for (const LossName& loss : losses) {
+      if (loss.key == std::string(wanted->key)) return loss;
+    }
   }
   return losses.front();
 }

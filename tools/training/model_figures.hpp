@@ -16,20 +16,33 @@
 
 namespace programs {
 
-/// Errors in commands of 0 to 1; shares of rows, and of pairs of rows that follow each other.
+/// Errors in commands of 0 to 1; shares of rows, and of pairs of rows that follow each other; derivatives over the
+/// airframe's own in hover.
 struct ModelFigure {
   const char* name;
   bool has_axes;
   double (*of)(const Judgement&, std::size_t axis);  ///< axis: 0 where it has none
+  const char* title = nullptr;                       ///< in print_signs(); null: it stands in print_table()
+  double shown_times = 1;
 };
 
-inline constexpr std::array<ModelFigure, 6> model_figures = {
+inline constexpr std::array<ModelFigure, 10> model_figures = {
     {{"mean_absolute_error", false, [](const Judgement& j, std::size_t) { return j.errors.mean.mean_absolute; }},
      {"rmse", false, [](const Judgement& j, std::size_t) { return j.errors.mean.root_mean_square; }},
      {"r2", false, [](const Judgement& j, std::size_t) { return j.errors.mean.r_squared; }},
-     {"wrong_derivative_share", true, [](const Judgement& j, std::size_t i) { return j.wrong_derivative_share[i]; }},
+     {"slope_error", true, [](const Judgement& j, std::size_t i) { return j.axes[i].slope_error; }},
      {"pair_violations", true, [](const Judgement& j, std::size_t i) { return j.axes[i].sign_violation_share; }},
-     {"slope_error", true, [](const Judgement& j, std::size_t i) { return j.axes[i].slope_error; }}}};
+     {"pair_violations_flown", true, [](const Judgement& j, std::size_t i) { return j.pairs.of_flown[i]; },
+      "  of the flown commands", 100},
+     {"large_step_violations", true, [](const Judgement& j, std::size_t i) { return j.pairs.large[i]; },
+      "violations, % of large steps", 100},
+     {"large_step_violations_flown", true, [](const Judgement& j, std::size_t i) { return j.pairs.large_of_flown[i]; },
+      "  of the flown commands", 100},
+     {"wrong_derivative_share", true, [](const Judgement& j, std::size_t i) { return j.derivatives.wrong_share[i]; },
+      "wrong derivatives, % of rows", 100},
+     {"least_derivative_over_nominal", true,
+      [](const Judgement& j, std::size_t i) { return j.derivatives.least[i] / j.nominal_slopes[i]; },
+      "least derivative over nominal"}}};
 
 namespace detail {
 
@@ -70,18 +83,21 @@ inline nlohmann::json figures_over_seeds(const std::vector<Result>& results, con
   });
 }
 
-/// The derivatives' lines below print_table()'s.
-inline void print_wrong_derivatives(const std::vector<Result>& results, const std::vector<std::string>& models) {
-  for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-    std::printf("  %-34s", (std::string("wrong derivatives, % of rows, ") + axis_names[axis]).c_str());
-    for (const std::string& model : models) {
-      std::vector<double> shares;
-      for (const Result& result : results) {
-        if (result.model == model) shares.push_back(result.test.wrong_derivative_share[axis]);
+/// The lines of signs below print_table()'s.
+inline void print_signs(const std::vector<Result>& results, const std::vector<std::string>& models) {
+  for (const ModelFigure& figure : model_figures) {
+    if (figure.title == nullptr) continue;
+    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+      std::printf("  %-34s", (std::string(figure.title) + ", " + axis_names[axis]).c_str());
+      for (const std::string& model : models) {
+        std::vector<double> values;
+        for (const Result& result : results) {
+          if (result.model == model) values.push_back(figure.of(result.test, axis));
+        }
+        std::printf("  %20s", mean_and_deviation(values, figure.shown_times, 2).c_str());
       }
-      std::printf("  %20s", mean_and_deviation(shares, 100, 2).c_str());
+      std::printf("\n");
     }
-    std::printf("\n");
   }
 }
 

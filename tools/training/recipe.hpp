@@ -31,6 +31,7 @@ struct TrainingPlan {
   std::uint64_t first_seed = 1;
   int seeds = 1;
   unsigned threads = 1;
+  bool silent = false;  ///< no progress line: whoever asked for it has one
 };
 
 /// A finished training.
@@ -49,14 +50,16 @@ struct Recipe {
   nlohmann::json settings;  ///< the facts, for report.json
   /// All trainings that were finished, in the order of loss and seed; Ctrl-C keeps what is finished.
   std::vector<Training> (*train)(const TrainingPlan&);
+  std::vector<LossName> besides{};  ///< what it trains beside the losses that are asked for
 };
 
 Recipe paper_recipe();
 Recipe best_recipe();
 Recipe small_recipe();
+Recipe structured_recipe();
 
 /// The first is the default.
-inline constexpr std::array<Recipe (*)(), 3> recipes = {paper_recipe, best_recipe, small_recipe};
+inline constexpr std::array<Recipe (*)(), 4> recipes = {paper_recipe, best_recipe, small_recipe, structured_recipe};
 
 /// Throws std::invalid_argument, one line, for a name that is none.
 inline Recipe chosen_recipe(const std::string& name) {

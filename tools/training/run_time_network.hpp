@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A network that is known at run time alone: layers from the text of a description (inference/description.hpp), the
 // sums in the order of the portable kernel; and its derivatives. For judging on the ground; what flies is compiled.
+// The parts of a monotone model (inference/axis_aligned.hpp) are networks too: with weights that are 0 where a part is
+// not shown a feature, and bounds of the outputs.
 #pragma once
 
 #include <algorithm>
@@ -68,6 +70,13 @@ struct NetworkSpec {
   std::string scalar;
   int inputs = 0;
   std::vector<LayerSpec> layers;
+  std::vector<int> threes;    ///< where features in threes begin that it is not shown, or one per axis
+  bool axis_aligned = false;  ///< of each three an output sees its own: pinnquad::AxisAligned
+  bool bounded = false;       ///< lower and upper bounds of the outputs are its first parameters: pinnquad::Bounded
+  bool path_bounded = false;  ///< it says that its path bound is to be asked: pinnquad::PathBounded
+
+  /// Features that all of it is shown.
+  int shown() const { return inputs - 3 * static_cast<int>(threes.size()); }
 
   int outputs() const {
     int size = inputs;
@@ -75,7 +84,8 @@ struct NetworkSpec {
     return size;
   }
   long long parameter_count() const {
-    long long count = 0, size = inputs;
+    long long count = bounded ? 2LL * outputs() : 0, size = shown();
+    if (axis_aligned) count += 3 * static_cast<long long>(threes.size());
     for (const LayerSpec& layer : layers) {
       if (layer.size == 0) continue;
       count += size * layer.size + (layer.has_bias ? layer.size : 0);
@@ -87,6 +97,16 @@ struct NetworkSpec {
 
 namespace detail {
 
+inline constexpr int widest_layer = 1 << 16;
+
+/// A number from `least`; -1 where the text is something else.
+inline int whole_number(std::string_view digits, int least) {
+  int number = 0;
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool whole = read.ec == std::errc() && read.ptr == digits.data() + digits.size();
+  return whole && number >= least && number <= widest_layer ? number : -1;
+}
+
 /// The number in "name<number>"; 0 where the text is something else.
 inline int sized(std::string_view text, std::string_view name) {
   if (text.size() < name.size() + 3 || text.substr(0, name.size()) != name || text[name.size()] != '<' ||
@@ -94,19 +114,99 @@ inline int sized(std::string_view text, std::string_view name) {
     return 0;
   }
   const std::string_view digits = text.substr(name.size() + 1, text.size() - name.size() - 2);
-  int size = 0;
-  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), size);
-  constexpr int widest = 1 << 16;
-  return read.ec == std::errc() && read.ptr == digits.data() + digits.size() && size > 0 && size <= widest ? size : 0;
+  return std::max(0, whole_number(digits, 1));
+}
+
+/// What stands between "name<" and ">"; nothing where the text is something else.
+inline std::optional<std::string_view> inside_of(std::string_view text, std::string_view name) {
+  if (text.size() < name.size() + 2 || text.substr(0, name.size()) != name || text[name.size()] != '<' ||
+      text.back() != '>') {
+    return {};
+  }
+  return text.substr(name.size() + 1, text.size() - name.size() - 2);
+}
+
+/// "..., features, place, place, ..." from behind `comma` on: the features and the places of threes into the spec.
+/// False where it is something else, or the threes overlap.
+inline bool take_threes(std::string_view numbers, NetworkSpec& spec) {
+  std::vector<int> all;
+  for (std::size_t begin = 0; begin <= numbers.size();) {
+    const std::size_t end = std::min(numbers.find(',', begin), numbers.size());
+    all.push_back(whole_number(numbers.substr(begin, end - begin), 0));
+    begin = end + 1;
+  }
+  spec.inputs = all.front();
+  spec.threes.assign(all.begin() + 1, all.end());
+  int free_from = 0;
+  for (const int place : spec.threes) {
+    if (place < free_from) return false;
+    free_from = place + 3;
+  }
+  return !spec.threes.empty() && free_from <= spec.inputs && spec.shown() > 0;
+}
+
+/// Dense layers, at most 3, and activations between them whose slope is from 0 to 1 (inference/path_bound.hpp).
+inline bool has_path_bound(const NetworkSpec& spec) {
+  if (spec.layers.size() > 5 || spec.layers.size() % 2 == 0 || spec.scalar != "float") return false;
+  for (std::size_t i = 0; i < spec.layers.size(); ++i) {
+    const LayerSpec& layer = spec.layers[i];
+    if (i % 2 == 0) {
+      if (layer.size == 0 || !layer.has_bias) return false;
+      continue;
+    }
+    if (layer.size != 0) return false;
+    const std::string_view activation = activations<double>()[layer.activation].description;
+    if (activation != pinnquad::Relu::description && activation != pinnquad::Tanh::description &&
+        activation != pinnquad::Softplus::description) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace detail
 
-/// A description of dense and element-wise layers; nothing for any other text. Spaces don't count.
+/// A description of dense and element-wise layers, or of a part of a monotone model; nothing for any other text. Spaces
+/// don't count.
 inline std::optional<NetworkSpec> parse_network(const std::string& description) {
   std::string text;
   for (const char c : description) {
     if (c != ' ') text += c;
+  }
+  if (const auto inside = detail::inside_of(text, "pinnquad::Bounded")) {
+    std::optional<NetworkSpec> spec = parse_network(std::string(*inside));
+    if (!spec || spec->bounded || spec->axis_aligned) return {};
+    spec->bounded = true;
+    return spec;
+  }
+  if (const auto inside = detail::inside_of(text, "pinnquad::PathBounded")) {
+    std::optional<NetworkSpec> spec = parse_network(std::string(*inside));
+    if (!spec || spec->bounded || !spec->threes.empty() || spec->path_bounded || !detail::has_path_bound(*spec))
+      return {};
+    spec->path_bounded = true;
+    return spec;
+  }
+  if (const auto inside = detail::inside_of(text, "pinnquad::Withheld")) {
+    const std::size_t network = inside->rfind('>');
+    if (network == std::string_view::npos || network + 1 >= inside->size() || (*inside)[network + 1] != ',') return {};
+    std::optional<NetworkSpec> spec = parse_network(std::string(inside->substr(0, network + 1)));
+    if (!spec || spec->bounded || spec->path_bounded || !spec->threes.empty()) return {};
+    const int shown = spec->inputs;
+    if (!detail::take_threes(inside->substr(network + 2), *spec) || spec->shown() != shown) return {};
+    return spec;
+  }
+  if (const auto inside = detail::inside_of(text, "pinnquad::AxisAligned")) {
+    const std::size_t comma = inside->find(',');
+    if (comma == std::string_view::npos) return {};
+    NetworkSpec spec;
+    spec.scalar = inside->substr(0, comma);
+    spec.axis_aligned = true;
+    LayerSpec layer;
+    layer.size = 4;
+    spec.layers = {layer};
+    const bool known = spec.scalar == "float" || spec.scalar == "double";
+    if (!known || !detail::take_threes(inside->substr(comma + 1), spec)) return {};
+    return spec;
   }
   const std::string_view head = "pinnquad::Network<";
   if (text.size() < head.size() || text.compare(0, head.size(), head) != 0 || text.back() != '>') return {};
@@ -139,13 +239,55 @@ inline std::optional<NetworkSpec> parse_network(const std::string& description) 
   return spec;
 }
 
+namespace detail {
+
+/// The parameters of a network of all features that says the same: per dense layer weights row by row, then biases.
+/// Without bounds, which the caller has taken off.
+inline std::vector<double> plain_parameters(const NetworkSpec& spec, const double* own, const double* end) {
+  if (spec.threes.empty()) return {own, end};
+  std::vector<bool> hidden(static_cast<std::size_t>(spec.inputs), false);
+  for (const int place : spec.threes) {
+    for (int i = 0; i < 3; ++i) hidden[static_cast<std::size_t>(place + i)] = true;
+  }
+  const double* const slopes = own;
+  if (spec.axis_aligned) own += 3 * spec.threes.size();
+  int rows = 0;  // of the first dense layer, which is shown the features
+  for (const LayerSpec& layer : spec.layers) {
+    if (rows == 0) rows = layer.size;
+  }
+  std::vector<double> plain;
+  for (int row = 0; row < rows; ++row) {
+    for (const bool is_hidden : hidden) plain.push_back(is_hidden ? 0.0 : *own++);
+    if (!spec.axis_aligned || row == 0) continue;
+    const std::size_t first = plain.size() - hidden.size();
+    for (std::size_t tap = 0; tap < spec.threes.size(); ++tap) {
+      plain[first + static_cast<std::size_t>(spec.threes[tap] + row - 1)] =
+          slopes[3 * tap + static_cast<std::size_t>(row) - 1];
+    }
+  }
+  plain.insert(plain.end(), own, end);
+  return plain;
+}
+
+}  // namespace detail
+
 /// y = network(x). Parameters lie as in a block: per dense layer weights row by row, then biases.
 template <class Scalar>
 class RunTimeNetwork {
  public:
   /// As many parameters as the spec counts.
   RunTimeNetwork(NetworkSpec spec, const std::vector<double>& parameters) : spec_(std::move(spec)) {
-    for (const double parameter : parameters) parameters_.push_back(static_cast<Scalar>(parameter));
+    const double* own = parameters.data();
+    if (spec_.bounded) {
+      const auto outputs = static_cast<std::size_t>(spec_.outputs());
+      for (std::size_t k = 0; k < outputs; ++k) {
+        bounds_.push_back({static_cast<Scalar>(own[k]), static_cast<Scalar>(own[outputs + k])});
+      }
+      own += 2 * outputs;
+    }
+    for (const double parameter : detail::plain_parameters(spec_, own, parameters.data() + parameters.size())) {
+      parameters_.push_back(static_cast<Scalar>(parameter));
+    }
   }
 
   std::vector<Scalar> forward(const std::vector<Scalar>& x) const {
@@ -189,11 +331,19 @@ class RunTimeNetwork {
       own = bias + (layer.has_bias ? rows : 0);
       x = std::move(y);
     }
+    for (std::size_t k = 0; k < bounds_.size(); ++k) {
+      const auto [lower, upper] = bounds_[k];
+      if (x[k][0] > lower && x[k][0] < upper) continue;
+      const Scalar bound = x[k][0] < lower ? lower : (x[k][0] > upper ? upper : x[k][0]);
+      x[k] = {};
+      x[k][0] = bound;
+    }
     return x;
   }
 
  private:
   NetworkSpec spec_;
+  std::vector<std::array<Scalar, 2>> bounds_;  ///< of each output, where it has some
   std::vector<Scalar> parameters_;
 };
 

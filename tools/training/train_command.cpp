@@ -200,7 +200,7 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
   std::vector<std::string> kinds = {programs::linear_name};
   for (const programs::LossName& loss : plan.losses) kinds.push_back(loss.title);
   programs::print_table(results, kinds);
-  programs::print_wrong_derivatives(results, kinds);
+  programs::print_signs(results, kinds);
   for (const programs::LossName& loss : plan.losses) {
     if (plan.losses.front().key != programs::vanilla.key || loss.key == programs::vanilla.key) continue;
     programs::print_paired(results, loss.title, programs::vanilla.title);
@@ -289,7 +289,8 @@ int train_chosen(const Options& options) {
                                 ": a C++ identifier was expected, no keyword and no name that C++ reserves");
   }
   const programs::Recipe recipe = programs::chosen_recipe(options.recipe);
-  const std::vector<programs::LossName> losses = programs::chosen_losses(options.losses);
+  std::vector<programs::LossName> losses = programs::chosen_losses(options.losses);
+  losses.insert(losses.end(), recipe.besides.begin(), recipe.besides.end());
   const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   require_separate_files(options);
   programs::end_at_interrupt();  // while nothing is worth keeping

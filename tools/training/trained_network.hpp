@@ -21,8 +21,8 @@ class TrainedNetwork {
  public:
   virtual ~TrainedNetwork() = default;
   virtual Predictions predictions(const pinnquad::RowSet& rows) const = 0;
-  /// See wrong_derivative_shares().
-  virtual std::array<double, 3> wrong_derivatives(const pinnquad::RowSet& rows) const = 0;
+  /// See derivative_figures().
+  virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
   /// Writes `struct <name>` into a header. Golden vectors are taken of the training rows.
   virtual void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                             const pinnquad::Provenance& provenance) const = 0;
@@ -49,8 +49,8 @@ class NetworkOfModel : public TrainedNetwork {
       : model_(model), library_airframe_(library_airframe) {}
 
   Predictions predictions(const pinnquad::RowSet& rows) const override { return network_predictions(model_, rows); }
-  std::array<double, 3> wrong_derivatives(const pinnquad::RowSet& rows) const override {
-    return wrong_derivative_shares(rows, derivatives_of(model_));
+  DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
+    return derivative_figures(rows, derivatives_of(model_));
   }
   void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                     const pinnquad::Provenance& provenance) const override {

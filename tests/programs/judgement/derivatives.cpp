@@ -202,15 +202,44 @@ TEST_CASE("the share counts rows below 0; what is not finite is told") {
   for (const Sample& sample : samples(4, engine)) flight.push_back(sample);
   const RowSet rows(flight, {0, 4});
   int row = 0;
-  const auto shares = programs::wrong_derivative_shares(rows, [&row](const Sample&) {
+  const programs::DerivativeFigures found = programs::derivative_figures(rows, [&row](const Sample&) {
     ++row;
-    return programs::AxisDerivatives{row == 2 ? -1e-9 : 0.0, row < 4 ? -2.0 : 1.0, row == 1 ? std::nan("") : 1.0};
+    return programs::AxisDerivatives{row == 2 ? -1e-9 : 0.0, row < 4 ? -1.0 - row : 1.0, row == 1 ? std::nan("") : 1.0};
   });
-  CHECK(shares[0] == 0.25);
-  CHECK(shares[1] == 0.75);
-  CHECK(std::isnan(shares[2]));
-  CHECK(
-      std::isnan(programs::wrong_derivative_shares({}, [](const Sample&) { return programs::AxisDerivatives{}; })[0]));
+  CHECK(found.wrong_share[0] == 0.25);
+  CHECK(found.wrong_share[1] == 0.75);
+  CHECK(std::isnan(found.wrong_share[2]));
+  CHECK(found.least[0] == -1e-9);
+  CHECK(found.least[1] == -4);
+  CHECK(std::isnan(found.least[2]));
+  const programs::DerivativeFigures none =
+      programs::derivative_figures({}, [](const Sample&) { return programs::AxisDerivatives{}; });
+  CHECK(std::isnan(none.wrong_share[0]));
+  CHECK(std::isnan(none.least[0]));
+}
+
+TEST_CASE("large steps are those of more than half a deviation; rows that do not count split a flight") {
+  // asked: 0 1 0 10 0, deviation 4.4; the sum goes against the two small steps, and against one of the two large ones
+  std::array<programs::AxisSeries, 3> series;
+  for (programs::AxisSeries& s : series) s = {{0, 1, 0, 10, 0}, {0, 1, 0, 1, 0}, {0, -1, 0, 1, 2}};
+  const programs::PairSigns pairs = programs::pair_signs(series);
+  CHECK(pairs.all[1] == 0.75);
+  CHECK(pairs.large[1] == 0.5);
+  CHECK(pairs.of_flown[1] == 0);
+  CHECK(pairs.large_of_flown[1] == 0);
+  std::mt19937_64 engine(4);
+  Flight flight;
+  for (const Sample& sample : samples(6, engine)) flight.push_back(sample);
+  programs::Predictions made(5);
+  for (std::size_t i = 0; i < made.size(); ++i) made[i][0] = static_cast<double>(i);
+  const programs::PredictedRows left =
+      programs::rows_that_count(RowSet(flight, {1, 6}), made, {false, true, true, false, true});
+  REQUIRE(left.rows.pieces().size() == 2);
+  CHECK(left.rows.pieces()[0].rows.begin == 2);
+  CHECK(left.rows.pieces()[0].rows.end == 4);
+  CHECK(left.rows.pieces()[1].rows.begin == 5);
+  CHECK(left.predictions[2][0] == 4);
+  CHECK(left.rows.size() == left.predictions.size());
 }
 
 TEST_CASE("figures over seeds: mean, deviation and each; null where one is not finite") {
@@ -219,7 +248,7 @@ TEST_CASE("figures over seeds: mean, deviation and each; null where one is not f
   for (std::size_t i = 0; i < 3; ++i) {
     results[i].model = "a";
     results[i].test.errors.mean.mean_absolute = errors[i];
-    results[i].test.wrong_derivative_share = {0.5, 0.25 * static_cast<double>(i), std::nan("")};
+    results[i].test.derivatives.wrong_share = {0.5, 0.25 * static_cast<double>(i), std::nan("")};
   }
   results[3].model = "b";
   results[3].test.errors.mean.mean_absolute = 7;

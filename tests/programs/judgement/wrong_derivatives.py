@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Counts wrong derivatives of an exported header on a flight's last 20 % of rows, with nothing of the library: numbers from the
-header's text, features from the flight's columns, the network as a loop, differences in double. Compares with evaluate's JSON."""
+header's text, features from the flight's columns, the network as a loop, differences in double; and violations among large
+steps. Compares with evaluate's JSON. The vehicle is the paper's."""
 import csv
 import json
 import math
@@ -46,15 +47,19 @@ def features(row):
 
 rows = list(csv.reader(open(flight)))[1:]
 rows = rows[len(rows) * 4 // 5 :]
-wrong = [0, 0, 0]
+wrong, least = [0, 0, 0], [math.inf] * 3
+made = []
 for row in rows:
     x = features(row)
+    made.append(commands(x))
     for axis in range(3):
         above, below = list(x), list(x)
         above[3 + axis] += 1e-6
         below[3 + axis] -= 1e-6
         rise = [a - b for a, b in zip(commands(above), commands(below))]
-        wrong[axis] += sum(signs[3 * rotor + axis] * rise[rotor] for rotor in range(4)) < 0
+        risen = sum(signs[3 * rotor + axis] * rise[rotor] for rotor in range(4))
+        wrong[axis] += risen < 0
+        least[axis] = min(least[axis], risen / 2e-6)
 shares = dict(zip(("roll", "pitch", "yaw"), (count / len(rows) for count in wrong)))
 found = json.load(open(judged))
 assert found["rows"] == len(rows), (found["rows"], len(rows))
@@ -62,3 +67,22 @@ print("wrong derivatives:", shares)
 for axis, share in shares.items():
     # a row may differ: differences of rounded sums where the derivative is nearly 0, and a kink in between
     assert abs(found["wrong_derivative_share"][axis] - share) <= 2 / len(rows), (axis, found["wrong_derivative_share"], share)
+
+# over the airframe's own in hover: inertia over what full thrust and full torque of the rotors turn it with
+arm_m, thrust_N = 0.243952, 0.1099 * 1.225 * (8500 / 60) ** 2 * 0.2286**4
+torque_N_m = 0.04016 * 1.225 * (8500 / 60) ** 2 * 0.2286**5 / (2 * math.pi)
+nominal = 0.01469 / (arm_m * thrust_N), 0.01686 / (arm_m * thrust_N), 0.03093 / torque_N_m
+for axis, (own, slope) in enumerate(zip(nominal, least)):
+    said = found["least_derivative_over_nominal"][("roll", "pitch", "yaw")[axis]]
+    assert abs(said - slope / own) <= 1e-3 * max(1, abs(said)), (axis, said, slope / own)
+
+for axis, name in enumerate(("roll", "pitch", "yaw")):
+    asked = [float(row[4 + axis]) for row in rows]
+    mean = sum(asked) / len(asked)
+    large = 0.5 * math.sqrt(sum((a - mean) ** 2 for a in asked) / (len(asked) - 1))
+    flown = [[float(u) for u in row[-4:]] for row in rows]
+    for figure, of in ("large_step_violations", made), ("large_step_violations_flown", flown):
+        sums = [sum(signs[3 * rotor + axis] * u[rotor] for rotor in range(4)) for u in of]
+        pairs = [(b - a, d - c) for a, b, c, d in zip(asked, asked[1:], sums, sums[1:]) if abs(b - a) > large]
+        share = sum(a * s < 0 for a, s in pairs) / len(pairs)
+        assert abs(found[figure][name] - share) <= 2 / len(pairs), (figure, name, found[figure][name], share)

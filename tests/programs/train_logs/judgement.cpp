@@ -130,7 +130,7 @@ TEST_CASE("slopes: those of the truth are right, those of a mirrored model wrong
   const Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, each_flight);
   CHECK_FALSE(programs::slopes_of(run.judged.kinds[0]).applicable);
   const programs::KindSlopes linear = programs::slopes_of(run.judged.kinds[1]);
-  const std::array<double, 3> nominal = programs::nominal_slopes(run.airframe);
+  const std::array<double, 3> nominal = pinnquad::hover_slopes(run.airframe.value);
   REQUIRE(linear.applicable);
   for (std::size_t axis = 0; axis < 2; ++axis) {  // yaw is a small part of what the paper's quadrotor commands
     CHECK(linear.wrong_share[axis] == 0);

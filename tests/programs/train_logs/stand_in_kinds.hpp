@@ -24,7 +24,7 @@ class ModelOfFunction : public programs::TrainedNetwork {
   explicit ModelOfFunction(Function function) : function_(std::move(function)) {}
 
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override { return function_(rows); }
-  std::array<double, 3> wrong_derivatives(const pinnquad::RowSet&) const override { return {0, 0, 0}; }
+  programs::DerivativeFigures derivatives(const pinnquad::RowSet&) const override { return {}; }
   void write_header(const std::string&, const std::string&, const pinnquad::RowSet&,
                     const pinnquad::Provenance&) const override {
     throw std::logic_error("a stand-in is not exported");

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// What goes beyond the paper, each idea beside the paper's network on the same rows.
+//   pinnquad study beyond --seeds 10 --out DIR
+#include "study/beyond_command.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "airframe/choice.hpp"
+#include "command_line/commands.hpp"
+#include "logs/training_flights.hpp"
+#include "study/beyond_summary.hpp"
+#include "study/campaign.hpp"
+
+namespace {
+
+struct Options {
+  std::string out, shard = "1/1", airframe = study::Airframe::name;
+  std::vector<std::string> conditions, models, flights;
+  int seeds = 10, epochs = programs::paper_epochs, flight_count = 3;
+  std::uint64_t flight_seed = study::first_flight_seed;
+  unsigned threads = 0;
+};
+
+/// One model under one condition, as the campaign takes it.
+study::Contender contender_of(const study::BeyondModel& model, const study::Condition& condition, bool flown_here) {
+  study::Contender result;
+  result.id = model.name;
+  result.flight = condition.name;
+  result.trained = model.trained;
+  result.more_flights = flown_here;
+  result.training_rows = 1;
+  result.description = {{"id", model.name},
+                        {"flight", condition.name},
+                        {"model", model.summary},
+                        {"condition", condition.summary},
+                        {"airframe", condition.airframe.airframe_name()}};
+  result.flights = [condition](std::uint64_t seed) {
+    std::vector<programs::StudyFlight> ids;
+    for (const std::string& name : condition.flights) ids.push_back({name, seed});
+    return ids;
+  };
+  result.run = [model, condition](study::Workshop& workshop, const study::Assignment& assignment,
+                                  study::Outcome& outcome) {
+    std::vector<const pinnquad::Flight*> flights;
+    for (const std::string& name : condition.flights) {
+      flights.push_back(&workshop.flights().at({name, assignment.flight_seed}));
+    }
+    const pinnquad::RowSplit split = condition.split(flights);
+    const auto start = std::chrono::steady_clock::now();
+    const study::BeyondTraining done = model.train(
+        {split, condition.airframe, assignment.seed, assignment.epochs, [&workshop] { return !workshop.stopped(); }});
+    if (!done.model) return false;
+    outcome.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.test = programs::judge(condition.airframe, split.test, done.model->predictions(split.test));
+    outcome.test.derivatives = done.model->derivatives(split.test);
+    outcome.validation_mae =
+        programs::judge(condition.airframe, split.validation, done.model->predictions(split.validation))
+            .errors.mean.mean_absolute;
+    outcome.best_weights = done.best_weights;
+    outcome.residual_kept = done.residual_kept;
+    workshop.count(assignment.epochs);
+    return true;
+  };
+  return result;
+}
+
+/// A wrong airframe is told to those who ask; the yardstick stands beside them.
+bool takes_part(const study::BeyondModel& model, const study::Condition& condition) {
+  return condition.told == study::Told::the_truth || model.asks_airframe || model.name == study::yardstick;
+}
+
+std::string name_of_file(const std::string& path, const std::set<std::string>& taken) {
+  std::string name = std::filesystem::path(path).stem().string();
+  for (char& c : name) {
+    if (c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20) c = '_';
+  }
+  while (name.empty() || taken.count(name) > 0) name += "_";
+  return name;
+}
+
+/// The page and beyond.json.
+void write_found(const std::string& out, const study::Plan& plan, const std::vector<study::Condition>& conditions,
+                 const std::vector<study::BeyondModel>& models, const nlohmann::json& found) {
+  std::string text =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><title>Beyond the paper</title>\n<style>" +
+      std::string(programs::page_style) +
+      "svg .bar{fill:var(--series-1)}svg .one{stroke:var(--muted);stroke-dasharray:4 3}</style></head>\n"
+      "<body><main><h1>Beyond the paper</h1>\n<p>" +
+      std::to_string(plan.seeds) + " seeds, up to " + std::to_string(plan.flights) + " flights, " +
+      std::to_string(plan.epochs) +
+      " epochs. Ratio: mean absolute error over that of the paper's network, paired by flight and seed; p: "
+      "exact Wilcoxon signed-rank test, two-sided. Of the axes the worst is shown; rows.csv and beyond.json "
+      "have all.</p>\n";
+  for (const study::Condition& condition : conditions) {
+    if (!found.contains(condition.name)) continue;
+    const nlohmann::json& of_models = found[condition.name];
+    text += "<section><h2>" + programs::html_text(condition.name) + "</h2><p>" +
+            programs::html_text(condition.summary) + "</p>\n" + study::ratio_bars(of_models, models) +
+            "<div class=\"wide\"><table><thead><tr>";
+    for (const std::string& title : study::beyond_titles()) text += "<th>" + programs::html_text(title) + "</th>";
+    text += "</tr></thead><tbody>\n";
+    for (const study::BeyondModel& model : models) {
+      if (!of_models.contains(model.name)) continue;
+      text += "<tr>";
+      for (const std::string& cell : study::beyond_line(model.name, of_models[model.name])) {
+        text += "<td>" + programs::html_text(cell) + "</td>";
+      }
+      text += "</tr>\n";
+    }
+    text += "</tbody></table></div></section>\n";
+  }
+  pinnquad::AtomicFile page(out + "/beyond.html"), json(out + "/beyond.json");
+  page.stream() << text << "</main></body></html>\n";
+  json.stream() << found.dump(2) << '\n';
+  page.commit();
+  json.commit();
+}
+
+void print_found(const std::vector<study::Condition>& conditions, const std::vector<study::BeyondModel>& models,
+                 const nlohmann::json& found) {
+  const auto print = [](const std::vector<std::string>& cells) {
+    std::printf("  %-24s", cells.front().c_str());
+    for (std::size_t i = 1; i < cells.size(); ++i) std::printf(" %16s", cells[i].c_str());
+    std::printf("\n");
+  };
+  for (const study::Condition& condition : conditions) {
+    if (!found.contains(condition.name)) continue;
+    std::printf("%s: %s\n", condition.name.c_str(), condition.summary.c_str());
+    print(study::beyond_titles());
+    for (const study::BeyondModel& model : models) {
+      if (found[condition.name].contains(model.name)) {
+        print(study::beyond_line(model.name, found[condition.name][model.name]));
+      }
+    }
+  }
+}
+
+int run(const Options& options) {
+  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
+  std::vector<study::Condition> conditions = study::chosen_conditions(study::flown_conditions(), options.conditions);
+  if (options.conditions.empty() && !options.flights.empty()) conditions.clear();
+  const std::size_t flown_here = conditions.size();
+  const std::vector<study::BeyondModel> models = study::chosen_models(study::beyond_models(), options.models);
+  const auto given = std::make_shared<std::map<std::string, pinnquad::Flight>>();
+  if (!options.flights.empty()) {
+    const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
+    std::set<std::string> taken;
+    for (const study::Condition& condition : study::flown_conditions()) taken.insert(condition.name);
+    constexpr std::size_t least_rows = 100;
+    for (const std::string& path : options.flights) {
+      const std::string name = name_of_file(path, taken);
+      taken.insert(name);
+      (*given)[name] = programs::read_flights({path}, least_rows)[0];
+      conditions.push_back(study::given_condition(name, {airframe.name, airframe.value}));
+    }
+  }
+  study::Plan plan;
+  plan.kind = "beyond";
+  plan.seeds = options.seeds;
+  plan.epochs = options.epochs;
+  plan.flights = options.flight_count;
+  plan.flight_seed = options.flight_seed;
+  plan.best_weights = true;
+  plan.shard = study::parse_shard(options.shard);
+  plan.format = {study::beyond_header(), study::beyond_row};
+  plan.fly = [given](const programs::StudyFlight& id) {
+    const auto found = given->find(id.name);
+    return found == given->end() ? study::fly_for_beyond(id) : found->second;
+  };
+  plan.facts = {{"columns", plan.format.header}, {"network", "see models"}};
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    for (const study::BeyondModel& model : models) {
+      if (takes_part(model, conditions[i])) {
+        plan.contenders.push_back(contender_of(model, conditions[i], i < flown_here));
+      }
+    }
+  }
+  programs::catch_interrupt();
+  study::Campaign campaign(plan, options.out,
+                           options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()));
+  const int code = campaign.run();
+  if (code != 0 || plan.shard.count > 1) return code;
+  const nlohmann::json found = study::beyond_json(campaign.rows());
+  print_found(conditions, models, found);
+  write_found(options.out, plan, conditions, models, found);
+  return code;
+}
+
+}  // namespace
+
+programs::Command programs::beyond_command(CLI::App& study) {
+  CLI::App* line =
+      study.add_subcommand("beyond",
+                           "What goes beyond the paper: structured models beside its network, condition by "
+                           "condition; rows.csv, beyond.html, beyond.json");
+  const auto options = std::make_shared<Options>();
+  add_path(*line, "--out", options->out, "DIR", "folder of rows.csv, study.json, beyond.html and beyond.json");
+  line->add_option("--conditions", options->conditions, "some of the conditions (default: all; with --flight none)")
+      ->delimiter(',');
+  line->add_option("--models", options->models, "some of the models beside the paper's network (default: all)")
+      ->delimiter(',');
+  add_paths(*line, "--flight", options->flights, "FILE", "recorded flights, each a condition of its own");
+  line->add_option("--airframe", options->airframe, "what flew the recorded flights: a name or a TOML file")
+      ->capture_default_str();
+  add_number(*line, "--seeds", options->seeds, 1, 100, "trainings of each model, from seeds 1, 2, ...");
+  add_number(*line, "--flights", options->flight_count, 1, 1000, "flights of each condition that is flown");
+  add_number(*line, "--epochs", options->epochs, 1, 100000, "epochs of each training");
+  add_number(*line, "--flight-seed", options->flight_seed, std::uint64_t{0}, most_seed, "seed of the first flights")
+      ->type_name("N");
+  add_number(*line, "--threads", options->threads, 1u, 1024u, "trainings at once (default: all cores)")
+      ->default_str("");
+  line->add_option("--shard", options->shard, "run part i of n only, for job arrays")->type_name("i/n");
+  line->footer("The same command goes on where it was stopped or killed.");
+  return {line, [options] { return run(*options); }};
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Who competes in `study beyond`, its types hidden: a name and a function that trains. A further idea is a line of the
+// list in beyond_models.cpp.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/training/context_airframe.hpp"
+#include "training/derivatives.hpp"
+#include "training/judgement.hpp"
+#include "training/model_predictions.hpp"
+
+namespace study {
+
+/// A trained model: what judging asks of it.
+class JudgedModel {
+ public:
+  virtual ~JudgedModel() = default;
+  virtual programs::Predictions predictions(const pinnquad::RowSet& rows) const = 0;
+  virtual programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
+};
+
+/// Of a pinnquad::TrainedModel.
+template <class Model>
+class JudgedModelOf : public JudgedModel {
+ public:
+  explicit JudgedModelOf(const Model& model) : model_(model) {}
+  programs::Predictions predictions(const pinnquad::RowSet& rows) const override {
+    return programs::network_predictions(model_, rows);
+  }
+  programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
+    return programs::derivative_figures(rows, programs::derivatives_of(model_));
+  }
+
+ private:
+  Model model_;
+};
+
+/// What is to be trained, on what.
+struct BeyondTask {
+  const pinnquad::RowSplit& split;
+  pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;  ///< as the model is told it
+  std::uint64_t seed = 0;
+  int epochs = 0;
+  std::function<bool()> goes_on;  ///< asked before each epoch
+};
+
+/// What came of it.
+struct BeyondTraining {
+  std::shared_ptr<const JudgedModel> model;  ///< none: it was stopped
+  bool best_weights = false;                 ///< the validation rows chose the epoch
+  bool residual_kept = false;
+};
+
+struct BeyondModel {
+  std::string name;
+  std::string summary;
+  bool asks_airframe = false;  ///< a wrong one makes another model
+  bool trained = true;         ///< false: the same for every seed
+  std::function<BeyondTraining(const BeyondTask&)> train;
+};
+
+/// Its error is what the others are measured by.
+inline constexpr const char* yardstick = "paper";
+
+/// All, in the order of the tables.
+std::vector<BeyondModel> beyond_models();
+
+/// Those of `all` that are named, and always the yardstick. Throws std::invalid_argument, one line.
+std::vector<BeyondModel> chosen_models(std::vector<BeyondModel> all, const std::vector<std::string>& names);
+
+// Trainings, a translation unit each: what is slow to compile.
+BeyondTraining train_network_on_physics(const BeyondTask& task);
+BeyondTraining train_ridge(const BeyondTask& task);
+enum class Slopes { learnt, pinned };
+BeyondTraining train_structured_on_ridge(const BeyondTask& task, Slopes slopes);
+BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes);
+
+}  // namespace study
