@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# kernels.sh <aarch64 | avx2 | avx512> <repository> <Eigen's include folder> <doctest's include folder> <working folder>: the tests
-# of what runs on a vector unit, forward and back, for units that a preset need not have: NEON under emulation, AVX2, AVX-512. (The
-# preset asan has them with sanitizers for the unit of the machine at hand.) Returns 77 where a tool or the unit is missing.
+# kernels.sh <aarch64 | avx2> <repository> <Eigen's include folder> <doctest's include folder> <working folder>: the tests
+# of what runs on a vector unit, forward and back, for units that a preset need not have: NEON under emulation, AVX2. (The
+# presets asan and native have them for the unit of the machine at hand, AVX-512 where it has that.) Returns 77 where a tool
+# or the unit is missing.
 set -euo pipefail
 machine=$1 root=$2 eigen=$3 doctest=$4 work=$5
 # doctest's folder alone: beside it may stand the headers of the host's C library
@@ -24,10 +25,6 @@ case $machine in
   avx2)
     grep -qw avx2 /proc/cpuinfo || skip "this machine has no AVX2"
     flags+=(-march=x86-64-v3)
-    ;;
-  avx512)
-    grep -qw avx512vl /proc/cpuinfo || skip "this machine has no AVX-512"
-    flags+=(-march=x86-64-v4)
     ;;
 esac
 command -v "$compiler" >/dev/null || skip "no $compiler"
