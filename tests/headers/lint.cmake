@@ -74,7 +74,7 @@ foreach(header IN LISTS headers)
     endif()
     set(name "${CMAKE_MATCH_1}")
 
-    if(name MATCHES "^Eigen/(Cholesky|Eigenvalues)$" AND header STREQUAL "pinnquad/identification/symmetric_system.hpp")
+    if(name MATCHES "^Eigen/(Cholesky|Jacobi)$" AND header STREQUAL "pinnquad/identification/symmetric_system.hpp")
       continue()
     endif()
     if(name MATCHES "^(unsupported/)?Eigen/" AND NOT header STREQUAL "pinnquad/core/types.hpp")

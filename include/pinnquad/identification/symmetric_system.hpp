@@ -4,13 +4,44 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Jacobi>
 
+#include <cmath>
 #include <limits>
 
 #include "pinnquad/identification/regression_sums.hpp"
 
 namespace pinnquad {
+
+/// A = V diag(values) V', V orthogonal: a column per eigenvalue, in no order.
+struct EigenPairs {
+  Eigen::VectorXd values;
+  DynamicMatrix vectors;
+};
+
+/// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit that fits
+/// a ridge four seconds longer to compile, for a case that is rare.
+inline EigenPairs eigen_pairs(DynamicMatrix a) {
+  constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
+  const Eigen::Index size = a.rows();
+  DynamicMatrix vectors = DynamicMatrix::Identity(size, size);
+  const double negligible = size > 0 ? std::numeric_limits<double>::epsilon() * a.cwiseAbs().maxCoeff() : 0.0;
+  for (int sweep = 0, turned = 1; sweep < most_sweeps && turned > 0; ++sweep) {
+    turned = 0;
+    for (Eigen::Index p = 0; p < size; ++p) {
+      for (Eigen::Index q = p + 1; q < size; ++q) {
+        if (!(std::abs(a(p, q)) > negligible)) continue;
+        Eigen::JacobiRotation<double> rotation;
+        rotation.makeJacobi(a, p, q);
+        a.applyOnTheLeft(p, q, rotation.adjoint());
+        a.applyOnTheRight(p, q, rotation);
+        vectors.applyOnTheRight(p, q, rotation);
+        ++turned;
+      }
+    }
+  }
+  return {a.diagonal(), vectors};
+}
 
 /// X of A X = B, of all that come closest to it the one of least norm: what A does not tell is 0. A: symmetric, no eigenvalue
 /// below 0 but by rounding; its diagonal of one order of magnitude, or 0.
@@ -20,15 +51,15 @@ inline DynamicMatrix solve_symmetric(const DynamicMatrix& a, const DynamicMatrix
   // Far above rounding: what is left of a variance that the other columns explain is a difference of equals.
   constexpr double enough = 1e4;
   if (factors.info() == Eigen::Success && factors.rcond() > enough * rounding) return factors.solve(b);
-  const Eigen::SelfAdjointEigenSolver<DynamicMatrix> solver(a);
-  const double largest = a.rows() > 0 ? solver.eigenvalues().maxCoeff() : 0.0;
-  const DynamicMatrix in_axes = solver.eigenvectors().transpose() * b;
-  DynamicMatrix scaled = DynamicMatrix::Zero(b.rows(), b.cols());
+  const EigenPairs pairs = eigen_pairs(a);
+  const double largest = a.rows() > 0 ? pairs.values.maxCoeff() : 0.0;
+  DynamicMatrix x = DynamicMatrix::Zero(b.rows(), b.cols());
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    const double value = solver.eigenvalues()[i];
-    if (value > enough * rounding * largest) scaled.row(i) = in_axes.row(i) / value;
+    if (!(pairs.values[i] > enough * rounding * largest)) continue;
+    const auto axis = pairs.vectors.col(i);
+    for (Eigen::Index k = 0; k < b.cols(); ++k) x.col(k) += axis.dot(b.col(k)) / pairs.values[i] * axis;
   }
-  return solver.eigenvectors() * scaled;
+  return x;
 }
 
 }  // namespace pinnquad
