@@ -42,8 +42,8 @@ inline std::string reason_of_none(const LossName& loss, const std::vector<Result
   return "no " + with_kind(loss) + (none ? " was finished" : " predicts finite commands on the validation rows");
 }
 
-/// The first kind in the order of export whose best model may be exported; else the first that has a best model; else the
-/// first. `regression_r_squared`: see Verdict.
+/// The first kind in the order of export whose best model may be exported; else the first that has a best model; else
+/// the first. `regression_r_squared`: see Verdict.
 inline Chosen chosen_export(const std::vector<LossName>& losses, const std::vector<Result>& results,
                             double regression_r_squared) {
   const std::vector<LossName> order = export_order(losses);

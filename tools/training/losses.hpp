@@ -59,8 +59,8 @@ inline std::string with_kind(const LossName& loss) {
   return std::string(loss.title) + (is_structured(loss) ? " model" : " network");
 }
 
-/// What a kind is compared with, seed by seed, of what was asked for: a network with the vanilla ones, a structured model
-/// with the physics-informed networks before those; null for the baseline itself.
+/// What a kind is compared with, seed by seed, of what was asked for: a network with the vanilla ones, a structured
+/// model with the physics-informed networks before those; null for the baseline itself.
 inline const LossName* compared_with(const std::vector<LossName>& losses, const LossName& loss) {
   const LossName* baseline = nullptr;
   for (const LossName& asked : losses) {

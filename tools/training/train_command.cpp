@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part of one
-// flight, or the last of several flights), exports the best of the kind that the recipe exports as a header. Flights of real
-// vehicles (--dataset, --log) are judged by held-out flights instead: training/train_logs.hpp.
+// Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part
+// of one flight, or the last of several flights), exports the best of the kind that the recipe exports as a header.
+// Flights of real vehicles (--dataset, --log) are judged by held-out flights instead: training/train_logs.hpp.
 //   pinnquad train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 #include "training/train_command.hpp"
 
@@ -111,7 +111,8 @@ std::string earlier_export(const Options& options) {
   return there.empty() ? "" : "; of an earlier training: " + programs::listed(there);
 }
 
-/// Says how the chosen model stands beside the mean and linear regression. Why it must not be exported; empty if it may.
+/// Says how the chosen model stands beside the mean and linear regression. Why it must not be exported; empty if it
+/// may.
 std::string reason_against_export(const Options& options, const programs::Chosen& chosen,
                                   programs::TrainingReport& report) {
   const Verdict& verdict = chosen.verdict;
