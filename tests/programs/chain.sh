@@ -56,6 +56,15 @@ cat flown.txt
 grep -q "self test .*: ok" flown.txt || fail "the self test of the export failed"
 grep -q ": agrees" flown.txt || fail "the export does not agree with the trainer"
 grep -q "weights zeroed" flown.txt || fail "no closed loop was flown"
+# what the demo says of such files in the end
+out=a
+cp flown.txt a
+eval "$(sed -n '/^errors() {$/,/^rmse() /p' "$source_dir/scripts/demo")"
+[[ $(errors) =~ ^linearized\ [0-9.]+,\ vanilla\ [0-9.]+,\ physics-informed\ [0-9.]+,\ structured\ [0-9.]+$ ]] ||
+  fail "the demo reads these errors: $(errors)"
+for feed_forward in export 'analytic inverse' 'none \(hover trim\)'; do
+  [[ $(rmse "$feed_forward") =~ ^[0-9]+\.[0-9]+$ ]] || fail "the demo reads no RMSE of $feed_forward: $(rmse "$feed_forward")"
+done
 expect_line 2 "flight.csv:1: expected 'pinnquad-replay 1 <rows> 24'" fly_export/fly_export --replay flight.csv
 head -c 5000 a/replay.txt >truncated.txt
 expect_line 2 "truncated.txt:[0-9]+:[0-9]+: expected a number" fly_export/fly_export --replay truncated.txt
