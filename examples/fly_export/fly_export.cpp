@@ -26,9 +26,9 @@ using Model = TrainedQuadModel;
 using Scalar = Model::Scalar;
 
 constexpr double agreement_tolerance = 1e-6;  // float rounding of another order of summation, commands in 0..1
-constexpr double fallback_limit = 0.05;       // more, and it is not the network that flies
+constexpr double fallback_limit = 0.05;       // more, and it is not the export that flies
 
-/// The exported model with all weights and biases zero: what the network contributes is what this one lacks.
+/// The exported model with all its numbers zero: what they contribute is what this one lacks.
 struct ZeroedModel : Model {
   static constexpr std::array<Scalar, Model::parameters.size()> parameters{};
 };
@@ -158,7 +158,7 @@ TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const Figu
   return r;
 }
 
-/// The closed loop. True if the network flew it, mostly by itself, and its weights were worth having.
+/// The closed loop. True if the export flew it, mostly by itself, and its weights were worth having.
 template <class Flown>
 bool closed_loop(const Flown& model) {
   const Vehicle vehicle(airframe_value<Model::Vehicle, double>(), paper_site<double>(), {}, {});
@@ -173,16 +173,16 @@ bool closed_loop(const Flown& model) {
   using Guard = Extend<TrainingGuard, Fallback<AnalyticInverse<Vehicle>>>;
   using Guarded = InverseDynamics<Flown, Guard>;
   using Zeroed = InverseDynamics<ZeroedModel, Guard>;
-  const auto network = fly("network", vehicle, trajectory, NetworkInverse<Guarded>(Guarded(model, analytic)));
+  const auto exported = fly("export", vehicle, trajectory, NetworkInverse<Guarded>(Guarded(model, analytic)));
   fly("analytic inverse", vehicle, trajectory, analytic);
   fly("none (hover trim)", vehicle, trajectory, trim);
-  const auto zeroed = fly("network, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed>(Zeroed(analytic)));
-  const double fallbacks = static_cast<double>(network.fallback.fallbacks()) / network.fallback.asked;
+  const auto zeroed = fly("export, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed>(Zeroed(analytic)));
+  const double fallbacks = static_cast<double>(exported.fallback.fallbacks()) / exported.fallback.asked;
   if (fallbacks > fallback_limit) {
-    std::printf("  the network declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,
+    std::printf("  the export declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,
                 100 * fallback_limit);
   }
-  return network.status == Status::ok && fallbacks <= fallback_limit && network.rmse_m < zeroed.rmse_m;
+  return exported.status == Status::ok && fallbacks <= fallback_limit && exported.rmse_m < zeroed.rmse_m;
 }
 
 /// Self test, replay, speed, closed loop: the exit code.

@@ -23,7 +23,7 @@ diff <(grep -v seconds a.txt) <(grep -v seconds b.txt) || fail "the same seed fi
 
 # a structured model: proven, header and block; its judgement beside the paper's two
 "$pinnquad" fly --seed 3 --samples 3000 --out flight.csv >/dev/null
-"$pinnquad" train --flight flight.csv --recipe structured --seeds 1 --epochs 6 --out model --block model/model.block --allow-poor >train.txt 2>&1 ||
+"$pinnquad" train --flight flight.csv --seeds 1 --epochs 6 --out model --block model/model.block --allow-poor >train.txt 2>&1 ||
   fail "train: $(cat train.txt)"
 for file in model/model.hpp model/model.block; do
   [ "$(exit_code "$pinnquad" certify "$file")" -eq 0 ] || fail "$file: $(cat stdout.txt stderr.txt)"

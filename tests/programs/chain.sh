@@ -6,11 +6,17 @@ source "$(dirname "$0")/common.sh" "$@"
 [ "$(wc -l <flight.csv)" -eq 3001 ] || fail "3000 rows and a header were expected"
 mkdir a b c
 "$pinnquad" train --flight flight.csv --out a --seeds 2 --epochs 8 --threads 2 --block a/model.block >a.txt
-grep -q "physics-informed" a.txt || fail "the table names no physics-informed network"
+for model in linearized vanilla physics-informed structured; do
+  grep -q "^  test flight, .* $model" a.txt || fail "the table names no $model: $(grep 'test flight' a.txt)"
+done
+awk '/^  test flight, /, /^  least derivative over nominal, yaw/ { if (!width) width = length($0); if (length($0) != width) { print; bad = 1 } ++rows }
+  END { exit bad || rows < 40 }' a.txt >crooked.txt || fail "the table's columns do not stand below each other: $(cat crooked.txt)"
+grep -q '^  proven: each signed sum' a.txt || fail "does not say what is proven of the export: $(grep -A9 export a.txt)"
+"$pinnquad" certify a/model.hpp >/dev/null || fail "what train calls proven certify does not prove"
 for file in results.csv report.json model.hpp model.block replay.txt ellipses.svg errors.svg prediction.svg; do
   [ -s "a/$file" ] || fail "$file is missing or empty"
 done
-[ "$(wc -l <a/results.csv)" -eq 6 ] || fail "results.csv: a header, the linearized model and 4 networks were expected"
+[ "$(wc -l <a/results.csv)" -eq 8 ] || fail "results.csv: a header, the linearized model, 4 networks and 2 structured models were expected"
 
 # same seed, same bits, whatever the number of threads
 "$pinnquad" fly --seed 3 --samples 3000 --out again.csv >/dev/null
@@ -50,20 +56,29 @@ cat flown.txt
 grep -q "self test .*: ok" flown.txt || fail "the self test of the export failed"
 grep -q ": agrees" flown.txt || fail "the export does not agree with the trainer"
 grep -q "weights zeroed" flown.txt || fail "no closed loop was flown"
+# what the demo says of such files in the end
+out=a
+cp flown.txt a
+eval "$(sed -n '/^errors() {$/,/^rmse() /p' "$source_dir/scripts/demo")"
+[[ $(errors) =~ ^linearized\ [0-9.]+,\ vanilla\ [0-9.]+,\ physics-informed\ [0-9.]+,\ structured\ [0-9.]+$ ]] ||
+  fail "the demo reads these errors: $(errors)"
+for feed_forward in export 'analytic inverse' 'none \(hover trim\)'; do
+  [[ $(rmse "$feed_forward") =~ ^[0-9]+\.[0-9]+$ ]] || fail "the demo reads no RMSE of $feed_forward: $(rmse "$feed_forward")"
+done
 expect_line 2 "flight.csv:1: expected 'pinnquad-replay 1 <rows> 24'" fly_export/fly_export --replay flight.csv
 head -c 5000 a/replay.txt >truncated.txt
 expect_line 2 "truncated.txt:[0-9]+:[0-9]+: expected a number" fly_export/fly_export --replay truncated.txt
 
-# weights of a later training as a block, flown by the program that was built for the first
-"$pinnquad" train --flight flight.csv --out c --seeds 1 --seed 7 --epochs 6 --block c/model.block >/dev/null
-! cmp -s a/model.block c/model.block || fail "another seed trained the same weights"
+# weights of a later training, of another flight, as a block, flown by the program that was built for the first
+"$pinnquad" train --flight other.csv --out c --seeds 1 --epochs 6 --block c/model.block >/dev/null
+! cmp -s a/model.block c/model.block || fail "another flight trained the same weights"
 fly_export/fly_export --replay c/replay.txt --block c/model.block >block.txt 2>/dev/null || true
 grep -q "block .*c/model.block, .* bytes" block.txt || fail "the block was not read"
 grep -q "self test .*: ok" block.txt || fail "the self test of the block failed"
 grep -q ": agrees" block.txt || fail "the block does not agree with the trainer"
 fly_export/fly_export --replay c/replay.txt >other.txt 2>/dev/null || true
 grep -q ": DISAGREES" other.txt || fail "the header's weights agree with another training's"
-head -c 20000 c/model.block >cut.block
+head -c 1000 c/model.block >cut.block
 refused() { expect_line 2 "$2: $1" fly_export/fly_export --replay c/replay.txt --block "$2"; } # <why> <file>
 refused block_truncated cut.block
 refused block_incompatible flight.csv

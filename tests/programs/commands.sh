@@ -23,7 +23,8 @@ for command in "" fly evaluate certify replay block import airframe "airframe li
   # shellcheck disable=SC2086
   "$pinnquad" $command --help | grep -A1 '^Examples:$' | grep -qE "^  (pinnquad|cmake) " || fail "pinnquad $command --help has no example"
 done
-"$pinnquad" train --help | grep -qE '^  --flight FILE\.csv \.\.\.( |$)' || fail "train --help says of --flight: $("$pinnquad" train --help | grep -e --flight)"
+"$pinnquad" train --help >help.txt # whole: grep -q closes a pipe at the first match
+grep -qE '^  --flight FILE\.csv \.\.\.( |$)' help.txt || fail "train --help says of --flight: $(grep -e --flight help.txt)"
 
 # completion, as bash asks for it
 complete_words() { # <what the last word may become> <word>...

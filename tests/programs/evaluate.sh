@@ -5,7 +5,7 @@ command -v python3 >/dev/null || { echo "skipped: no python3 to read the reports
 
 "$pinnquad" fly --seed 3 --samples 3000 --out flight.csv >/dev/null
 mkdir a
-"$pinnquad" train --flight flight.csv --out a --seeds 2 --epochs 8 --block a/model.block --allow-poor >/dev/null 2>a.txt
+"$pinnquad" train --flight flight.csv --recipe paper --out a --seeds 2 --epochs 8 --block a/model.block --allow-poor >/dev/null 2>a.txt
 code=0
 "$pinnquad" evaluate a/model.block --flight flight.csv --rows test --json >judged.json || code=$?
 python3 - a/report.json judged.json "$code" <<'EOF'
@@ -75,7 +75,7 @@ grep -q 'Dense<25>' table.txt || fail "does not name the network: $(cat table.tx
 # an airframe of its own: found by its file alone
 sed 's/^name = .*/name = "mine"/; s/^mass_kg = .*/mass_kg = 1.31/' "$source_dir/examples/airframes/paper_quadrotor.toml" >mine.toml
 mkdir b
-"$pinnquad" train --flight flight.csv --airframe mine.toml --out b --seeds 1 --epochs 2 --block b/model.block --allow-poor >/dev/null 2>&1
+"$pinnquad" train --flight flight.csv --recipe paper --airframe mine.toml --out b --seeds 1 --epochs 2 --block b/model.block --allow-poor >/dev/null 2>&1
 expect_line 2 'b/model.block: a network of 16 inputs, 4 outputs and 6379 parameters whose shape is unknown' \
   "$pinnquad" evaluate b/model.block --flight flight.csv
 "$pinnquad" evaluate b/model.block --flight flight.csv --airframe mine.toml >mine.txt || [ $? -eq 1 ]

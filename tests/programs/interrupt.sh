@@ -16,7 +16,7 @@ kill -INT "$pid"
 code=0
 wait "$pid" || code=$?
 [ "$code" -eq 130 ] || fail "exit code $code instead of 130; said: $(cat stderr.txt)"
-grep -qE 'interrupted; [1-9][0-9]* of 1000 trainings were finished and kept' stderr.txt || fail "said: $(cat stderr.txt)"
+grep -qE 'interrupted; [1-9][0-9]* of 1500 trainings were finished and kept' stderr.txt || fail "said: $(cat stderr.txt)"
 kept=$(sed -nE 's/.*interrupted; ([0-9]+) of.*/\1/p' stderr.txt)
 [ "$(wc -l <out/results.csv)" -eq $((kept + 2)) ] || fail "results.csv does not hold the $kept finished trainings"
 [ -s out/model.hpp ] || fail "nothing was exported although trainings were finished"
@@ -45,7 +45,7 @@ interrupted_drawing() {
 }
 interrupted_drawing 'the flight is written, pictures are missing' "$pinnquad" fly --samples 40 --out drawn.csv --pictures pictures
 [ "$(wc -l <drawn.csv)" -eq 41 ] || fail "the flight was lost"
-interrupted_drawing '2 of 2 trainings were finished and kept' "$pinnquad" train --flight flight.csv --out exported --seeds 1 --epochs 4 \
+interrupted_drawing '3 of 3 trainings were finished and kept' "$pinnquad" train --flight flight.csv --out exported --seeds 1 --epochs 4 \
   --block exported/model.block --allow-poor
 for file in results.csv report.json model.hpp replay.txt model.block; do [ -s "exported/$file" ] || fail "$file was lost to a picture"; done
 [ -z "$(find pictures exported -name '*.partial*')" ] || fail "a half-written file was left behind"

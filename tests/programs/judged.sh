@@ -78,17 +78,27 @@ for file in model.hpp replay.txt model.block; do cmp "poor/$file" "stale/$file" 
 # no better than linear regression: a warning, and the fact in header and report. The commands are a linear map.
 awk -F, -v OFS=, 'NR > 1 { for (i = 18; i <= 21; i++) $i = 0.5 + 0.01 * $(i - 16) + 0.01 * $(i - 8) } { print }' \
   good.csv >linear.csv
-"$pinnquad" train --flight linear.csv --out linear --epochs 3 --seeds 1 >/dev/null 2>stderr.txt
-grep -q '^train: warning: .*does not beat linear regression' stderr.txt || fail "said: $(cat stderr.txt)"
+"$pinnquad" train --flight linear.csv --recipe paper --out linear --epochs 3 --seeds 1 >/dev/null 2>stderr.txt
+grep -q "^train: warning: .*does not beat linear regression on the paper's features" stderr.txt || fail "said: $(cat stderr.txt)"
 grep -q 'bool beats_linear_regression = false;' linear/model.hpp || fail "the header does not say it"
 grep -q 'linear_regression_r_squared = 1.0;\|linear_regression_r_squared = 0.99999' linear/model.hpp ||
   fail "linear regression does not find a linear map: $(grep r_squared linear/model.hpp)"
 grep -q '"beats_linear_regression": false' linear/report.json || fail "report.json does not say it"
 
+# the same of a structured model, whose slopes are those of no vehicle: proven, and a warning each
+"$pinnquad" train --flight linear.csv --out sloped --epochs 3 --seeds 1 --allow-poor >/dev/null 2>stderr.txt
+for axis in roll yaw; do
+  grep -q "^train: warning: the $axis slope is not the airframe's" stderr.txt || fail "does not doubt the $axis slope: $(cat stderr.txt)"
+done
+"$pinnquad" certify sloped/model.hpp >/dev/null || fail "slopes of no vehicle are not proven"
+
 # A flight at yaw 0 and one constant climb rate, from a file whose name is no text: trained, exported, compiled and flown.
 name=$'yaw\xff* "0";\n\\\n#error?\?.csv'
 awk -F, -v OFS=, 'NR > 1 { $16 = 0; $13 = 0; $7 = 0; $10 = -0.5 } { print }' good.csv >"$name"
-"$pinnquad" train --flight "$name" --out still --epochs 4 --seeds 1 --allow-poor --block still/model.block >/dev/null 2>stderr.txt
+"$pinnquad" train --flight "$name" --out still_structured --epochs 4 --seeds 1 --allow-poor >/dev/null 2>stderr.txt
+grep -q '^train: warning: wdot_z, v_bz, w_z, sin_yaw, cos_yaw, w_yz, w_zx, vv_bz: ' stderr.txt || fail "said: $(cat stderr.txt)"
+"$pinnquad" certify still_structured/model.hpp >/dev/null || fail "the structured model of a still flight is not proven"
+"$pinnquad" train --flight "$name" --recipe paper --out still --epochs 4 --seeds 1 --allow-poor --block still/model.block >/dev/null 2>stderr.txt
 grep -q '^train: warning: wdot_z, v_bz, w_z, sin_yaw, cos_yaw: ' stderr.txt || fail "said: $(cat stderr.txt)"
 iconv -f UTF-8 -t UTF-8 still/report.json >/dev/null || fail "report.json is no text"
 grep -qF '"flight": "yaw?* \"0\";?\\?#error??.csv"' still/report.json || fail "report.json does not name the flight"

@@ -6,13 +6,24 @@ command -v python3 >/dev/null || { echo "skipped: no python3 to read the reports
 "$pinnquad" fly --seed 3 --samples 2500 --out flight.csv >/dev/null
 train() { "$pinnquad" train --flight flight.csv --seeds 1 --epochs 3 --threads 1 --allow-poor "$@" >/dev/null 2>stderr.txt; }
 train --out default
+train --out structured --recipe structured
 train --out paper --recipe paper --loss physics_informed --loss vanilla
 train --out best --recipe best
 train --out small --recipe small --loss pearson,constant_weight --block small/model.block
 figures() { sed 's/,[^,]*$//' "$1/results.csv"; } # the last column is a time
-diff <(figures default) <(figures paper) || fail "the default is not the paper's recipe with its two losses"
-cmp default/model.hpp paper/model.hpp || fail "the order in which losses are named changes the export"
-! diff -q <(figures default) <(figures best) >/dev/null || fail "the recipes paper and best train alike"
+diff <(figures default) <(figures structured) || fail "the default is not the recipe structured"
+cmp default/model.hpp structured/model.hpp || fail "the default exports another model than the recipe structured"
+diff <(figures default | grep -v '^structured,') <(figures paper) || fail "the paper's networks are others beside a structured model"
+! diff -q <(figures paper) <(figures best) >/dev/null || fail "the recipes paper and best train alike"
+train --out in_order --recipe paper --loss vanilla,physics_informed
+cmp in_order/model.hpp paper/model.hpp || fail "the order in which losses are named changes the export"
+
+# the default's signs are proven, whatever it was trained for; one loss that is asked for changes nothing of that model
+"$pinnquad" certify default/model.hpp >certificate.txt || fail "certify does not prove the default model: $(cat certificate.txt)"
+grep -q '^proven ' certificate.txt || fail "said: $(cat certificate.txt)"
+train --out one --loss vanilla
+cmp one/model.hpp default/model.hpp || fail "the structured model is another one beside one loss"
+cut -d, -f1 one/results.csv | uniq | diff - <(printf '%s\n' model linearized vanilla structured) || fail "trained: $(cut -d, -f1 one/results.csv)"
 
 "$pinnquad" evaluate small/model.hpp --flight flight.csv --rows test --json >small.json || [ $? -eq 1 ]
 "$pinnquad" evaluate small/model.block --flight flight.csv --rows test --json >block.json || [ $? -eq 1 ]
@@ -20,7 +31,16 @@ diff <(grep -v '"model": ' small.json) <(grep -v '"model": ' block.json) || fail
 python3 - <<'PYTHON'
 import json
 read = lambda folder: json.load(open(folder + "/report.json"))
-paper, best, small = (read(folder) for folder in ("paper", "best", "small"))
+default, paper, best, small = (read(folder) for folder in ("default", "paper", "best", "small"))
+assert default["settings"]["recipe"] == "structured" and default["verdict"]["model"] == "structured", default["verdict"]
+assert sorted(default["models"]) == ["linearized", "physics_informed", "structured", "vanilla"], list(default["models"])
+certificate = default["certificate"]
+assert certificate["proven"] is True and paper["certificate"] is None, certificate
+said = open("certificate.txt").read()
+for axis in "roll", "pitch", "yaw":
+    slope, own = certificate["slope"][axis], certificate["airframe_slope"][axis]
+    assert f"{axis:5} {slope:.6f} s^2/rad, {slope / own:.2f} of the airframe's own" in said, (axis, slope, own, said)
+    assert default["models"]["structured"]["wrong_derivative_share"][axis]["mean"] == 0, axis
 assert list(map(lambda r: r["settings"]["recipe"], (paper, best, small))) == ["paper", "best", "small"]
 assert paper["settings"]["network"] == best["settings"]["network"] == "10 x 25 ReLU", paper["settings"]
 assert paper["settings"]["learning_rate"] == 1e-3 and paper["settings"]["learning_rate_schedule"] == "constant"
@@ -45,8 +65,8 @@ grep -q 'constant weight' small/model.hpp || fail "the header does not say its l
 
 mkdir out
 refused() { expect_line 2 "$1" "$pinnquad" train --flight flight.csv --out out --epochs 1 --seeds 1 "${@:2}"; }
-refused "^train: no recipe named 'worst'; known: paper, best, small, structured$" --recipe worst
+refused "^train: no recipe named 'worst'; known: structured, paper, best, small$" --recipe worst
 refused "^train: --loss: no loss named 'mse'; known: vanilla, physics_informed, constant_weight, pearson$" --loss vanilla,mse
 [ -z "$(ls -A out)" ] || fail "something was left in the output folder: $(ls -A out)"
 "$pinnquad" train --help >help.txt
-for word in paper best small vanilla physics_informed constant_weight pearson 130; do grep -q "$word" help.txt || fail "help does not name $word"; done
+for word in structured paper best small vanilla physics_informed constant_weight pearson 130; do grep -q "$word" help.txt || fail "help does not name $word"; done

@@ -25,6 +25,7 @@
 #include "model/model_file.hpp"
 #include "pinnquad/inference/certificate.hpp"
 #include "pinnquad/inference/hover_slopes.hpp"
+#include "training/certificate_words.hpp"
 
 namespace {
 
@@ -296,18 +297,11 @@ void print_text(const programs::Block& block, const programs::Identity& identity
       if (findings.taps > 1) std::printf(", of one that is held; of the present alone %.6f", findings.slope[axis]);
       std::printf("\n");
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double ratio = findings.held_slope[axis] / own[axis];
-      if (ratio >= 0.8 && ratio <= 1.2) continue;
-      std::printf(
-          "warning    the %s slope is not the airframe's: trained on quiet or noisy flights, or for another "
-          "airframe\n",
-          axes[axis]);
+    for (const std::string& doubt : programs::slope_doubts(findings.held_slope, own)) {
+      std::printf("warning    %s\n", doubt.c_str());
     }
     if (findings.certificate) {
-      const double* bound = findings.certificate->command_bound;
-      std::printf("bound      the residual changes a command by at most %.4f %.4f %.4f %.4f\n", bound[0], bound[1],
-                  bound[2], bound[3]);
+      std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate).c_str());
       if (!block.base.empty()) return;
       if (sees_angular_acceleration(identity)) {
         std::printf(
@@ -377,7 +371,7 @@ programs::Command programs::certify_command(CLI::App& program) {
   line->add_flag("--json", options->json, "what was found as JSON");
   line->footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --recipe structured --out my_model\n"
+      "  pinnquad train --flight d1.csv --out my_model\n"
       "  pinnquad certify my_model/model.hpp\n"
       "Exit codes: 0 proven; 1 refuted by a counterexample; 2 bad input or a file that can't be read; 3 neither; 130\n"
       "interrupted.");

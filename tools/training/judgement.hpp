@@ -220,10 +220,13 @@ inline std::string mean_and_deviation(const std::vector<double>& values, double 
   return text;
 }
 
+/// Of the tables' first column: the longest label fits.
+inline constexpr int label_width = 38;
+
 /// Prints the comparison on stdout: rows are figures, columns models.
 inline void print_table(const std::vector<Result>& results, const std::vector<std::string>& models) {
   const auto line = [&](const std::string& label, const std::string& figure_name, double scale, int digits) {
-    std::printf("  %-34s", label.c_str());
+    std::printf("  %-*s", label_width, label.c_str());
     for (const Figure& figure : figures()) {
       if (figure.name != figure_name) continue;
       for (const std::string& model : models) {
@@ -232,7 +235,7 @@ inline void print_table(const std::vector<Result>& results, const std::vector<st
     }
     std::printf("\n");
   };
-  std::printf("  %-34s", "test flight, mean +- deviation");
+  std::printf("  %-*s", label_width, "test flight, mean +- deviation");
   for (const std::string& model : models) std::printf("  %20s", model.c_str());
   std::printf("\n");
   line("mean absolute error, 1e-3", "mae", 1e3, 2);

@@ -2,6 +2,7 @@
 // The losses that a training can be asked for by name.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string>
@@ -51,14 +52,36 @@ inline std::vector<LossName> chosen_losses(const std::vector<std::string>& names
   return chosen;
 }
 
-/// Whose best network is exported: the structured ones', else the physics-informed ones', else the first.
-inline const LossName& exported_loss(const std::vector<LossName>& losses) {
-  for (const LossName* wanted : {&structured, &physics_informed}) {
-    for (const LossName& loss : losses) {
-      if (loss.key == std::string(wanted->key)) return loss;
-    }
+inline bool is_structured(const LossName& loss) { return loss.key == std::string(structured.key); }
+
+/// "vanilla network", "structured model".
+inline std::string with_kind(const LossName& loss) {
+  return std::string(loss.title) + (is_structured(loss) ? " model" : " network");
+}
+
+/// What a kind is compared with, seed by seed, of what was asked for: a network with the vanilla ones, a structured
+/// model with the physics-informed networks before those; null for the baseline itself.
+inline const LossName* compared_with(const std::vector<LossName>& losses, const LossName& loss) {
+  const LossName* baseline = nullptr;
+  for (const LossName& asked : losses) {
+    if (asked.key == std::string(loss.key)) continue;
+    if (asked.key == std::string(vanilla.key)) baseline = &vanilla;
+    if (is_structured(loss) && asked.key == std::string(physics_informed.key)) baseline = &physics_informed;
   }
-  return losses.front();
+  return baseline;
+}
+
+/// Whose best model is exported, and whose where that one must not be: the structured ones', then the physics-informed
+/// ones' or, where those were not asked for, the first's.
+inline std::vector<LossName> export_order(const std::vector<LossName>& losses) {
+  std::vector<LossName> order, networks;
+  for (const LossName& loss : losses) (is_structured(loss) ? order : networks).push_back(loss);
+  if (networks.empty()) return order;
+  const auto informed = std::find_if(networks.begin(), networks.end(), [](const LossName& loss) {
+    return loss.key == std::string(physics_informed.key);
+  });
+  order.push_back(informed == networks.end() ? networks.front() : *informed);
+  return order;
 }
 
 }  // namespace programs

@@ -88,7 +88,7 @@ inline void print_signs(const std::vector<Result>& results, const std::vector<st
   for (const ModelFigure& figure : model_figures) {
     if (figure.title == nullptr) continue;
     for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-      std::printf("  %-34s", (std::string(figure.title) + ", " + axis_names[axis]).c_str());
+      std::printf("  %-*s", label_width, (std::string(figure.title) + ", " + axis_names[axis]).c_str());
       for (const std::string& model : models) {
         std::vector<double> values;
         for (const Result& result : results) {

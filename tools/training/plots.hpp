@@ -76,7 +76,7 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
 }
 
 /// Fig. 7: mean absolute error of each model, mean and deviation over seeds. Where one model's bar would flatten the
-/// others, those have a panel of their own with its own scale, and the picture says so.
+/// others, those have a panel of their own with its own scale, and the picture says so; not where it is one bar alone.
 inline bool plot_errors(const std::string& svg, const std::vector<Result>& results,
                         const std::vector<std::string>& models) {
   constexpr double flattened = 1.0 / 3;  // of the highest bar
@@ -103,6 +103,8 @@ inline bool plot_errors(const std::string& svg, const std::vector<Result>& resul
       large.push_back(bar.model);
     }
   }
+  const int panel_width = 125 * static_cast<int>(bars.size());  // names stand beside each other
+  if (small.size() < 2) small.clear();
   std::ostringstream out;
   const auto panel = [&out](const std::string& title, const std::vector<Bar>& shown) {
     out << "$errors << EOD\n";
@@ -127,7 +129,8 @@ inline bool plot_errors(const std::string& svg, const std::vector<Result>& resul
     out << "unset multiplot\n";
   }
   return draw_svg(svg,
-                  {small.empty() ? 700 : 1000, 420, "Mean absolute error of the commands by model",
+                  {std::max(small.empty() ? 700 : 1000, panel_width * (small.empty() ? 1 : 2)), 420,
+                   "Mean absolute error of the commands by model",
                    "Mean and deviation over the seeds, in thousandths of the command range: " + listed(values) + "."},
                   out.str());
 }
@@ -136,7 +139,7 @@ inline bool plot_errors(const std::string& svg, const std::vector<Result>& resul
 inline bool plot_prediction(const std::string& svg, const std::vector<double>& time_s,
                             const std::vector<double>& target, const std::vector<std::string>& models,
                             const std::vector<std::vector<double>>& predicted) {
-  static constexpr std::array<const char*, 3> colours = {"#8a8a8a", "#d1541a", "#2a8f4f"};
+  static constexpr std::array<const char*, 5> colours = {"#8a8a8a", "#d1541a", "#2a8f4f", "#7b4fb5", "#a8791a"};
   std::ostringstream out;
   out << "$series << EOD\n";
   for (std::size_t i = 0; i < time_s.size(); ++i) {

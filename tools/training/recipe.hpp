@@ -15,7 +15,9 @@
 
 #include "command_line/listed.hpp"
 #include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/inference/features.hpp"
 #include "pinnquad/training/context_airframe.hpp"
+#include "pinnquad/training/training_data.hpp"
 #include "training/losses.hpp"
 #include "training/trained_network.hpp"
 
@@ -50,7 +52,11 @@ struct Recipe {
   nlohmann::json settings;  ///< the facts, for report.json
   /// All trainings that were finished, in the order of loss and seed; Ctrl-C keeps what is finished.
   std::vector<Training> (*train)(const TrainingPlan&);
-  std::vector<LossName> besides{};  ///< what it trains beside the losses that are asked for
+  std::vector<LossName> besides{};    ///< what it trains beside the losses that are asked for
+  std::string besides_in_words = {};  ///< "structured: ..."; empty where there is nothing
+  /// Features of its models that do nothing in the training rows.
+  std::vector<std::string> (*still_features)(const pinnquad::RowSet&) =
+      pinnquad::still_features<pinnquad::PaperFeatures>;
 };
 
 Recipe paper_recipe();
@@ -59,7 +65,7 @@ Recipe small_recipe();
 Recipe structured_recipe();
 
 /// The first is the default.
-inline constexpr std::array<Recipe (*)(), 4> recipes = {paper_recipe, best_recipe, small_recipe, structured_recipe};
+inline constexpr std::array<Recipe (*)(), 4> recipes = {structured_recipe, paper_recipe, best_recipe, small_recipe};
 
 /// Throws std::invalid_argument, one line, for a name that is none.
 inline Recipe chosen_recipe(const std::string& name) {

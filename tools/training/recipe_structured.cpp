@@ -2,6 +2,7 @@
 // The recipe `structured`: the paper's networks, and beside them a model that is monotone by construction
 // (inference/axis_aligned.hpp): an affine base in closed form, a network of 2 x 32 on what it leaves, dropped where the
 // validation rows do not gain.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -12,7 +13,7 @@
 #include "pinnquad/inference/inverse_features.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
-#include "training/recipe.hpp"
+#include "training/campaign.hpp"
 
 namespace programs {
 
@@ -68,22 +69,27 @@ std::vector<Training> train_structured(const TrainingPlan& plan) {
   return done;
 }
 
-/// Those that are asked for by the paper's recipe, then the structured ones.
+/// Those that are asked for by the paper's recipe, then the structured ones. The latter are trained first: they take a
+/// moment, and one of them is exported.
 std::vector<Training> train_all_and_structured(const TrainingPlan& plan) {
   TrainingPlan of_paper = plan;
   of_paper.losses.clear();
-  bool asked = false;
   for (const LossName& loss : plan.losses) {
-    if (loss.key == std::string(structured.key)) {
-      asked = true;
-    } else {
-      of_paper.losses.push_back(loss);
-    }
+    if (!is_structured(loss)) of_paper.losses.push_back(loss);
   }
-  std::vector<Training> all;
-  if (!of_paper.losses.empty()) all = paper_recipe().train(of_paper);
-  if (!asked || interrupted()) return all;
-  for (Training& training : train_structured(plan)) all.push_back(std::move(training));
+  std::vector<Training> own, all;
+  if (of_paper.losses.size() < plan.losses.size()) own = train_structured(plan);
+  if (!of_paper.losses.empty() && !interrupted()) all = paper_recipe().train(of_paper);
+  for (Training& training : own) all.push_back(std::move(training));
+  return all;
+}
+
+/// Of the paper's features and of the model's own, each once.
+std::vector<std::string> still_features_of_both(const pinnquad::RowSet& training) {
+  std::vector<std::string> all = pinnquad::still_features<pinnquad::PaperFeatures>(training);
+  for (const std::string& name : pinnquad::still_features<pinnquad::InverseFeatures>(training)) {
+    if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+  }
   return all;
 }
 
@@ -93,7 +99,9 @@ Recipe structured_recipe() {
   Recipe recipe = paper_recipe();
   recipe.name = "structured";
   recipe.summary =
-      "the paper's networks, and a model that is monotone by construction (ridge and 2 x 32 ReLU), which is exported";
+      "the paper's networks, and beside them a model that is monotone by construction (ridge and 2 x 32 ReLU), which "
+      "is "
+      "exported";
   recipe.settings["structured"] = {{"base", "ridge, own angular acceleration"},
                                    {"residual", "2 x 32 ReLU, no angular acceleration"},
                                    {"learning_rate", pinnquad::ResidualTraining{}.learning_rate},
@@ -101,6 +109,12 @@ Recipe structured_recipe() {
                                    {"least_gain", pinnquad::ResidualTraining{}.least_gain}};
   recipe.train = train_all_and_structured;
   recipe.besides = {structured};
+  recipe.besides_in_words = std::string(structured.title) + ": affine map of " +
+                            std::to_string(pinnquad::InverseFeatures::size) + " features, " +
+                            std::to_string(pinnquad::MonotoneBase<pinnquad::InverseFeatures>::parameter_count) +
+                            " numbers, and on what it leaves " + network_in_words<Residual>("2 x 32 ReLU") +
+                            ", kept where the validation rows gain";
+  recipe.still_features = still_features_of_both;
   return recipe;
 }
 

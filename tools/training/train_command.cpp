@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part of one
-// flight, or the last of several flights), exports the best physics-informed network as a header. Flights of real vehicles
-// (--dataset, --log) are judged by held-out flights instead: training/train_logs.hpp.
+// Trains the linearized model's rivals on recorded flights, judges all on rows that none was trained on (the last part
+// of one flight, or the last of several flights), exports the best of the kind that the recipe exports as a header.
+// Flights of real vehicles (--dataset, --log) are judged by held-out flights instead: training/train_logs.hpp.
 //   pinnquad train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 #include "training/train_command.hpp"
 
@@ -29,6 +29,9 @@
 #include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/evaluation/model_errors.hpp"
+#include "pinnquad/inference/hover_slopes.hpp"
+#include "training/certificate_words.hpp"
+#include "training/export_choice.hpp"
 #include "training/judge_all.hpp"
 #include "training/judgement.hpp"
 #include "training/log_options.hpp"
@@ -52,7 +55,7 @@ struct Options {
   std::string out = "demo_out";
   std::string model_name = "TrainedQuadModel";
   std::string block;  ///< where to write the weights as a block too; empty: nowhere
-  std::string recipe = "paper";
+  std::string recipe = programs::recipes.front()().name;
   std::vector<std::string> losses = {programs::vanilla.key, programs::physics_informed.key};
   int seeds = 5;
   int epochs = 300;
@@ -63,9 +66,8 @@ struct Options {
 };
 
 /// Warns of features that stand still in the training rows: they are exported, and flown only where they stood.
-template <class Features>
-void warn_of_still_features(const RowSet& training, programs::TrainingReport& report) {
-  const std::string names = programs::listed(still_features<Features>(training));
+void warn_of_still_features(const std::vector<std::string>& still, programs::TrainingReport& report) {
+  const std::string names = programs::listed(still);
   if (names.empty()) return;
   report.warn(names +
               ": nothing changes in the training rows; the model will not know what it does, and answers only near the "
@@ -109,34 +111,67 @@ std::string earlier_export(const Options& options) {
   return there.empty() ? "" : "; of an earlier training: " + programs::listed(there);
 }
 
-std::string four_digits(double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4f", value);
-  return text;
-}
-
-/// Says how the best network stands beside the mean and linear regression. Why it must not be exported; empty if it may.
-std::string reason_against_export(const Options& options, const Verdict& verdict, programs::TrainingReport& report) {
+/// Says how the chosen model stands beside the mean and linear regression. Why it must not be exported; empty if it
+/// may.
+std::string reason_against_export(const Options& options, const programs::Chosen& chosen,
+                                  programs::TrainingReport& report) {
+  const Verdict& verdict = chosen.verdict;
   std::printf(
-      "  best network on the test rows: R^2 %.4f, worst motor %.4f; linear regression on the same features: R^2 %.4f\n",
-      verdict.test_r_squared, verdict.worst_motor_r_squared, verdict.linear_regression_r_squared);
+      "  %s on the test rows: R^2 %.4f, worst motor %.4f; linear regression on the paper's features: R^2 %.4f\n",
+      chosen.name().c_str(), verdict.test_r_squared, verdict.worst_motor_r_squared,
+      verdict.linear_regression_r_squared);
   std::fflush(stdout);
+  for (const std::string& reason : chosen.passed_over) {
+    report.warn(reason + "; the " + chosen.name() + " is exported instead");
+  }
   if (verdict.worse_than_mean()) {
-    if (!options.allow_poor) {
-      return "on the test rows the best network is worse than the mean of the commands (R^2 " +
-             four_digits(verdict.test_r_squared) + ", worst motor " + four_digits(verdict.worst_motor_r_squared) + ")";
-    }
-    report.warn("NOT FOR FLIGHT: the best network is worse than the mean of the commands");
+    if (!options.allow_poor) return chosen.poor();
+    report.warn("NOT FOR FLIGHT: the " + chosen.name() + " is worse than the mean of the commands");
   } else if (!verdict.beats_linear_regression()) {
-    report.warn("the best network does not beat linear regression on the same features (R^2 " +
-                four_digits(verdict.test_r_squared) + " against " + four_digits(verdict.linear_regression_r_squared) +
-                "): a linear map would fly as well");
+    report.warn("the " + chosen.name() + " does not beat linear regression on the paper's features (R^2 " +
+                programs::four_digits(verdict.test_r_squared) + " against " +
+                programs::four_digits(verdict.linear_regression_r_squared) +
+                "): a linear map of them would fly as well");
   }
   if (verdict.has_poor_motor()) {
     report.warn("one motor's commands are predicted worse than by their mean (R^2 " +
-                four_digits(verdict.worst_motor_r_squared) + " on the test rows)");
+                programs::four_digits(verdict.worst_motor_r_squared) + " on the test rows)");
   }
   return {};
+}
+
+/// A model that is proven may err more than the network that is not.
+void warn_of_better_network(const std::vector<programs::LossName>& losses, const std::vector<programs::Result>& results,
+                            const programs::Chosen& chosen, programs::TrainingReport& report) {
+  const programs::LossName network = programs::export_order(losses).back();
+  const std::optional<std::size_t> other = programs::best_of(results, network.title);
+  const double error = results[*chosen.best].validation_error;
+  if (!programs::is_structured(chosen.loss) || !other || !(results[*other].validation_error < error)) return;
+  report.warn("the best " + programs::with_kind(network) + " errs less on the validation rows (" +
+              programs::four_digits(results[*other].validation_error) + " against " + programs::four_digits(error) +
+              "), but nothing is proven of its signs; --recipe paper exports it");
+}
+
+/// What is proven of an export's signs, as `certify` finds it in the header.
+void say_certificate(const Options& options, const programs::TrainedNetwork& network,
+                     const ContextAirframe<GivenAirframe>& airframe, programs::TrainingReport& report) {
+  const std::optional<Certificate> certificate = network.certificate();
+  if (!certificate || !certificate->proven()) {
+    std::printf("  nothing is proven of its signs: `pinnquad certify %s/model.hpp` looks for a counterexample\n",
+                options.out.c_str());
+    return;
+  }
+  const AxisSlopes slopes = programs::held_slopes(*certificate), own = hover_slopes(airframe.airframe<double>());
+  report.certified(*certificate, own);
+  std::printf(
+      "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
+      "input;\n"
+      "    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad: %.2f, %.2f, %.2f of the airframe's own in hover;\n"
+      "    %s\n",
+      slopes[0], slopes[1], slopes[2], slopes[0] / own[0], slopes[1] / own[1], slopes[2] / own[2],
+      programs::bound_in_words(*certificate).c_str());
+  std::fflush(stdout);
+  for (const std::string& doubt : programs::slope_doubts(slopes, own)) report.warn(doubt);
 }
 
 void export_network(const Options& options, const programs::Training& training, const RowSplit& split,
@@ -152,6 +187,23 @@ void export_network(const Options& options, const programs::Training& training, 
   const std::vector<unsigned char> block = network.block(split.train, provenance);
   write_weight_file(options.block, block);
   std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), block.size());
+}
+
+/// Per kind, on one core.
+void print_training_time(const std::vector<programs::LossName>& losses, const std::vector<programs::Result>& results) {
+  std::string kinds;
+  for (const programs::LossName& loss : losses) {
+    double seconds = 0, count = 0;
+    for (const programs::Result& result : results) {
+      if (result.model != loss.title) continue;
+      seconds += result.training_s;
+      ++count;
+    }
+    char text[96];
+    std::snprintf(text, sizeof text, "%s %.2f s", loss.title, seconds / count);
+    if (count > 0) programs::add_to_list(kinds, text);
+  }
+  if (!kinds.empty()) std::printf("  training took, per model and core: %s\n", kinds.c_str());
 }
 
 int train_judge_export(const Options& options, const programs::Recipe& recipe,
@@ -171,10 +223,11 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
       options.seeds,
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency())};
   programs::TrainingReport report(options.out + "/report.json", recipe, plan, dataset);
-  warn_of_still_features<PaperFeatures>(split.train, report);
+  warn_of_still_features(recipe.still_features(split.train), report);
   programs::print_split(dataset, split);
   std::printf("      network %s; %s, batch %d, %d epochs, %d seeds\n", recipe.network.c_str(), recipe.optimizer.c_str(),
               recipe.settings.at("batch").get<int>(), options.epochs, options.seeds);
+  if (!recipe.besides_in_words.empty()) std::printf("      %s\n", recipe.besides_in_words.c_str());
   std::fflush(stdout);
 
   programs::catch_interrupt();
@@ -186,15 +239,8 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
   const std::vector<programs::Result> results = programs::judge_all(plan, trainings, predictions);
   const double regression_r_squared = linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared;
 
-  const programs::LossName& exported_loss = programs::exported_loss(plan.losses);
-  const std::optional<std::size_t> best = programs::best_of(results, exported_loss.title);
   const std::string folder = options.out + "/";
   report.judged(results, trainings.size());
-  Verdict verdict;
-  if (best) {
-    verdict = verdict_on(results[*best].test.errors, regression_r_squared);
-    report.best(results[*best], verdict, !verdict.worse_than_mean() || options.allow_poor);
-  }
   programs::write_results(folder + "results.csv", results);
 
   std::vector<std::string> kinds = {programs::linear_name};
@@ -202,36 +248,36 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
   programs::print_table(results, kinds);
   programs::print_signs(results, kinds);
   for (const programs::LossName& loss : plan.losses) {
-    if (plan.losses.front().key != programs::vanilla.key || loss.key == programs::vanilla.key) continue;
-    programs::print_paired(results, loss.title, programs::vanilla.title);
+    const programs::LossName* baseline = programs::compared_with(plan.losses, loss);
+    if (baseline != nullptr) programs::print_paired(results, loss.title, baseline->title);
   }
-  double seconds = 0;
-  for (const programs::Result& result : results) seconds += result.training_s;
-  if (!trainings.empty()) {
-    std::printf("  training took %.2f s per network and core\n", seconds / static_cast<double>(trainings.size()));
-  }
+  print_training_time(plan.losses, results);
+  const programs::Chosen chosen = programs::chosen_export(plan.losses, results, regression_r_squared);
+  const std::optional<std::size_t> best = chosen.best;
+  if (best) report.best(results[*best], chosen.verdict, !chosen.verdict.worse_than_mean() || options.allow_poor);
   if (!best) {
-    const bool none = programs::over_seeds(results, exported_loss.title, programs::figures().front()).empty();
-    const std::string reason = std::string("no ") + exported_loss.title + " network " +
-                               (none ? "was finished" : "predicts finite commands on the validation rows");
+    const std::string reason = programs::reason_of_none(chosen.loss, results);
     report.write_not_exported(reason);
     programs::complain("train", reason + "; nothing to export" + earlier_export(options));
     return programs::interrupted() ? programs::exit_interrupted : programs::exit_failed;
   }
-  const std::string reason = reason_against_export(options, verdict, report);
+  const std::string reason = reason_against_export(options, chosen, report);
   // before the export: a disk that is full then costs the export alone
   report.write_not_exported(reason.empty() ? "the export was not finished" : reason);
   if (reason.empty()) {
     std::printf("[4/5] export\n");
+    warn_of_better_network(plan.losses, results, chosen, report);
     Provenance from{programs::flight_names(dataset),
                     content_hash(dataset),
                     split.train.size(),
                     results[*best].seed,
                     options.epochs,
-                    exported_loss.words,
-                    verdict};
+                    chosen.loss.words,
+                    chosen.verdict};
     from.sample_period_s = sample_period_s(split.train);
-    export_network(options, trainings[*best - 1], split, from);  // results[0] is the linearized model
+    const programs::Training& exported = trainings[*best - 1];  // results[0] is the linearized model
+    export_network(options, exported, split, from);
+    say_certificate(options, *exported.network, plan.airframe, report);
     report.write_exported(folder + "model.hpp", options.block);
   } else {
     programs::complain("train", "not exported: " + reason + "; more epochs or a better flight, or --allow-poor" +
@@ -312,8 +358,7 @@ void add_options(CLI::App& app, Options& options) {
       "  pinnquad train --flight d1.csv --recipe small --block weights.block\n"
       "  pinnquad train --log logs --mapping px4 --hold-out flight7 --out my_model\n"
       "  pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model\n"
-      "Exit codes: 0; 1 nothing exported: no network was finished, or the best is worse than the mean of the "
-      "commands;\n"
+      "Exit codes: 0; 1 nothing exported: no model was finished, or the best is worse than the mean of the commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
       "Without gnuplot the pictures are left out, with a line.");
   programs::add_paths(
@@ -333,20 +378,23 @@ void add_options(CLI::App& app, Options& options) {
   const std::string losses =
       programs::listed(programs::loss_names, [](const programs::LossName& loss) { return loss.key; });
   app.add_option("--recipe", options.recipe, "network and optimiser. " + recipes)->capture_default_str();
-  app.add_option("--loss", options.losses, "what to train under, any of: " + losses)
+  app.add_option("--loss", options.losses,
+                 "what the networks are trained under, any of: " + losses +
+                     ". The recipe structured trains its model too, whatever is asked for, and exports it; the others "
+                     "export physics_informed or, where it is not asked for, the first of this list")
       ->delimiter(',')
       ->type_name("NAME,...")
       ->default_str("vanilla,physics_informed");
   app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
   add_path(app, "--block", options.block, "FILE", "also write the exported weights as a model block");
-  add_number(app, "--seeds", options.seeds, 1, static_cast<int>(most_pairs), "networks per kind");
+  add_number(app, "--seeds", options.seeds, 1, static_cast<int>(most_pairs), "models per kind");
   add_number(app, "--epochs", options.epochs, 1, 100000, "training epochs");
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
              "first seed (initialisation and batch order)")
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
   app.add_flag("--allow-poor", options.allow_poor,
-               "export the best network even if it is worse than the mean of the commands; its header says so");
+               "export the best model even if it is worse than the mean of the commands; its header says so");
 }
 
 }  // namespace

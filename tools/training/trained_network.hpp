@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/deploy/golden_features.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/inference/certificate.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "training/derivatives.hpp"
 #include "training/model_predictions.hpp"
@@ -23,6 +25,8 @@ class TrainedNetwork {
   virtual Predictions predictions(const pinnquad::RowSet& rows) const = 0;
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
+  /// What is proven of it by its structure; none of a model without.
+  virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
   /// Writes `struct <name>` into a header. Golden vectors are taken of the training rows.
   virtual void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                             const pinnquad::Provenance& provenance) const = 0;
@@ -51,6 +55,14 @@ class NetworkOfModel : public TrainedNetwork {
   Predictions predictions(const pinnquad::RowSet& rows) const override { return network_predictions(model_, rows); }
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return derivative_figures(rows, derivatives_of(model_));
+  }
+  std::optional<pinnquad::Certificate> certificate() const override {
+    if constexpr (pinnquad::has_certificate<Model>) {
+      return pinnquad::certificate_of<Model>(
+          model_.template output_setting<pinnquad::SignedSumOutputs, typename Model::Scalar>(),
+          model_.network.parameters.data(), model_.input.spread.data(), model_.output.spread.data());
+    }
+    return {};
   }
   void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                     const pinnquad::Provenance& provenance) const override {

@@ -13,6 +13,7 @@
 #include "logs/training_flights.hpp"
 #include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/version.hpp"
+#include "training/certificate_words.hpp"
 #include "training/judge_all.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
@@ -56,6 +57,7 @@ class TrainingReport {
     for (const LossName& loss : losses_) settings_["losses"][loss.key] = loss.words;
     settings_.update(described(dataset, plan.split));
     more_["warnings"] = nlohmann::json::array();
+    more_["certificate"] = nullptr;
   }
 
   /// What is wrong but no reason to stop: told on stderr too.
@@ -79,6 +81,16 @@ class TrainingReport {
                 {"worse_than_mean", verdict.worse_than_mean()},
                 {"beats_linear_regression", verdict.beats_linear_regression()},
                 {"exported", may_be_exported}};
+  }
+  /// Of what was exported.
+  void certified(const pinnquad::Certificate& certificate, const pinnquad::AxisSlopes& airframe) {
+    const pinnquad::AxisSlopes slopes = held_slopes(certificate);
+    nlohmann::json entry = {{"proven", certificate.proven()}, {"command_bound", certificate.command_bound}};
+    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+      entry["slope"][axis_names[axis]] = slopes[axis];
+      entry["airframe_slope"][axis_names[axis]] = airframe[axis];
+    }
+    more_["certificate"] = entry;
   }
 
   void write_not_exported(const std::string& reason) { write(false, reason, nullptr, nullptr); }

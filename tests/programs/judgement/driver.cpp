@@ -8,6 +8,7 @@
 #include <string>
 
 #include "data/temporary_folder.hpp"
+#include "training/export_choice.hpp"
 #include "training/judgement.hpp"
 #include "training/training_report.hpp"
 
@@ -58,4 +59,57 @@ TEST_CASE("a report is JSON whatever the figures are: what is not finite is null
   CHECK(report["results"][0]["mae"].is_null());
   CHECK(report["verdict"]["r2"].is_null());
   CHECK(report["settings"]["flight"] == "x");
+}
+
+TEST_CASE("the structured model is exported, the network where that one is not finite or worse than the mean") {
+  using programs::LossName;
+  const LossName &vanilla = programs::vanilla, &informed = programs::physics_informed, &own = programs::structured;
+  const std::vector<LossName> losses = {vanilla, informed, own};
+  // R^2 is 1 less the error here
+  std::vector<programs::Result> results = {result("linearized", 0, 0.5), result(vanilla.title, 1, 0.1),
+                                           result(informed.title, 1, 0.2), result(own.title, 1, 0.3)};
+  const auto exported = [&] { return programs::chosen_export(losses, results, 0.5); };
+  programs::Chosen chosen = exported();
+  CHECK(chosen.best == 3);
+  CHECK(chosen.name() == "best structured model");
+  CHECK(chosen.passed_over.empty());
+
+  results[3] = result(own.title, 1, nan_error);
+  chosen = exported();
+  CHECK(chosen.best == 2);
+  CHECK(chosen.name() == "best physics-informed network");
+  CHECK(chosen.passed_over ==
+        std::vector<std::string>{"no structured model predicts finite commands on the validation rows"});
+
+  results[3] = result(own.title, 1, 1.5);
+  chosen = exported();
+  CHECK(chosen.best == 2);
+  REQUIRE(chosen.passed_over.size() == 1);
+  CHECK(chosen.passed_over[0].find("structured model is worse than the mean") != std::string::npos);
+
+  results[2] = result(informed.title, 1, 1.2);  // neither: the first of the two, for whoever allows a poor one
+  chosen = exported();
+  CHECK(chosen.best == 3);
+  CHECK(chosen.verdict.worse_than_mean());
+
+  results.pop_back();  // interrupted before it
+  results[2] = result(informed.title, 1, 0.2);
+  CHECK(exported().best == 2);
+  CHECK(exported().passed_over == std::vector<std::string>{"no structured model was finished"});
+  results.resize(2);
+  CHECK_FALSE(exported().best.has_value());
+  CHECK(exported().loss.key == own.key);
+}
+
+TEST_CASE("without a structured model the physics-informed network is exported, or the first that was asked for") {
+  using programs::loss_names;
+  CHECK(programs::export_order({loss_names[0], loss_names[1]}).size() == 1);
+  CHECK(programs::export_order({loss_names[0], loss_names[1]}).front().key == programs::physics_informed.key);
+  CHECK(programs::export_order({loss_names[2], loss_names[3]}).front().key == loss_names[2].key);
+  CHECK(programs::export_order({programs::structured}).size() == 1);
+  const std::vector<programs::LossName> all = {loss_names[0], loss_names[1], programs::structured};
+  CHECK(programs::compared_with(all, programs::structured) == &programs::physics_informed);
+  CHECK(programs::compared_with({loss_names[0], programs::structured}, programs::structured) == &programs::vanilla);
+  CHECK(programs::compared_with(all, loss_names[1]) == &programs::vanilla);
+  CHECK(programs::compared_with(all, loss_names[0]) == nullptr);
 }

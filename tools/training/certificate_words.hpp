@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// A certificate as programs say it: what is proven of a model's slopes, how they stand beside the airframe's own.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "pinnquad/inference/certificate.hpp"
+#include "pinnquad/inference/hover_slopes.hpp"
+#include "training/judgement.hpp"
+
+namespace programs {
+
+/// A line for each slope that is far from the airframe's own.
+inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own) {
+  constexpr double least = 0.8, most = 1.2;
+  std::vector<std::string> doubts;
+  for (std::size_t axis = 0; axis < slopes.size(); ++axis) {
+    const double ratio = slopes[axis] / own[axis];
+    if (ratio >= least && ratio <= most) continue;
+    doubts.push_back(std::string("the ") + axis_names[axis] +
+                     " slope is not the airframe's: trained on quiet or noisy flights, or for another airframe");
+  }
+  return doubts;
+}
+
+/// "the residual changes a command by at most 0.1669 0.1669 0.1669 0.1669", rotor by rotor; or that there is none.
+inline std::string bound_in_words(const pinnquad::Certificate& certificate) {
+  const double* bound = certificate.command_bound;
+  if (std::none_of(bound, bound + pinnquad::rotor_count, [](double most) { return most > 0; })) {
+    return "there is no residual: the commands are an affine map of the features";
+  }
+  char text[128];
+  std::snprintf(text, sizeof text, "the residual changes a command by at most %.4f %.4f %.4f %.4f", bound[0], bound[1],
+                bound[2], bound[3]);
+  return text;
+}
+
+inline pinnquad::AxisSlopes held_slopes(const pinnquad::Certificate& certificate) {
+  return {certificate.held_slope[0], certificate.held_slope[1], certificate.held_slope[2]};
+}
+
+}  // namespace programs

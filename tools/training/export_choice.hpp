@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Which of the trained models is exported, and in words why, or why none is.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pinnquad/evaluation/verdict.hpp"
+#include "training/judgement.hpp"
+#include "training/losses.hpp"
+
+namespace programs {
+
+inline std::string four_digits(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.4f", value);
+  return text;
+}
+
+/// What is chosen for the export, a result of the kind `loss`.
+struct Chosen {
+  LossName loss;
+  std::optional<std::size_t> best;  ///< of the results; none: nothing is there to be exported
+  pinnquad::Verdict verdict{};      ///< where there is one
+  /// Why the kinds that would have gone first did not.
+  std::vector<std::string> passed_over{};
+
+  /// "best structured model".
+  std::string name() const { return "best " + with_kind(loss); }
+  /// Why it is no better than none.
+  std::string poor() const {
+    return "on the test rows the " + name() + " is worse than the mean of the commands (R^2 " +
+           four_digits(verdict.test_r_squared) + ", worst motor " + four_digits(verdict.worst_motor_r_squared) + ")";
+  }
+};
+
+/// Why nothing of a kind is there to be exported.
+inline std::string reason_of_none(const LossName& loss, const std::vector<Result>& results) {
+  const bool none = over_seeds(results, loss.title, figures().front()).empty();
+  return "no " + with_kind(loss) + (none ? " was finished" : " predicts finite commands on the validation rows");
+}
+
+/// The first kind in the order of export whose best model may be exported; else the first that has a best model; else
+/// the first. `regression_r_squared`: see Verdict.
+inline Chosen chosen_export(const std::vector<LossName>& losses, const std::vector<Result>& results,
+                            double regression_r_squared) {
+  const std::vector<LossName> order = export_order(losses);
+  std::optional<Chosen> poor;
+  std::vector<std::string> passed_over;
+  for (const LossName& loss : order) {
+    Chosen chosen{loss, best_of(results, loss.title)};
+    if (!chosen.best) {
+      passed_over.push_back(reason_of_none(loss, results));
+      continue;
+    }
+    chosen.verdict = pinnquad::verdict_on(results[*chosen.best].test.errors, regression_r_squared);
+    if (!chosen.verdict.worse_than_mean()) {
+      chosen.passed_over = passed_over;
+      return chosen;
+    }
+    passed_over.push_back(chosen.poor());
+    if (!poor) poor = chosen;
+  }
+  return poor ? *poor : Chosen{order.front(), {}};
+}
+
+}  // namespace programs
