@@ -4,6 +4,7 @@
 #pragma once
 
 #include "flight_stacks/neural_controller.hpp"
+#include "propulsion.hpp"
 
 namespace pinnquad_px4 {
 
@@ -127,6 +128,9 @@ class NeuralControl {
   /// Whose the motors are, and whether the vehicle stands (vehicle_status, vehicle_land_detected).
   void situation(const flight_stacks::Situation& now) noexcept { controller_.situation(now); }
 
+  /// Before the first run(): what makes PX4's controls of the model's commands. The controller's output limits are thrusts, too.
+  void propulsion(const Propulsion& propulsion) noexcept { propulsion_ = propulsion; }
+
   const Controller& controller() const noexcept { return controller_; }
 
   /// One tick, after the messages. False: the module has no commands, nothing is to be published to the motors, and
@@ -143,7 +147,7 @@ class NeuralControl {
     if (reaction == flight_stacks::Reaction::gives_up) return false;
     motors.timestamp = end_us;
     motors.timestamp_sample = rates_us_;
-    for (std::size_t i = 0; i < commands.size(); ++i) motors.control[i] = commands[i];
+    for (std::size_t i = 0; i < commands.size(); ++i) motors.control[i] = propulsion_.control(commands[i]);
     return true;
   }
 
@@ -179,6 +183,7 @@ class NeuralControl {
 
   ClockUs clock_;
   Controller controller_;
+  Propulsion propulsion_{};
   VehicleLocalPosition local_{};  ///< the last one, whose counters the next is compared with
   bool has_local_ = false;
   std::uint64_t rates_us_ = 0;

@@ -25,24 +25,44 @@ px4::atomic_bool in_command{false};  // selected and armed: what `stop` asks
 
 uint64_t clock_us() { return hrt_absolute_time(); }
 
+/// Of PX4's own parameters; `otherwise` where this build has none of that name.
+template <class Value>
+Value px4_parameter(const char* name, Value otherwise) {
+  Value value = otherwise;
+  const param_t handle = param_find(name);
+  if (handle != PARAM_INVALID) param_get(handle, &value);
+  return value;
+}
+
+float ca_rotor(unsigned rotor, const char* what) {
+  char name[] = "CA_ROTOR0_??";
+  name[8] = static_cast<char>('0' + rotor);
+  name[10] = what[0];
+  name[11] = what[1];
+  return px4_parameter(name, 0.0f);
+}
+
 }  // namespace
 
 PinnquadControl::PinnquadControl()
     : ModuleParams(nullptr),
       ScheduledWorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl),
+      _propulsion(_param_air_density.get(), _param_curve.get(), px4_parameter("THR_MDL_FAC", 0.0f)),
       _core(&clock_us,
             flight_stacks::AgeLimits{static_cast<uint64_t>(_param_age_rates.get()) * 1000,
                                      static_cast<uint64_t>(_param_age_attitude.get()) * 1000,
                                      static_cast<uint64_t>(_param_age_position.get()) * 1000,
                                      static_cast<uint64_t>(_param_age_setpoint.get()) * 1000},
-            flight_stacks::OutputLimits{_param_out_min.get(), 1.0f},
+            flight_stacks::OutputLimits{_propulsion.thrust(_param_out_min.get()), _propulsion.thrust(1.0f)},
             pinnquad::FlightGains<float>{_param_gain_position.get(), _param_gain_velocity.get(), _param_gain_tilt.get(),
                                          _param_gain_yaw.get(), _param_gain_rate.get(), _param_gain_yaw_rate.get()},
             flight_stacks::SpeedLimits{_param_speed_horizontal.get(), _param_speed_up.get(), _param_speed_down.get(),
                                        _param_take_off.get()},
             pinnquad::BiasSettings<float>{_param_bias_bandwidth.get(), _param_bias_most.get()}),
       _source(pinnquad_px4::StickSpeeds{_param_stick_horizontal.get(), _param_stick_vertical.get(),
-                                        _param_stick_vertical.get() / 2, _param_stick_yaw.get()}) {}
+                                        _param_stick_vertical.get() / 2, _param_stick_yaw.get()}) {
+  _core.propulsion(_propulsion);
+}
 
 PinnquadControl::Publications* PinnquadControl::publications() {
   static Publications* const all = new Publications;  // the shell starts modules one at a time
@@ -84,9 +104,10 @@ void PinnquadControl::Run() {
     _angular_velocity_sub.unregisterCallback();
     ScheduleClear();
     unregister_mode();
-    exit_and_cleanup();
+    leaves();
     return;
   }
+  check_rotors();
   keep_registered();
   if (_mode_id < 0) return;
   answer_arming_check();
@@ -117,6 +138,7 @@ void PinnquadControl::read_vehicle() {
     _valid_modes = vehicle_status.valid_nav_states_mask;
     in_command.store(_selected && _armed);
   }
+  if (!_selected) _configured = false;
   vehicle_land_detected_s land_detected;
   if (_land_detected_sub.update(&land_detected)) _landed = land_detected.landed;
   failsafe_flags_s flags;
@@ -253,8 +275,7 @@ void PinnquadControl::keep_registered() {
   if (_mode_id >= 0) {
     const bool dropped = (_valid_modes & (uint32_t{1} << _mode_id)) == 0;
     if (_selected || !dropped || now_us - _registered_us < known_after_us) {
-      if (!_armed && now_us - _configured_us > configure_again_us)
-        configure_mode();  // it is one of a topic without a queue
+      keep_configured(now_us);
       return;
     }
     _mode_id = _arming_check_id = -1;
@@ -290,11 +311,69 @@ void PinnquadControl::read_registration() {
 /// Nothing of PX4's cascade runs in this mode: the module writes to the motors.
 void PinnquadControl::configure_mode() {
   _configured_us = hrt_absolute_time();
+#if PINNQUAD_PX4_SETPOINT_CONFIG
+  setpoint_config_s config{};
+  config.type = setpoint_config_s::TYPE_DIRECT_ACTUATORS;
+  config.should_apply = _selected;  // of a mode that is not, PX4 only says whether it could
+#else
   vehicle_control_mode_s config{};
+  config.flag_control_termination_enabled = true;
+#endif
   config.timestamp = _configured_us;
   config.source_id = static_cast<uint8_t>(_mode_id);
-  config.flag_control_termination_enabled = true;
-  _publications.config_control_setpoints.publish(config);
+  _publications.configure.publish(config);
+}
+
+/// Again and again: both are topics without a queue.
+void PinnquadControl::keep_configured(uint64_t now_us) {
+#if PINNQUAD_PX4_SETPOINT_CONFIG
+  setpoint_config_reply_s reply;
+  while (_configured_sub.update(&reply)) {
+    if (reply.source_id == static_cast<uint8_t>(_mode_id) && reply.timestamp >= _configured_us && _selected) {
+      _configured = reply.result == setpoint_config_reply_s::RESULT_SUCCESS;
+    }
+  }
+  if (_selected && !_configured && now_us - _configured_us > ask_again_us) configure_mode();
+#else
+  if (!_armed && now_us - _configured_us > configure_again_us) configure_mode();
+#endif
+}
+
+void PinnquadControl::check_rotors() {
+  parameter_update_s update;
+  if (_parameter_update_sub.update(&update)) _rotors_to_check = true;
+  if (_armed || !_rotors_to_check) return;  // in flight it would lose its mode
+  _rotors_to_check = false;
+  pinnquad_px4::CaGeometry px4;
+  px4.count = px4_parameter("CA_ROTOR_COUNT", int32_t{0});
+  for (unsigned i = 0; i < pinnquad::rotor_count; ++i) {
+    px4.rotors[i] = {ca_rotor(i, "PX"), ca_rotor(i, "PY"), ca_rotor(i, "KM")};
+  }
+  const auto& airframe = _core.controller().vehicle().airframe();
+  const pinnquad_px4::GeometryCheck check = pinnquad_px4::check_geometry(px4, airframe);
+  const bool said = _rotors_refused;
+  _rotors_fit = check.fits();
+  _rotors_refused = !check.fits();
+  if (said) return;
+  const unsigned rotor = static_cast<unsigned>(check.rotor);
+  const auto& mount = airframe.rotors[check.rotor];
+  switch (check.fault) {
+    case pinnquad_px4::GeometryFault::count:
+      PX4_ERR("will not arm: the model's airframe has %d rotors, CA_ROTOR_COUNT says %d",
+              static_cast<int>(pinnquad::rotor_count), static_cast<int>(px4.count));
+      break;
+    case pinnquad_px4::GeometryFault::place:
+      PX4_ERR("will not arm: CA_ROTOR%u_PX, _PY are %.3f, %.3f; the model's airframe has it at %.3f, %.3f m", rotor,
+              static_cast<double>(px4.rotors[rotor].x), static_cast<double>(px4.rotors[rotor].y),
+              static_cast<double>(mount.x_m), static_cast<double>(mount.y_m));
+      break;
+    case pinnquad_px4::GeometryFault::spin:
+      PX4_ERR("will not arm: CA_ROTOR%u_KM is %.3f; on the model's airframe the rotor turns %sclockwise", rotor,
+              static_cast<double>(px4.rotors[rotor].moment),
+              mount.spin == pinnquad::Spin::counter_clockwise ? "counter-" : "");
+      break;
+    case pinnquad_px4::GeometryFault::none: break;
+  }
 }
 
 void PinnquadControl::answer_arming_check() {
@@ -305,7 +384,7 @@ void PinnquadControl::answer_arming_check() {
   reply.request_id = request.request_id;
   reply.registration_id = static_cast<uint8_t>(_arming_check_id);
   reply.health_component_index = arming_check_reply_s::HEALTH_COMPONENT_INDEX_NONE;
-  reply.can_arm_and_run = _core.ready() && _has_commands;
+  reply.can_arm_and_run = _core.ready() && _has_commands && _rotors_fit;
   reply.mode_req_angular_velocity = true;
   reply.mode_req_attitude = true;
   reply.mode_req_local_alt = true;
@@ -338,30 +417,28 @@ void PinnquadControl::unregister_mode() {
 }
 
 int PinnquadControl::task_spawn(int /*argc*/, char* /*argv*/[]) {
-  auto* instance = new PinnquadControl();  // the only allocation, at start
-  if (instance != nullptr) {
-    _object.store(instance);
-    _task_id = task_id_is_work_queue;
-    if (instance->init()) return PX4_OK;
+  auto* module = new PinnquadControl();  // the only allocation, at start
+  if (module != nullptr) {
+    starts(module);
+    if (module->init()) return PX4_OK;
     PX4_ERR("model refused: the mode is not registered");
   }
-  delete instance;
-  _object.store(nullptr);
-  _task_id = -1;
+  delete module;
+  starts(nullptr);
   return PX4_ERROR;
 }
 
 int PinnquadControl::custom_command(int argc, char* argv[]) {
   if (argc == 2 && strcmp(argv[0], "model") == 0) {
-    if (!is_running()) return print_usage("not running");
-    return get_instance()->load_model(argv[1]) == pinnquad::Status::ok ? PX4_OK : PX4_ERROR;
+    if (!runs()) return print_usage("not running");
+    return instance()->load_model(argv[1]) == pinnquad::Status::ok ? PX4_OK : PX4_ERROR;
   }
   return print_usage("unknown command");
 }
 
 int PinnquadControl::print_status() {
-  PX4_INFO("mode %d, %s, %s", _mode_id, _selected ? "selected" : "not selected",
-           _has_commands ? "has commands" : "has no commands");
+  PX4_INFO("mode %d, %s, %s%s", _mode_id, _selected ? "selected" : "not selected",
+           _has_commands ? "has commands" : "has no commands", _rotors_fit ? "" : ", not the model's rotors");
   return 0;
 }
 
@@ -381,5 +458,5 @@ extern "C" __EXPORT int pinnquad_control_main(int argc, char* argv[]) {
     PX4_ERR("it has the motors: select another mode first");
     return PX4_ERROR;
   }
-  return PinnquadControl::main(argc, argv);
+  return PinnquadControl::shell(argc, argv);
 }

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <drivers/drv_hrt.h>
+#include <parameters/param.h>
 #include <px4_platform_common/log.h>
-#include <px4_platform_common/module.h>
 #include <px4_platform_common/module_params.h>
 #include <px4_platform_common/px4_work_queue/ScheduledWorkItem.hpp>
 
@@ -15,6 +15,7 @@
 #include <uORB/topics/failsafe_flags.h>
 #include <uORB/topics/goto_setpoint.h>
 #include <uORB/topics/manual_control_setpoint.h>
+#include <uORB/topics/parameter_update.h>
 #include <uORB/topics/pinnquad_record.h>
 #include <uORB/topics/pinnquad_settings.h>
 #include <uORB/topics/pinnquad_status.h>
@@ -25,7 +26,6 @@
 #include <uORB/topics/vehicle_angular_velocity.h>
 #include <uORB/topics/vehicle_attitude.h>
 #include <uORB/topics/vehicle_command.h>
-#include <uORB/topics/vehicle_control_mode.h>
 #include <uORB/topics/vehicle_land_detected.h>
 #include <uORB/topics/vehicle_local_position.h>
 #include <uORB/topics/vehicle_status.h>
@@ -36,10 +36,14 @@
 #include "flight_stacks/recorded_controller.hpp"
 #include "model.hpp"  // the exported header: what pinnquad train wrote
 #include "neural_control_core.hpp"
+#include "px4_version.hpp"
+#include "rotor_geometry.hpp"
 #include "set_point_source.hpp"
 #include "takeover.hpp"
 
-class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams, public px4::ScheduledWorkItem {
+class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
+                        public ModuleParams,
+                        public px4::ScheduledWorkItem {
  public:
   PinnquadControl();
   ~PinnquadControl() override = default;
@@ -73,6 +77,9 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
   void keep_registered();
   void read_registration();
   void configure_mode();
+  void keep_configured(uint64_t now_us);
+  /// While it may not fly, again after each change of a parameter: whether PX4's rotors are the model's. Says once why not.
+  void check_rotors();
   void answer_arming_check();
   void take_samples();
   /// The set point of whoever asks for one: a trajectory, a place, the sticks.
@@ -97,6 +104,10 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
   uORB::Subscription _failsafe_flags_sub{ORB_ID(failsafe_flags)};
   uORB::Subscription _arming_check_request_sub{ORB_ID(arming_check_request)};
   uORB::Subscription _register_reply_sub{ORB_ID(register_ext_component_reply)};
+  uORB::Subscription _parameter_update_sub{ORB_ID(parameter_update)};
+#if PINNQUAD_PX4_SETPOINT_CONFIG
+  uORB::Subscription _configured_sub{ORB_ID(setpoint_config_reply)};
+#endif
 
   /// Outlive the module and are never destroyed: a destroyed publication takes its topic from under its readers. The motors'
   /// outputs would freeze, and the commander would not hear that the mode is unregistered.
@@ -109,7 +120,11 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
     uORB::Publication<unregister_ext_component_s> unregister_mode{ORB_ID(unregister_ext_component)};
     uORB::Publication<arming_check_reply_s> arming_check_reply{ORB_ID(arming_check_reply)};
     uORB::Publication<vehicle_command_s> vehicle_command{ORB_ID(vehicle_command)};
-    uORB::Publication<vehicle_control_mode_s> config_control_setpoints{ORB_ID(config_control_setpoints)};
+#if PINNQUAD_PX4_SETPOINT_CONFIG
+    uORB::Publication<setpoint_config_s> configure{ORB_ID(setpoint_config)};
+#else
+    uORB::Publication<vehicle_control_mode_s> configure{ORB_ID(config_control_setpoints)};
+#endif
   };
   static Publications* publications();
 
@@ -125,7 +140,10 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
       (ParamFloat<px4::params::PQ_V_DN>)_param_speed_down, (ParamFloat<px4::params::PQ_TKO_T>)_param_take_off,
       (ParamFloat<px4::params::PQ_BIAS_W>)_param_bias_bandwidth, (ParamFloat<px4::params::PQ_BIAS_MAX>)_param_bias_most,
       (ParamInt<px4::params::PQ_RECORD>)_param_record, (ParamFloat<px4::params::PQ_STK_XY>)_param_stick_horizontal,
-      (ParamFloat<px4::params::PQ_STK_Z>)_param_stick_vertical, (ParamFloat<px4::params::PQ_STK_YAW>)_param_stick_yaw)
+      (ParamFloat<px4::params::PQ_STK_Z>)_param_stick_vertical, (ParamFloat<px4::params::PQ_STK_YAW>)_param_stick_yaw,
+      (ParamFloat<px4::params::PQ_AIR_RHO>)_param_air_density, (ParamFloat<px4::params::PQ_THR_CURVE>)_param_curve)
+
+  const pinnquad_px4::Propulsion _propulsion;
 
   Core _core;
   struct alignas(pinnquad::model_block_alignment) Block {
@@ -151,7 +169,11 @@ class PinnquadControl : public ModuleBase<PinnquadControl>, public ModuleParams,
   bool _armed{false};
   bool _landed{false};
   bool _selected{false};
-  bool _has_commands{true};  ///< what the next arming check is told
+  bool _rotors_to_check{true};
+  bool _rotors_fit{false};
+  bool _rotors_refused{false};  ///< and why was said
+  bool _configured{false};      ///< PX4 has said so since the mode was selected
+  bool _has_commands{true};     ///< what the next arming check is told
   int8_t _arming_check_id{-1};
   int8_t _mode_id{-1};
 };

@@ -34,9 +34,10 @@ TEST_CASE("it registers although nobody listens at first, and when it was refuse
   }
   world.run(1500);
   CHECK(world.mode_id >= 0);
-  CHECK(world.config.source_id == world.mode_id);
-  CHECK(world.config.flag_control_termination_enabled);
   CHECK(world.can_arm);
+  world.nav_state = static_cast<uint8_t>(world.mode_id);
+  world.run(50);
+  CHECK(world.configured);
 }
 
 TEST_CASE("dropped by PX4, it registers again") {
@@ -57,7 +58,7 @@ TEST_CASE("stop is refused while it has the motors; they get commands all the wh
   world.longest_gap_us = 0;
   CHECK(shell("stop") == PX4_ERROR);
   world.run(500);
-  CHECK(PinnquadControl::is_running());
+  CHECK(PinnquadControl::runs());
   CHECK(world.longest_gap_us <= 2000);
   CHECK(world.nav_state == world.mode_id);
 }
@@ -71,7 +72,7 @@ TEST_CASE("stopped, it takes no topic with it: the motors are PX4's within 50 ms
     world.nav_state = Px4World::hold;
     world.run(20);
     CHECK(shell("stop") == PX4_OK);
-    CHECK_FALSE(PinnquadControl::is_running());
+    CHECK_FALSE(PinnquadControl::runs());
     world.run(1000);
     CHECK(world.unregistrations == 0);  // PX4 does not look while it is armed
     world.armed = false;                // and finds it all the same
@@ -84,7 +85,7 @@ TEST_CASE("stopped, it takes no topic with it: the motors are PX4's within 50 ms
     world.run(50);
     CHECK(world.nav_state == Px4World::hold);
   }
-  CHECK_FALSE(PinnquadControl::is_running());
+  CHECK_FALSE(PinnquadControl::runs());
   CHECK(world.unregistrations == 1);
   CHECK(world.mode_id == -1);
   CHECK(world.longest_gap_us <= 50'000);
@@ -147,6 +148,138 @@ TEST_CASE("nobody hears it for 300 ms: it asks again; a mode that PX4 does not g
     CHECK(world.nav_state == Px4World::altitude);
     CHECK(world.asked_for.front() == Px4World::hold);
   }
+}
+
+TEST_CASE("selected, it alone writes to the motors, 30 ms after at the latest; selected once more, too") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  for (int i = 0; i < 2; ++i) {
+    CHECK(world.by_others <= 30);
+    world.by_others = world.by_module = 0;
+    world.run(2000);
+    CHECK(world.by_others == 0);
+    CHECK(world.by_module == 2000);
+    world.nav_state = Px4World::hold;
+    world.run(500);
+    world.nav_state = static_cast<uint8_t>(world.mode_id);
+    world.run(50);
+  }
+}
+
+TEST_CASE("the model's rotors at another scale: PX4's allocation knows none") {
+  Px4World world;
+  set_px4_airframe(pinnquad::airframe_value<TrainedQuadModel::Vehicle, double>(), 5);
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(3000);
+  CHECK(world.can_arm);
+  CHECK(px4::complaints().empty());
+}
+
+TEST_CASE("rotors that are not the model's: it does not arm, and says why in one line; mended, it does") {
+  Px4World world;
+  const auto airframe = pinnquad::airframe_value<TrainedQuadModel::Vehicle, double>();
+  auto& values = px4::parameter_values();
+  const char* says = "";
+  SUBCASE("six") {
+    values["CA_ROTOR_COUNT"] = 6;
+    says = "CA_ROTOR_COUNT says 6";
+  }
+  SUBCASE("in another order") {
+    std::swap(values["CA_ROTOR1_PX"], values["CA_ROTOR3_PX"]);
+    std::swap(values["CA_ROTOR1_PY"], values["CA_ROTOR3_PY"]);
+    says = "CA_ROTOR1_PX";
+  }
+  SUBCASE("a wide one") {
+    values["CA_ROTOR2_PY"] *= 1.6;
+    values["CA_ROTOR1_PY"] *= 1.6;
+    says = "_PY are";
+  }
+  SUBCASE("back to front") {
+    set_px4_airframe(airframe, -1);
+    says = "CA_ROTOR0_PX";
+  }
+  SUBCASE("one turns the other way") {
+    values["CA_ROTOR2_KM"] = 0.05;
+    says = "CA_ROTOR2_KM is 0.050; on the model's airframe the rotor turns clockwise";
+  }
+  SUBCASE("one without a sense of rotation") {
+    values["CA_ROTOR0_KM"] = 0;
+    says = "CA_ROTOR0_KM is 0.000; on the model's airframe the rotor turns counter-clockwise";
+  }
+  SUBCASE("no parameters") {
+    values.erase("CA_ROTOR_COUNT");
+    says = "CA_ROTOR_COUNT says 0";
+  }
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(3000);
+  CHECK(world.mode_id >= 0);
+  CHECK_FALSE(world.can_arm);
+  REQUIRE(px4::complaints().size() == 1);
+  CHECK(px4::complaints()[0].find(says) != std::string::npos);
+  set_px4_airframe(airframe);
+  world.run(1000);
+  CHECK_FALSE(world.can_arm);  // nobody has said so
+  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
+  update_pub.publish(parameter_update_s{});
+  world.run(1000);
+  CHECK(world.can_arm);
+  CHECK(px4::complaints().size() == 1);
+}
+
+TEST_CASE("a parameter that changes in flight takes nothing from it") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.fly();
+  px4::parameter_values()["CA_ROTOR_COUNT"] = 6;
+  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
+  update_pub.publish(parameter_update_s{});
+  world.run(1000);
+  CHECK(world.can_arm);
+  world.armed = false;
+  update_pub.publish(parameter_update_s{});
+  world.run(1000);
+  CHECK_FALSE(world.can_arm);
+}
+
+TEST_CASE("thin air and another thrust curve than PX4's: the motors get the control that makes the same thrust") {
+  const auto hover = [](double density_kg_m3, double curve, double px4_curve) {
+    Px4World world;
+    auto& values = px4::parameter_values();
+    values["PQ_AIR_RHO"] = density_kg_m3;
+    values["PQ_THR_CURVE"] = curve;
+    values["THR_MDL_FAC"] = px4_curve;
+    REQUIRE(shell("start") == PX4_OK);
+    world.fly();
+    return double(world.last.control[0]);
+  };
+  const double rated = hover(1.225, -1, 0);
+  const auto thrust = [](double k, double s) { return k * s * s + (1 - k) * s; };
+  CHECK(hover(1.225, -1, 0.6) == doctest::Approx(rated));  // PX4's business
+  CHECK(hover(1.225, 0.6, 0.6) == doctest::Approx(rated));
+  CHECK(hover(0.98, -1, 0) == doctest::Approx(rated * 1.225 / 0.98));
+  // control = signal where PX4 undoes nothing; the signal's thrust is the one wanted
+  CHECK(thrust(0.6, hover(1.225, 0.6, 0)) == doctest::Approx(rated));
+  CHECK(thrust(0.6, hover(0.98, 0.6, 0)) == doctest::Approx(rated * 1.225 / 0.98));
+  // a linear propulsion behind PX4's square: the control's root is the signal
+  CHECK(std::sqrt(hover(1.225, 0, 1)) == doctest::Approx(rated));
+}
+
+TEST_CASE("propulsion: there and back again, over the whole range; a density that is none is the rated one") {
+  for (const float density : {0.6f, 1.225f, 1.4f}) {
+    for (const float curve : {-1.0f, 0.0f, 0.3f, 1.0f}) {
+      for (const float px4_curve : {0.0f, 0.5f, 1.0f}) {
+        const pinnquad_px4::Propulsion propulsion(density, curve, px4_curve);
+        CHECK(propulsion.control(propulsion.thrust(1.0f)) == doctest::Approx(1.0));
+        CHECK(propulsion.thrust(1.0f) == doctest::Approx(double(density) / 1.225));
+        for (float u = 0; u <= 1; u += 0.125f) {
+          CHECK(propulsion.control(propulsion.thrust(u)) == doctest::Approx(double(u)).epsilon(1e-5));
+        }
+      }
+    }
+  }
+  CHECK(pinnquad_px4::Propulsion(-1.0f, -1.0f, 0.0f).control(0.5f) == 0.5f);
+  CHECK(pinnquad_px4::Propulsion(std::numeric_limits<float>::quiet_NaN(), -1.0f, 0.0f).control(0.5f) == 0.5f);
 }
 
 TEST_CASE("the sample that the motors answer is the gyro's") {

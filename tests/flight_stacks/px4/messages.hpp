@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Of PX4's messages (v1.16), the fields that the module uses, under their names; queue lengths and numbers are PX4's.
+// Of PX4's messages (v1.16; setpoint_config of later branches), the fields that the module uses, under their names; queue lengths and numbers are PX4's.
 #pragma once
 
 #include <cstdint>
@@ -92,7 +92,25 @@ struct unregister_ext_component_s {
 struct vehicle_control_mode_s {
   uint64_t timestamp;
   uint8_t source_id;
-  bool flag_control_termination_enabled;
+  bool flag_control_termination_enabled, flag_control_allocation_enabled;
+};
+struct setpoint_config_s {
+  static constexpr uint16_t TYPE_INVALID = 0, TYPE_DIRECT_ACTUATORS = 1, TYPE_TRAJECTORY = 4;
+  uint64_t timestamp;
+  uint16_t type;
+  uint8_t source_id;
+  bool should_apply;
+  uint16_t timeout_ms;
+};
+struct setpoint_config_reply_s {
+  static constexpr uint8_t RESULT_SUCCESS = 0, RESULT_FAILURE_OTHER = 1;
+  uint64_t timestamp;
+  uint16_t type;
+  uint8_t source_id, result;
+};
+struct parameter_update_s {
+  uint64_t timestamp;
+  uint32_t instance;
 };
 struct vehicle_command_s {
   static constexpr uint32_t VEHICLE_CMD_SET_NAV_STATE = 100001;

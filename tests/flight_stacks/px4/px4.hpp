@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "messages.hpp"
 #include "uorb.hpp"
@@ -19,7 +20,7 @@
 #define __EXPORT
 #define PX4_INFO(...) static_cast<void>(0)
 #define PX4_WARN(...) static_cast<void>(0)
-#define PX4_ERR(...) static_cast<void>(0)
+#define PX4_ERR(...) px4::complain(__VA_ARGS__)
 #define PRINT_MODULE_DESCRIPTION(text) static_cast<void>(text)
 #define PRINT_MODULE_USAGE_NAME(name, category) static_cast<void>(0)
 #define PRINT_MODULE_USAGE_COMMAND(name) static_cast<void>(0)
@@ -34,6 +35,18 @@ struct World {
 inline uint64_t hrt_absolute_time() { return World::now_us; }
 
 namespace px4 {
+
+/// What was said by PX4_ERR, line by line.
+inline std::vector<std::string>& complaints() {
+  static std::vector<std::string> all;
+  return all;
+}
+template <class... Values>
+void complain(const char* format, Values... values) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, values...);
+  complaints().emplace_back(line);
+}
 
 struct wq_config_t {};
 namespace wq_configurations {
@@ -89,6 +102,19 @@ inline std::map<std::string, double>& parameter_values() {
 
 }  // namespace px4
 
+/// PX4's parameters by name, of either type.
+using param_t = const char*;
+inline constexpr param_t PARAM_INVALID = nullptr;
+inline param_t param_find(const char* name) {
+  const auto found = px4::parameter_values().find(name);
+  return found == px4::parameter_values().end() ? PARAM_INVALID : found->first.c_str();
+}
+template <class Value>
+int param_get(param_t name, Value* value) {
+  *value = static_cast<Value>(px4::parameter_values().at(name));
+  return 0;
+}
+
 class ModuleParams {
  public:
   explicit ModuleParams(ModuleParams*) {}
@@ -121,7 +147,8 @@ using ParamInt = Parameter<Name, int32_t>;
 #define PINNQUAD_TEST_EACH8(m, a, b, c, d, ...) m(a) m(b) m(c) m(d) PINNQUAD_TEST_EACH4(m, __VA_ARGS__)
 #define PINNQUAD_TEST_EACH21(m, a, b, c, d, e, f, g, h, i, j, k, l, n, ...) \
   m(a) m(b) m(c) m(d) m(e) m(f) m(g) m(h) m(i) m(j) m(k) m(l) m(n) PINNQUAD_TEST_EACH8(m, __VA_ARGS__)
-#define DEFINE_PARAMETERS(...) PINNQUAD_TEST_EACH21(PINNQUAD_TEST_MEMBER, __VA_ARGS__)
+#define PINNQUAD_TEST_EACH23(m, a, b, ...) m(a) m(b) PINNQUAD_TEST_EACH21(m, __VA_ARGS__)
+#define DEFINE_PARAMETERS(...) PINNQUAD_TEST_EACH23(PINNQUAD_TEST_MEMBER, __VA_ARGS__)
 
 PINNQUAD_TEST_NAME(PQ_OUT_MIN)
 PINNQUAD_TEST_NAME(PQ_AGE_RATES)
@@ -144,22 +171,90 @@ PINNQUAD_TEST_NAME(PQ_RECORD)
 PINNQUAD_TEST_NAME(PQ_STK_XY)
 PINNQUAD_TEST_NAME(PQ_STK_Z)
 PINNQUAD_TEST_NAME(PQ_STK_YAW)
+PINNQUAD_TEST_NAME(PQ_AIR_RHO)
+PINNQUAD_TEST_NAME(PQ_THR_CURVE)
 
-/// The shell's side of a module: a stop waits 5 s for the module to go by itself, then takes it away.
+/// The shell's side of a module: a stop waits 5 s for the module to go by itself, then takes it away. `Shell` says where the module
+/// is kept.
+template <class Shell>
+struct ShellCommands {
+  static int run(Shell shell, int argc, char* argv[]) {
+    if (argc < 2) return shell.print_usage();
+    if (std::strcmp(argv[1], "start") == 0) return shell.is_running() ? PX4_ERROR : shell.spawn(argc - 1, argv + 1);
+    if (std::strcmp(argv[1], "stop") == 0) return stop(shell);
+    return shell.custom(argc - 1, argv + 1);
+  }
+  static int stop(Shell shell) {
+    if (!shell.is_running()) return 0;
+    shell.request_stop();
+    for (int i = 0; shell.is_running(); ++i) {
+      if (i > 500) {
+        shell.take_away();
+        return PX4_ERROR;
+      }
+      World::sleep_ms(10);
+    }
+    return 0;
+  }
+};
+
+#if PINNQUAD_PX4_MODULE_DESCRIPTOR
+
+/// After v1.16: a class, with a descriptor of each module.
+class ModuleBase {
+ public:
+  struct Descriptor {
+    Descriptor(int (*spawn)(int, char**), int (*custom)(int, char**), int (*usage)(const char*))
+        : task_spawn(spawn), custom_command(custom), print_usage(usage) {}
+    int (*task_spawn)(int argc, char* argv[]);
+    int (*custom_command)(int argc, char* argv[]);
+    int (*print_usage)(const char* reason);
+    px4::atomic<ModuleBase*> object{nullptr};
+    int task_id{-1};
+  };
+  virtual ~ModuleBase() = default;
+  virtual int print_status() { return 0; }
+  virtual void request_stop() { should_exit_ = true; }
+  bool should_exit() const { return should_exit_; }
+
+  static int main(Descriptor& module, int argc, char* argv[]) {
+    return ShellCommands<Shell>::run({&module}, argc, argv);
+  }
+  static bool is_running(const Descriptor& module) { return module.task_id != -1; }
+  static void exit_and_cleanup(Descriptor& module) {
+    delete module.object.load();
+    module.object.store(nullptr);
+    module.task_id = -1;
+  }
+  template <class Module>
+  static Module* get_instance(Descriptor& module) {
+    return static_cast<Module*>(module.object.load());
+  }
+  static constexpr int task_id_is_work_queue = -2;
+
+ private:
+  struct Shell {
+    Descriptor* module;
+    bool is_running() const { return ModuleBase::is_running(*module); }
+    void request_stop() const { module->object.load()->request_stop(); }
+    void take_away() const { exit_and_cleanup(*module); }
+    int spawn(int argc, char* argv[]) const { return module->task_spawn(argc, argv); }
+    int custom(int argc, char* argv[]) const { return module->custom_command(argc, argv); }
+    int print_usage() const { return module->print_usage(nullptr); }
+  };
+  bool should_exit_ = false;
+};
+
+#else
+
+/// v1.16: a template of the module.
 template <class Module>
 class ModuleBase {
  public:
   virtual ~ModuleBase() = default;
   virtual int print_status() { return 0; }
 
-  static int main(int argc, char* argv[]) {
-    if (argc < 2) return Module::print_usage();
-    if (std::strcmp(argv[1], "start") == 0) {
-      return is_running() ? PX4_ERROR : Module::task_spawn(argc - 1, argv + 1);
-    }
-    if (std::strcmp(argv[1], "stop") == 0) return stop();
-    return Module::custom_command(argc - 1, argv + 1);
-  }
+  static int main(int argc, char* argv[]) { return ShellCommands<Shell>::run({}, argc, argv); }
   static bool is_running() { return _task_id != -1; }
 
  protected:
@@ -177,17 +272,15 @@ class ModuleBase {
   static constexpr int task_id_is_work_queue = -2;
 
  private:
-  static int stop() {
-    if (!is_running()) return 0;
-    _object.load()->request_stop();
-    for (int i = 0; is_running(); ++i) {
-      if (i > 500) {
-        exit_and_cleanup();
-        return PX4_ERROR;
-      }
-      World::sleep_ms(10);
-    }
-    return 0;
-  }
+  struct Shell {
+    bool is_running() const { return ModuleBase::is_running(); }
+    void request_stop() const { static_cast<ModuleBase*>(_object.load())->request_stop(); }
+    void take_away() const { exit_and_cleanup(); }
+    int spawn(int argc, char* argv[]) const { return Module::task_spawn(argc, argv); }
+    int custom(int argc, char* argv[]) const { return Module::custom_command(argc, argv); }
+    int print_usage() const { return Module::print_usage(); }
+  };
   bool should_exit_ = false;
 };
+
+#endif

@@ -14,6 +14,7 @@
 #include "model.hpp"
 #include "model_blocks.hpp"
 #include "px4.hpp"
+#include "px4_module/px4_version.hpp"
 
 extern "C" int pinnquad_control_main(int argc, char* argv[]);
 
@@ -32,6 +33,19 @@ inline void read_parameters() {
     if (key.rfind("PQ_", 0) == 0 && key.back() == ':') name = key.substr(0, key.size() - 1);
     double value = 0;
     if (key == "default:" && words >> value) px4::parameter_values()[name] = value;
+  }
+}
+
+/// CA_ROTOR* of an airframe, scaled as many of PX4's own are; its propulsion as the model's.
+inline void set_px4_airframe(const pinnquad::Airframe<double>& airframe, double scale = 1) {
+  auto& values = px4::parameter_values();
+  values["CA_ROTOR_COUNT"] = 4;
+  values["THR_MDL_FAC"] = 0;
+  for (std::size_t i = 0; i < airframe.rotors.size(); ++i) {
+    const std::string rotor = "CA_ROTOR" + std::to_string(i);
+    values[rotor + "_PX"] = scale * airframe.rotors[i].x_m;
+    values[rotor + "_PY"] = scale * airframe.rotors[i].y_m;
+    values[rotor + "_KM"] = airframe.rotors[i].spin == pinnquad::Spin::counter_clockwise ? 0.05 : -0.05;
   }
 }
 
@@ -54,6 +68,8 @@ class Px4World {
     World::now_us = 5'000'000;
     World::sleep_ms = [this](int ms) { run(ms); };
     read_parameters();
+    set_px4_airframe(pinnquad::airframe_value<TrainedQuadModel::Vehicle, double>());
+    px4::complaints().clear();
     const Block block = sound_block<TrainedQuadModel>();
     REQUIRE(std::system("mkdir -p etc/pinnquad") == 0);
     std::ofstream("etc/pinnquad/model.block", std::ios::binary)
@@ -112,13 +128,17 @@ class Px4World {
       rates.timestamp_sample = gyro_sample_us = now - 300;
       rates_pub.publish(rates);
       px4::ScheduledWorkItem::run_pending();
-      if (nav_state < vehicle_status_s::NAVIGATION_STATE_EXTERNAL1) allocator_pub.publish(actuator_motors_s{});
+      if (allocates()) allocator_pub.publish(actuator_motors_s{});
       actuator_motors_s motors;
       while (motors_sub.update(&motors)) {
         const uint64_t gap = now - motors_us;
         if (armed && gap > longest_gap_us) longest_gap_us = gap;
         motors_us = now;
-        if (nav_state >= vehicle_status_s::NAVIGATION_STATE_EXTERNAL1) last = motors, ++by_module;
+        if (motors.timestamp == 0) {
+          if (nav_state >= vehicle_status_s::NAVIGATION_STATE_EXTERNAL1) ++by_others;
+        } else {
+          last = motors, ++by_module;
+        }
       }
     }
   }
@@ -133,13 +153,48 @@ class Px4World {
   failsafe_flags_s flags{};
   // what came of it
   int mode_id = -1, registrations = 0, unregistrations = 0, by_module = 0;
+  int by_others = 0;  ///< motor commands of PX4 while the module's mode is selected
   std::vector<uint8_t> asked_for;
   actuator_motors_s last{};
   uint64_t longest_gap_us = 0, motors_us = 0, gyro_sample_us = 0;
   bool can_arm = false;
-  vehicle_control_mode_s config{};
+  bool configured = false;  ///< the mode, so that nothing of PX4 writes to the motors while it is selected
 
  private:
+#if PINNQUAD_PX4_SETPOINT_CONFIG
+  /// Holds for the mode that is selected, and is gone with it.
+  void take_configuration() {
+    if (nav_state != mode_id) configured = false;
+    setpoint_config_s wanted;
+    while (config_sub.update(&wanted)) {
+      if (wanted.source_id != mode_id) continue;
+      setpoint_config_reply_s answer{};
+      answer.timestamp = World::now_us;
+      answer.type = wanted.type;
+      answer.source_id = wanted.source_id;
+      answer.result = setpoint_config_reply_s::RESULT_SUCCESS;
+      if (wanted.should_apply && nav_state == mode_id) {
+        configured = wanted.type == setpoint_config_s::TYPE_DIRECT_ACTUATORS;
+      }
+      config_reply_pub.publish(answer);
+    }
+  }
+  uORB::Publication<setpoint_config_reply_s> config_reply_pub{ORB_ID(setpoint_config_reply)};
+  uORB::Subscription config_sub{ORB_ID(setpoint_config)};
+#else
+  /// Kept for each mode, selected or not.
+  void take_configuration() {
+    vehicle_control_mode_s wanted;
+    while (config_sub.update(&wanted)) {
+      if (wanted.source_id == mode_id) {
+        configured = wanted.flag_control_termination_enabled && !wanted.flag_control_allocation_enabled;
+      }
+    }
+  }
+  uORB::Subscription config_sub{ORB_ID(config_control_setpoints)};
+#endif
+  bool allocates() const { return nav_state < vehicle_status_s::NAVIGATION_STATE_EXTERNAL1 || !configured; }
+
   /// As PX4's: nobody is registered or unregistered while it is armed, and no mode is entered whose needs are not met.
   void commander() {
     if (!deaf) {
@@ -174,8 +229,7 @@ class Px4World {
                              (needs(flags.mode_req_manual_control) && flags.manual_control_signal_lost);
         if (!missing) nav_state = wanted;
       }
-      vehicle_control_mode_s mode;
-      while (config_sub.update(&mode)) config = mode;
+      take_configuration();
       arming_check_reply_s check;
       while (check_sub.update(&check)) can_arm = check.can_arm_and_run;
       if (World::now_us % 300'000 == 0) check_pub.publish(arming_check_request_s{});
@@ -204,8 +258,7 @@ class Px4World {
   uORB::Publication<actuator_motors_s> allocator_pub{ORB_ID(actuator_motors)};
   uORB::Subscription request_sub{ORB_ID(register_ext_component_request)},
       unregister_sub{ORB_ID(unregister_ext_component)}, command_sub{ORB_ID(vehicle_command)},
-      config_sub{ORB_ID(config_control_setpoints)}, check_sub{ORB_ID(arming_check_reply)},
-      motors_sub{ORB_ID(actuator_motors)};
+      check_sub{ORB_ID(arming_check_reply)}, motors_sub{ORB_ID(actuator_motors)};
 };
 
 }  // namespace flight_stacks::test
