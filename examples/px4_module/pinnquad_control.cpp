@@ -173,8 +173,7 @@ void PinnquadControl::take_samples() {
     pinnquad_px4::VehicleAttitude sample;
     sample.timestamp_sample = attitude.timestamp_sample;
     memcpy(sample.q, attitude.q, sizeof sample.q);
-    const float(&q)[4] = sample.q;
-    _heading_rad = atan2f(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
+    _heading = pinnquad::heading(pinnquad::Quaternion<float>{sample.q[0], sample.q[1], sample.q[2], sample.q[3]});
     static_cast<void>(_core.take(sample));
   }
   vehicle_local_position_s local;
@@ -225,7 +224,7 @@ void PinnquadControl::take_set_point() {
                                                      sticks.yaw, sticks.throttle});
   }
   pinnquad_px4::TrajectorySetpoint wanted;
-  if (_source.choose(hrt_absolute_time(), _heading_rad, _velocity_m_s, wanted)) static_cast<void>(_core.take(wanted));
+  if (_source.choose(hrt_absolute_time(), _heading, _velocity_m_s, wanted)) static_cast<void>(_core.take(wanted));
 }
 
 void PinnquadControl::publish(const pinnquad_px4::ActuatorMotors& motors) {

@@ -156,7 +156,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   pinnquad_px4::FailsafeFlags _failsafe_flags{};
   pinnquad_px4::Takeover _takeover{};
   pinnquad_px4::SetPointSource _source;
-  float _heading_rad{0};
+  pinnquad::Heading<float> _heading{};
   float _velocity_m_s[3]{};
   uint64_t _asked_to_register_us{0};
   uint64_t _request_id{0};

@@ -57,8 +57,8 @@ class SetPointSource {
   }
   void take(const ManualControlSetpoint& m) noexcept { sticks_ = m; }
 
-  /// True: `wanted` is for the controller. `heading_rad`, `velocity_m_s`: the vehicle's, NED.
-  bool choose(std::uint64_t now_us, float heading_rad, const float (&velocity_m_s)[3],
+  /// True: `wanted` is for the controller. `heading`, `velocity_m_s`: the vehicle's, NED.
+  bool choose(std::uint64_t now_us, const pinnquad::Heading<float>& heading, const float (&velocity_m_s)[3],
               TrajectorySetpoint& wanted) noexcept {
     if (fresh(trajectory_.timestamp, now_us)) {
       kind_ = Kind::trajectory;
@@ -84,7 +84,7 @@ class SetPointSource {
       return false;
     }
     kind_ = Kind::sticks;
-    wanted = by_sticks(now_us, heading_rad, moved);
+    wanted = by_sticks(now_us, heading, moved);
     return true;
   }
 
@@ -117,14 +117,14 @@ class SetPointSource {
     if (place_.flag_control_heading) wanted.yaw = place_.heading;
     return wanted;
   }
-  TrajectorySetpoint by_sticks(std::uint64_t now_us, float heading_rad, bool moved) const noexcept {
+  TrajectorySetpoint by_sticks(std::uint64_t now_us, const pinnquad::Heading<float>& heading,
+                               bool moved) const noexcept {
     TrajectorySetpoint wanted = nothing(now_us);
     const float forward = moved ? beyond(sticks_.pitch) * speeds_.horizontal_m_s : 0;
     const float right = moved ? beyond(sticks_.roll) * speeds_.horizontal_m_s : 0;
     const float up = moved ? beyond(sticks_.throttle) : 0;
-    const float sine = std::sin(heading_rad), cosine = std::cos(heading_rad);
-    wanted.velocity[0] = cosine * forward - sine * right;
-    wanted.velocity[1] = sine * forward + cosine * right;
+    wanted.velocity[0] = heading.cosine * forward - heading.sine * right;
+    wanted.velocity[1] = heading.sine * forward + heading.cosine * right;
     wanted.velocity[2] = -up * (up > 0 ? speeds_.climb_m_s : speeds_.descent_m_s);
     wanted.yawspeed = moved ? beyond(sticks_.yaw) * speeds_.yaw_rate_rad_s : 0;
     return wanted;
