@@ -49,8 +49,6 @@ done
 
 # a struct, compiled
 "$pinnquad" airframe convert tilted.toml --out tilted.hpp --name Tilted
-eigen=$(pkg-config --variable=includedir eigen3 2>/dev/null || true)/eigen3
-[ -d "$eigen/Eigen" ] || eigen=/usr/include/eigen3
 printf '#include "tilted.hpp"\nstatic_assert(pinnquad::is_airframe<Tilted>);\nstatic_assert(Tilted::value<double>().rotors[2].thrust_scale == 1.1);\n' >tilted.cpp
 "$compiler" -std=c++17 -fsyntax-only -I"$source_dir/include" -I. -isystem "$eigen" tilted.cpp || fail "the struct does not compile"
 

@@ -24,3 +24,7 @@ expect_line() {
   [ "$(wc -l <stderr.txt)" -eq 1 ] || fail "not one line on stderr: $*; said: $(cat stderr.txt)"
   grep -qE -- "$pattern" stderr.txt || fail "stderr does not match '$pattern': $(cat stderr.txt)"
 }
+
+# where a compiler finds Eigen
+eigen=$(pkg-config --variable=includedir eigen3 2>/dev/null || true)/eigen3
+[ -d "$eigen/Eigen" ] || eigen=/usr/include/eigen3

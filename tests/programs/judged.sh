@@ -142,8 +142,6 @@ int main() {
   return refused == 0 ? 0 : 1;
 }
 EOF
-eigen=$(pkg-config --variable=includedir eigen3 2>/dev/null || true)/eigen3
-[ -d "$eigen/Eigen" ] || eigen=/usr/include/eigen3
 "$compiler" -std=c++17 -O1 -trigraphs -Wall -Wextra -Werror -I"$source_dir/include" -I. -isystem "$eigen" still.cpp \
   -o flies ||
   fail "the header of a still flight does not compile"

@@ -4,7 +4,11 @@ source "$(dirname "$0")/common.sh" "$@"
 command -v python3 >/dev/null || { echo "skipped: no python3 to read the reports"; exit 77; }
 
 "$pinnquad" fly --seed 3 --samples 2500 --out flight.csv >/dev/null
-train() { "$pinnquad" train --flight flight.csv --seeds 1 --epochs 3 --threads 1 --allow-poor "$@" >/dev/null 2>stderr.txt; }
+train() {
+  local flight=flight.csv
+  if [ "$1" = --flight ]; then flight=$2 && shift 2; fi
+  "$pinnquad" train --flight "$flight" --seeds 1 --epochs 3 --threads 1 --allow-poor "$@" >said.txt 2>stderr.txt
+}
 train --out default
 train --out structured --recipe structured
 train --out paper --recipe paper --loss physics_informed --loss vanilla
@@ -24,6 +28,18 @@ grep -q '^proven ' certificate.txt || fail "said: $(cat certificate.txt)"
 train --out one --loss vanilla
 cmp one/model.hpp default/model.hpp || fail "the structured model is another one beside one loss"
 cut -d, -f1 one/results.csv | uniq | diff - <(printf '%s\n' model linearized vanilla structured) || fail "trained: $(cut -d, -f1 one/results.csv)"
+
+# when the default is not to be trusted: limits in a header beside it, of 80 s of validation rows and more; nothing that stays
+grep -q '^  no limits .* at least 8 blocks' said.txt || fail "a short flight: $(cat said.txt)"
+"$pinnquad" fly --seed 3 --samples 9000 --out long.csv >/dev/null
+train --flight long.csv --out trusted --loss vanilla
+grep -q '^  trusted/trust.hpp: struct TrainedQuadModelTrust' said.txt || fail "said: $(cat said.txt)"
+# shellcheck disable=SC2086
+"$compiler" $compiler_flags -std=c++17 -O1 -Wall -Wextra -Werror -I trusted -I "$source_dir/include" \
+  -isystem "$eigen" "$source_dir/tests/programs/trust/guarded.cpp" -o guarded || fail "the limits do not compile"
+./guarded trusted/replay.txt || fail "the limits do not do what they are for"
+train --out trusted --recipe paper
+[ ! -e trusted/trust.hpp ] || fail "limits of an earlier training stay beside another model"
 
 "$pinnquad" evaluate small/model.hpp --flight flight.csv --rows test --json >small.json || [ $? -eq 1 ]
 "$pinnquad" evaluate small/model.block --flight flight.csv --rows test --json >block.json || [ $? -eq 1 ]

@@ -10,9 +10,12 @@
 
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
+#include "pinnquad/data/atomic_file.hpp"
+#include "pinnquad/deploy/trust_writer.hpp"
 #include "pinnquad/inference/inverse_features.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
+#include "pinnquad/training/trust_limits.hpp"
 #include "training/campaign.hpp"
 
 namespace programs {
@@ -24,12 +27,31 @@ using StructuredContext =
 using Residual = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::residual_inputs<pinnquad::InverseFeatures>>,
                                pinnquad::Hidden<2, 32>, pinnquad::OutputSize<4>, pinnquad::Relu>;
 
+/// One that knows when it is not to be trusted.
+template <class Model>
+class TrustedNetwork : public NetworkOfModel<Model, ExportedAirframe::by_value> {
+ public:
+  using NetworkOfModel<Model, ExportedAirframe::by_value>::NetworkOfModel;
+
+  bool write_trust(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
+                   const pinnquad::RowSet& validation, std::uint64_t training_data_hash) const override {
+    const auto trust = pinnquad::fit_trust(this->model(), training, validation);
+    pinnquad::AtomicFile file(path);
+    file.stream() << "// To be included after the header of " << name << ". Limits by " << validation.size()
+                  << " validation rows: guesses where those are\n// less than 30 minutes of flight "
+                     "(docs/trust.md).\n#pragma once\n\n#include <array>\n#include <cstdint>\n";
+    pinnquad::write_trust<typename Model::Scalar>(file.stream(), name, trust, training_data_hash);
+    file.commit();
+    return true;
+  }
+};
+
 template <class Answer>
 std::shared_ptr<const TrainedNetwork> structured_network(const Answer& answer, const StructuredContext& context,
                                                          const pinnquad::RowSet& rows) {
   const auto model = pinnquad::make_trained_model(answer, context, rows);
   using Model = std::decay_t<decltype(model)>;
-  return std::make_shared<NetworkOfModel<Model, ExportedAirframe::by_value>>(model);
+  return std::make_shared<TrustedNetwork<Model>>(model);
 }
 
 /// One model per seed: the base is the same, the residual is not.

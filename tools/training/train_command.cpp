@@ -104,7 +104,8 @@ void draw(const ContextAirframe<GivenAirframe>& airframe, const std::string& fol
 /// "; of an earlier training: ..." with the files an export would have replaced; nothing where there are none.
 std::string earlier_export(const Options& options) {
   std::vector<std::string> there;
-  for (const std::string& path : {options.out + "/model.hpp", options.out + "/replay.txt", options.block}) {
+  for (const std::string& path :
+       {options.out + "/model.hpp", options.out + "/trust.hpp", options.out + "/replay.txt", options.block}) {
     std::error_code ignored;
     if (!path.empty() && std::filesystem::exists(path, ignored)) there.push_back(path);
   }
@@ -174,6 +175,23 @@ void say_certificate(const Options& options, const programs::TrainedNetwork& net
   for (const std::string& doubt : programs::slope_doubts(slopes, own)) report.warn(doubt);
 }
 
+/// When the export is not to be trusted, where its kind and the validation rows tell; of an earlier training nothing stays.
+void export_trust(const Options& options, const programs::TrainedNetwork& network, const RowSplit& split,
+                  const Provenance& provenance) {
+  const std::string path = options.out + "/trust.hpp";
+  try {
+    if (network.write_trust(path, options.model_name, split.train, split.validation, provenance.training_data_hash)) {
+      std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and innovation\n",
+                  path.c_str(), options.model_name.c_str());
+      return;
+    }
+  } catch (const std::invalid_argument& error) {
+    std::printf("  no limits of distance and innovation (trust.hpp): %s\n", error.what());
+  }
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+}
+
 void export_network(const Options& options, const programs::Training& training, const RowSplit& split,
                     const Provenance& provenance) {
   const programs::TrainedNetwork& network = *training.network;
@@ -183,6 +201,7 @@ void export_network(const Options& options, const programs::Training& training, 
               options.out.c_str(), options.model_name.c_str(), training.loss.title,
               static_cast<unsigned long long>(provenance.seed),
               provenance.verdict->worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
+  export_trust(options, network, split, provenance);
   if (options.block.empty()) return;
   const std::vector<unsigned char> block = network.block(split.train, provenance);
   write_weight_file(options.block, block);
@@ -299,8 +318,8 @@ int train_judge_export(const Options& options, const programs::Recipe& recipe,
 }
 
 /// The files of --out.
-constexpr std::array<const char*, 7> output_names = {"results.csv",    "report.json", "ellipses.svg", "errors.svg",
-                                                     "prediction.svg", "model.hpp",   "replay.txt"};
+constexpr std::array<const char*, 8> output_names = {"results.csv",    "report.json", "ellipses.svg", "errors.svg",
+                                                     "prediction.svg", "model.hpp",   "trust.hpp",    "replay.txt"};
 
 /// No output takes the place of a flight or of another output.
 void require_separate_files(const Options& options) {

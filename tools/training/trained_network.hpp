@@ -36,6 +36,13 @@ class TrainedNetwork {
   /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4). Of a feature
   /// set that asks for more than a motion "pinnquad-replay-features", and X in the place of the first 16.
   virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
+  /// Writes `struct <name>Trust`, when it is not to be trusted, into a header that is to follow the model's (docs/trust.md);
+  /// false, and nothing, of a kind that does not know. Throws std::invalid_argument for validation rows that are too few.
+  virtual bool write_trust(const std::string& /*path*/, const std::string& /*name*/,
+                           const pinnquad::RowSet& /*training*/, const pinnquad::RowSet& /*validation*/,
+                           std::uint64_t /*training_data_hash*/) const {
+    return false;
+  }
 };
 
 /// How an export says which airframe it is for.
@@ -110,6 +117,9 @@ class NetworkOfModel : public TrainedNetwork {
                   << lines;
     file.commit();
   }
+
+ protected:
+  const Model& model() const { return model_; }
 
  private:
   /// Calls `use` with the model of the airframe's own type, or of the value.
