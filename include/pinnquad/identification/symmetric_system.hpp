@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A symmetric system of equations without negative eigenvalues, as least squares makes them: by Cholesky's factors, or by
-// eigenvalues (the singular values of such a matrix) where it has not full rank.
+// eigenvalues (the singular values of such a matrix) where it has not full rank. And what makes a covariance the identity.
 #pragma once
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <limits>
+#include <optional>
 
 #include "pinnquad/identification/regression_sums.hpp"
 
@@ -29,6 +30,15 @@ inline DynamicMatrix solve_symmetric(const DynamicMatrix& a, const DynamicMatrix
     if (value > enough * rounding * largest) scaled.row(i) = in_axes.row(i) / value;
   }
   return solver.eigenvectors() * scaled;
+}
+
+/// Lower triangular W with W A W' = 1: the inverse of Cholesky's factor. A: symmetric, its lower triangle is read. Empty where
+/// A is not positive definite, by rounding too, or not finite.
+inline std::optional<DynamicMatrix> whitening_of(const DynamicMatrix& a) {
+  const Eigen::LLT<DynamicMatrix> factors(a);
+  // Eigen takes NaN and infinity for positive; a row's reach its diagonal.
+  if (factors.info() != Eigen::Success || !factors.matrixLLT().diagonal().allFinite()) return {};
+  return factors.matrixL().solve(DynamicMatrix::Identity(a.rows(), a.cols()));
 }
 
 }  // namespace pinnquad
