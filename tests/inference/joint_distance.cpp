@@ -142,8 +142,7 @@ TEST_CASE("fallback, clamped features, batch and Jacobian know the distance") {
   }
   CHECK(refused > 5);
   std::array<float, 4 * samples> commands{};
-  const volatile int count = samples;  // as a user's: known at run time
-  predict_batch(Guarded<Measuring>{}, x.data(), commands.data(), statuses.data(), count);
+  predict_batch(Guarded<Measuring>{}, x.data(), commands.data(), statuses.data(), samples);
   for (std::size_t s = 0; s < samples; ++s) CHECK(statuses[s] == expected[s]);
 }
 
