@@ -6,46 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <string>
 
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "support/random_states.hpp"
+#include "support/guarded_inputs.hpp"
 #include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
-using pinnquad::test::RandomStates;
-using pinnquad::test::SmallInstance;
-using pinnquad::test::SmallModel;
+using namespace pinnquad::test;
 
 namespace {
-
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-/// Bits that no prediction gives: "untouched" can be seen.
-Commands<float> marked() { return {-1.25F, -0.0F, not_a_number, 1e30F}; }
-
-bool same_bits(const Commands<float>& a, const Commands<float>& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-/// Near hover where `size` is 0, beyond the envelope where it is well above 1.
-MotionInputs<float> inputs_of(RandomStates& random, double size) {
-  MotionInputs<float> inputs;
-  inputs.linear_acceleration_m_s2 = random.vector<float>(9.0 * size);
-  inputs.angular_acceleration_rad_s2 = random.vector<float>(5.0 * size);
-  inputs.velocity_m_s = random.vector<float>(6.0 * size);
-  inputs.body_rates_rad_s = random.vector<float>(3.0 * size);
-  inputs.attitude = from_euler(EulerAngles<float>{random.scalar<float>(-0.7, 0.7), random.scalar<float>(-0.7, 0.7),
-                                                  random.scalar<float>(-3.1, 3.1)});
-  return inputs;
-}
-
-std::array<float, 16> features(const MotionInputs<float>& inputs) {
-  std::array<float, 16> x{};
-  PaperFeatures::extract(inputs, x.data());
-  return x;
-}
 
 /// The small model with commands around 1 and 0: many lie outside 0..1, some far.
 struct EdgyModel : SmallModel {
@@ -59,16 +29,6 @@ struct BrokenModel : SmallModel {
 struct WideCommands {
   static constexpr double lower = -0.1;
   static constexpr double upper = 1.1;
-};
-
-/// Answers anything with one command, or as told.
-struct FixedFallback {
-  float command = 0.5F;
-  Status status = Status::ok;
-  Status operator()(const MotionInputs<float>&, Commands<float>& commands) const noexcept {
-    if (has_output(status)) commands = {command, command, command, command};
-    return status;
-  }
 };
 
 /// Answers with the time, if it is told one.

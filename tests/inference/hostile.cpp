@@ -19,9 +19,12 @@
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
+#include "support/guarded_inputs.hpp"
 #include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
+using pinnquad::test::marked;
+using pinnquad::test::same_bits;
 using pinnquad::test::SmallDoubleModel;
 using pinnquad::test::SmallInstance;
 using pinnquad::test::SmallModel;
@@ -129,16 +132,6 @@ bool unit(const MotionInputs<Scalar>& in) {
   const double w = double(in.attitude.w), x = double(in.attitude.x), y = double(in.attitude.y),
                z = double(in.attitude.z);
   return std::fabs(w * w + x * x + y * y + z * z - 1) <= 1.001e-3;  // the tolerance, and rounding of the sum
-}
-
-template <class Scalar>
-Commands<Scalar> marked() {
-  return {Scalar(-1.25), Scalar(-0.0), std::numeric_limits<Scalar>::quiet_NaN(), Scalar(1e30)};
-}
-
-template <class Scalar>
-bool same_bits(const Commands<Scalar>& a, const Commands<Scalar>& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 /// Far from what a rotor can do, but not absurd.

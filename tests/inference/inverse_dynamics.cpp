@@ -5,14 +5,13 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "support/guarded_inputs.hpp"
 #include "support/plain_network.hpp"
-#include "support/random_states.hpp"
 #include "support/small_model.hpp"
 
 using pinnquad::Commands;
@@ -21,7 +20,12 @@ using pinnquad::MotionInputs;
 using pinnquad::PaperFeatures;
 using pinnquad::RotorSpeedOutputs;
 using pinnquad::Status;
+using pinnquad::test::infinity;
+using pinnquad::test::inputs_of;
+using pinnquad::test::marked;
+using pinnquad::test::not_a_number;
 using pinnquad::test::RandomStates;
+using pinnquad::test::same_bits;
 using pinnquad::test::SmallModel;
 
 namespace {
@@ -43,23 +47,6 @@ std::vector<double> plain_commands(const float* x) {
   return y;
 }
 
-/// Inputs in the middle of the envelope.
-MotionInputs<float> gentle_inputs(RandomStates& random) {
-  MotionInputs<float> inputs;
-  inputs.linear_acceleration_m_s2 = random.vector<float>(9.0);
-  inputs.angular_acceleration_rad_s2 = random.vector<float>(5.0);
-  inputs.velocity_m_s = random.vector<float>(6.0);
-  inputs.body_rates_rad_s = random.vector<float>(3.0);
-  inputs.attitude = pinnquad::from_euler(pinnquad::EulerAngles<float>{
-      random.scalar<float>(-0.7, 0.7), random.scalar<float>(-0.7, 0.7), random.scalar<float>(-3.1, 3.1)});
-  return inputs;
-}
-
-/// Bits that no prediction gives: "untouched" can be seen.
-Commands<float> marked() { return {-1.25F, -0.0F, std::numeric_limits<float>::quiet_NaN(), 1e30F}; }
-
-bool same_bits(const Commands<float>& a, const Commands<float>& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
 template <class Model>
 void check_refused(const typename InverseDynamics<Model>::Inputs& inputs, Status expected) {
   Commands<float> commands = marked();
@@ -69,7 +56,7 @@ void check_refused(const typename InverseDynamics<Model>::Inputs& inputs, Status
 
 template <std::size_t Size>
 constexpr std::array<float, Size> with_nan(std::array<float, Size> parameters, std::size_t index) {
-  parameters[index] = std::numeric_limits<float>::quiet_NaN();
+  parameters[index] = not_a_number;
   return parameters;
 }
 
@@ -80,8 +67,7 @@ struct NanInLastBias : SmallModel {
   static constexpr auto parameters = with_nan(SmallModel::parameters, 171);
 };
 struct InfiniteSpread : SmallModel {
-  static constexpr pinnquad::Scaler<float, 4> output{SmallModel::output.mean,
-                                                     {1.0F, std::numeric_limits<float>::infinity(), 1.0F, 1.0F}};
+  static constexpr pinnquad::Scaler<float, 4> output{SmallModel::output.mean, {1.0F, infinity, 1.0F, 1.0F}};
 };
 struct SpeedModel : SmallModel {
   using Outputs = RotorSpeedOutputs;
@@ -102,7 +88,7 @@ TEST_CASE("predict() agrees with plain loops in double") {
   RandomStates random(171);
   const InverseDynamics<SmallModel> inverse;
   for (int i = 0; i < 500; ++i) {
-    const auto inputs = gentle_inputs(random);
+    const auto inputs = inputs_of(random, 1);
     Commands<float> commands = marked(), by_features = marked();
     REQUIRE(inverse.predict(inputs, commands) == Status::ok);
     float x[16] = {};
@@ -132,7 +118,7 @@ TEST_CASE("the golden vectors of the independent script are reproduced") {
 
 TEST_CASE("a network with rotor speeds as outputs gives commands all the same") {
   RandomStates random(172);
-  const auto inputs = gentle_inputs(random);
+  const auto inputs = inputs_of(random, 1);
   Commands<float> plain{}, by_speed{};
   REQUIRE(InverseDynamics<SmallModel>{}.predict(inputs, plain) == Status::ok);
   REQUIRE(InverseDynamics<SpeedModel>{}.predict(inputs, by_speed) == Status::ok);
@@ -148,9 +134,8 @@ TEST_CASE("a network with rotor speeds as outputs gives commands all the same") 
 
 TEST_CASE("bad inputs: a Status, and not a bit of the commands changed") {
   RandomStates random(173);
-  const auto good = gentle_inputs(random);
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-  for (const float bad : {nan, infinity, -infinity}) {
+  const auto good = inputs_of(random, 1);
+  for (const float bad : {not_a_number, infinity, -infinity}) {
     auto inputs = good;
     inputs.linear_acceleration_m_s2[2] = bad;
     check_refused<SmallModel>(inputs, Status::not_finite);
@@ -183,7 +168,7 @@ TEST_CASE("the envelope holds for each of the features, on both sides, its borde
     CHECK(inverse.inside_envelope(x.data()));
     x[i] = std::nextafter(SmallModel::envelope_lower[i], -1e9F);
     CHECK_FALSE(inverse.inside_envelope(x.data()));
-    x[i] = std::numeric_limits<float>::quiet_NaN();
+    x[i] = not_a_number;
     CHECK_FALSE(inverse.inside_envelope(x.data()));
     Commands<float> commands = marked();
     CHECK(inverse.predict_features(x.data(), commands) == Status::outside_envelope);
@@ -194,9 +179,9 @@ TEST_CASE("the envelope holds for each of the features, on both sides, its borde
 TEST_CASE("broken weights: output_not_finite, commands untouched") {
   RandomStates random(174);
   // the first weight reaches the outputs only through a hidden neuron; NaN opens the ReLU
-  check_refused<NanInFirstWeight>(gentle_inputs(random), Status::output_not_finite);
-  check_refused<NanInLastBias>(gentle_inputs(random), Status::output_not_finite);
-  check_refused<InfiniteSpread>(gentle_inputs(random), Status::output_not_finite);
+  check_refused<NanInFirstWeight>(inputs_of(random, 1), Status::output_not_finite);
+  check_refused<NanInLastBias>(inputs_of(random, 1), Status::output_not_finite);
+  check_refused<InfiniteSpread>(inputs_of(random, 1), Status::output_not_finite);
 }
 
 TEST_CASE("the vector unit's kernel and the portable one agree") {

@@ -6,26 +6,17 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "pinnquad/inference/monitored_inverse.hpp"
-#include "support/random_states.hpp"
+#include "support/guarded_inputs.hpp"
 #include "support/small_model.hpp"
 
 using namespace pinnquad;
-using pinnquad::test::RandomStates;
-using pinnquad::test::SmallModel;
+using namespace pinnquad::test;
 
 namespace {
-
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-Commands<float> marked() { return {-1.25F, -0.0F, not_a_number, 1e30F}; }
-bool same_bits(const Commands<float>& a, const Commands<float>& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 /// Any lower triangular factor, and a mean that is not 0.
 constexpr std::array<float, 136> any_factor() {
@@ -48,37 +39,11 @@ struct Trust {
   static constexpr double innovation_cleared = 0.02;
 };
 
-struct FixedFallback {
-  float command = 0.5F;
-  Status status = Status::ok;
-  Status operator()(const MotionInputs<float>&, Commands<float>& commands) const noexcept {
-    if (has_output(status)) commands = {command, command, command, command};
-    return status;
-  }
-};
-
 using Measuring = Extend<TrainingGuard, JointDistance<Trust>>;
 using FallingBack = Extend<Measuring, Fallback<FixedFallback>>;
 using Clamping = Guard<FiniteInputs, ClampToEnvelope, JointDistance<Trust>, FiniteOutputs>;
 template <class Policies>
 using Guarded = InverseDynamics<SmallModel, Policies>;
-
-MotionInputs<float> inputs_of(RandomStates& random, double size) {
-  MotionInputs<float> inputs;
-  inputs.linear_acceleration_m_s2 = random.vector<float>(9.0 * size);
-  inputs.angular_acceleration_rad_s2 = random.vector<float>(5.0 * size);
-  inputs.velocity_m_s = random.vector<float>(6.0 * size);
-  inputs.body_rates_rad_s = random.vector<float>(3.0 * size);
-  inputs.attitude = from_euler(EulerAngles<float>{random.scalar<float>(-0.7, 0.7), random.scalar<float>(-0.7, 0.7),
-                                                  random.scalar<float>(-3.1, 3.1)});
-  return inputs;
-}
-
-std::array<float, 16> features(const MotionInputs<float>& inputs) {
-  std::array<float, 16> x{};
-  PaperFeatures::extract(inputs, x.data());
-  return x;
-}
 
 /// |W (x - mean)|^2 with W as a dense matrix, in double.
 double dense_distance(const std::array<float, 16>& x) {
@@ -177,8 +142,7 @@ TEST_CASE("fallback, clamped features, batch and Jacobian know the distance") {
   }
   CHECK(refused > 5);
   std::array<float, 4 * samples> commands{};
-  const volatile int count = samples;  // as a user's: known at run time
-  predict_batch(Guarded<Measuring>{}, x.data(), commands.data(), statuses.data(), count);
+  predict_batch(Guarded<Measuring>{}, x.data(), commands.data(), statuses.data(), samples);
   for (std::size_t s = 0; s < samples; ++s) CHECK(statuses[s] == expected[s]);
 }
 

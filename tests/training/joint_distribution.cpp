@@ -112,4 +112,9 @@ TEST_CASE("too few rows and shares that are none are refused") {
   for (const double share : {0.0, -0.1, 1.1, std::nan("")}) {
     CHECK_THROWS_AS(fit_joint_distribution<Features>(all(enough), share), std::invalid_argument);
   }
+  // a share that is lost in the rounding of correlations without an inverse
+  Flight dependent = normal_rows(500, 7);
+  for (Sample& sample : dependent) sample.angular_acceleration_rad_s2[1] = 2 * sample.angular_acceleration_rad_s2[0];
+  CHECK_NOTHROW(fit_joint_distribution<Features>(all(dependent)));
+  CHECK_THROWS_AS(fit_joint_distribution<Features>(all(dependent), 1e-30), std::invalid_argument);
 }

@@ -13,6 +13,7 @@
 #include "pinnquad/inference/certificate.hpp"
 #include "pinnquad/inference/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/training/monotone_fit.hpp"
 #include "pinnquad/training/tangent_rows.hpp"
 
 using namespace pinnquad;

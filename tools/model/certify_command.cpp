@@ -19,10 +19,10 @@
 
 #include "command_line/console.hpp"
 #include "command_line/interrupt.hpp"
-#include "command_line/options.hpp"
 #include "model/asked_model.hpp"
 #include "model/counterexample.hpp"
 #include "model/model_file.hpp"
+#include "model/model_options.hpp"
 #include "pinnquad/inference/certificate.hpp"
 #include "pinnquad/inference/hover_slopes.hpp"
 #include "training/certificate_words.hpp"
@@ -36,8 +36,7 @@ constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name}
 
 struct Options {
   std::string model;
-  std::string airframe;
-  std::string answer;
+  programs::ModelHints hints;
   double seconds = 5;
   std::uint64_t seed = 1;
   bool json = false;
@@ -340,7 +339,7 @@ void print_text(const programs::Block& block, const programs::Identity& identity
 
 int certify(const Options& options) {
   programs::end_at_interrupt();
-  programs::ModelHints hints{options.airframe, options.answer, {}};
+  programs::ModelHints hints = options.hints;
   const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
   const programs::Identity identity = programs::identify(block, hints);
   const Findings findings = findings_of(options, block, identity);
@@ -355,14 +354,8 @@ programs::Command programs::certify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "certify", "Proves that a model's commands follow the angular acceleration that is asked, or refutes it");
   const auto options = std::make_shared<Options>();
-  add_path(*line, "model", options->model, "MODEL",
-           "a header that pinnquad train exported (MODEL.hpp), or a model block, as --block writes it")
-      ->required();
-  add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
-           "what flew: a file, or one of: " + airframe_names() + " (default: the one that the model was trained for)");
-  line->add_option("--answer", options->answer,
-                   "the network as the model's header states it (answer = ...); needed of a block whose hidden layers "
-                   "differ in width");
+  add_model(*line, options->model);
+  add_model_hints(*line, options->hints);
   line->add_option("--seconds", options->seconds,
                    "how long, in seconds of the processor, to search a counterexample where nothing is proven")
       ->capture_default_str()

@@ -21,6 +21,7 @@
 #include "logs/training_flights.hpp"
 #include "model/asked_model.hpp"
 #include "model/model_file.hpp"
+#include "model/model_options.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
 
@@ -31,8 +32,7 @@ using namespace pinnquad;
 struct Options {
   std::string model;
   std::vector<std::string> flights;
-  std::string airframe;
-  std::string answer;
+  programs::ModelHints hints;
   std::string rows = "all";
   bool json = false;
 };
@@ -112,7 +112,7 @@ void print_table(const programs::Block& block, const programs::Identity& identit
 
 int evaluate(const Options& options) {
   programs::end_at_interrupt();
-  programs::ModelHints hints{options.airframe, options.answer, {}};
+  programs::ModelHints hints = options.hints;
   const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
   const programs::Identity identity = programs::identify(block, hints);
   const auto model = programs::asked_model(block, identity);
@@ -147,19 +147,13 @@ programs::Command programs::evaluate_command(CLI::App& program) {
   CLI::App* line =
       program.add_subcommand("evaluate", "Judges an exported model on recorded flights, without compiling");
   const auto options = std::make_shared<Options>();
-  add_path(*line, "model", options->model, "MODEL",
-           "a header that pinnquad train exported (MODEL.hpp), or a model block, as --block writes it")
-      ->required();
+  add_model(*line, options->model);
   add_paths(*line, "--flight", options->flights, "FILE.csv", "recorded flights to judge it on")->required();
   line->add_option("--rows", options->rows,
                    "all: every row; test: those that pinnquad train tests on when it is given these flights")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "test"}));
-  add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
-           "what flew: a file, or one of: " + airframe_names() + " (default: the one that the model was trained for)");
-  line->add_option("--answer", options->answer,
-                   "the network as the model's header states it (answer = ...); needed of a block whose hidden layers "
-                   "differ in width");
+  add_model_hints(*line, options->hints);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"

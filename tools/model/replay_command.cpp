@@ -24,6 +24,7 @@
 #include "command_line/progress_line.hpp"
 #include "model/flight_model.hpp"
 #include "model/model_file.hpp"
+#include "model/model_options.hpp"
 #include "model/replay_core.hpp"
 #include "model/replay_input.hpp"
 #include "model/replay_summary.hpp"
@@ -39,8 +40,7 @@ using programs::ReplayModel;
 struct Options {
   std::string log;
   std::vector<std::string> models;
-  std::string airframe;
-  std::string answer;
+  programs::ModelHints hints;
   std::string guard = "flight_stack";
   std::vector<std::string> settings;
   double tolerance = 1e-5;
@@ -56,7 +56,7 @@ programs::ReplayGuard guard_of(const Options& options) {
 ReplayModel read_model(const std::string& path, const Options& options) {
   ReplayModel model;
   model.path = path;
-  programs::ModelHints hints{options.airframe, options.answer, {}};
+  programs::ModelHints hints = options.hints;
   model.bytes = programs::block_bytes(path, hints);
   model.block = programs::read_block(model.path, model.bytes);
   model.block.path = path;
@@ -238,11 +238,7 @@ programs::Command programs::replay_command(CLI::App& program) {
   add_paths(*line, "--model", options->models, "MODEL",
             "a header that pinnquad train exported (MODEL.hpp), or a model block; of a core's log all that flew")
       ->required();
-  add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
-           "what flew: a file, or one of: " + airframe_names() + " (default: the one that the model was trained for)");
-  line->add_option("--answer", options->answer,
-                   "the network as the model's header states it (answer = ...); needed of a block whose hidden layers "
-                   "differ in width");
+  add_model_hints(*line, options->hints);
   line->add_option("--guard", options->guard,
                    "what stands between model and motors where the log is a flight: flight_stack, as "
                    "examples/flight_stacks, which falls back to the formula; training, which refuses")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A symmetric system of equations without negative eigenvalues, as least squares makes them: by Cholesky's factors, or by
-// eigenvalues (the singular values of such a matrix) where it has not full rank.
+// eigenvalues (the singular values of such a matrix) where it has not full rank. And what makes a covariance the identity.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pinnquad/identification/regression_sums.hpp"
 
@@ -60,6 +61,15 @@ inline DynamicMatrix solve_symmetric(const DynamicMatrix& a, const DynamicMatrix
     for (Eigen::Index k = 0; k < b.cols(); ++k) x.col(k) += axis.dot(b.col(k)) / pairs.values[i] * axis;
   }
   return x;
+}
+
+/// Lower triangular W with W A W' = 1: the inverse of Cholesky's factor. A: symmetric, its lower triangle is read. Empty where
+/// A is not positive definite, by rounding too, or not finite.
+inline std::optional<DynamicMatrix> whitening_of(const DynamicMatrix& a) {
+  const Eigen::LLT<DynamicMatrix> factors(a);
+  // Eigen takes NaN and infinity for positive; a row's reach its diagonal.
+  if (factors.info() != Eigen::Success || !factors.matrixLLT().diagonal().allFinite()) return {};
+  return factors.matrixL().solve(DynamicMatrix::Identity(a.rows(), a.cols()));
 }
 
 }  // namespace pinnquad

@@ -20,7 +20,8 @@ struct Scales {
   const Scalar* output_spread;
 };
 
-/// `count` samples, 1 to `Lanes`; padding repeats the last one.
+/// `count` samples, 1 to `Lanes`; padding repeats the last one. Its loop starts at 0: of one from a constant `count` g++ 12
+/// warns that its index overflows.
 template <int Size, int Lanes, class Scalar>
 PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread, const Scalar* values, int stride,
                                         int count, Scalar* standardised) noexcept {
@@ -29,7 +30,7 @@ PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread
     const Scalar* from = values + i * stride;
     Scalar* to = standardised + i * Lanes;
     for (int s = 0; s < count; ++s) to[s] = (from[s] - middle) / scale;
-    for (int s = count; s < Lanes; ++s) to[s] = to[count - 1];
+    for (int s = 0; s < Lanes - count; ++s) to[count + s] = to[count - 1];
   }
 }
 

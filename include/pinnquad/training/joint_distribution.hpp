@@ -4,11 +4,12 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "pinnquad/identification/symmetric_system.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
@@ -39,43 +40,9 @@ struct JointDistribution {
   }
 };
 
-namespace detail {
-
-template <std::size_t Size>
-using SquareMatrix = std::array<std::array<double, Size>, Size>;
-
-/// L with L L' = a, of a symmetric a whose eigenvalues are above 0.
-template <std::size_t Size>
-SquareMatrix<Size> cholesky(const SquareMatrix<Size>& a) {
-  SquareMatrix<Size> l{};
-  for (std::size_t i = 0; i < Size; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double left = a[i][j];
-      for (std::size_t k = 0; k < j; ++k) left -= l[i][k] * l[j][k];
-      l[i][j] = i == j ? std::sqrt(left) : left / l[j][j];
-    }
-  }
-  return l;
-}
-
-/// The inverse of a lower triangular matrix.
-template <std::size_t Size>
-SquareMatrix<Size> lower_inverse(const SquareMatrix<Size>& l) {
-  SquareMatrix<Size> inverse{};
-  for (std::size_t j = 0; j < Size; ++j) {
-    for (std::size_t i = j; i < Size; ++i) {
-      double left = i == j ? 1.0 : 0.0;
-      for (std::size_t k = j; k < i; ++k) left -= l[i][k] * inverse[k][j];
-      inverse[i][j] = left / l[i][i];
-    }
-  }
-  return inverse;
-}
-
-}  // namespace detail
-
 /// Of the rows that have features. A feature that stands still is independent of the others, with the spread 1 that the
-/// scalers give it. Throws std::invalid_argument for a share outside (0, 1] and for no more rows than features.
+/// scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for no more rows than
+/// features.
 template <class Features>
 JointDistribution<Features::size> fit_joint_distribution(const RowSet& training, double shrinkage = usual_shrinkage) {
   constexpr auto size = static_cast<std::size_t>(Features::size);
@@ -84,31 +51,33 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
                                 std::to_string(shrinkage));
   }
   const auto columns = detail::feature_statistics<Features>(training);
-  detail::SquareMatrix<size> correlation{};
+  DynamicMatrix correlation = DynamicMatrix::Zero(Features::size, Features::size);  // its lower triangle
   std::size_t rows = 0;
   each_features<Features, double>(training, [&](const Flight&, std::size_t, const auto& x) {
     ++rows;
-    std::array<double, size> z{};
-    for (std::size_t i = 0; i < size; ++i) z[i] = (x[i] - columns[i].mean) / columns[i].scale();
-    for (std::size_t i = 0; i < size; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) correlation[i][j] += z[i] * z[j];
-    }
+    Vector<double, Features::size> z;
+    for (std::size_t i = 0; i < size; ++i) z[Eigen::Index(i)] = (x[i] - columns[i].mean) / columns[i].scale();
+    correlation.selfadjointView<Eigen::Lower>().rankUpdate(z);
   });
   if (rows <= size) {
     throw std::invalid_argument("joint distribution: expected more rows than the " + std::to_string(size) +
                                 " features, found " + std::to_string(rows));
   }
+  correlation *= (1 - shrinkage) / static_cast<double>(rows);
   for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j < i; ++j) correlation[i][j] *= (1 - shrinkage) / static_cast<double>(rows);
-    correlation[i][i] =
-        columns[i].still() ? 1.0 : (1 - shrinkage) * correlation[i][i] / static_cast<double>(rows) + shrinkage;
+    double& own = correlation(Eigen::Index(i), Eigen::Index(i));
+    own = columns[i].still() ? 1.0 : own + shrinkage;
   }
-  const auto factor = detail::lower_inverse(detail::cholesky(correlation));
+  const std::optional<DynamicMatrix> factor = whitening_of(correlation);
+  if (!factor) {
+    throw std::invalid_argument("joint distribution: expected a larger shrinkage, the correlations have no inverse");
+  }
   JointDistribution<Features::size> result;
   std::size_t at = 0;
   for (std::size_t j = 0; j < size; ++j) {
     result.mean[j] = columns[j].mean;
-    for (std::size_t i = j; i < size; ++i) result.whitening[at++] = factor[i][j] / columns[j].scale();
+    for (std::size_t i = j; i < size; ++i)
+      result.whitening[at++] = (*factor)(Eigen::Index(i), Eigen::Index(j)) / columns[j].scale();
   }
   return result;
 }
