@@ -67,6 +67,8 @@ sed 's/using Features = .*/using Features = my::Features;/' out.hpp >foreign.hpp
 nothing_new 'foreign.hpp:[0-9]+: expected a type of the library, found `my::Features`' x --model foreign.hpp
 sed 's/^struct MyModelAirframe {/struct Other {/' out.hpp >foreign.hpp
 nothing_new 'foreign.hpp:[0-9]+: expected an airframe of the library or of the header, found `MyModelAirframe`' x --model foreign.hpp
+nothing_new 'structured_quadrotor.hpp:[0-9]+: expected a network, as pinnquad train --recipe paper exports it, found `AxisAligned<' x \
+  --model "$source_dir/examples/models/structured_quadrotor.hpp"
 nothing_new '^new: cannot write .*my_training: it is not empty' $project
 nothing_new '^new: cannot write flight.csv/x: ' flight.csv/x
 nothing_new '^new: cannot write flight.csv: ' flight.csv

@@ -64,6 +64,15 @@ std::string library_type(const programs::HeaderFile& header, const std::string& 
   return short_name(type);
 }
 
+/// The network of a header: what the project's trainer trains. A structured model is fitted otherwise.
+std::string trained_network(const programs::HeaderFile& header) {
+  const std::string type = library_type(header, "Network");
+  if (type.compare(0, 8, "Network<") != 0) {
+    header.refuse("Network", "a network, as pinnquad train --recipe paper exports it", "`" + type + "`");
+  }
+  return type;
+}
+
 /// "Network<float, InputSize<16>, Dense<25>, Relu, Dense<25>, Relu, Dense<4>>" as "Mlp<float, InputSize<16>, Hidden<2, 25>,
 /// OutputSize<4>, Relu>"; what has another form stays.
 std::string as_mlp(const std::string& network) {
@@ -127,7 +136,7 @@ Filling filling(const Options& options) {
     if (airframe.empty()) places = airframe_of(header);
     types = {{"features", library_type(header, "Features")},
              {"outputs", library_type(header, "Outputs")},
-             {"network", as_mlp(library_type(header, "Network"))}};
+             {"network", as_mlp(trained_network(header))}};
     name = header.quoted("name");
   }
   if (places.empty()) places = chosen_airframe(airframe.empty() ? PaperQuadrotor::name : airframe);
@@ -200,7 +209,8 @@ programs::Command programs::new_command(CLI::App& program) {
            "what flies: a file (examples/airframes), or one of: " + airframe_names() +
                " (default: that of MODEL.hpp, or " + pinnquad::PaperQuadrotor::name + ")");
   add_path(*line, "--model", options->model, "MODEL.hpp",
-           "begin with features, network and airframe of this exported header (default: the paper's)");
+           "begin with features, network and airframe of this exported header, no structured model's (default: the "
+           "paper's)");
   add_path(*line, "--name", options->name, "NAME",
            "name of the struct that the project exports (default: that of MODEL.hpp, or TrainedQuadModel)");
   line->footer(
