@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The glue between PX4 and neural_control_core.hpp: topics, parameters, mode registration, the model's file. Compiled and run here
-// against a small uORB of ours (tests/flight_stacks/px4), not in PX4's tree; see README.md.
+// against a small uORB of ours (tests/flight_stacks/px4); see README.md.
 #pragma once
 
 #include <drivers/drv_hrt.h>
@@ -41,6 +41,13 @@
 #include "set_point_source.hpp"
 #include "takeover.hpp"
 
+// Beside model.hpp there may be one that says which effects the formula knows: using FlownVehicle = pinnquad::Quadrotor<float, ...>.
+#if __has_include("flown_vehicle.hpp")
+#include "flown_vehicle.hpp"
+#else
+using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
+#endif
+
 class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
                         public ModuleParams,
                         public px4::ScheduledWorkItem {
@@ -61,7 +68,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
 
  private:
   using Model = TrainedQuadModel;
-  using Controller = flight_stacks::Recorded<flight_stacks::NeuralController<Model>>;
+  using Controller =
+      flight_stacks::Recorded<flight_stacks::NeuralController<Model, pinnquad::ModelView<Model>, FlownVehicle>>;
   using Core = pinnquad_px4::NeuralControl<Model, Controller>;
 
   /// Room for one block of this model, golden vectors included.
