@@ -43,9 +43,13 @@ inline std::vector<std::string>& complaints() {
 }
 template <class... Values>
 void complain(const char* format, Values... values) {
-  char line[256];
-  std::snprintf(line, sizeof line, format, values...);
-  complaints().emplace_back(line);
+  if constexpr (sizeof...(Values) == 0) {
+    complaints().emplace_back(format);
+  } else {
+    char line[256];
+    std::snprintf(line, sizeof line, format, values...);
+    complaints().emplace_back(line);
+  }
 }
 
 struct wq_config_t {};
