@@ -53,8 +53,7 @@ TEST_CASE("dropped by PX4, it registers again") {
 
 TEST_CASE("stop is refused while it has the motors; they get commands all the while") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   world.longest_gap_us = 0;
   CHECK(shell("stop") == PX4_ERROR);
   world.run(500);
@@ -65,8 +64,7 @@ TEST_CASE("stop is refused while it has the motors; they get commands all the wh
 
 TEST_CASE("stopped, it takes no topic with it: the motors are PX4's within 50 ms, the mode is gone") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   world.longest_gap_us = 0;
   SUBCASE("in the air, after another mode was selected") {
     world.nav_state = Px4World::hold;
@@ -99,8 +97,7 @@ TEST_CASE("stopped, it takes no topic with it: the motors are PX4's within 50 ms
 
 TEST_CASE("giving up it asks for what PX4 can grant, until it is heard; the motors wait 50 ms at most") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   world.longest_gap_us = 0;
   SUBCASE("an attitude that stops: Hold") {
     world.attitude_stops = true;
@@ -132,8 +129,7 @@ TEST_CASE("giving up it asks for what PX4 can grant, until it is heard; the moto
 
 TEST_CASE("nobody hears it for 300 ms: it asks again; a mode that PX4 does not grant is not asked for for ever") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   world.attitude_stops = true;
   SUBCASE("deaf") {
     world.deaf = true;
@@ -152,8 +148,7 @@ TEST_CASE("nobody hears it for 300 ms: it asks again; a mode that PX4 does not g
 
 TEST_CASE("selected, it alone writes to the motors, 30 ms after at the latest; selected once more, too") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   for (int i = 0; i < 2; ++i) {
     CHECK(world.by_others <= 30);
     world.by_others = world.by_module = 0;
@@ -229,8 +224,7 @@ TEST_CASE("rotors that are not the model's: it does not arm, and says why in one
 
 TEST_CASE("a parameter that changes in flight takes nothing from it") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   px4::parameter_values()["CA_ROTOR_COUNT"] = 6;
   uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
   update_pub.publish(parameter_update_s{});
@@ -284,8 +278,7 @@ TEST_CASE("propulsion: there and back again, over the whole range; a density tha
 
 TEST_CASE("the sample that the motors answer is the gyro's") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   CHECK(world.last.timestamp_sample == world.gyro_sample_us);
   CHECK(world.last.timestamp >= world.last.timestamp_sample);
   CHECK(std::isnan(world.last.control[4]));
@@ -294,8 +287,7 @@ TEST_CASE("the sample that the motors answer is the gyro's") {
 TEST_CASE("a GPS reset of 3 m and a heading reset are no steps") {
   Px4World world;
   world.sends_set_points = false;  // it holds its place
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   const actuator_motors_s before = world.last;
   world.local.x += 3, world.local.y -= 1;
   world.local.delta_xy[0] = 3, world.local.delta_xy[1] = -1;
@@ -325,8 +317,7 @@ TEST_CASE("without set points it holds the place where it was selected, not wher
 TEST_CASE("on the ground the motors idle; told to go up, thrust comes over a second") {
   Px4World world;
   world.landed = true;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   for (int i = 0; i < 4; ++i) CHECK(world.last.control[i] == doctest::Approx(0.02));
   world.set_point.position[2] = -2;
   world.run(300);
@@ -338,8 +329,7 @@ TEST_CASE("on the ground the motors idle; told to go up, thrust comes over a sec
 
 TEST_CASE("each step's record is published, and the settings once a second: what replay needs") {
   Px4World world;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   uORB::Subscription record_sub{ORB_ID(pinnquad_record)}, settings_sub{ORB_ID(pinnquad_settings)};
   pinnquad_record_s record{};
   static_cast<void>(record_sub.update(&record));
@@ -371,8 +361,7 @@ TEST_CASE("each step's record is published, and the settings once a second: what
 TEST_CASE("told not to, it publishes no record") {
   Px4World world;
   px4::parameter_values()["PQ_RECORD"] = 0;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
   pinnquad_record_s record{};
   static_cast<void>(record_sub.update(&record));
@@ -384,8 +373,7 @@ TEST_CASE("without a trajectory the sticks fly it along its heading; released, i
   Px4World world;
   world.sends_set_points = false;
   world.yaw = 0.5f;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
   uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
   pinnquad_record_s record{};
@@ -435,8 +423,7 @@ TEST_CASE("without a trajectory the sticks fly it along its heading; released, i
 TEST_CASE("a place to go to goes before the sticks, a trajectory before both") {
   Px4World world;
   world.sends_set_points = false;
-  REQUIRE(shell("start") == PX4_OK);
-  world.fly();
+  world.start_and_fly();
   uORB::Publication<goto_setpoint_s> goto_pub{ORB_ID(goto_setpoint)};
   uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
   uORB::Subscription record_sub{ORB_ID(pinnquad_record)};

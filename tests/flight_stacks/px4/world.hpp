@@ -99,6 +99,11 @@ class Px4World {
     REQUIRE(by_module > 100);
   }
 
+  void start_and_fly() {
+    REQUIRE(shell("start") == PX4_OK);
+    fly();
+  }
+
   void run(int ms) {
     for (int i = 0; i < ms; ++i) {
       World::now_us += 1000;
