@@ -15,6 +15,7 @@
 #include "pinnquad/inference/signed_sum_outputs.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/training/symmetric_answer.hpp"
 #include "pinnquad/training/symmetric_context.hpp"
 #include "pinnquad/training/training_data.hpp"
 #include "support/random_network.hpp"
@@ -119,4 +120,33 @@ TEST_CASE("the Jacobian of a symmetrised answer is what differences give") {
       CHECK(by_x[k * size + i] == doctest::Approx((y_more[k] - y_less[k]) / (2 * step)).epsilon(1e-6).scale(0.01));
     }
   }
+}
+
+TEST_CASE("a monotone answer of any weights as its own mirror image, with the slopes that it had") {
+  using Residual = Network<double, InputSize<residual_inputs<PhysicsFeatures>>, Dense<7>, Tanh, Dense<4>>;
+  constexpr std::size_t size = PhysicsFeatures::size;
+  std::mt19937_64 engine(4);
+  MonotoneAnswer<PhysicsFeatures, Residual> fitted;
+  fill_uniform(fitted.parameters, engine, 0.7);
+  double* const bounds = fitted.parameters.data() + MonotoneBase<PhysicsFeatures>::parameter_count;
+  for (int sum = 0; sum < 4; ++sum) {
+    bounds[sum] = -0.05 * (sum + 1);  // some of the answers are clipped
+    bounds[4 + sum] = 0.2;
+  }
+  const auto answer = own_mirror_image<PhysicsFeatures, Residual>(fitted);
+  for (int i = 0; i < 20; ++i) {
+    std::array<double, size> x{}, image{};
+    for (std::size_t k = 0; k < size; ++k) {
+      x[k] = uniform(engine, -1, 1);
+      image[k] = is_odd<PhysicsFeatures>(int(k)) ? -x[k] : x[k];
+    }
+    double y[4], of_image[4];
+    answer.forward(x.data(), y);
+    answer.forward(image.data(), of_image);
+    for (int sum = 0; sum < 4; ++sum) {
+      CHECK(of_image[sum] == doctest::Approx(sum % 2 == 1 ? -y[sum] : y[sum]).epsilon(1e-12).scale(1));
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    CHECK(answer.parameters[std::size_t(axis)] == fitted.parameters[std::size_t(axis)]);
 }

@@ -9,14 +9,17 @@
 #include <ensemble.hpp>
 #include <heads.hpp>
 #include <memory>
+#include <path_bounded.hpp>
 #include <residual.hpp>
 #include <ridge.hpp>
 #include <structured.hpp>
 #include <sum.hpp>
+#include <symmetric.hpp>
 #include <wrench.hpp>
 
 #include "outputs/setting.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/dynamics/mirror.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
@@ -220,7 +223,7 @@ TEST_CASE("a block of one meaning is none of another: six accelerations, a wrenc
 }
 
 TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumModel, EnsembleModel, HeadsModel,
-                   StructuredModel) {
+                   StructuredModel, PathBoundedModel, SymmetricModel) {
   const test::BlockBytes bytes(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
@@ -269,6 +272,42 @@ TEST_CASE("a structured model brings its certificate, and its block none that it
   CHECK(opened_with(first + 2, 0.0F) == Status::block_corrupt);
   CHECK(opened_with(first + 3, -1.0F) == Status::ok);  // of another feature
   CHECK(opened_with(bounds, 1e3F) == Status::block_corrupt);
+}
+
+TEST_CASE("one whose network is shown the angular acceleration, and one that is its own mirror image, are proven too") {
+  constexpr Certificate seeing = certificate_of<PathBoundedModel>(), symmetric = certificate_of<SymmetricModel>();
+  static_assert(seeing.proven() && symmetric.proven());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    CHECK(seeing.other_sums[axis] > 0);
+    CHECK(seeing.other_sums[axis] < seeing.slope[axis]);
+    CHECK(symmetric.other_sums[axis] == 0);
+  }
+  for (const std::size_t turned : {std::size_t(1), std::size_t(3)}) {
+    CHECK(SymmetricModel::residual_lower[turned] == -SymmetricModel::residual_upper[turned]);
+  }
+}
+
+TEST_CASE("the mirror image of a motion asks for the mirror image of the commands") {
+  const RotorMirror mirror = mirror_of(PaperQuadrotor::value<double>());
+  const InverseDynamics<SymmetricModel> symmetric;
+  const InverseDynamics<StructuredModel> other;
+  float difference = 0;
+  for (const auto& x : SymmetricModel::golden_features) {
+    auto image = x;
+    for (int i = 0; i < SymmetricModel::Features::size; ++i) {
+      if (is_odd<SymmetricModel::Features>(i)) image[std::size_t(i)] = -image[std::size_t(i)];
+    }
+    Commands<float> u{}, of_image{}, v{}, v_of_image{};
+    REQUIRE(symmetric.predict_features(x.data(), u) == Status::ok);
+    REQUIRE(symmetric.predict_features(image.data(), of_image) == Status::ok);
+    REQUIRE(other.predict_features(x.data(), v) == Status::ok);
+    REQUIRE(other.predict_features(image.data(), v_of_image) == Status::ok);
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      CHECK(of_image[rotor] == doctest::Approx(u[mirror.partner[rotor]]).epsilon(1e-6));
+      difference = std::fmax(difference, std::abs(v_of_image[rotor] - v[mirror.partner[rotor]]));
+    }
+  }
+  CHECK(difference > 1e-4F);  // one that was only trained to it differs
 }
 
 TEST_CASE("a formula and a network as a sum are that network's outputs on that formula; an ensemble is the mean") {

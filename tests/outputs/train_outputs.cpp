@@ -17,6 +17,10 @@
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
+#include "pinnquad/training/path_bounded_fit.hpp"
+#include "pinnquad/training/symmetric_answer.hpp"
+#include "pinnquad/training/symmetric_context.hpp"
+#include "pinnquad/training/symmetric_rows.hpp"
 #include "pinnquad/training/trainer.hpp"
 
 namespace {
@@ -123,25 +127,49 @@ void write_heads(const Flight& flight, const Trained& from, const std::string& f
   compose<Whole>(joined<Whole>({cut}), from, flight, file, "HeadsModel");
 }
 
-/// Monotone by construction: a base in closed form and a residual, whether it helps here or not.
-void write_structured(const Flight& flight, const std::string& file) {
-  using Surroundings = Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>;
-  using Residual = Mlp<float, InputSize<residual_inputs<PhysicsFeatures>>, Hidden<2, 20>, OutputSize<4>, Tanh>;
-  const RowSet training(flight, {0, flight.size() * 3 / 4}), validation(flight, {flight.size() * 3 / 4, flight.size()});
-  const auto context = make_context<Surroundings>(training);
-  std::mt19937_64 engine(5);
+using Structured = Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>;
+
+ResidualTraining short_training() {
   ResidualTraining how;
   how.epochs = 40;
-  const auto fit = fit_monotone<Residual>(context, training, validation, fit_monotone_base(context, training), how,
-                                          engine, [](int) { return true; });
-  const auto model = make_trained_model(fit.answer, context, training);
+  return how;
+}
+
+template <class Answer>
+void write_structured(const Answer& answer, const Structured& context, const RowSet& rows, const Flight& flight,
+                      const std::string& file, const std::string& name) {
+  const auto model = make_trained_model(answer, context, rows);
   using Model = std::decay_t<decltype(model)>;
   std::vector<typename Model::FeatureVector> golden;
   for (std::size_t i = 0; i < 4; ++i) {
     golden.push_back(sample_features<PhysicsFeatures, float>(flight[100 + 700 * i]));
   }
-  write_model_header(file, "StructuredModel", model, golden,
-                     {"simulated flight", content_hash(flight), training.size(), 5, how.epochs, "structured"});
+  write_model_header(file, name, model, golden,
+                     {"simulated flight", content_hash(flight), rows.size(), 5, short_training().epochs, "structured"});
+}
+
+/// Monotone by construction: a base in closed form and a residual, whether it helps here or not. Three of them: one that
+/// is shown no angular acceleration, the same as its own mirror image, one that is shown it.
+void write_structured(const Flight& flight, const std::string& folder) {
+  using Residual = Mlp<float, InputSize<residual_inputs<PhysicsFeatures>>, Hidden<2, 20>, OutputSize<4>, Tanh>;
+  using Seeing = Mlp<float, InputSize<PhysicsFeatures::size>, Hidden<2, 20>, OutputSize<4>, Tanh>;
+  const RowSet training(flight, {0, flight.size() * 3 / 4}), validation(flight, {flight.size() * 3 / 4, flight.size()});
+  const auto on = [](int) { return true; };
+  std::mt19937_64 engine(5);
+
+  const auto context = make_context<Structured>(training);
+  const AffineMap map = fit_monotone_base(context, training);
+  const auto fit = fit_monotone<Residual>(context, training, validation, map, short_training(), engine, on);
+  write_structured(fit.answer, context, training, flight, folder + "/structured.hpp", "StructuredModel");
+  const auto seeing = fit_path_bounded<Seeing>(context, training, validation, map, short_training(), engine, on);
+  write_structured(seeing.answer, context, training, flight, folder + "/path_bounded.hpp", "PathBoundedModel");
+
+  const SymmetricRows both(training, PaperQuadrotor::value<double>(), {true, false}, engine);
+  const auto of_both = context_of_mirror_images(make_context<Structured>(both.rows()));
+  const auto mirrored = fit_monotone<Residual>(of_both, both.rows(), validation,
+                                               fit_monotone_base(of_both, both.rows()), short_training(), engine, on);
+  write_structured(own_mirror_image<PhysicsFeatures, Residual>(mirrored.answer), of_both, both.rows(), flight,
+                   folder + "/symmetric.hpp", "SymmetricModel");
 }
 
 }  // namespace
@@ -162,7 +190,7 @@ int main(int count, char** arguments) {
     const auto residual =
         train<ResidualOutputs<LinearizedInverse>>(recorded.flight, folder, "residual.hpp", "ResidualModel");
     const auto direct = train<CommandOutputs>(recorded.flight, folder, "direct.hpp", "DirectModel");
-    write_structured(recorded.flight, folder + "/structured.hpp");
+    write_structured(recorded.flight, folder);
     write_ridge(recorded.flight, residual, folder + "/ridge.hpp");
     write_heads(recorded.flight, direct, folder + "/heads.hpp");
     using Part = Scaled<std::decay_t<decltype(residual.network)>>;

@@ -11,6 +11,8 @@
 #include "pinnquad/inference/axis_aligned.hpp"
 #include "pinnquad/inference/composition.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
+#include "pinnquad/inference/path_bound.hpp"
+#include "pinnquad/inference/symmetrised.hpp"
 
 namespace pinnquad::test {
 
@@ -44,6 +46,15 @@ struct InDouble<Scaled<Inner>> {
 template <class Scalar, int FeatureCount, int... First>
 struct InDouble<AxisAligned<Scalar, FeatureCount, First...>> {
   using type = AxisAligned<double, FeatureCount, First...>;
+};
+template <class Inner, int... Odd>
+struct InDouble<Symmetrised<Inner, Odd...>> {
+  using type = Symmetrised<InDoubleOf<Inner>, Odd...>;
+};
+/// It is Inner that it says; the bound of its paths is of floats.
+template <class Inner>
+struct InDouble<PathBounded<Inner>> {
+  using type = InDoubleOf<Inner>;
 };
 template <class Inner, int FeatureCount, int... First>
 struct InDouble<Withheld<Inner, FeatureCount, First...>> {

@@ -74,6 +74,7 @@ struct NetworkSpec {
   bool axis_aligned = false;  ///< of each three an output sees its own: pinnquad::AxisAligned
   bool bounded = false;       ///< lower and upper bounds of the outputs are its first parameters: pinnquad::Bounded
   bool path_bounded = false;  ///< it says that its path bound is to be asked: pinnquad::PathBounded
+  std::vector<int> turned;    ///< features that a mirror turns, where it is its own image: pinnquad::Symmetrised
 
   /// Features that all of it is shown.
   int shown() const { return inputs - 3 * static_cast<int>(threes.size()); }
@@ -126,15 +127,21 @@ inline std::optional<std::string_view> inside_of(std::string_view text, std::str
   return text.substr(name.size() + 1, text.size() - name.size() - 2);
 }
 
-/// "..., features, place, place, ..." from behind `comma` on: the features and the places of threes into the spec.
-/// False where it is something else, or the threes overlap.
-inline bool take_threes(std::string_view numbers, NetworkSpec& spec) {
+/// "number,number,..."; -1 where one is something else.
+inline std::vector<int> whole_numbers(std::string_view numbers) {
   std::vector<int> all;
   for (std::size_t begin = 0; begin <= numbers.size();) {
     const std::size_t end = std::min(numbers.find(',', begin), numbers.size());
     all.push_back(whole_number(numbers.substr(begin, end - begin), 0));
     begin = end + 1;
   }
+  return all;
+}
+
+/// "features,place,place,...": the features and the places of threes into the spec. False where it is something else, or
+/// the threes overlap.
+inline bool take_threes(std::string_view numbers, NetworkSpec& spec) {
+  const std::vector<int> all = whole_numbers(numbers);
   spec.inputs = all.front();
   spec.threes.assign(all.begin() + 1, all.end());
   int free_from = 0;
@@ -143,6 +150,23 @@ inline bool take_threes(std::string_view numbers, NetworkSpec& spec) {
     free_from = place + 3;
   }
   return !spec.threes.empty() && free_from <= spec.inputs && spec.shown() > 0;
+}
+
+/// The features that a mirror turns, of those that a network is shown, as places among all of them.
+inline std::vector<int> places_of_shown(const std::vector<int>& shown, const NetworkSpec& spec) {
+  std::vector<int> places;
+  for (int place : shown) {
+    for (const int three : spec.threes) place += place >= three ? 3 : 0;
+    places.push_back(place);
+  }
+  return places;
+}
+
+/// "Network<...>,number,..." : what it holds and the numbers; nothing where the text is something else.
+inline std::optional<std::pair<std::string_view, std::string_view>> network_and_numbers(std::string_view text) {
+  const std::size_t network = text.rfind('>');
+  if (network == std::string_view::npos || network + 1 >= text.size() || text[network + 1] != ',') return {};
+  return std::pair(text.substr(0, network + 1), text.substr(network + 2));
 }
 
 /// Dense layers, at most 3, and activations between them whose slope is from 0 to 1 (inference/path_bound.hpp).
@@ -181,18 +205,32 @@ inline std::optional<NetworkSpec> parse_network(const std::string& description) 
   }
   if (const auto inside = detail::inside_of(text, "pinnquad::PathBounded")) {
     std::optional<NetworkSpec> spec = parse_network(std::string(*inside));
-    if (!spec || spec->bounded || !spec->threes.empty() || spec->path_bounded || !detail::has_path_bound(*spec))
+    if (!spec || spec->bounded || !spec->threes.empty() || spec->path_bounded || !spec->turned.empty() ||
+        !detail::has_path_bound(*spec)) {
       return {};
+    }
     spec->path_bounded = true;
     return spec;
   }
   if (const auto inside = detail::inside_of(text, "pinnquad::Withheld")) {
-    const std::size_t network = inside->rfind('>');
-    if (network == std::string_view::npos || network + 1 >= inside->size() || (*inside)[network + 1] != ',') return {};
-    std::optional<NetworkSpec> spec = parse_network(std::string(inside->substr(0, network + 1)));
+    const auto parts = detail::network_and_numbers(*inside);
+    std::optional<NetworkSpec> spec = parts ? parse_network(std::string(parts->first)) : std::nullopt;
     if (!spec || spec->bounded || spec->path_bounded || !spec->threes.empty()) return {};
     const int shown = spec->inputs;
-    if (!detail::take_threes(inside->substr(network + 2), *spec) || spec->shown() != shown) return {};
+    if (!detail::take_threes(parts->second, *spec) || spec->shown() != shown) return {};
+    spec->turned = detail::places_of_shown(spec->turned, *spec);
+    return spec;
+  }
+  if (const auto inside = detail::inside_of(text, "pinnquad::Symmetrised")) {
+    const auto parts = detail::network_and_numbers(*inside);
+    std::optional<NetworkSpec> spec = parts ? parse_network(std::string(parts->first)) : std::nullopt;
+    if (!spec || spec->bounded || spec->path_bounded || !spec->threes.empty() || !spec->turned.empty() ||
+        spec->outputs() != 4) {
+      return {};
+    }
+    spec->turned = detail::whole_numbers(parts->second);
+    const auto no_feature = [&](int place) { return place < 0 || place >= spec->inputs; };
+    if (std::any_of(spec->turned.begin(), spec->turned.end(), no_feature)) return {};
     return spec;
   }
   if (const auto inside = detail::inside_of(text, "pinnquad::AxisAligned")) {
@@ -303,6 +341,24 @@ class RunTimeNetwork {
   /// the kink of a ReLU it is the derivative from below, 0, as in nn/jacobian.hpp.
   template <std::size_t Count>
   std::vector<std::array<Scalar, Count>> pushed_forward(std::vector<std::array<Scalar, Count>> x) const {
+    if (spec_.turned.empty()) return held(through_layers(std::move(x)));
+    std::vector<std::array<Scalar, Count>> image = x;
+    for (const int place : spec_.turned) {
+      for (Scalar& value : image[static_cast<std::size_t>(place)]) value = -value;
+    }
+    x = through_layers(std::move(x));
+    image = through_layers(std::move(image));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      for (std::size_t k = 0; k < Count; ++k) {
+        x[i][k] = Scalar(0.5) * (i % 2 == 0 ? x[i][k] + image[i][k] : x[i][k] - image[i][k]);
+      }
+    }
+    return held(std::move(x));
+  }
+
+ private:
+  template <std::size_t Count>
+  std::vector<std::array<Scalar, Count>> through_layers(std::vector<std::array<Scalar, Count>> x) const {
     const Scalar* own = parameters_.data();
     for (const LayerSpec& layer : spec_.layers) {
       if (layer.size == 0) {
@@ -331,6 +387,12 @@ class RunTimeNetwork {
       own = bias + (layer.has_bias ? rows : 0);
       x = std::move(y);
     }
+    return x;
+  }
+
+  /// Within the bounds, where it has some.
+  template <std::size_t Count>
+  std::vector<std::array<Scalar, Count>> held(std::vector<std::array<Scalar, Count>> x) const {
     for (std::size_t k = 0; k < bounds_.size(); ++k) {
       const auto [lower, upper] = bounds_[k];
       if (x[k][0] > lower && x[k][0] < upper) continue;
@@ -341,7 +403,6 @@ class RunTimeNetwork {
     return x;
   }
 
- private:
   NetworkSpec spec_;
   std::vector<std::array<Scalar, 2>> bounds_;  ///< of each output, where it has some
   std::vector<Scalar> parameters_;
