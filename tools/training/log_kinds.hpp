@@ -15,8 +15,8 @@ LogModelKind log_ridge_causal();
 LogModelKind log_ridge_centred();
 LogModelKind log_vanilla();
 LogModelKind log_physics_informed();
-LogModelKind log_ridge_residual();
-LogModelKind log_ridge_residual_causal();
-LogModelKind log_ridge_residual_centred();
+LogModelKind log_structured();
+LogModelKind log_structured_causal();
+LogModelKind log_structured_centred();
 
 }  // namespace programs

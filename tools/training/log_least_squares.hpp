@@ -9,12 +9,18 @@
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/identification/regression_sums.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/training/monotone_base.hpp"
 
 namespace programs {
 
 /// Ridge regression of standardised features and outputs, its penalty by leaving out each group in turn. Throws
 /// std::invalid_argument for no rows. One group alone: no penalty.
 pinnquad::AffineMap solved_ridge(const std::vector<pinnquad::RegressionSums>& groups);
+
+/// Of standardised features and signed sums: each sum sees its own angular acceleration alone, with a slope above 0
+/// (training/monotone_base.hpp); its penalty as above.
+pinnquad::AffineMap solved_monotone_ridge(const pinnquad::MonotoneShape& shape,
+                                          const std::vector<pinnquad::RegressionSums>& groups);
 
 /// Ordinary least squares.
 pinnquad::AffineMap solved_least_squares(const std::vector<pinnquad::RegressionSums>& groups);

@@ -41,8 +41,8 @@ struct LogModelKind {
   bool takes_validation = false;
 };
 
-/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, ridge_residual; ridge and
-/// ridge_residual also with "_causal" and "_centred" windows.
+/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, structured; ridge and
+/// structured also with "_causal" and "_centred" windows.
 /// Those that validation rows stop (vanilla, physics_informed) train on the training rows; those that choose by leaving out
 /// trajectories in turn have to be left nothing else.
 const std::vector<LogModelKind>& log_model_kinds();

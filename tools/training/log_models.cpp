@@ -13,9 +13,9 @@ const std::vector<LogModelKind>& log_model_kinds() {
                                                   log_ridge_centred(),
                                                   log_vanilla(),
                                                   log_physics_informed(),
-                                                  log_ridge_residual(),
-                                                  log_ridge_residual_causal(),
-                                                  log_ridge_residual_centred()};
+                                                  log_structured(),
+                                                  log_structured_causal(),
+                                                  log_structured_centred()};
   return kinds;
 }
 

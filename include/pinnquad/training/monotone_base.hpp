@@ -23,49 +23,65 @@ struct SlopeRule {
   double least_share = 0.01;
 };
 
-/// Of standardised features to standardised signed sums; each penalty by leaving out groups of rows. Of a window the
-/// slope of the present and the sum over all taps keep the rule; pinned is the sum. Throws std::invalid_argument for no
-/// rows, and for a rule whose slopes are not above 0.
+/// What a base is fitted by, but for the rows: the same for all feature sets, so that the equations are compiled once.
+struct MonotoneShape {
+  int inputs = 0;
+  std::vector<int> places;  ///< of each tap's angular acceleration among the features, the present first
+  std::vector<double> input_spread, output_spread;
+  AxisSlopes airframe_slopes{};  ///< hover_slopes()
+};
+
 template <class ContextType>
-AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows, const SlopeRule& rule = {}) {
+MonotoneShape monotone_shape(const ContextType& context) {
   using Features = typename ContextType::Features;
-  using Base = MonotoneBase<Features>;
   static_assert(is_signed_sums<typename ContextType::Outputs>,
                 "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, SignedSumOutputs>");
-  const AxisSlopes own = hover_slopes(context.template airframe<double>());
-  const std::vector<RegressionSums> groups = regression_sums(context, left_out_groups(rows));
+  MonotoneShape shape;
+  shape.inputs = Features::size;
+  MonotoneBase<Features>::Threes::each([&](int place, int) { shape.places.push_back(place); });
+  shape.input_spread.assign(context.input.spread.begin(), context.input.spread.end());
+  shape.output_spread.assign(context.output.spread.begin(), context.output.spread.end());
+  shape.airframe_slopes = hover_slopes(context.template airframe<double>());
+  return shape;
+}
+
+/// Of standardised features to standardised signed sums; each penalty by leaving out one of the groups in turn. Of a window
+/// the slope of the present and the sum over all taps keep the rule; pinned is the sum. Throws std::invalid_argument for no
+/// rows, and for a rule whose slopes are not above 0.
+inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector<RegressionSums>& groups,
+                                   const SlopeRule& rule = {}) {
   if (groups.empty()) throw std::invalid_argument("monotone base: expected rows with all features, found none");
   AffineMap all;
-  all.inputs = Features::size;
-  all.outputs = ContextType::output_count;
+  all.inputs = shape.inputs;
+  all.outputs = SignedSumOutputs::size;
   for (int output = 0; output < all.outputs; ++output) {
-    std::vector<bool> taken(static_cast<std::size_t>(Features::size), true);
+    std::vector<bool> taken(static_cast<std::size_t>(shape.inputs), true);
     std::vector<WeightBound> bounds;
     const int axis = output - 1;
-    Base::Threes::each([&](int place, int) {
+    for (const int place : shape.places) {
       for (int i = 0; i < 3; ++i) taken[static_cast<std::size_t>(place + i)] = i == axis;
-    });
+    }
     if (axis >= 0) {
       const auto of_axis = static_cast<std::size_t>(axis);
-      const double least = rule.least_share * own[of_axis];
+      const double least = rule.least_share * shape.airframe_slopes[of_axis];
       if (!(least > 0) || (rule.pinned && !((*rule.pinned)[of_axis] > least))) {
         throw std::invalid_argument(
             "monotone base: expected slopes above 0 and above the least share of the airframe's");
       }
       WeightBound present, held;
-      Base::Threes::each([&](int place, int tap) {
+      for (const int place : shape.places) {
         const auto feature = static_cast<std::size_t>(place + axis);
-        const double factor = context.output.spread[static_cast<std::size_t>(output)] / context.input.spread[feature];
-        if (tap == 0) present.terms.emplace_back(place + axis, factor);
+        const double factor = shape.output_spread[static_cast<std::size_t>(output)] / shape.input_spread[feature];
+        if (held.terms.empty()) present.terms.emplace_back(place + axis, factor);
         held.terms.emplace_back(place + axis, factor);
-      });
+      }
       present.least = held.least = least;
       if (rule.pinned) {
         held.pinned = true;
         held.least = (*rule.pinned)[of_axis];
       }
       bounds.push_back(held);
-      if (Base::taps > 1) bounds.push_back(present);
+      if (shape.places.size() > 1) bounds.push_back(present);
     }
     std::vector<RegressionSums> parts;
     for (const RegressionSums& group : groups) parts.push_back(group.of_output(output));
@@ -77,6 +93,12 @@ AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows, cons
     all.intercept.push_back(one.intercept.front());
   }
   return all;
+}
+
+/// The same of rows, in the groups of left_out_groups().
+template <class ContextType>
+AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows, const SlopeRule& rule = {}) {
+  return fit_monotone_base(monotone_shape(context), regression_sums(context, left_out_groups(rows)), rule);
 }
 
 /// A map that keeps the structure, as an answer.

@@ -157,10 +157,10 @@ int main(int count, char** arguments) {
   std::map<std::string, double> found;
   for (const programs::LogModelKind& kind : programs::log_model_kinds()) {
     const std::string key = kind.key;
-    const bool is_residual = key.rfind("ridge_residual", 0) == 0;
+    const bool is_structured = key.rfind("structured", 0) == 0;
     if (wanted == "ridge" && kind.seeded) continue;
-    if (wanted == "residual" && key != "ridge_residual_centred") continue;
-    if (wanted != "all" && is_residual && wanted != "residual") continue;
+    if (wanted == "residual" && key != "structured_centred") continue;
+    if (wanted != "all" && is_structured && wanted != "residual") continue;
     found[key] = rotate(dataset, kind);
   }
   const auto at_least = [&](const char* key, double least) {
@@ -169,7 +169,7 @@ int main(int count, char** arguments) {
     std::printf("%s: expected %.2f or more\n", key, least);
     return false;
   };
-  bool good = at_least("ridge_centred", asked_r_squared) && at_least("ridge_residual_centred", asked_r_squared);
+  bool good = at_least("ridge_centred", asked_r_squared) && at_least("structured_centred", asked_r_squared);
   // what every step of the ladder is worth: a constant knows nothing, the window is what the present instant lacks
   if (wanted != "residual") {
     good = good && found["constant"] < 0 && found["physics"] > found["constant"] &&

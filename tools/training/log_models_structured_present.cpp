@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "training/log_kinds.hpp"
-#include "training/log_residual.hpp"
+#include "training/log_structured.hpp"
 
 namespace programs {
 
-LogModelKind log_ridge_residual() {
-  return {"ridge_residual",
-          "ridge + residual network",
+LogModelKind log_structured() {
+  return {"structured",
+          "structured: monotone ridge + residual network",
           TimeReach::present,
           true,
           always_applicable,
-          fit_log_residual<TimeReach::present>,
+          fit_log_structured<TimeReach::present>,
           true};
 }
 
