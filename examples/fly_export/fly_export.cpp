@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Flies an exported model with nothing of the trainer: the flight headers, the exported one, and a program's edge.
 //   1. self test   2. replay of the test flight against what the trainer predicted   3. closed loop in the simulator
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <iterator>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "command_line/console.hpp"
@@ -33,6 +35,18 @@ struct ZeroedModel : Model {
   static constexpr std::array<Scalar, Model::parameters.size()> parameters{};
 };
 
+/// A model that is shown the altitude flies near the ground, where it was trained.
+constexpr bool knows_altitude = std::is_base_of_v<MotionInputsWithAltitude<Scalar>, Model::Inputs>;
+
+/// Numbers of a row before the commands: the motion, and the altitude.
+constexpr std::size_t asked_numbers = knows_altitude ? 17 : 16;
+
+/// Of a model that asks for it.
+template <class Inputs>
+void set_altitude([[maybe_unused]] Inputs& inputs, [[maybe_unused]] double altitude_m) noexcept {
+  if constexpr (knows_altitude) inputs.altitude_m = Scalar(altitude_m);
+}
+
 /// A row of the replay file, as `train` writes it.
 struct ReplayRow {
   Model::Inputs inputs;
@@ -48,13 +62,13 @@ std::vector<ReplayRow> read_replay(const std::string& path) {
   std::string magic;
   int version = 0, columns = 0;
   std::size_t rows = 0;
+  std::array<double, asked_numbers + 2 * rotor_count> v{};
   file >> magic >> version >> rows >> columns;
-  if (!file || magic != "pinnquad-replay" || version != 1 || columns != 24 || rows == 0) {
-    throw InputError(path, 1, 0, "'pinnquad-replay 1 <rows> 24'", "something else");
+  if (!file || magic != "pinnquad-replay" || version != 1 || columns != int(v.size()) || rows == 0) {
+    throw InputError(path, 1, 0, "'pinnquad-replay 1 <rows> " + std::to_string(v.size()) + "'", "something else");
   }
   std::vector<ReplayRow> result;
   for (std::size_t row = 0; row < rows; ++row) {
-    std::array<double, 24> v{};
     for (std::size_t i = 0; i < v.size(); ++i) {
       if (!(file >> v[i])) {
         throw InputError(path, row + 2, i + 1, "a number", file.eof() ? "the end of the file" : "something else");
@@ -69,9 +83,10 @@ std::vector<ReplayRow> read_replay(const std::string& path) {
       r.inputs.body_rates_rad_s[i] = Scalar(v[9 + k]);
     }
     r.inputs.attitude = {Scalar(v[12]), Scalar(v[13]), Scalar(v[14]), Scalar(v[15])};
+    set_altitude(r.inputs, v[16]);
     for (std::size_t i = 0; i < rotor_count; ++i) {
-      r.predicted[i] = v[16 + i];
-      r.flown[i] = v[20 + i];
+      r.predicted[i] = v[asked_numbers + i];
+      r.flown[i] = v[asked_numbers + rotor_count + i];
     }
     result.push_back(r);
   }
@@ -128,17 +143,52 @@ double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<Repl
   return best;
 }
 
-using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
+using Distant = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
+using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
+using Vehicle = std::conditional_t<knows_altitude, NearGround, Distant>;
+
+/// Height above the ground as an altimeter measures it: exactly, in the simulator.
+struct Altimeter {
+  double ground_z_m = 0;
+
+  void operator()(const State<double>& state, double, Model::Inputs& present) const noexcept {
+    set_altitude(present, ground_z_m - state.position_m[2]);
+  }
+};
+
+/// Largest entry that the envelope allows a feature either way; `none` where there is no such feature.
+double reach(const char* name, double none) {
+  for (std::size_t i = 0; i < Model::Features::names.size(); ++i) {
+    if (std::string(name) != Model::Features::names[i]) continue;
+    return std::min(static_cast<double>(Model::envelope_upper[i]), -static_cast<double>(Model::envelope_lower[i]));
+  }
+  return none;
+}
 
 /// A figure-eight that this airframe can fly: its sideways acceleration stays within 40 % of what thrust beyond hover allows.
+/// Near the ground it rises and sinks over most of the heights that the model was trained at, as slowly as its envelope asks for.
 FigureEight<double> trajectory_for(const Vehicle& vehicle) {
   FigureEight<double> eight;
   eight.center_m = {0, 0, -20};
+  constexpr double turn = 6.283185307179586;
   const double thrust_to_weight = vehicle.airframe().thrust_to_weight();
   const double sideways =
       standard_gravity_m_s2<double> * std::sqrt(std::max(0.01, thrust_to_weight * thrust_to_weight - 1));
+  if constexpr (knows_altitude) {
+    const auto lower = static_cast<double>(Model::envelope_lower.back());
+    const auto upper = static_cast<double>(Model::envelope_upper.back());
+    const double lowest = std::max(lower, 0.1);  // its margin reaches below the ground
+    eight.center_m[2] = vehicle.site().ground_z_m - (lowest + 0.45 * (upper - lowest));
+    eight.half_height_m = 0.35 * (upper - lowest);
+    eight.half_length_m = 1;
+    eight.half_width_m = 0.5;
+    constexpr double share = 0.5, no_limit = 1e3;  // of the envelope: the feedback adds to what is planned
+    eight.period_s = std::max({4.0, turn * eight.half_length_m / (share * reach("v_bx", no_limit)),
+                               turn * 2 * eight.half_width_m / (share * reach("v_by", no_limit)),
+                               turn * eight.half_height_m / (share * reach("v_bz", no_limit))});
+  }
   const double rate_limit = std::sqrt(0.4 * sideways / (4 * eight.half_width_m));
-  eight.period_s = std::max(eight.period_s, 6.283185307179586 / rate_limit);
+  eight.period_s = std::max(eight.period_s, turn / rate_limit);
   return eight;
 }
 
@@ -161,22 +211,44 @@ TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const Figu
 /// The closed loop. True if the export flew it, mostly by itself, and its weights were worth having.
 template <class Flown>
 bool closed_loop(const Flown& model) {
-  const Vehicle vehicle(airframe_value<Model::Vehicle, double>(), paper_site<double>(), {}, {});
+  const Vehicle vehicle(airframe_value<Model::Vehicle, double>(), paper_site<double>());
+  if (vehicle.status() != Status::ok) {
+    programs::complain("fly_export",
+                       std::string("this airframe can't be flown near the ground: ") + to_string(vehicle.status()));
+    return false;
+  }
   const FigureEight<double> trajectory = trajectory_for(vehicle);
   const AnalyticInverse<Vehicle> analytic(vehicle);
+  [[maybe_unused]] const Altimeter altimeter{vehicle.site().ground_z_m};
   HoverTrim<double> trim;
   if (hover_trim(vehicle, trajectory.center_m, trim) != Status::ok) return false;
   std::printf(
       "  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
       trajectory.period_s, TrackingPlan<double>{}.duration_s);
+  if constexpr (knows_altitude) {
+    const double middle = altimeter.ground_z_m - trajectory.center_m[2];
+    std::printf("               in ground effect, %.2f to %.2f m above the ground\n", middle - trajectory.half_height_m,
+                middle + trajectory.half_height_m);
+  }
   std::printf("  %-28s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "fell back to analytic");
   using Guard = Extend<TrainingGuard, Fallback<AnalyticInverse<Vehicle>>>;
   using Guarded = InverseDynamics<Flown, Guard>;
   using Zeroed = InverseDynamics<ZeroedModel, Guard>;
-  const auto exported = fly("export", vehicle, trajectory, NetworkInverse<Guarded>(Guarded(model, analytic)));
+  using Measured = std::conditional_t<knows_altitude, Altimeter, MotionAlone>;
+  const auto measured = [&] {
+    if constexpr (knows_altitude) return altimeter;
+    if constexpr (!knows_altitude) return MotionAlone{};
+  }();
+  const auto exported =
+      fly("export", vehicle, trajectory, NetworkInverse<Guarded, Measured>(Guarded(model, analytic), measured));
   fly("analytic inverse", vehicle, trajectory, analytic);
+  if constexpr (knows_altitude) {
+    fly("analytic, no ground effect", vehicle, trajectory,
+        AnalyticInverse<Distant>(Distant(vehicle.airframe(), vehicle.site(), {}, {})));
+  }
   fly("none (hover trim)", vehicle, trajectory, trim);
-  const auto zeroed = fly("export, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed>(Zeroed(analytic)));
+  const auto zeroed =
+      fly("export, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed, Measured>(Zeroed(analytic), measured));
   const double fallbacks = static_cast<double>(exported.fallback.fallbacks()) / exported.fallback.asked;
   if (fallbacks > fallback_limit) {
     std::printf("  the export declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,

@@ -12,6 +12,7 @@ models=(
   "1 tests/models/v2/crazyflie_tanh.hpp"
   "1 tests/models/v2/demo_quadrotor.hpp"
   "1 tests/models/v3/demo_quadrotor.hpp"
+  "0 tests/models/v3/near_ground_quadrotor.hpp"
   "2 tests/models/v3/own_racer.hpp"
   "2 tests/support/small_model.hpp"
 )

@@ -29,6 +29,22 @@ train --out one --loss vanilla
 cmp one/model.hpp default/model.hpp || fail "the structured model is another one beside one loss"
 cut -d, -f1 one/results.csv | uniq | diff - <(printf '%s\n' model linearized vanilla structured) || fail "trained: $(cut -d, -f1 one/results.csv)"
 
+# the altitude: not shown far from the ground, shown where the commands depend on it, or as asked; pinned slopes: the airframe's
+awk -F, -v OFS=, 'NR > 1 { for (u = 18; u <= 21; u++) $u = 0.2 + 0.6 * $u + 0.004 * ($17 - 20) } { print }' flight.csv >near.csv
+train --flight near.csv --out near --loss vanilla --block near/model.block
+grep -q '^      the structured model is shown the altitude: error on the validation rows with it [0-9.]*e-3, without [0-9.]*e-3$' said.txt || fail "said: $(cat said.txt)"
+grep -q 'pinnquad::InverseFeaturesWithAltitude;' near/model.hpp || fail "the model is not shown the altitude"
+for model in near/model.hpp near/model.block; do
+  "$pinnquad" certify "$model" >/dev/null || fail "certify does not prove $model"
+done
+"$pinnquad" evaluate near/model.hpp --flight near.csv --rows test --json >near.json || fail "evaluate does not judge a model with the altitude"
+[ "$(head -n 1 near/replay.txt)" = "pinnquad-replay 1 500 25" ] || fail "the replay: $(head -n 1 near/replay.txt)"
+train --flight near.csv --out near_no --loss vanilla --altitude no
+grep -q 'pinnquad::InverseFeatures;' near_no/model.hpp || fail "--altitude no shows it"
+train --out far_yes --loss vanilla --altitude yes --slopes pinned
+grep -q 'pinnquad::InverseFeaturesWithAltitude;' far_yes/model.hpp || fail "--altitude yes does not show it"
+grep -q "slope is not the airframe's" stderr.txt && fail "pinned slopes are doubted: $(cat stderr.txt)"
+
 # when the default is not to be trusted: limits in a header beside it, of 80 s of validation rows and more; nothing that stays
 grep -q '^  no limits .* at least 8 blocks' said.txt || fail "a short flight: $(cat said.txt)"
 "$pinnquad" fly --seed 3 --samples 9000 --out long.csv >/dev/null
@@ -57,6 +73,18 @@ for axis in "roll", "pitch", "yaw":
     slope, own = certificate["slope"][axis], certificate["airframe_slope"][axis]
     assert f"{axis:5} {slope:.6f} s^2/rad, {slope / own:.2f} of the airframe's own" in said, (axis, slope, own, said)
     assert default["models"]["structured"]["wrong_derivative_share"][axis]["mean"] == 0, axis
+near, near_no, far_yes = (read(folder) for folder in ("near", "near_no", "far_yes"))
+choice, far = near["altitude"], default["altitude"]
+assert choice["asked"] == "auto" and choice["taken"] is True, choice
+assert choice["validation_mae"] < 0.8 * choice["validation_mae_without"], choice
+assert far["taken"] is False and far["validation_mae"] > 0.8 * far["validation_mae_without"] > 0, far
+assert (near_no["altitude"]["taken"], far_yes["altitude"]["taken"], paper["altitude"]) == (False, True, None)
+judged = json.load(open("near.json"))
+mae = lambda report: report["models"]["structured"]["mean_absolute_error"]["mean"]
+assert abs(mae(near) - judged["mean_absolute_error"]) < 1e-6 and mae(near) < 0.5 * mae(near_no), (mae(near), mae(near_no))
+assert default["settings"]["structured"]["slopes"] == "learned" and far_yes["settings"]["structured"]["slopes"] == "pinned"
+for axis, own in far_yes["certificate"]["airframe_slope"].items():
+    assert abs(far_yes["certificate"]["slope"][axis] / own - 1) < 1e-6, (axis, far_yes["certificate"])
 assert list(map(lambda r: r["settings"]["recipe"], (paper, best, small))) == ["paper", "best", "small"]
 assert paper["settings"]["network"] == best["settings"]["network"] == "10 x 25 ReLU", paper["settings"]
 assert paper["settings"]["learning_rate"] == 1e-3 and paper["settings"]["learning_rate_schedule"] == "constant"
@@ -83,6 +111,7 @@ mkdir out
 refused() { expect_line 2 "$1" "$pinnquad" train --flight flight.csv --out out --epochs 1 --seeds 1 "${@:2}"; }
 refused "^train: no recipe named 'worst'; known: structured, paper, best, small$" --recipe worst
 refused "^train: --loss: no loss named 'mse'; known: vanilla, physics_informed, constant_weight, pearson$" --loss vanilla,mse
+refused "^train: --altitude and --slopes go with --recipe structured, not with paper$" --recipe paper --slopes pinned
 [ -z "$(ls -A out)" ] || fail "something was left in the output folder: $(ls -A out)"
 "$pinnquad" train --help >help.txt
-for word in structured paper best small vanilla physics_informed constant_weight pearson 130; do grep -q "$word" help.txt || fail "help does not name $word"; done
+for word in structured paper best small vanilla physics_informed constant_weight pearson altitude slopes pinned 130; do grep -q "$word" help.txt || fail "help does not name $word"; done

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The shipped structured model as feed-forward, in the demo's closed loop: as good as the formula, never asked outside its
-// envelope, and better than the formula of a vehicle whose parameters are wrong.
+// envelope, and better than the formula of a vehicle whose parameters are wrong. And one that knows the altitude, near the
+// ground.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -9,8 +10,10 @@
 
 #include "../examples/models/demo_quadrotor.hpp"
 #include "../examples/models/structured_quadrotor.hpp"
+#include "models/v3/near_ground_quadrotor.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/simulation/tracking.hpp"
@@ -76,4 +79,50 @@ TEST_CASE("better than the formula of a vehicle whose parameters are a tenth wro
     CAPTURE(what);
     CHECK(structured < 0.5 * flown(AnalyticInverse<Vehicle>(vehicle_of(told(wrong)))).rmse_m);
   }
+}
+
+namespace {
+
+using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
+
+/// What the model is told its altitude is.
+struct Altimeter {
+  bool stuck;  ///< at a height where the ground is hardly felt
+
+  void operator()(const State<double>& state, double, MotionInputsWithAltitude<float>& present) const noexcept {
+    const double height_m = paper_site<double>().ground_z_m - state.position_m[2];
+    present.altitude_m = stuck ? 1.2F : static_cast<float>(height_m);
+  }
+};
+
+/// A lying eight that rises and sinks between 0.2 and 1.2 m above the ground, in ground effect.
+template <class FeedForward>
+TrackingResult<double> flown_low(const FeedForward& feed_forward) {
+  const Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
+  const NearGround vehicle(airframe, paper_site<double>());
+  FigureEight<double> eight;
+  eight.center_m = {0, 0, vehicle.site().ground_z_m - 0.7};
+  eight.half_length_m = 1;
+  eight.half_width_m = eight.half_height_m = 0.5;
+  eight.period_s = 10.7;
+  const FlightController<double> controller(
+      {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
+  return track(vehicle, eight, controller, feed_forward);
+}
+
+}  // namespace
+
+TEST_CASE("near the ground a structured model that knows the altitude flies, and one that is not told it does not") {
+  using Guarded = InverseDynamics<NearGroundQuadModel, TrainingGuard>;
+  using Inverse = NetworkInverse<Guarded, Altimeter>;
+  const auto told = flown_low(Inverse(Guarded(), Altimeter{false})), stuck = flown_low(Inverse(Guarded(), {true}));
+  const auto formula = flown_low(AnalyticInverse<Vehicle>(vehicle_of(airframe_value<PaperQuadrotor, double>())));
+  REQUIRE(told.status == Status::ok);
+  CAPTURE(told.rmse_m);
+  CAPTURE(stuck.rmse_m);
+  CAPTURE(formula.rmse_m);
+  CHECK(told.fallback.fallbacks() == 0);
+  CHECK(told.rmse_m < 0.01);
+  CHECK(told.rmse_m < 0.2 * formula.rmse_m);  // which knows no ground effect
+  CHECK(told.rmse_m < 0.2 * stuck.rmse_m);
 }
