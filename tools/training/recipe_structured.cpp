@@ -65,7 +65,7 @@ std::vector<Training> train_structured(const TrainingPlan& plan) {
   std::atomic<long> epochs_done{0};
   const double all_epochs = static_cast<double>(jobs.size()) * plan.epochs;
   run_parallel(
-      "training " + std::to_string(jobs.size()) + " structured models", jobs.size(), plan.threads,
+      plan.silent ? "" : "training " + std::to_string(jobs.size()) + " structured models", jobs.size(), plan.threads,
       [&] { return static_cast<double>(epochs_done.load()) / all_epochs; },
       [&](std::size_t i) {
         const auto start = std::chrono::steady_clock::now();
