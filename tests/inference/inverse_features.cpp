@@ -35,3 +35,34 @@ TEST_CASE("InverseFeatures are PhysicsFeatures less the lateral specific force")
   in.velocity_m_s[0] = std::numeric_limits<double>::quiet_NaN();
   CHECK(InverseFeatures::check(in) == Status::not_finite);
 }
+
+TEST_CASE("with altitude: those of the motion, then the altitude; check() sees both") {
+  static_assert(is_feature_set<InverseFeaturesWithAltitude>);
+  static_assert(InverseFeaturesWithAltitude::size == InverseFeatures::size + 1);
+  static_assert(InverseFeaturesWithAltitude::angular_acceleration == InverseFeatures::angular_acceleration);
+  MotionInputsWithAltitude<float> in;
+  in.linear_acceleration_m_s2 = {1.1F, -0.7F, 2.3F};
+  in.velocity_m_s = {3, -2, 0.4F};
+  in.body_rates_rad_s = {0.6F, -0.9F, 0.2F};
+  in.attitude = from_euler<float>({0.3F, -0.4F, 1.9F});
+  in.altitude_m = 0.35F;
+  REQUIRE(InverseFeaturesWithAltitude::check(in) == Status::ok);
+  std::array<float, InverseFeaturesWithAltitude::size> x{};
+  std::array<float, InverseFeatures::size> of_motion{};
+  InverseFeaturesWithAltitude::extract(in, x.data());
+  InverseFeatures::extract<float>(static_cast<const MotionInputs<float>&>(in), of_motion.data());
+  for (std::size_t i = 0; i < of_motion.size(); ++i) {
+    CAPTURE(i);
+    CHECK(x[i] == of_motion[i]);
+    CHECK(std::string(InverseFeaturesWithAltitude::names[i]) == InverseFeatures::names[i]);
+    CHECK(std::string(InverseFeaturesWithAltitude::units[i]) == InverseFeatures::units[i]);
+  }
+  CHECK(x.back() == 0.35F);
+  CHECK(std::string(InverseFeaturesWithAltitude::names.back()) == "altitude");
+  CHECK(std::string(InverseFeaturesWithAltitude::units.back()) == "m");
+  in.altitude_m = std::numeric_limits<float>::infinity();
+  CHECK(InverseFeaturesWithAltitude::check(in) == Status::not_finite);
+  in.altitude_m = 0.35F;
+  in.attitude = {0, 2, 0, 0};
+  CHECK(InverseFeaturesWithAltitude::check(in) == Status::not_unit_quaternion);
+}

@@ -95,30 +95,6 @@ struct MotionInputsWithAltitude : MotionInputs<Scalar> {
   Scalar altitude_m{0};  ///< above ground, positive up
 };
 
-/// X of Sec. 4.1 with the altitude as the last of 17 entries: the paper's networks near the ground (Discussion 5).
-struct PaperFeaturesWithAltitude {
-  template <class Scalar>
-  using Inputs = MotionInputsWithAltitude<Scalar>;
-
-  static constexpr int size = PaperFeatures::size + 1;
-  static constexpr int angular_acceleration = PaperFeatures::angular_acceleration;
-  static constexpr std::array<const char*, size> names = detail::with_last(PaperFeatures::names, "altitude");
-  static constexpr std::array<const char*, size> units = detail::with_last(PaperFeatures::units, "m");
-
-  /// As PaperFeatures; `not_finite` for the altitude too.
-  template <class Scalar>
-  static Status check(const Inputs<Scalar>& in) noexcept {
-    return all_finite(&in.altitude_m, 1) ? PaperFeatures::check<Scalar>(in) : Status::not_finite;
-  }
-
-  /// Fills x[0..size). The inputs must have passed check().
-  template <class Scalar>
-  static void extract(const Inputs<Scalar>& in, Scalar* x) noexcept {
-    PaperFeatures::extract<Scalar>(in, x);
-    x[PaperFeatures::size] = in.altitude_m;
-  }
-};
-
 namespace detail {
 template <class T, class = void>
 struct IsFeatureSet : std::false_type {};
@@ -138,5 +114,44 @@ inline constexpr bool is_noexcept_feature_set = noexcept(T::check(std::declval<c
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
 inline constexpr bool is_feature_set = detail::IsFeatureSet<T>::value;
+
+/// A feature set of the motion alone, with the altitude as its last entry: a vehicle near the ground (Discussion 5).
+template <class FeatureSet>
+struct WithAltitude {
+  static_assert(is_feature_set<FeatureSet>,
+                "pinnquad: the argument of WithAltitude is not a feature set (inference/features.hpp)");
+  static_assert(std::is_same_v<typename FeatureSet::template Inputs<double>, MotionInputs<double>>,
+                "pinnquad: WithAltitude is around a feature set of MotionInputs; columns and windows go around it");
+
+  template <class Scalar>
+  using Inputs = MotionInputsWithAltitude<Scalar>;
+
+  static constexpr int size = FeatureSet::size + 1;
+  static constexpr int angular_acceleration = FeatureSet::angular_acceleration;
+  static constexpr auto names = detail::with_last(FeatureSet::names, "altitude");
+  static constexpr auto units = detail::with_last(FeatureSet::units, "m");
+
+  /// As FeatureSet; `not_finite` for the altitude too.
+  template <class Scalar>
+  static Status check(const MotionInputsWithAltitude<Scalar>& in) noexcept {
+    return all_finite(&in.altitude_m, 1) ? FeatureSet::check(motion(in)) : Status::not_finite;
+  }
+
+  /// Fills x[0..size). The inputs must have passed check().
+  template <class Scalar>
+  static void extract(const MotionInputsWithAltitude<Scalar>& in, Scalar* x) noexcept {
+    FeatureSet::extract(motion(in), x);
+    x[FeatureSet::size] = in.altitude_m;
+  }
+
+ private:
+  template <class Scalar>
+  static const MotionInputs<Scalar>& motion(const MotionInputsWithAltitude<Scalar>& in) noexcept {
+    return in;
+  }
+};
+
+/// X of Sec. 4.1 and the altitude, 17 entries: the paper's networks near the ground.
+struct PaperFeaturesWithAltitude : WithAltitude<PaperFeatures> {};
 
 }  // namespace pinnquad

@@ -27,4 +27,7 @@ struct InverseFeatures
     : Joined<ThrustAxisForce, AngularAcceleration, BodyRates, RateProducts, DownVector, BodyVelocity, SquaredVelocity> {
 };
 
+/// And the altitude: for a vehicle near the ground.
+struct InverseFeaturesWithAltitude : WithAltitude<InverseFeatures> {};
+
 }  // namespace pinnquad
