@@ -87,10 +87,12 @@ std::vector<BeyondModel> chosen_models(std::vector<BeyondModel> all, const std::
 // Trainings, a translation unit each: what is slow to compile.
 BeyondTraining train_network_on_physics(const BeyondTask& task);
 BeyondTraining train_match(const BeyondTask& task);
+BeyondTraining train_paper_with_altitude(const BeyondTask& task);
 BeyondTraining train_ridge(const BeyondTask& task);
 enum class Slopes { learnt, pinned };
 BeyondTraining train_structured_on_physics(const BeyondTask& task, Slopes slopes);
 BeyondTraining train_structured_on_ridge(const BeyondTask& task, Slopes slopes);
+BeyondTraining train_structured_with_altitude(const BeyondTask& task, Slopes slopes);
 BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes);
 BeyondTraining train_path_bounded(const BeyondTask& task, Slopes slopes);
 

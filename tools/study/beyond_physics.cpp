@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Unconstrained models: the paper's network on physics features and under the loss Match, and an affine map.
+// Unconstrained models: the paper's network on other features and under another loss, and an affine map.
 #include <random>
 
 #include "pinnquad/identification/ridge.hpp"
@@ -56,6 +56,11 @@ BeyondTraining train_match(const BeyondTask& task) {
   using namespace programs::best;
   using Loss = pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Match>;
   return train_network<pinnquad::PaperFeatures>(task, with_schedule(Loss{}, annealed_weight()), informed_decay);
+}
+
+BeyondTraining train_paper_with_altitude(const BeyondTask& task) {
+  using namespace programs::best;
+  return train_network<pinnquad::PaperFeaturesWithAltitude>(task, physics_loss(annealed_weight()), informed_decay);
 }
 
 BeyondTraining train_ridge(const BeyondTask& task) {

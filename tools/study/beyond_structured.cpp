@@ -61,6 +61,10 @@ BeyondTraining train_structured_on_ridge(const BeyondTask& task, Slopes slopes) 
   return train_monotone<pinnquad::InverseFeatures, pinnquad::SignedSumOutputs>(task, slopes);
 }
 
+BeyondTraining train_structured_with_altitude(const BeyondTask& task, Slopes slopes) {
+  return train_monotone<pinnquad::InverseFeaturesWithAltitude, pinnquad::SignedSumOutputs>(task, slopes);
+}
+
 BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes) {
   return train_monotone<pinnquad::PhysicsFeatures, pinnquad::SignedSumsOn<pinnquad::RigidBodyInverse>>(task, slopes);
 }
