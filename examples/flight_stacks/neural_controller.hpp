@@ -52,6 +52,10 @@ class NeuralController {
       pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<AbsurdCommands>, pinnquad::Fallback<Formula>>;
   using Inverse = pinnquad::InverseDynamics<View, Guard>;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
+  static_assert(
+      std::is_same_v<typename Shape::Features::template Inputs<float>, pinnquad::MotionInputs<float>>,
+      "this controller is told no altitude above ground and no extra column: it flies models that ask for the "
+      "motion alone (pinnquad train --altitude no)");
 
   explicit NeuralController(const AgeLimits& ages = {}, const OutputLimits& outputs = {},
                             const pinnquad::FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},

@@ -29,6 +29,7 @@ void each_schema(const Function& function) {
   function(PaperFeaturesWithAltitude{}, RotorSpeedOutputs{});
   function(PhysicsFeatures{}, SignedSumOutputs{});
   function(InverseFeatures{}, SignedSumOutputs{});
+  function(InverseFeaturesWithAltitude{}, SignedSumOutputs{});
 }
 
 /// What a user and an exported header say of a model, to narrow what is tried; empty: all that is known.
@@ -125,6 +126,7 @@ inline std::vector<std::string> candidate_answers(const Block& block) {
       uniform_networks(block.is_double, block.inputs, block.outputs, static_cast<long long>(block.parameter_count));
   add_monotone_answers<pinnquad::PhysicsFeatures>(block, all);
   add_monotone_answers<pinnquad::InverseFeatures>(block, all);
+  add_monotone_answers<pinnquad::InverseFeaturesWithAltitude>(block, all);
   return all;
 }
 

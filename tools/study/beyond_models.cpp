@@ -108,10 +108,13 @@ bool has_residual(const std::optional<pinnquad::Certificate>& certificate) {
 
 using Train = std::function<BeyondTraining(const BeyondTask&)>;
 
-Train by_recipe(programs::Recipe (*recipe)(), const programs::LossName& loss) {
-  return [recipe, loss](const BeyondTask& task) {
+Train by_recipe(programs::Recipe (*recipe)(), const programs::LossName& loss,
+                programs::AltitudeRule altitude = programs::AltitudeRule::by_validation, bool pinned_slopes = false) {
+  return [recipe, loss, altitude, pinned_slopes](const BeyondTask& task) {
     programs::TrainingPlan plan{task.airframe, false, task.split, {loss}, task.epochs, task.seed};
     plan.silent = true;
+    plan.altitude = altitude;
+    plan.pinned_slopes = pinned_slopes;
     BeyondTraining result;
     for (const programs::Training& training : recipe().train(plan)) {
       result.model = std::make_shared<JudgedNetwork>(training.network);
@@ -132,17 +135,19 @@ Train on_images(const Train& train, const pinnquad::Symmetries& which) {
   };
 }
 
-template <BeyondTraining (*Train)(const BeyondTask&, Slopes)>
-std::function<BeyondTraining(const BeyondTask&)> with(Slopes slopes) {
-  return [slopes](const BeyondTask& task) { return Train(task, slopes); };
+Train on_rigid_body(Slopes slopes) {
+  return [slopes](const BeyondTask& task) { return train_structured_on_rigid_body(task, slopes); };
 }
 
 }  // namespace
 
 std::vector<BeyondModel> beyond_models() {
-  using programs::best_recipe, programs::structured_recipe;
+  using programs::AltitudeRule, programs::best_recipe, programs::structured_recipe;
   const Train vanilla = by_recipe(best_recipe, programs::vanilla);
-  const Train structured = by_recipe(structured_recipe, programs::structured);
+  const auto structured = [](AltitudeRule altitude, bool pinned_slopes = false) {
+    return by_recipe(structured_recipe, programs::structured, altitude, pinned_slopes);
+  };
+  const Train shipped = structured(AltitudeRule::by_validation);
   constexpr pinnquad::Symmetries mirrored{true, false}, turned{true, true};
   return {
       {"none", "commands of the hover, whatever is asked", true, false, evaluate_none},
@@ -160,21 +165,19 @@ std::vector<BeyondModel> beyond_models() {
        train_network_on_physics},
       {"ridge", "affine ridge on the structured model's features, no network", false, false, train_ridge},
       {"structured", "what `train` exports: ridge, slopes above 0, 2 x 32 ReLU without angular acceleration", true,
-       true, structured},
-      {"structured_altitude", "structured, shown the altitude whatever the validation rows say", true, true,
-       with<train_structured_with_altitude>(Slopes::learnt)},
-      {"structured_mirrored", "structured on rows and their mirror images", true, true,
-       on_images(structured, mirrored)},
-      {"structured_physics", "structured with all three parts of the specific force", true, true,
-       with<train_structured_on_physics>(Slopes::learnt)},
+       true, shipped},
+      {"structured_no_altitude", "the same, never shown the altitude", true, true, structured(AltitudeRule::no)},
+      {"structured_altitude", "the same, always shown the altitude", true, true, structured(AltitudeRule::yes)},
       {"structured_pinned", "structured, slopes the airframe's", true, true,
-       with<train_structured_on_ridge>(Slopes::pinned)},
+       structured(AltitudeRule::by_validation, true)},
+      {"structured_mirrored", "structured on rows and their mirror images", true, true, on_images(shipped, mirrored)},
+      {"structured_physics", "structured with all three parts of the specific force, no altitude", true, true,
+       train_structured_on_physics},
       {"structured_rigid", "structured_physics, the ridge on the rigid body's inverse", true, true,
-       with<train_structured_on_rigid_body>(Slopes::learnt)},
-      {"structured_rigid_pinned", "the same, slopes the airframe's", true, true,
-       with<train_structured_on_rigid_body>(Slopes::pinned)},
-      {"path_bounded", "structured, the network shown the angular acceleration, its paths bounded", true, true,
-       with<train_path_bounded>(Slopes::learnt)},
+       on_rigid_body(Slopes::learnt)},
+      {"structured_rigid_pinned", "the same, slopes the airframe's", true, true, on_rigid_body(Slopes::pinned)},
+      {"path_bounded", "structured, the network shown the angular acceleration, its paths bounded, no altitude", true,
+       true, train_path_bounded},
   };
 }
 

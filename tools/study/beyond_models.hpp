@@ -89,11 +89,9 @@ BeyondTraining train_network_on_physics(const BeyondTask& task);
 BeyondTraining train_match(const BeyondTask& task);
 BeyondTraining train_paper_with_altitude(const BeyondTask& task);
 BeyondTraining train_ridge(const BeyondTask& task);
+BeyondTraining train_structured_on_physics(const BeyondTask& task);
 enum class Slopes { learnt, pinned };
-BeyondTraining train_structured_on_physics(const BeyondTask& task, Slopes slopes);
-BeyondTraining train_structured_on_ridge(const BeyondTask& task, Slopes slopes);
-BeyondTraining train_structured_with_altitude(const BeyondTask& task, Slopes slopes);
 BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes);
-BeyondTraining train_path_bounded(const BeyondTask& task, Slopes slopes);
+BeyondTraining train_path_bounded(const BeyondTask& task);
 
 }  // namespace study

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Models that are monotone by construction (training/monotone_fit.hpp): on a ridge, and on the rigid body's inverse.
+// Models that are monotone by construction (training/monotone_fit.hpp) and no recipe's: with other features, on the rigid
+// body's inverse, with a network that is shown the angular acceleration.
 #include <random>
 
 #include "pinnquad/inference/inverse_features.hpp"
@@ -41,8 +42,9 @@ using Residual =
     pinnquad::Mlp<float, pinnquad::InputSize<Inputs>, pinnquad::Hidden<2, 32>, pinnquad::OutputSize<4>, pinnquad::Relu>;
 
 /// A network that is shown no angular acceleration.
-template <class Features, class Outputs>
+template <class Outputs>
 BeyondTraining train_monotone(const BeyondTask& task, Slopes slopes) {
+  using Features = pinnquad::PhysicsFeatures;
   using Network = Residual<pinnquad::residual_inputs<Features>>;
   return train_structured<Features, Outputs, pinnquad::MonotoneResidual<Features, Network>>(
       task, slopes, [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
@@ -53,27 +55,20 @@ BeyondTraining train_monotone(const BeyondTask& task, Slopes slopes) {
 
 }  // namespace
 
-BeyondTraining train_structured_on_physics(const BeyondTask& task, Slopes slopes) {
-  return train_monotone<pinnquad::PhysicsFeatures, pinnquad::SignedSumOutputs>(task, slopes);
-}
-
-BeyondTraining train_structured_on_ridge(const BeyondTask& task, Slopes slopes) {
-  return train_monotone<pinnquad::InverseFeatures, pinnquad::SignedSumOutputs>(task, slopes);
-}
-
-BeyondTraining train_structured_with_altitude(const BeyondTask& task, Slopes slopes) {
-  return train_monotone<pinnquad::InverseFeaturesWithAltitude, pinnquad::SignedSumOutputs>(task, slopes);
+BeyondTraining train_structured_on_physics(const BeyondTask& task) {
+  return train_monotone<pinnquad::SignedSumOutputs>(task, Slopes::learnt);
 }
 
 BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes) {
-  return train_monotone<pinnquad::PhysicsFeatures, pinnquad::SignedSumsOn<pinnquad::RigidBodyInverse>>(task, slopes);
+  return train_monotone<pinnquad::SignedSumsOn<pinnquad::RigidBodyInverse>>(task, slopes);
 }
 
-BeyondTraining train_path_bounded(const BeyondTask& task, Slopes slopes) {
+BeyondTraining train_path_bounded(const BeyondTask& task) {
   using Features = pinnquad::InverseFeatures;
   using Network = Residual<Features::size>;
   return train_structured<Features, pinnquad::SignedSumOutputs, pinnquad::Bounded<pinnquad::PathBounded<Network>>>(
-      task, slopes, [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
+      task, Slopes::learnt,
+      [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
         return pinnquad::fit_path_bounded<Network>(context, task.split.train, task.split.validation, map, how, engine,
                                                    goes_on);
       });

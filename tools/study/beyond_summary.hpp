@@ -126,8 +126,8 @@ inline const std::array<BeyondTable, 2>& beyond_tables() {
        {"eight_rmse_m",
         {{"eight, cm", "eight_rmse_m", false, false, 100, 2},
          {"declined, %", "eight_declined_share", false, false, 100, 1},
-         {"fast eight, cm", "fast_eight_rmse_m", false, false, 100, 2},
-         {"declined, %", "fast_eight_declined_share", false, false, 100, 1},
+         {"yaw eight, cm", "yaw_eight_rmse_m", false, false, 100, 2},
+         {"declined, %", "yaw_eight_declined_share", false, false, 100, 1},
          {"circle, cm", "circle_rmse_m", false, false, 100, 2},
          {"declined, %", "circle_declined_share", false, false, 100, 1}}}}};
   return tables;

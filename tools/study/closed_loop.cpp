@@ -68,7 +68,7 @@ LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<do
   FigureEight<double> eight;
   eight.center_m = center_m;
   fly(0, eight);
-  eight.period_s = 5.5;
+  eight.period_s = 7;
   eight.yaw_amplitude_rad = 0.5;
   fly(1, eight);
   Circle<double> circle;

@@ -11,8 +11,9 @@
 
 namespace study {
 
-/// What is flown: the demo's figure-eight (4.8 m/s), one of 6.5 m/s whose nose swings, a circle (4.2 m/s); 30 s each, calm air.
-inline constexpr std::array<const char*, 3> loop_trajectories = {"eight", "fast_eight", "circle"};
+/// What is flown: the demo's figure-eight (4.8 m/s), one of 5.1 m/s whose nose swings by 0.5 rad, a circle (4.2 m/s); 30 s
+/// each, calm air.
+inline constexpr std::array<const char*, 3> loop_trajectories = {"eight", "yaw_eight", "circle"};
 
 /// Of each trajectory; NaN where none was flown, or the flight ended early.
 struct LoopFigures {

@@ -21,8 +21,11 @@ inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes,
   for (std::size_t axis = 0; axis < slopes.size(); ++axis) {
     const double ratio = slopes[axis] / own[axis];
     if (ratio >= least && ratio <= most) continue;
-    doubts.push_back(std::string("the ") + axis_names[axis] +
-                     " slope is not the airframe's: trained on quiet or noisy flights, or for another airframe");
+    doubts.push_back(
+        std::string("the ") + axis_names[axis] +
+        " slope is not the airframe's: trained on quiet or noisy flights, on a log with rotor lag or latency "
+        "in it, or for another airframe; train --slopes pinned takes the airframe's slope in hover instead "
+        "of learning one");
   }
   return doubts;
 }

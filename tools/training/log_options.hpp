@@ -49,7 +49,7 @@ inline void require_one_source(const CLI::App& line) {
   }
   if (count == 0) refuse("--flight, --dataset or --log is required");
   if (count > 1) refuse(sources + " can't be given together: expected one of them");
-  for (const char* of_flights : {"--recipe", "--loss"}) {
+  for (const char* of_flights : {"--recipe", "--loss", "--altitude", "--slopes"}) {
     if (given(of_flights) && !given("--flight"))
       refuse(std::string(of_flights) + " goes with --flight, not with " + sources);
   }

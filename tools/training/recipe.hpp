@@ -23,6 +23,13 @@
 
 namespace programs {
 
+/// Whether the recipe structured shows its model the altitude above ground.
+enum class AltitudeRule {
+  by_validation,  ///< where the validation rows gain much
+  yes,
+  no
+};
+
 /// What is to be trained, on what.
 struct TrainingPlan {
   pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;
@@ -33,7 +40,9 @@ struct TrainingPlan {
   std::uint64_t first_seed = 1;
   int seeds = 1;
   unsigned threads = 1;
-  bool silent = false;  ///< no progress line: whoever asked for it has one
+  bool silent = false;                                  ///< no progress line: whoever asked for it has one
+  AltitudeRule altitude = AltitudeRule::by_validation;  ///< of the recipe structured, as what follows
+  bool pinned_slopes = false;                           ///< to the airframe's in hover; false: learnt
 };
 
 /// A finished training.
@@ -42,6 +51,7 @@ struct Training {
   std::uint64_t seed = 0;
   double training_s = 0;
   std::shared_ptr<const TrainedNetwork> network;
+  nlohmann::json altitude = nullptr;  ///< how it was chosen whether it is shown the altitude, for report.json
 };
 
 struct Recipe {
@@ -55,8 +65,9 @@ struct Recipe {
   std::vector<LossName> besides{};    ///< what it trains beside the losses that are asked for
   std::string besides_in_words = {};  ///< "structured: ..."; empty where there is nothing
   /// Features of its models that do nothing in the training rows.
-  std::vector<std::string> (*still_features)(const pinnquad::RowSet&) =
-      pinnquad::still_features<pinnquad::PaperFeatures>;
+  std::vector<std::string> (*still_features)(const TrainingPlan&) = [](const TrainingPlan& plan) {
+    return pinnquad::still_features<pinnquad::PaperFeatures>(plan.split.train);
+  };
 };
 
 Recipe paper_recipe();

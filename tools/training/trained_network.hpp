@@ -46,8 +46,9 @@ class TrainedNetwork {
   virtual std::vector<unsigned char> block(const pinnquad::RowSet& training,
                                            const pinnquad::Provenance& provenance) const = 0;
   /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
-  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), predicted u (4), flown u (4). Of a feature
-  /// set that asks for more than a motion "pinnquad-replay-features", and X in the place of the first 16.
+  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the feature set asks for it,
+  /// predicted u (4), flown u (4). Of a feature set that asks for more "pinnquad-replay-features", and X in the place of the
+  /// first 16.
   virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
   /// Writes `struct <name>Trust`, when it is not to be trusted, into a header that is to follow the model's (docs/trust.md);
   /// false, and nothing, of a kind that does not know. Throws std::invalid_argument for validation rows that are too few.
@@ -96,7 +97,9 @@ class NetworkOfModel : public TrainedNetwork {
   }
   void write_replay(const std::string& path, const pinnquad::RowSet& rows) const override {
     using Inputs = typename Model::Features::template Inputs<typename Model::Scalar>;
-    constexpr bool asks_for_motion = std::is_same_v<Inputs, pinnquad::MotionInputs<typename Model::Scalar>>;
+    constexpr bool with_altitude = std::is_same_v<Inputs, pinnquad::MotionInputsWithAltitude<typename Model::Scalar>>;
+    constexpr bool asks_for_motion =
+        with_altitude || std::is_same_v<Inputs, pinnquad::MotionInputs<typename Model::Scalar>>;
     std::size_t count = 0;
     std::string lines, line;
     const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + pinnquad::number_text(value); };
@@ -111,6 +114,7 @@ class NetworkOfModel : public TrainedNetwork {
             }
             for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z})
               add(static_cast<double>(v));
+            if constexpr (with_altitude) add(static_cast<double>(in.altitude_m));
           } else {
             for (const auto v : x) add(static_cast<double>(v));
           }
@@ -119,7 +123,8 @@ class NetworkOfModel : public TrainedNetwork {
           lines += line + '\n';
           ++count;
         });
-    constexpr int numbers = (asks_for_motion ? 16 : Model::Features::size) + 2 * pinnquad::rotor_count;
+    constexpr int asked = with_altitude ? 17 : asks_for_motion ? 16 : Model::Features::size;
+    constexpr int numbers = asked + 2 * pinnquad::rotor_count;
     pinnquad::AtomicFile file(path);
     file.stream() << (asks_for_motion ? "pinnquad-replay 1 " : "pinnquad-replay-features 1 ") << count << ' ' << numbers
                   << '\n'

@@ -57,7 +57,8 @@ class TrainingReport {
     for (const LossName& loss : losses_) settings_["losses"][loss.key] = loss.words;
     settings_.update(described(dataset, plan.split));
     more_["warnings"] = nlohmann::json::array();
-    more_["certificate"] = nullptr;
+    more_["certificate"] = more_["altitude"] = nullptr;
+    if (is_structured(losses_.back())) settings_["structured"]["slopes"] = plan.pinned_slopes ? "pinned" : "learned";
   }
 
   /// What is wrong but no reason to stop: told on stderr too.
@@ -72,6 +73,8 @@ class TrainingReport {
     more_["models"][linear_name] = figures_over_seeds(results, linear_name);
     for (const LossName& loss : losses_) more_["models"][loss.key] = figures_over_seeds(results, loss.title);
   }
+  /// Of the structured models.
+  void altitude(const nlohmann::json& choice) { more_["altitude"] = choice; }
   void best(const Result& result, const pinnquad::Verdict& verdict, bool may_be_exported) {
     verdict_ = {{"model", result.model},
                 {"seed", result.seed},

@@ -32,10 +32,15 @@ struct AxisAligned : AnswerBase<AxisAligned<ScalarType, FeatureCount, First...>,
   static constexpr int intercepts = weights + 4 * Threes::others;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    Scalar seen[Threes::others];
-    Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { seen[n] = x[feature]; });
-    multiply_row_major<4, Threes::others>(parameters + weights, parameters + intercepts,
-                                          static_cast<const Scalar*>(seen), y);
+    if constexpr (Threes::others <= detail::held_inputs) {  // read once: no copy on the stack
+      detail::multiply_held<4, Threes::others>(parameters + weights, Threes::others, parameters + intercepts,
+                                               typename Threes::template InPlace<Scalar>{x}, y, detail::Unchanged{});
+    } else {
+      Scalar seen[Threes::others];
+      Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { seen[n] = x[feature]; });
+      multiply_row_major<4, Threes::others>(parameters + weights, parameters + intercepts,
+                                            static_cast<const Scalar*>(seen), y);
+    }
     Threes::each([&](int place, int tap) PINNQUAD_INLINE_LAMBDA {
       for (int axis = 0; axis < 3; ++axis) {
         y[1 + axis] = multiply_add(parameters[slopes + 3 * tap + axis], x[place + axis], y[1 + axis]);

@@ -52,10 +52,8 @@ struct Sum : AnswerBase<Sum<First, Second>, typename First::Scalar, First::input
   using Sum::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    Scalar other[Second::outputs];
-    First::forward(parameters, x, y);
-    Second::forward(parameters + First::parameter_count, x, static_cast<Scalar*>(other));
-    for (int i = 0; i < Second::outputs; ++i) y[i] += other[i];
+    Second::forward(parameters + First::parameter_count, x, y);
+    add_first(parameters, x, y);
   }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar other[Second::outputs], slopes[Second::outputs * Second::inputs];
@@ -64,6 +62,14 @@ struct Sum : AnswerBase<Sum<First, Second>, typename First::Scalar, First::input
                             static_cast<Scalar*>(slopes));
     for (int i = 0; i < Second::outputs; ++i) y[i] += other[i];
     for (int i = 0; i < Second::outputs * Second::inputs; ++i) by_x[i] += slopes[i];
+  }
+
+ private:
+  /// Out of line: its numbers are not on the stack beside a second answer that needs much of it.
+  static PINNQUAD_NOINLINE void add_first(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Scalar one[First::outputs];
+    First::forward(parameters, x, static_cast<Scalar*>(one));
+    for (int i = 0; i < First::outputs; ++i) y[i] += one[i];
   }
 };
 

@@ -164,6 +164,13 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
                   [this](const Scalar* standardised, Scalar* made)
                       PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }
+  /// The same, and x is overwritten: less of the stack.
+  PINNQUAD_ALWAYS_INLINE void evaluate_over(Scalar* x, Scalar* commands) const noexcept {
+    Scalar outputs[Network::outputs] = {};
+    Pipeline::run_over(Numbers::scales(model()), x, outputs, commands,
+                       [this](const Scalar* standardised, Scalar* made)
+                           PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
+  }
 
   /// True if every feature lies in what the model was trained on, margin included; false for NaN, under -ffast-math too.
   PINNQUAD_ALWAYS_INLINE bool inside_envelope(const Scalar* x) const noexcept {
@@ -229,11 +236,12 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     }
     Scalar x[Features::size];
     Features::extract(inputs, x);
-    return ask_network(x, commands, report);
+    return ask_network(static_cast<Scalar*>(x), commands, report);
   }
 
-  template <class ReportType>
-  PINNQUAD_ALWAYS_INLINE Status ask_network(const Scalar* x, Scalar* commands, ReportType& report) const noexcept {
+  /// `Value`: Scalar, or const Scalar of features that must stay.
+  template <class Value, class ReportType>
+  PINNQUAD_ALWAYS_INLINE Status ask_network(Value* x, Scalar* commands, ReportType& report) const noexcept {
     if constexpr (reports<ReportType>) measure(x, report);
     if constexpr (Guard::refuses_outside_envelope) {
       if (!inside_envelope(x)) return Status::outside_envelope;
@@ -246,10 +254,14 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
       moved = clamp(x, nearest);
       if constexpr (reports<ReportType>) report.features_clamped = moved;
       if (!near_enough(nearest, report)) return Status::outside_distribution;
-      evaluate(nearest, commands);
+      evaluate_over(nearest, commands);
     } else {
       if (!near_enough(x, report)) return Status::outside_distribution;
-      evaluate(x, commands);
+      if constexpr (std::is_const_v<Value>) {
+        evaluate(x, commands);
+      } else {
+        evaluate_over(x, commands);
+      }
     }
     const Status checked = Guard::check_commands(commands);
     if constexpr (reports<ReportType>) report.commands_clipped = checked == Status::limited;

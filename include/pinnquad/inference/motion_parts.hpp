@@ -11,7 +11,8 @@ namespace pinnquad {
 
 namespace detail {
 
-/// A part of three features of a motion: everything but what `Part::of(inputs)` gives.
+/// A part of three features of a motion: everything but `extract(inputs, x)`, which fills x[0..3) of inputs that have passed
+/// check(): number by number, for a vector in between would lie on the stack beside the network's numbers.
 template <class Part>
 struct MotionPart {
   template <class Scalar>
@@ -24,13 +25,13 @@ struct MotionPart {
   static Status check(const MotionInputs<Scalar>& in) noexcept {
     return PaperFeatures::check<Scalar>(in);
   }
-  /// Fills x[0..3). The inputs must have passed check().
-  template <class Scalar>
-  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
-    const Vector3<Scalar> value = Part::template of<Scalar>(in);
-    for (int i = 0; i < 3; ++i) x[i] = value[i];
-  }
 };
+
+/// x[0..3) = v.
+template <class Scalar>
+void write_vector(const Vector3<Scalar>& v, Scalar* x) noexcept {
+  for (int i = 0; i < 3; ++i) x[i] = v[i];
+}
 
 template <class Part>
 inline constexpr bool is_motion_part = std::is_base_of_v<MotionPart<Part>, Part>;
@@ -49,6 +50,10 @@ struct SpecificForce : detail::MotionPart<SpecificForce> {
     const Vector3<Scalar> down = world_down_axis(in.attitude);
     return in.linear_acceleration_m_s2 + turning - standard_gravity_m_s2<Scalar> * down;
   }
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector<Scalar>(of<Scalar>(in), x);
+  }
 };
 
 struct AngularAcceleration : detail::MotionPart<AngularAcceleration> {
@@ -57,8 +62,8 @@ struct AngularAcceleration : detail::MotionPart<AngularAcceleration> {
   static constexpr std::array<const char*, 3> units = {"rad/s^2", "rad/s^2", "rad/s^2"};
 
   template <class Scalar>
-  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
-    return in.angular_acceleration_rad_s2;
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector(in.angular_acceleration_rad_s2, x);
   }
 };
 
@@ -67,8 +72,8 @@ struct BodyRates : detail::MotionPart<BodyRates> {
   static constexpr std::array<const char*, 3> units = {"rad/s", "rad/s", "rad/s"};
 
   template <class Scalar>
-  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
-    return in.body_rates_rad_s;
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector(in.body_rates_rad_s, x);
   }
 };
 
@@ -80,9 +85,11 @@ struct RateProducts : detail::MotionPart<RateProducts> {
   static constexpr std::array<const char*, 3> units = {"rad^2/s^2", "rad^2/s^2", "rad^2/s^2"};
 
   template <class Scalar>
-  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
     const Vector3<Scalar>& w = in.body_rates_rad_s;
-    return Vector3<Scalar>(w[1] * w[2], w[2] * w[0], w[0] * w[1]);
+    x[0] = w[1] * w[2];
+    x[1] = w[2] * w[0];
+    x[2] = w[0] * w[1];
   }
 };
 
@@ -92,8 +99,8 @@ struct BodyVelocity : detail::MotionPart<BodyVelocity> {
   static constexpr std::array<const char*, 3> units = {"m/s", "m/s", "m/s"};
 
   template <class Scalar>
-  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
-    return in.velocity_m_s;
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector(in.velocity_m_s, x);
   }
 };
 
@@ -103,10 +110,11 @@ struct SquaredVelocity : detail::MotionPart<SquaredVelocity> {
   static constexpr std::array<const char*, 3> units = {"m^2/s^2", "m^2/s^2", "m^2/s^2"};
 
   template <class Scalar>
-  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
-    const Vector3<Scalar>& v = in.velocity_m_s;
-    const auto squared = [](Scalar speed) noexcept { return speed < Scalar(0) ? -speed * speed : speed * speed; };
-    return Vector3<Scalar>(squared(v[0]), squared(v[1]), squared(v[2]));
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      const Scalar speed = in.velocity_m_s[i];
+      x[i] = speed < Scalar(0) ? -speed * speed : speed * speed;
+    }
   }
 };
 
@@ -116,8 +124,8 @@ struct DownVector : detail::MotionPart<DownVector> {
   static constexpr std::array<const char*, 3> units = {"1", "1", "1"};
 
   template <class Scalar>
-  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
-    return world_down_axis(in.attitude);
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector<Scalar>(world_down_axis(in.attitude), x);
   }
 };
 

@@ -9,6 +9,7 @@
 //   feature_slopes<FeatureCount>(x, y, setting, by_x)
 //                                           du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
 //   prepare(airframe)                       optional, constexpr: worked out by the compiler
+//   takes_features                          optional, false: none of its functions looks at x, which may be null
 // A schema of one output per rotor and one unit says `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)`,
 // `command_slope(y, airframe)` instead, or these three with the rotor's index behind, for rotors that differ.
 // commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets, and plain
@@ -127,6 +128,10 @@ struct IsLinear : std::false_type {};
 template <class T>
 struct IsLinear<T, std::enable_if_t<T::linear>> : std::true_type {};
 template <class T, class = void>
+struct TakesFeatures : std::true_type {};
+template <class T>
+struct TakesFeatures<T, std::void_t<decltype(T::takes_features)>> : std::bool_constant<T::takes_features> {};
+template <class T, class = void>
 struct HasSlopes : std::false_type {};
 template <class T>
 struct HasSlopes<T, std::void_t<typename SchemaCall<T>::template Slopes<T>>> : std::true_type {};
@@ -237,7 +242,7 @@ struct OutputMap<Schema, false> {
   static constexpr const auto& names = Schema::names;
   static constexpr const auto& units = Schema::units;
   static constexpr bool rotor_by_rotor = false;
-  static constexpr bool takes_features = true;
+  static constexpr bool takes_features = detail::TakesFeatures<Schema>::value;
   static constexpr bool has_feature_slopes = detail::HasFeatureSlopes<Schema>::value;
   static constexpr int slope_count = rotor_count * size;
 

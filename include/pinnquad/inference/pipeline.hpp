@@ -47,6 +47,20 @@ struct Pipeline {
     command(scales, x, 1, static_cast<const Scalar*>(outputs), 1, outputs, commands);
   }
 
+  /// The same of features that the caller has done with: they are standardised where they stand, if the schema does not want
+  /// them too.
+  template <class Scalar, class Forward>
+  static PINNQUAD_ALWAYS_INLINE void run_over(const Scales<Scalar>& scales, Scalar* x, Scalar* outputs,
+                                              Scalar* commands, const Forward& forward) noexcept {
+    if constexpr (Map::takes_features) {
+      run(scales, static_cast<const Scalar*>(x), outputs, commands, forward);
+    } else {
+      standardise<Features::size, 1>(scales.input_mean, scales.input_spread, static_cast<const Scalar*>(x), 1, 1, x);
+      forward(static_cast<const Scalar*>(x), outputs);
+      command(scales, static_cast<const Scalar*>(x), 1, static_cast<const Scalar*>(outputs), 1, outputs, commands);
+    }
+  }
+
   /// The network's share: `Lanes` samples' outputs, standardised, of `count` samples' features.
   template <int Lanes, class Scalar, class Forward>
   static PINNQUAD_ALWAYS_INLINE void ask(const Scales<Scalar>& scales, const Scalar* x, int x_stride, int count,
@@ -61,7 +75,7 @@ struct Pipeline {
   static PINNQUAD_ALWAYS_INLINE void command(const Scales<Scalar>& scales, const Scalar* x, int x_stride,
                                              const Scalar* answers, int stride, Scalar* outputs,
                                              Scalar* commands) noexcept {
-    constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());
+    static constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());  // static: no copy on the stack
     if constexpr (Map::rotor_by_rotor) {  // one loop for both is less code in flash
       for (int i = 0; i < rotor_count; ++i) {
         outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
@@ -85,7 +99,7 @@ struct Pipeline {
   static PINNQUAD_ALWAYS_INLINE void chain(const Scales<Scalar>& scales, const Scalar* x, const Scalar* outputs,
                                            const Scalar* slopes, Scalar* jacobian) noexcept {
     constexpr int size = Features::size;
-    constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());
+    static constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());  // static: no copy on the stack
     Scalar by_outputs[Map::slope_count];
     Map::slopes(x, outputs, setting, by_outputs);
     for (int i = 0; i < rotor_count * size; ++i) jacobian[i] = Scalar(0);

@@ -45,6 +45,7 @@ constexpr SignedMix<Scalar> signed_mix(const Airframe<Scalar>& airframe) noexcep
 /// y = (u_1 + u_2 + u_3 + u_4, signed sums about roll, pitch, yaw), in units of commands.
 struct SignedSumOutputs {
   static constexpr int size = 4;
+  static constexpr bool takes_features = false;
   static constexpr std::array<const char*, size> names = {"sum", "roll_sum", "pitch_sum", "yaw_sum"};
   static constexpr std::array<const char*, size> units = {"1", "1", "1", "1"};
 

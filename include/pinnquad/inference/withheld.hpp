@@ -34,6 +34,17 @@ struct Triples {
     (until(First), ...);
     until(FeatureCount);
   }
+  /// The n-th of the others as a feature.
+  static PINNQUAD_ALWAYS_INLINE constexpr int other(int n) noexcept {
+    ((n += n >= First ? 3 : 0), ...);
+    return n;
+  }
+  /// The others of `x` where they stand, [n] the n-th of them.
+  template <class Scalar>
+  struct InPlace {
+    const Scalar* x;
+    PINNQUAD_ALWAYS_INLINE Scalar operator[](int n) const noexcept { return x[other(n)]; }
+  };
   /// Calls `visit(place, n)` for the n-th three.
   template <class Visit>
   static PINNQUAD_ALWAYS_INLINE constexpr void each(const Visit& visit) noexcept {
@@ -60,9 +71,16 @@ struct Withheld : AnswerBase<Withheld<Inner, FeatureCount, First...>, typename I
   using Withheld::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    Scalar seen[Threes::others];
-    Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { seen[n] = x[feature]; });
-    Inner::forward(parameters, static_cast<const Scalar*>(seen), y);
+    const auto see = [x](Scalar* seen) PINNQUAD_INLINE_LAMBDA {
+      Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { seen[n] = x[feature]; });
+    };
+    if constexpr (is_network<Inner>) {
+      PortablePass<Inner>::forward_of(parameters, see, y);
+    } else {
+      Scalar seen[Threes::others];
+      see(static_cast<Scalar*>(seen));
+      Inner::forward(parameters, static_cast<const Scalar*>(seen), y);
+    }
   }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar seen[Threes::others], by_seen[Inner::outputs * Threes::others];

@@ -90,6 +90,15 @@ class PortablePass {
     Scalar odd[static_cast<std::size_t>(NetworkType::widest)];
     detail::walk_forward<NetworkType, Kernel>(Visitor{y}, At{parameters, x, even, odd});
   }
+  /// The same for inputs that `fill(x)` writes: into the buffer that the first step leaves alone, so that they have no place
+  /// of their own on the stack.
+  template <class Fill>
+  static void forward_of(const Scalar* parameters, const Fill& fill, Scalar* y) noexcept {
+    Scalar even[static_cast<std::size_t>(NetworkType::widest)];
+    Scalar odd[static_cast<std::size_t>(NetworkType::widest)];
+    fill(static_cast<Scalar*>(odd));
+    detail::walk_forward<NetworkType, Kernel>(Visitor{y}, At{parameters, odd, even, odd});
+  }
 
  private:
   struct Kernel {

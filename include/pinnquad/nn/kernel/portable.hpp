@@ -68,9 +68,9 @@ PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start sta
   if constexpr (Rows == 2) y[1] = activate(below);
 }
 
-/// y[0, Rows) = activate(start + weight x) for as many columns as are held.
-template <int Rows, int Columns, class Scalar, class Start, class Activate>
-PINNQUAD_ALWAYS_INLINE void multiply_held(const Scalar* weight, int stride, Start start, const Scalar* x, Scalar* y,
+/// y[0, Rows) = activate(start + weight x) for as many columns as are held. `x`: a pointer, or anything else with [column].
+template <int Rows, int Columns, class Scalar, class Start, class X, class Activate>
+PINNQUAD_ALWAYS_INLINE void multiply_held(const Scalar* weight, int stride, Start start, X x, Scalar* y,
                                           Activate activate) noexcept {
   Scalar held[static_cast<std::size_t>(Columns)];
   unroll<Columns>([&](auto column) PINNQUAD_INLINE_LAMBDA { held[column] = x[column]; });
