@@ -22,9 +22,17 @@ constexpr double payload_share = 0.2;  ///< of the airframe's mass, at its centr
 constexpr double wrong_share = 0.1;    ///< by which an airframe is told wrong
 constexpr double test_share = 0.2;     ///< the end of each flight, whatever else is left out
 
+pinnquad::Airframe<double> the_vehicle() { return pinnquad::airframe_value<Airframe, double>(); }
+
+pinnquad::Airframe<double> with_payload() {
+  pinnquad::Airframe<double> airframe = the_vehicle();
+  airframe.mass_kg *= 1 + payload_share;
+  return airframe;
+}
+
 /// Mass and inertia this much too large, thrust this much too small.
 ToldAirframe told_wrong(double share) {
-  pinnquad::Airframe<double> airframe = pinnquad::airframe_value<Airframe, double>();
+  pinnquad::Airframe<double> airframe = the_vehicle();
   airframe.mass_kg *= 1 + share;
   for (double& inertia : airframe.inertia_kg_m2) inertia *= 1 + share;
   for (double& inertia : airframe.inertia_products_kg_m2) inertia *= 1 + share;
@@ -32,7 +40,7 @@ ToldAirframe told_wrong(double share) {
   return {Airframe::name, airframe};
 }
 
-ToldAirframe the_truth() { return {Airframe::name, pinnquad::airframe_value<Airframe, double>()}; }
+ToldAirframe the_truth() { return {Airframe::name, the_vehicle()}; }
 
 /// The first `share` of the rows trains, a third as many behind them validate, the last fifth of the flight tests.
 RowSplit beginning(const Flight& flight, double share) {
@@ -102,35 +110,44 @@ std::vector<Condition> flown_conditions() {
     return [of_rows](const OfFlights& flights) { return beginning(*flights.front(), of_rows); };
   };
   for (const std::string flight : {"d1", "d2", "d3"}) {
-    all.push_back({flight, "60 % of the rows train", Told::the_truth, the_truth(), {flight}, usual});
-    all.push_back({flight + "_20", "20 % of the rows train", Told::the_truth, the_truth(), {flight}, share(0.2)});
-    all.push_back({flight + "_5", "5 % of the rows train", Told::the_truth, the_truth(), {flight}, share(0.05)});
+    // the loop is flown at 20 m, where nothing of d2 was flown
+    const auto in_loop = flight == "d2" ? std::optional<pinnquad::Airframe<double>>() : the_vehicle();
+    all.push_back({flight, "60 % of the rows train", Told::the_truth, the_truth(), {flight}, usual, in_loop});
+    all.push_back(
+        {flight + "_20", "20 % of the rows train", Told::the_truth, the_truth(), {flight}, share(0.2), in_loop});
+    all.push_back(
+        {flight + "_5", "5 % of the rows train", Told::the_truth, the_truth(), {flight}, share(0.05), in_loop});
     all.push_back({flight + "_noisy",
                    "gyro noise 0.05 rad/s, commands up to 10 ms late",
                    Told::the_truth,
                    the_truth(),
                    {flight + "_noisy"},
-                   usual});
+                   usual,
+                   in_loop});
   }
-  all.push_back({"d1_speed", "trained below 5 m/s, judged above", Told::the_truth, the_truth(), {"d1"}, by_speed});
+  all.push_back(
+      {"d1_speed", "trained below 5 m/s, judged above", Told::the_truth, the_truth(), {"d1"}, by_speed, the_vehicle()});
   all.push_back({"d1_payload",
                  "judged on a vehicle 20 % heavier",
                  Told::the_truth,
                  the_truth(),
                  {"d1", "d1_payload"},
-                 end_of_second});
+                 end_of_second,
+                 with_payload()});
   all.push_back({"d1_told_heavy",
                  "told mass and inertia 10 % too large, thrust 10 % too small",
                  Told::something_wrong,
                  told_wrong(wrong_share),
                  {"d1"},
-                 usual});
+                 usual,
+                 the_vehicle()});
   all.push_back({"d1_told_light",
                  "told mass and inertia 10 % too small, thrust 10 % too large",
                  Told::something_wrong,
                  told_wrong(-wrong_share),
                  {"d1"},
-                 usual});
+                 usual,
+                 the_vehicle()});
   return all;
 }
 
@@ -153,11 +170,11 @@ std::vector<Condition> chosen_conditions(std::vector<Condition> all, const std::
 }
 
 Flight fly_for_beyond(const programs::StudyFlight& id) {
-  pinnquad::Airframe<double> airframe = pinnquad::airframe_value<Airframe, double>();
+  pinnquad::Airframe<double> airframe = the_vehicle();
   pinnquad::RecorderErrors errors;
   std::string base = id.name;
   if (ends_with(id.name, "_noisy", base)) errors = pinnquad::noisy_gyro_errors();
-  if (ends_with(id.name, "_payload", base)) airframe.mass_kg *= 1 + payload_share;
+  if (ends_with(id.name, "_payload", base)) airframe = with_payload();
   if (base == id.name) return flown(id);
   pinnquad::RecordedFlight recorded;
   programs::with_flight(base, [&](auto tag) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct Condition {
   std::vector<std::string> flights;                             ///< names for fly_for_beyond()
   /// Rows of these flights, in the order of `flights`; views of them.
   std::function<pinnquad::RowSplit(const std::vector<const pinnquad::Flight*>&)> split;
+  /// What flies in the closed loop; none: no flight.
+  std::optional<pinnquad::Airframe<double>> in_loop{};
 };
 
 /// The conditions that are flown here, all of them.

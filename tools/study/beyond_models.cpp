@@ -3,86 +3,181 @@
 #include "study/beyond_models.hpp"
 
 #include <algorithm>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "command_line/listed.hpp"
+#include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/training/symmetric_rows.hpp"
 #include "training/recipe.hpp"
 
 namespace study {
 
 namespace {
 
-/// A network that a recipe of `train` makes.
+/// A model that a recipe of `train` makes.
 class JudgedNetwork : public JudgedModel {
  public:
   explicit JudgedNetwork(std::shared_ptr<const programs::TrainedNetwork> network) : network_(std::move(network)) {}
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override { return network_->predictions(rows); }
+  programs::Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
+    return network_->guarded_predictions(rows);
+  }
   programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return network_->derivatives(rows);
   }
+  std::optional<pinnquad::Certificate> certificate() const override { return network_->certificate(); }
 
  private:
   std::shared_ptr<const programs::TrainedNetwork> network_;
 };
 
-/// Eq. (3) inverted, with the airframe as it is told.
+/// Nothing that is trained: `predict(sample)` gives the commands, with the airframe as it is told.
+template <class Predict>
 class JudgedFormula : public JudgedModel {
  public:
-  explicit JudgedFormula(pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe)
-      : airframe_(std::move(airframe)) {}
+  JudgedFormula(pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe, Predict predict)
+      : airframe_(std::move(airframe)), predict_(std::move(predict)) {}
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override {
-    return programs::linear_predictions(airframe_.airframe<double>(), rows);
+    programs::Predictions result;
+    for (std::size_t row = 0; row < rows.size(); ++row) result.push_back(predict_(rows[row]));
+    return result;
   }
   programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
-    return programs::derivative_figures(rows, programs::LinearDerivatives(airframe_));
+    return programs::derivative_figures(rows, programs::FormulaDerivatives(airframe_, predict_));
   }
 
  private:
   pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe_;
+  Predict predict_;
 };
 
-BeyondTraining evaluate_formula(const BeyondTask& task) {
-  return {std::make_shared<JudgedFormula>(task.airframe), false, false};
+template <class Predict>
+BeyondTraining evaluated(const BeyondTask& task, Predict predict) {
+  return {std::make_shared<JudgedFormula<Predict>>(task.airframe, std::move(predict)), false, false};
 }
 
-std::function<BeyondTraining(const BeyondTask&)> by_recipe(programs::Recipe (*recipe)(),
-                                                           const programs::LossName& loss) {
-  return [recipe, loss](const BeyondTask& task) {
+using Sample = pinnquad::Sample;
+using Commands = pinnquad::Commands<double>;
+constexpr Commands no_commands = {pinnquad::not_a_number, pinnquad::not_a_number, pinnquad::not_a_number,
+                                  pinnquad::not_a_number};
+
+/// Commands of the hover at the begin of the paper's flight d1.
+BeyondTraining evaluate_none(const BeyondTask& task) {
+  const auto vehicle = pinnquad::flight_vehicle<pinnquad::AgileFlight>(task.airframe.airframe<double>());
+  pinnquad::HoverTrim<double> trim;
+  const pinnquad::Status status = hover_trim(vehicle, pinnquad::AgileFlight::plan().start_m, trim);
+  return evaluated(task, [commands = status == pinnquad::Status::ok ? trim.commands : no_commands](const Sample&) {
+    return commands;
+  });
+}
+
+BeyondTraining evaluate_formula(const BeyondTask& task) {
+  const auto airframe = task.airframe.airframe<double>();
+  return evaluated(task, [airframe, rotors = pinnquad::Rotors<double>(airframe)](const Sample& sample) {
+    return programs::linear_prediction(airframe, rotors, sample);
+  });
+}
+
+/// The equations of the vehicle of d1, its drag among them.
+BeyondTraining evaluate_inverse(const BeyondTask& task) {
+  const auto vehicle = pinnquad::flight_vehicle<pinnquad::AgileFlight>(task.airframe.airframe<double>());
+  return evaluated(task, [vehicle](const Sample& sample) {
+    pinnquad::State<double> state;
+    state.position_m[2] = vehicle.site().ground_z_m - sample.altitude_m;
+    state.attitude =
+        pinnquad::from_euler(pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+    state.velocity_m_s = pinnquad::body_to_world(state.attitude, sample.velocity_m_s);
+    state.body_rates_rad_s = sample.body_rates_rad_s;
+    Commands commands = no_commands;
+    static_cast<void>(pinnquad::inverse_commands(
+        vehicle, state, {sample.linear_acceleration_m_s2, sample.angular_acceleration_rad_s2}, 0.0, commands));
+    return commands;
+  });
+}
+
+/// True of a model that is a base and a network on it, where the network is not bounded to nothing.
+bool has_residual(const std::optional<pinnquad::Certificate>& certificate) {
+  if (!certificate) return false;
+  bool says = false;
+  for (int k = 0; k < 4; ++k) says = says || certificate->residual_lower[k] < certificate->residual_upper[k];
+  return says;
+}
+
+using Train = std::function<BeyondTraining(const BeyondTask&)>;
+
+Train by_recipe(programs::Recipe (*recipe)(), const programs::LossName& loss,
+                programs::AltitudeRule altitude = programs::AltitudeRule::by_validation, bool pinned_slopes = false) {
+  return [recipe, loss, altitude, pinned_slopes](const BeyondTask& task) {
     programs::TrainingPlan plan{task.airframe, false, task.split, {loss}, task.epochs, task.seed};
     plan.silent = true;
+    plan.altitude = altitude;
+    plan.pinned_slopes = pinned_slopes;
     BeyondTraining result;
     for (const programs::Training& training : recipe().train(plan)) {
       result.model = std::make_shared<JudgedNetwork>(training.network);
+      result.best_weights = result.residual_kept = has_residual(training.network->certificate());
     }
     return result;
   };
 }
 
-template <BeyondTraining (*Train)(const BeyondTask&, Slopes)>
-std::function<BeyondTraining(const BeyondTask&)> with(Slopes slopes) {
-  return [slopes](const BeyondTask& task) { return Train(task, slopes); };
+/// The same on rows and their images, as many steps of the optimiser as without them.
+Train on_images(const Train& train, const pinnquad::Symmetries& which) {
+  return [train, which](const BeyondTask& task) {
+    std::mt19937_64 engine(task.seed);
+    const pinnquad::SymmetricRows images(task.split.train, task.airframe.airframe<double>(), which, engine);
+    const pinnquad::RowSplit split{images.rows(), task.split.validation, task.split.test};
+    const auto times = static_cast<int>(images.rows().size() / task.split.train.size());
+    return train({split, task.airframe, task.seed, std::max(1, task.epochs / times), task.goes_on});
+  };
+}
+
+Train on_rigid_body(Slopes slopes) {
+  return [slopes](const BeyondTask& task) { return train_structured_on_rigid_body(task, slopes); };
 }
 
 }  // namespace
 
 std::vector<BeyondModel> beyond_models() {
-  using programs::best_recipe;
+  using programs::AltitudeRule, programs::best_recipe, programs::structured_recipe;
+  const Train vanilla = by_recipe(best_recipe, programs::vanilla);
+  const auto structured = [](AltitudeRule altitude, bool pinned_slopes = false) {
+    return by_recipe(structured_recipe, programs::structured, altitude, pinned_slopes);
+  };
+  const Train shipped = structured(AltitudeRule::by_validation);
+  constexpr pinnquad::Symmetries mirrored{true, false}, turned{true, true};
   return {
+      {"none", "commands of the hover, whatever is asked", true, false, evaluate_none},
       {"formula", "Eq. (3) inverted", true, false, evaluate_formula},
-      {"vanilla", "10 x 25 ReLU on the paper's features, MSE", false, true, by_recipe(best_recipe, programs::vanilla)},
+      {"inverse", "the vehicle's equations inverted, drag too, no wind, no ground effect", true, false,
+       evaluate_inverse},
+      {"vanilla", "10 x 25 ReLU on the paper's features, MSE", false, true, vanilla},
       {yardstick, "the same, physics-informed: the paper's network", false, true,
        by_recipe(best_recipe, programs::physics_informed)},
-      {"vanilla_physics", "10 x 25 ReLU on physics features, MSE", false, true, train_network_on_physics},
-      {"ridge", "affine ridge on physics features", false, false, train_ridge},
-      {"structured", "ridge, slopes above 0, 2 x 32 ReLU without angular acceleration", true, true,
-       with<train_structured_on_ridge>(Slopes::learnt)},
-      {"structured_pinned", "the same, slopes the airframe's", true, true,
-       with<train_structured_on_ridge>(Slopes::pinned)},
-      {"structured_rigid", "ridge on the rigid body's inverse, slopes above 0, 2 x 32 ReLU", true, true,
-       with<train_structured_on_rigid_body>(Slopes::learnt)},
-      {"structured_rigid_pinned", "the same, slopes the airframe's", true, true,
-       with<train_structured_on_rigid_body>(Slopes::pinned)},
+      {"paper_altitude", "the same, shown the altitude", false, true, train_paper_with_altitude},
+      {"match", "the paper's network with the loss that asks for equal steps", false, true, train_match},
+      {"vanilla_mirrored", "vanilla on rows and their mirror images", false, true, on_images(vanilla, mirrored)},
+      {"vanilla_turned", "the same, and all of them under random headings", false, true, on_images(vanilla, turned)},
+      {"vanilla_physics", "10 x 25 ReLU on the structured model's features, MSE", false, true,
+       train_network_on_physics},
+      {"ridge", "affine ridge on the structured model's features, no network", false, false, train_ridge},
+      {"structured", "what `train` exports: ridge, slopes above 0, 2 x 32 ReLU without angular acceleration", true,
+       true, shipped},
+      {"structured_no_altitude", "the same, never shown the altitude", true, true, structured(AltitudeRule::no)},
+      {"structured_altitude", "the same, always shown the altitude", true, true, structured(AltitudeRule::yes)},
+      {"structured_pinned", "structured, slopes the airframe's", true, true,
+       structured(AltitudeRule::by_validation, true)},
+      {"structured_mirrored", "structured on rows and their mirror images", true, true, on_images(shipped, mirrored)},
+      {"structured_physics", "structured with all three parts of the specific force, no altitude", true, true,
+       train_structured_on_physics},
+      {"structured_rigid", "structured_physics, the ridge on the rigid body's inverse", true, true,
+       on_rigid_body(Slopes::learnt)},
+      {"structured_rigid_pinned", "the same, slopes the airframe's", true, true, on_rigid_body(Slopes::pinned)},
+      {"path_bounded", "structured, the network shown the angular acceleration, its paths bounded, no altitude", true,
+       true, train_path_bounded},
   };
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "training/derivatives.hpp"
 #include "training/judgement.hpp"
 #include "training/model_predictions.hpp"
+#include "training/trained_network.hpp"
 
 namespace study {
 
@@ -22,10 +24,14 @@ class JudgedModel {
  public:
   virtual ~JudgedModel() = default;
   virtual programs::Predictions predictions(const pinnquad::RowSet& rows) const = 0;
+  /// The same, NaN where the guard of its export declines.
+  virtual programs::Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
   virtual programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
+  /// None of a model without structure.
+  virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
 };
 
-/// Of a pinnquad::TrainedModel.
+/// Of a pinnquad::TrainedModel: the numbers that its header would hold.
 template <class Model>
 class JudgedModelOf : public JudgedModel {
  public:
@@ -33,9 +39,13 @@ class JudgedModelOf : public JudgedModel {
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override {
     return programs::network_predictions(model_, rows);
   }
+  programs::Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
+    return programs::network_predictions(model_, rows, programs::Answers::inside_envelope);
+  }
   programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return programs::derivative_figures(rows, programs::derivatives_of(model_));
   }
+  std::optional<pinnquad::Certificate> certificate() const override { return programs::certificate_of_trained(model_); }
 
  private:
   Model model_;
@@ -76,9 +86,12 @@ std::vector<BeyondModel> chosen_models(std::vector<BeyondModel> all, const std::
 
 // Trainings, a translation unit each: what is slow to compile.
 BeyondTraining train_network_on_physics(const BeyondTask& task);
+BeyondTraining train_match(const BeyondTask& task);
+BeyondTraining train_paper_with_altitude(const BeyondTask& task);
 BeyondTraining train_ridge(const BeyondTask& task);
+BeyondTraining train_structured_on_physics(const BeyondTask& task);
 enum class Slopes { learnt, pinned };
-BeyondTraining train_structured_on_ridge(const BeyondTask& task, Slopes slopes);
 BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes);
+BeyondTraining train_path_bounded(const BeyondTask& task);
 
 }  // namespace study

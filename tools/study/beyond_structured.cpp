@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Models that are monotone by construction (training/monotone_fit.hpp): on a ridge, and on the rigid body's inverse.
+// Models that are monotone by construction (training/monotone_fit.hpp) and no recipe's: with other features, on the rigid
+// body's inverse, with a network that is shown the angular acceleration.
 #include <random>
 
-#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/inference/inverse_features.hpp"
 #include "pinnquad/inference/rigid_body_inverse.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
+#include "pinnquad/training/path_bounded_fit.hpp"
 #include "study/beyond_models.hpp"
 
 namespace study {
 
 namespace {
 
-template <class Outputs>
-BeyondTraining train_structured(const BeyondTask& task, Slopes slopes) {
-  using Features = pinnquad::PhysicsFeatures;
+/// `Bound`: of the residual, as it stands in the answer; `fit_answer(context, map, how, engine, goes_on)` trains.
+template <class Features, class Outputs, class Bound, class Fit>
+BeyondTraining train_structured(const BeyondTask& task, Slopes slopes, const Fit& fit_answer) {
   using Context = pinnquad::Context<Features, pinnquad::GivenAirframe, Outputs>;
-  using Residual = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::residual_inputs<Features>>,
-                                 pinnquad::Hidden<2, 32>, pinnquad::OutputSize<4>, pinnquad::Relu>;
   const auto context = pinnquad::make_context<Context>(task.split.train, task.airframe);
   pinnquad::SlopeRule rule;
   if (slopes == Slopes::pinned) rule.pinned = pinnquad::hover_slopes(context.template airframe<double>());
@@ -25,13 +25,11 @@ BeyondTraining train_structured(const BeyondTask& task, Slopes slopes) {
   pinnquad::ResidualTraining how;
   how.epochs = task.epochs;
   std::mt19937_64 engine(task.seed);
-  const auto fit = pinnquad::fit_monotone<Residual>(context, task.split.train, task.split.validation, map, how, engine,
-                                                    [&task](int) { return task.goes_on(); });
+  const auto fit = fit_answer(context, map, how, engine, [&task](int) { return task.goes_on(); });
   if (!fit.finished) return {};
   // the base alone is the answer with a residual bounded to 0: one type to judge
   auto answer = fit.answer;
   if (!fit.residual_kept) {
-    using Bound = pinnquad::MonotoneResidual<Features, Residual>;
     auto* const residual = std::copy(fit.base.parameters.begin(), fit.base.parameters.end(), answer.parameters.begin());
     for (int k = 0; k < 4; ++k) residual[Bound::lower + k] = residual[Bound::upper + k] = 0;
   }
@@ -39,14 +37,41 @@ BeyondTraining train_structured(const BeyondTask& task, Slopes slopes) {
   return {std::make_shared<JudgedModelOf<std::decay_t<decltype(model)>>>(model), fit.residual_kept, fit.residual_kept};
 }
 
+template <int Inputs>
+using Residual =
+    pinnquad::Mlp<float, pinnquad::InputSize<Inputs>, pinnquad::Hidden<2, 32>, pinnquad::OutputSize<4>, pinnquad::Relu>;
+
+/// A network that is shown no angular acceleration.
+template <class Outputs>
+BeyondTraining train_monotone(const BeyondTask& task, Slopes slopes) {
+  using Features = pinnquad::PhysicsFeatures;
+  using Network = Residual<pinnquad::residual_inputs<Features>>;
+  return train_structured<Features, Outputs, pinnquad::MonotoneResidual<Features, Network>>(
+      task, slopes, [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
+        return pinnquad::fit_monotone<Network>(context, task.split.train, task.split.validation, map, how, engine,
+                                               goes_on);
+      });
+}
+
 }  // namespace
 
-BeyondTraining train_structured_on_ridge(const BeyondTask& task, Slopes slopes) {
-  return train_structured<pinnquad::SignedSumOutputs>(task, slopes);
+BeyondTraining train_structured_on_physics(const BeyondTask& task) {
+  return train_monotone<pinnquad::SignedSumOutputs>(task, Slopes::learnt);
 }
 
 BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes) {
-  return train_structured<pinnquad::SignedSumsOn<pinnquad::RigidBodyInverse>>(task, slopes);
+  return train_monotone<pinnquad::SignedSumsOn<pinnquad::RigidBodyInverse>>(task, slopes);
+}
+
+BeyondTraining train_path_bounded(const BeyondTask& task) {
+  using Features = pinnquad::InverseFeatures;
+  using Network = Residual<Features::size>;
+  return train_structured<Features, pinnquad::SignedSumOutputs, pinnquad::Bounded<pinnquad::PathBounded<Network>>>(
+      task, Slopes::learnt,
+      [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
+        return pinnquad::fit_path_bounded<Network>(context, task.split.train, task.split.validation, map, how, engine,
+                                                   goes_on);
+      });
 }
 
 }  // namespace study

@@ -47,23 +47,27 @@ inline std::map<std::string, std::map<std::string, BeyondCell>> beyond_cells(con
   return cells;
 }
 
-/// Errors of a model and of the yardstick, pair by pair; a model without seeds stands beside each of the yardstick's.
-inline std::pair<std::vector<double>, std::vector<double>> error_pairs(const BeyondCell& model, const BeyondCell& by) {
+/// A figure of a model and of the yardstick, pair by pair; a model without seeds stands beside each of the yardstick's.
+inline std::pair<std::vector<double>, std::vector<double>> figure_pairs(const BeyondCell& model, const BeyondCell& by,
+                                                                        const std::string& figure) {
   std::pair<std::vector<double>, std::vector<double>> pairs;
   for (const auto& [seeds, figures] : by) {
     auto found = model.find(seeds);
     if (found == model.end()) found = model.find({seeds.first, 0});
     if (found == model.end()) continue;
-    const double error = found->second.at("mean_absolute_error"), other = figures.at("mean_absolute_error");
-    if (!std::isfinite(error - other)) continue;
-    pairs.first.push_back(error);
+    const double value = found->second.at(figure), other = figures.at(figure);
+    if (!std::isfinite(value - other)) continue;
+    pairs.first.push_back(value);
     pairs.second.push_back(other);
   }
   return pairs;
 }
 
-/// {condition: {model: {figure: {mean, deviation, count}, ratio, wins, pairs, p_value}}}
+/// {condition: {model: {figure: {mean, deviation, count, and of a paired one ratio, wins, pairs, p_value}}}}. Paired: the
+/// error, and those of the closed loop.
 inline nlohmann::json beyond_json(const StoredRows& stored) {
+  std::vector<std::string> paired = {"mean_absolute_error"};
+  for (const char* trajectory : loop_trajectories) paired.push_back(std::string(trajectory) + "_rmse_m");
   nlohmann::json result = nlohmann::json::object();
   for (const auto& [condition, models] : beyond_cells(stored)) {
     for (const auto& [model, cell] : models) {
@@ -78,13 +82,15 @@ inline nlohmann::json beyond_json(const StoredRows& stored) {
       }
       const auto by = models.find(yardstick);
       if (by == models.end()) continue;
-      const auto pairs = error_pairs(cell, by->second);
-      if (pairs.first.empty() || pairs.first.size() > pinnquad::most_pairs) continue;
-      const pinnquad::PairedComparison compared = pinnquad::compare_paired(pairs.first, pairs.second);
-      entry["ratio"] = 1 + compared.relative_difference;
-      entry["wins"] = compared.wins;
-      entry["pairs"] = compared.pairs;
-      entry["p_value"] = compared.p_value;
+      for (const std::string& figure : paired) {
+        const auto pairs = figure_pairs(cell, by->second, figure);
+        if (pairs.first.empty() || pairs.first.size() > pinnquad::most_pairs) continue;
+        const pinnquad::PairedComparison compared = pinnquad::compare_paired(pairs.first, pairs.second);
+        entry[figure]["ratio"] = 1 + compared.relative_difference;
+        entry[figure]["wins"] = compared.wins;
+        entry[figure]["pairs"] = compared.pairs;
+        entry[figure]["p_value"] = compared.p_value;
+      }
     }
   }
   return result;
@@ -99,13 +105,33 @@ struct BeyondColumn {
   double times;
   int decimals;
 };
-inline constexpr std::array<BeyondColumn, 6> beyond_columns = {
-    {{"error, 1e-3", "mean_absolute_error", false, false, 1e3, 2},
-     {"wrong signs, %", "wrong_derivative_share", true, false, 100, 2},
-     {"least derivative", "least_derivative_over_nominal", true, true, 1, 2},
-     {"slope error, %", "slope_error", true, false, 100, 1},
-     {"pairs, %", "pair_violations", true, false, 100, 1},
-     {"training, s", "training_s", false, false, 1, 1}}};
+
+/// A table: its columns, and which figure is compared with the yardstick's.
+struct BeyondTable {
+  const char* compared;
+  std::vector<BeyondColumn> columns;
+};
+
+inline const std::array<BeyondTable, 2>& beyond_tables() {
+  static const std::array<BeyondTable, 2> tables = {
+      {{"mean_absolute_error",
+        {{"error, 1e-3", "mean_absolute_error", false, false, 1e3, 2},
+         {"wrong signs, %", "wrong_derivative_share", true, false, 100, 2},
+         {"least derivative", "least_derivative_over_nominal", true, true, 1, 2},
+         {"proven, %", "proven", false, false, 100, 0},
+         {"slope error, %", "slope_error", true, false, 100, 1},
+         {"pairs, %", "pair_violations", true, false, 100, 1},
+         {"network kept, %", "residual_kept", false, false, 100, 0},
+         {"training, s", "training_s", false, false, 1, 1}}},
+       {"eight_rmse_m",
+        {{"eight, cm", "eight_rmse_m", false, false, 100, 2},
+         {"declined, %", "eight_declined_share", false, false, 100, 1},
+         {"yaw eight, cm", "yaw_eight_rmse_m", false, false, 100, 2},
+         {"declined, %", "yaw_eight_declined_share", false, false, 100, 1},
+         {"circle, cm", "circle_rmse_m", false, false, 100, 2},
+         {"declined, %", "circle_declined_share", false, false, 100, 1}}}}};
+  return tables;
+}
 
 inline std::string beyond_text(const nlohmann::json& entry, const BeyondColumn& column) {
   double shown = pinnquad::not_a_number;
@@ -118,35 +144,46 @@ inline std::string beyond_text(const nlohmann::json& entry, const BeyondColumn& 
   for (const char* axis : programs::axis_names) {
     if (column.has_axes) take(std::string(column.figure) + "_" + axis);
   }
+  if (!std::isfinite(shown)) return "-";
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", column.decimals, column.times * shown);
   return text;
 }
 
 /// A line of a table: its cells, the model's name first.
-inline std::vector<std::string> beyond_line(const std::string& model, const nlohmann::json& entry) {
+inline std::vector<std::string> beyond_line(const BeyondTable& table, const std::string& model,
+                                            const nlohmann::json& entry) {
   std::vector<std::string> cells = {model};
-  for (const BeyondColumn& column : beyond_columns) cells.push_back(beyond_text(entry, column));
+  for (const BeyondColumn& column : table.columns) cells.push_back(beyond_text(entry, column));
   char text[48];
   const auto add = [&](auto... values) {
     std::snprintf(text, sizeof text, values...);
     cells.emplace_back(text);
   };
-  if (entry.contains("ratio")) {
-    add("%.3f", entry["ratio"].get<double>());
-    add("%d/%d", entry["wins"].get<int>(), entry["pairs"].get<int>());
-    add("%.2g", entry["p_value"].get<double>());
+  const nlohmann::json& compared = entry.at(table.compared);
+  if (compared.contains("ratio")) {
+    add("%.3f", compared["ratio"].get<double>());
+    add("%d/%d", compared["wins"].get<int>(), compared["pairs"].get<int>());
+    add("%.2g", compared["p_value"].get<double>());
   } else {
     cells.insert(cells.end(), 3, "-");
   }
   return cells;
 }
 
-inline std::vector<std::string> beyond_titles() {
+inline std::vector<std::string> beyond_titles(const BeyondTable& table) {
   std::vector<std::string> titles = {"model"};
-  for (const BeyondColumn& column : beyond_columns) titles.emplace_back(column.title);
+  for (const BeyondColumn& column : table.columns) titles.emplace_back(column.title);
   titles.insert(titles.end(), {"ratio", "better", "p"});
   return titles;
+}
+
+/// Whether a condition's models have the figure that a table compares: not the closed loop's where none was flown.
+inline bool has_table(const BeyondTable& table, const nlohmann::json& models) {
+  return std::any_of(models.begin(), models.end(), [&](const nlohmann::json& entry) {
+    const nlohmann::json& mean = entry.at(table.compared).at("mean");
+    return mean.is_number() && std::isfinite(mean.get<double>());
+  });
 }
 
 /// Ratios of the errors as bars; a log scale would hide what is gained.
@@ -155,8 +192,9 @@ inline std::string ratio_bars(const nlohmann::json& models, const std::vector<Be
   std::string bars;
   double y = 4;
   for (const BeyondModel& model : order) {
-    if (!models.contains(model.name) || !models[model.name].contains("ratio")) continue;
-    const double ratio = models[model.name]["ratio"].get<double>();
+    const nlohmann::json::json_pointer place("/" + model.name + "/mean_absolute_error/ratio");
+    if (!models.contains(place)) continue;
+    const double ratio = models[place].get<double>();
     bars += programs::drawing::label(left - 8, y + 13, model.name, "end") +
             programs::drawing::rectangle(left, y, unit * std::min(ratio, longest), height - 6, "bar") +
             programs::drawing::label(left + unit * std::min(ratio, longest) + 5, y + 13,

@@ -20,6 +20,7 @@
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
+#include "study/closed_loop.hpp"
 #include "study/flights.hpp"
 #include "study/models.hpp"
 #include "study/networks.hpp"
@@ -106,6 +107,8 @@ struct Outcome {
   double training_s = 0;
   bool best_weights = false;   ///< which weights were judged
   bool residual_kept = false;  ///< of a model that is a base and a network on it
+  bool proven = false;         ///< its certificate holds (inference/certificate.hpp)
+  LoopFigures loop;            ///< of a model that was flown
   pinnquad::IndexRange test_rows;
   programs::Predictions predictions;  ///< of the test rows
 };

@@ -208,12 +208,13 @@ auto derivatives_of(const Model& model) {
                                                                         model.template airframe<double>()));
 }
 
-/// Of model 1, by a central difference: exact where a rotor's thrust is proportional to its command.
-class LinearDerivatives {
+/// Of a formula, by a central difference: exact where a rotor's thrust is proportional to its command.
+/// `predict(sample)`: its commands.
+template <class Predict>
+class FormulaDerivatives {
  public:
-  explicit LinearDerivatives(const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe)
-      : airframe_(airframe.airframe<double>()),
-        rotors_(airframe_),
+  FormulaDerivatives(const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe, Predict predict)
+      : predict_(std::move(predict)),
         signs_{airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()} {}
 
   AxisDerivatives operator()(const pinnquad::Sample& sample) const {
@@ -223,7 +224,7 @@ class LinearDerivatives {
       const auto sum_at = [&](double step) {
         pinnquad::Sample moved = sample;
         moved.angular_acceleration_rad_s2[static_cast<int>(axis)] += step;
-        return pinnquad::signed_sum(signs_[axis], linear_prediction(airframe_, rotors_, moved));
+        return pinnquad::signed_sum(signs_[axis], predict_(moved));
       };
       result[axis] = (sum_at(step_rad_s2) - sum_at(-step_rad_s2)) / (2 * step_rad_s2);
     }
@@ -231,9 +232,16 @@ class LinearDerivatives {
   }
 
  private:
-  pinnquad::Airframe<double> airframe_;
-  pinnquad::Rotors<double> rotors_;
+  Predict predict_;
   std::array<std::array<double, pinnquad::rotor_count>, 3> signs_;
 };
+
+/// Of model 1.
+inline auto linear_derivatives(const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe) {
+  const auto told = airframe.airframe<double>();
+  return FormulaDerivatives(airframe, [told, rotors = pinnquad::Rotors<double>(told)](const pinnquad::Sample& sample) {
+    return linear_prediction(told, rotors, sample);
+  });
+}
 
 }  // namespace programs

@@ -23,6 +23,7 @@
 #include "training/log_model.hpp"
 #include "training/logged_vehicle.hpp"
 #include "training/trained_network.hpp"
+#include "training/wanted_row.hpp"
 
 namespace programs {
 
@@ -79,18 +80,7 @@ class LoggedFeedForward {
   static constexpr double longest_window_s = 0.25;
 
   void remember(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired, double time_s) {
-    const pinnquad::EulerAngles<double> angles = pinnquad::to_euler(state.attitude);
-    pinnquad::Sample sample;
-    sample.time_s = time_s;
-    sample.linear_acceleration_m_s2 = desired.linear_m_s2;
-    sample.angular_acceleration_rad_s2 = desired.angular_rad_s2;
-    sample.velocity_m_s = pinnquad::body_velocity(state);
-    sample.body_rates_rad_s = state.body_rates_rad_s;
-    sample.roll_rad = angles.roll_rad;
-    sample.pitch_rad = angles.pitch_rad;
-    sample.yaw_rad = angles.yaw_rad;
-    sample.altitude_m = -state.position_m[2];
-    past_.push_back(sample);
+    past_.push_back(wanted_row(state, desired, time_s));
     past_.erase(past_.begin(), std::find_if(past_.begin(), past_.end(), [&](const pinnquad::Sample& old) {
                   return old.time_s >= time_s - window_s_;
                 }));

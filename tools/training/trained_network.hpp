@@ -19,10 +19,23 @@
 
 namespace programs {
 
+/// What is proven of a trained model by its structure; none of one without.
+template <class Model>
+std::optional<pinnquad::Certificate> certificate_of_trained(const Model& model) {
+  if constexpr (pinnquad::has_certificate<Model>) {
+    return pinnquad::certificate_of<Model>(
+        model.template output_setting<pinnquad::SignedSumOutputs, typename Model::Scalar>(),
+        model.network.parameters.data(), model.input.spread.data(), model.output.spread.data());
+  }
+  return {};
+}
+
 class TrainedNetwork {
  public:
   virtual ~TrainedNetwork() = default;
   virtual Predictions predictions(const pinnquad::RowSet& rows) const = 0;
+  /// The same, NaN where the guard of its export declines: for a row outside the training envelope.
+  virtual Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
   /// What is proven of it by its structure; none of a model without.
@@ -61,17 +74,13 @@ class NetworkOfModel : public TrainedNetwork {
       : model_(model), library_airframe_(library_airframe) {}
 
   Predictions predictions(const pinnquad::RowSet& rows) const override { return network_predictions(model_, rows); }
+  Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
+    return network_predictions(model_, rows, Answers::inside_envelope);
+  }
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return derivative_figures(rows, derivatives_of(model_));
   }
-  std::optional<pinnquad::Certificate> certificate() const override {
-    if constexpr (pinnquad::has_certificate<Model>) {
-      return pinnquad::certificate_of<Model>(
-          model_.template output_setting<pinnquad::SignedSumOutputs, typename Model::Scalar>(),
-          model_.network.parameters.data(), model_.input.spread.data(), model_.output.spread.data());
-    }
-    return {};
-  }
+  std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_trained(model_); }
   void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                     const pinnquad::Provenance& provenance) const override {
     with_exported([&](const auto& model) {

@@ -182,7 +182,7 @@ TEST_CASE("rows that a window leaves without an answer are told by NaN, the othe
 TEST_CASE("model 1 commands J / (lever x thrust) per angular acceleration") {
   constexpr Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
   const ContextAirframe<GivenAirframe> given("paper", airframe);
-  const programs::LinearDerivatives derivatives(given);
+  const auto derivatives = programs::linear_derivatives(given);
   std::mt19937_64 engine(3);
   for (const Sample& row : samples(5, engine)) {
     const Site<double> site = paper_site<double>();

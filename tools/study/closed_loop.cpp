@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "study/closed_loop.hpp"
+
+#include <cmath>
+#include <exception>
+
+#include "pinnquad/control/trajectory.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/tracking.hpp"
+#include "training/wanted_row.hpp"
+
+namespace study {
+
+namespace {
+
+using pinnquad::Status;
+using Commands = pinnquad::Commands<double>;
+
+/// The model asked row by row, as it is judged.
+class ModelFeedForward {
+ public:
+  ModelFeedForward(const RowPredictions& model, const Commands& hover, double ground_z_m)
+      : model_(model), hover_(hover), ground_z_m_(ground_z_m) {}
+
+  Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired, double time_s,
+                    Commands& commands) noexcept {
+    try {
+      pinnquad::Flight row;
+      row.push_back(programs::wanted_row(state, desired, time_s, ground_z_m_));
+      const Commands made = model_(pinnquad::RowSet(row, {0, 1})).front();
+      const bool answered = pinnquad::all_finite(made);
+      count_.add(answered ? Status::ok : Status::outside_envelope);
+      commands = answered ? made : hover_;
+      return Status::ok;
+    } catch (const std::exception&) {
+      return Status::not_finite;
+    }
+  }
+
+  const pinnquad::FallbackCount& count() const noexcept { return count_; }
+
+ private:
+  const RowPredictions& model_;
+  Commands hover_;
+  double ground_z_m_;
+  pinnquad::FallbackCount count_{};
+};
+
+}  // namespace
+
+LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<double>& flown,
+                        const pinnquad::Airframe<double>& told) {
+  using namespace pinnquad;
+  const auto vehicle = flight_vehicle<AgileFlight>(flown);
+  const FlightController<double> controller(
+      {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
+  const Vector3<double> center_m(0, 0, -20);
+  LoopFigures figures;
+  HoverTrim<double> trim;
+  if (hover_trim(flight_vehicle<AgileFlight>(told), center_m, trim) != Status::ok) return figures;
+  const ModelFeedForward policy(model, trim.commands, vehicle.site().ground_z_m);
+  const auto fly = [&](std::size_t i, const auto& trajectory) {
+    const TrackingResult<double> result = track(vehicle, trajectory, controller, policy);
+    if (result.status != Status::ok) return;
+    figures.rmse_m[i] = result.rmse_m;
+    figures.declined_share[i] = result.fallback.fallbacks() / static_cast<double>(result.fallback.asked);
+  };
+  FigureEight<double> eight;
+  eight.center_m = center_m;
+  fly(0, eight);
+  eight.period_s = 7;
+  eight.yaw_amplitude_rad = 0.5;
+  fly(1, eight);
+  Circle<double> circle;
+  circle.center_m = center_m;
+  fly(2, circle);
+  return figures;
+}
+
+}  // namespace study
