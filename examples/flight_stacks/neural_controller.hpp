@@ -227,7 +227,7 @@ class NeuralController {
  private:
   void take_checksum(std::uint32_t checksum) noexcept {
     if constexpr (trusts) {
-      if (checksum != checksum_) trust_.reset();
+      if (checksum_ != 0 && checksum != checksum_) trust_.reset();
     }
     checksum_ = checksum;
   }

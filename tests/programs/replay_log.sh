@@ -114,14 +114,14 @@ structured=(--model structured/sound.block)
 "$pinnquad" replay structured "${structured[@]}" --trust "$trust" --out structured.csv >structured.said ||
   fail "structured: replay differs: $(tail -3 structured.said)"
 python3 - structured/flight_pinnquad_record_0.csv structured.csv <<'PY'
-import csv, sys
+import csv, struct, sys
 logged, replayed = (list(csv.DictReader(open(name))) for name in sys.argv[1:3])
 assert len(logged) == len(replayed) > 15000
-worst = 0
+bits = lambda number: struct.pack("f", float(number))
 for was, now in zip(logged, replayed):
     if was["commands[0]"] != "nan":
-        worst = max([worst] + [abs(float(was[f"commands[{i}]"]) - float(now[f"u{i + 1}"])) for i in range(4)])
-assert worst <= 1e-9, worst
+        assert all(bits(was[f"commands[{i}]"]) == bits(now[f"u{i + 1}"]) for i in range(4)), (was, now)
+assert sum(row["answered_by"] == "model" for row in replayed) > 20000
 words = " ".join(row["reason"] for row in replayed)
 assert sum(row["cause"] == "distrusted" for row in replayed) > 4000
 assert "innovation 0." in words and "limit 0.018" in words, words[:300]

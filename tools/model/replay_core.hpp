@@ -108,7 +108,7 @@ class CoreReplayOf : public CoreReplay {
   ReplayedRow run(const Record& record, std::optional<std::size_t> model, Replayed& replayed) override {
     take_gap(record);
     take_model(model);
-    controller_->jump({vector(record.jump_position_m), vector(record.jump_velocity_m_s), record.jump_yaw_rad});
+    take_jump(record);
     ReplayedRow row;
     row.row = record.tick;
     row.time_s = static_cast<double>(record.timestamp) / 1e6;
@@ -165,6 +165,12 @@ class CoreReplayOf : public CoreReplay {
     }
     refused_base_ = record.refused_samples;
     refused_base_known_ = false;
+  }
+
+  void take_jump(const Record& record) {
+    const flight_stacks::EstimateJump by{vector(record.jump_position_m), vector(record.jump_velocity_m_s),
+                                         record.jump_yaw_rad};
+    if (!by.position_m.isZero(0) || !by.velocity_m_s.isZero(0) || std::fabs(by.yaw_rad) > 0) controller_->jump(by);
   }
 
   void take_model(std::optional<std::size_t> model) {
