@@ -40,9 +40,11 @@ struct CoreRecord {
   float jump_position_m[3]{};         ///< by how much the estimator moved its estimate before this tick, NED; 0: not
   float jump_velocity_m_s[3]{};
   float jump_yaw_rad{0};
-  float lift{1};             ///< how much of its thrust it used, 0 to 1: below 1 while it takes off
-  float commands[4]{};       ///< NaN where there were none
-  float envelope_excess{0};  ///< how far the worst feature lay outside, in half-widths of its range
+  float lift{1};              ///< how much of its thrust it used, 0 to 1: below 1 while it takes off
+  float commands[4]{};        ///< NaN where there were none
+  float envelope_excess{0};   ///< how far the worst feature lay outside, in half-widths of its range
+  float squared_distance{0};  ///< of the features from the training rows; 0 without limits of trust
+  float innovation{0};        ///< of the model about what was flown; 0 without limits of trust
   std::int8_t envelope_feature{-1};
   std::uint8_t came{0};           ///< which inputs came since the tick before, as bits
   std::uint8_t asked{0};          ///< 0: the stack asked nothing of the controller: off, or flown by hand
@@ -52,6 +54,7 @@ struct CoreRecord {
   std::uint8_t status{0};         ///< pinnquad::Status
   std::uint8_t cause{0};          ///< pinnquad::Status of the network alone
   std::uint8_t stale_inputs{0};   ///< as bits
+  std::uint8_t trusted{1};        ///< by the innovation
 
   /// Calls `visit(name, unit, number or array)` for each, in their order. No more noexcept than `visit`.
   template <class Self, class Visit>
@@ -82,6 +85,8 @@ struct CoreRecord {
     visit("lift", "1", self.lift);
     visit("commands", "1", self.commands);
     visit("envelope_excess", "1", self.envelope_excess);
+    visit("squared_distance", "1", self.squared_distance);
+    visit("innovation", "1", self.innovation);
     visit("envelope_feature", "1", self.envelope_feature);
     visit("came", "bits", self.came);
     visit("asked", "1", self.asked);
@@ -91,6 +96,7 @@ struct CoreRecord {
     visit("status", "1", self.status);
     visit("cause", "1", self.cause);
     visit("stale_inputs", "bits", self.stale_inputs);
+    visit("trusted", "1", self.trusted);
   }
 };
 
@@ -124,6 +130,13 @@ struct CoreSettings {
   // pinnquad::BiasSettings
   float bias_bandwidth_1_s{0};
   float most_bias_m_s2{0};
+  // of the formula's vehicle: FlownEffects
+  std::uint32_t effects{0};
+  float drag_N_s_m{0};
+  float rate_damping_N_m_s{0};
+  // of trust; 0: none
+  float distance_limit{0};
+  float innovation_limit{0};
 
   /// As CoreRecord's.
   template <class Self, class Visit>
@@ -149,6 +162,11 @@ struct CoreSettings {
     visit("take_off_s", "s", self.take_off_s);
     visit("bias_bandwidth_1_s", "1/s", self.bias_bandwidth_1_s);
     visit("most_bias_m_s2", "m/s^2", self.most_bias_m_s2);
+    visit("effects", "1", self.effects);
+    visit("drag_N_s_m", "N s/m", self.drag_N_s_m);
+    visit("rate_damping_N_m_s", "N m s", self.rate_damping_N_m_s);
+    visit("distance_limit", "1", self.distance_limit);
+    visit("innovation_limit", "1", self.innovation_limit);
   }
 };
 

@@ -57,6 +57,38 @@ inline pinnquad::Status check_sample(const pinnquad::Vector3<float>& v) noexcept
   return pinnquad::Status::ok;
 }
 
+/// Of what is asked for: a number that is not finite is not. `not_finite` if it is no position, no velocity and no acceleration.
+inline pinnquad::Status check_set_point(const pinnquad::TrajectoryPoint<float>& wanted) noexcept {
+  pinnquad::Status checked = pinnquad::Status::not_finite;
+  for (const auto* v : {&wanted.position_m, &wanted.velocity_m_s, &wanted.acceleration_m_s2, &wanted.jerk_m_s3}) {
+    for (int i = 0; i < 3; ++i) {
+      if (!pinnquad::is_finite((*v)[i])) continue;
+      if ((*v)[i] > most_plausible || (*v)[i] < -most_plausible) return pinnquad::Status::out_of_range;
+      if (v != &wanted.jerk_m_s3) checked = pinnquad::Status::ok;
+    }
+  }
+  return checked;
+}
+
+/// What is asked for, and where nothing is what the vehicle does already.
+inline pinnquad::TrajectoryPoint<float> completed(const pinnquad::TrajectoryPoint<float>& wanted,
+                                                  const pinnquad::State<float>& now, float yaw_rad) noexcept {
+  const auto or_else = [](float value, float otherwise) noexcept {
+    return pinnquad::is_finite(value) ? value : otherwise;
+  };
+  pinnquad::TrajectoryPoint<float> point;
+  for (int i = 0; i < 3; ++i) {
+    const bool place = pinnquad::is_finite(wanted.position_m[i]);
+    point.position_m[i] = place ? wanted.position_m[i] : now.position_m[i];
+    point.velocity_m_s[i] = or_else(wanted.velocity_m_s[i], place ? 0.0f : now.velocity_m_s[i]);
+    point.acceleration_m_s2[i] = or_else(wanted.acceleration_m_s2[i], 0.0f);
+    point.jerk_m_s3[i] = or_else(wanted.jerk_m_s3[i], 0.0f);
+  }
+  point.yaw_rad = or_else(wanted.yaw_rad, yaw_rad);
+  point.yaw_rate_rad_s = or_else(wanted.yaw_rate_rad_s, 0.0f);
+  return point;
+}
+
 /// The last good sample of an input.
 template <class Value>
 class Input {

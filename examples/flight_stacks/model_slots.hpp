@@ -43,13 +43,17 @@ class ModelSlots {
   }
 
   /// The other thread. What ModelView::open() and self_test() say of the block; `out_of_range` while not settled(): try
-  /// again after the control thread's next tick.
-  pinnquad::Status offer(const void* block, std::size_t length) noexcept {
+  /// again after the control thread's next tick; `block_incompatible` for other training data, where some are asked for.
+  pinnquad::Status offer(const void* block, std::size_t length,
+                         const std::uint64_t* training_data_hash = nullptr) noexcept {
     if (!settled()) return pinnquad::Status::out_of_range;
     const Inverse* current = published_.load(std::memory_order_relaxed);  // only this thread writes it
     View view;
     const pinnquad::Status opened = View::open(block, length, view);
     if (opened != pinnquad::Status::ok) return opened;
+    if (training_data_hash != nullptr && *training_data_hash != training_data_of(block)) {
+      return pinnquad::Status::block_incompatible;
+    }
     Inverse& free = current == &slots_[0] ? slots_[1] : slots_[0];
     free = Inverse(view, free.guard());
     checksums_[&free == &slots_[0] ? 0 : 1] = checksum_of(block);
@@ -64,13 +68,17 @@ class ModelSlots {
   /// Of a block that was opened: it says how long it is.
   static std::uint32_t checksum_of(const void* block) noexcept {
     using Header = pinnquad::ModelBlockHeader;
+    return number(block, number(block, Header::length) - Header::checksum_size);
+  }
+  static std::uint64_t training_data_of(const void* block) noexcept {
+    constexpr std::size_t at = pinnquad::ModelBlockHeader::training_data_hash;
+    return std::uint64_t{number(block, at)} | std::uint64_t{number(block, at + 4)} << 32;
+  }
+  static std::uint32_t number(const void* block, std::size_t at) noexcept {
     const auto* bytes = static_cast<const unsigned char*>(block);
-    const auto number = [bytes](std::size_t at) noexcept {
-      std::uint32_t value = 0;
-      for (std::size_t i = 4; i-- > 0;) value = (value << 8) | bytes[at + i];
-      return value;
-    };
-    return number(number(Header::length) - Header::checksum_size);
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = (value << 8) | bytes[at + i];
+    return value;
   }
 
   Inverse slots_[2];

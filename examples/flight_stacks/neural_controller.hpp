@@ -7,9 +7,13 @@
 #include <cmath>
 
 #include "flight_stacks/core_record.hpp"
+#include "flight_stacks/core_settings.hpp"
+#include "flight_stacks/flown_effects.hpp"
+#include "flight_stacks/flown_motion.hpp"
 #include "flight_stacks/inputs.hpp"
 #include "flight_stacks/model_slots.hpp"
 #include "flight_stacks/situation.hpp"
+#include "flight_stacks/step_report.hpp"
 #include "flight_stacks/take_off.hpp"
 
 namespace flight_stacks {
@@ -20,37 +24,25 @@ struct AbsurdCommands {
   static constexpr double upper = 1.5;
 };
 
-/// What a step did, and why.
-struct StepReport {
-  Reaction reaction{Reaction::gives_up};
-  bool body_rates_stale{false};
-  bool attitude_stale{false};
-  bool local_stale{false};
-  bool set_point_stale{false};
-  pinnquad::Status status{pinnquad::Status::ok};  ///< of outer loop and inverse; ok where neither was asked
-  pinnquad::Status cause{pinnquad::Status::ok};   ///< what the network alone came to
-  float worst_excess{0};                          ///< how far outside its envelope, in half-widths; 0 inside
-  int worst_feature{-1};                          ///< which feature, -1 if none
-
-  /// As bits: 1 body rates, 2 attitude, 4 position and velocity, 8 set point.
-  std::uint8_t stale_inputs() const noexcept {
-    return static_cast<std::uint8_t>((body_rates_stale ? 1 : 0) | (attitude_stale ? 2 : 0) | (local_stale ? 4 : 0) |
-                                     (set_point_stale ? 8 : 0));
-  }
-};
-
 /// `Shape` says what a model block must hold: an exported header. `View` opens the block; on the ground it may be one whose
 /// network is known at run time alone (tools/model/replay_core.hpp). `VehicleType`: airframe and effects that the formula knows,
-/// a pinnquad::Quadrotor.
+/// a pinnquad::Quadrotor. `Trust`: limits of distance and innovation, trust.hpp beside the model (docs/trust.md): beyond them the
+/// formula flies.
 template <class Shape, class View = pinnquad::ModelView<Shape>,
-          class VehicleType = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>>
+          class VehicleType = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>, class Trust = NoTrust>
 class NeuralController {
+  static constexpr bool trusts = FlownTrust<Trust>::known;
+
  public:
   using Vehicle = VehicleType;
   using Formula = pinnquad::AnalyticInverse<Vehicle>;
-  using Guard =
-      pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<AbsurdCommands>, pinnquad::Fallback<Formula>>;
-  using Inverse = pinnquad::InverseDynamics<View, Guard>;
+  /// Of the network. The formula is asked here, not by the guard: below it the network's stack is free again.
+  using NetworkGuard =
+      std::conditional_t<trusts,
+                         pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::JointDistance<Trust>,
+                                          pinnquad::RefuseCommands<AbsurdCommands>>,
+                         pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<AbsurdCommands>>>;
+  using Inverse = pinnquad::InverseDynamics<View, NetworkGuard>;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
   static_assert(
       std::is_same_v<typename Shape::Features::template Inputs<float>, pinnquad::MotionInputs<float>>,
@@ -74,16 +66,19 @@ class NeuralController {
       : ages_(ages),
         outputs_(outputs),
         vehicle_(vehicle),
+        formula_(vehicle_),
         outer_loop_(gains, flight_limits(vehicle_, gains, speeds), vehicle_.site().gravity_m_s2),
-        models_(Guard(Formula(vehicle_))),
+        models_(NetworkGuard{}),
         bias_(bias),
-        take_off_(speeds.take_off_s) {}
+        take_off_(speeds.take_off_s),
+        trust_(vehicle_.airframe().rise_time_constant_s(0)) {}
   NeuralController(const NeuralController&) = delete;  // slots are pointed to
   NeuralController& operator=(const NeuralController&) = delete;
 
-  /// At boot, and in flight from another thread: see ModelSlots::offer().
+  /// At boot, and in flight from another thread: see ModelSlots::offer(). With limits of trust a model of other training data than
+  /// theirs is `block_incompatible`.
   pinnquad::Status offer_model(const void* block, std::size_t length) noexcept {
-    const pinnquad::Status status = models_.offer(block, length);
+    const pinnquad::Status status = models_.offer(block, length, training_data<Trust>());
     if (status == pinnquad::Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
     return status;
   }
@@ -93,7 +88,11 @@ class NeuralController {
 
   /// Each input: `not_finite`, `out_of_range`, `not_unit_quaternion` for a sample that is refused.
   pinnquad::Status body_rates(std::uint64_t time_us, const pinnquad::Vector3<float>& rates_rad_s) noexcept {
-    return rates_.accept(time_us, rates_rad_s, check_sample(rates_rad_s));
+    const pinnquad::Status status = rates_.accept(time_us, rates_rad_s, check_sample(rates_rad_s));
+    if constexpr (trusts) {
+      if (status == pinnquad::Status::ok) trust_.motion().body_rates(time_us, rates_rad_s);
+    }
+    return status;
   }
   /// Normalised, where the norm is within unit_quaternion_tolerance of 1.
   pinnquad::Status attitude(std::uint64_t time_us, const pinnquad::Quaternion<float>& q) noexcept {
@@ -105,23 +104,17 @@ class NeuralController {
   }
   pinnquad::Status local(std::uint64_t time_us, const LocalState& state) noexcept {
     const pinnquad::Status position = check_sample(state.position_m);
-    return local_.accept(time_us, state,
-                         position == pinnquad::Status::ok ? check_sample(state.velocity_m_s) : position);
+    const pinnquad::Status status =
+        local_.accept(time_us, state, position == pinnquad::Status::ok ? check_sample(state.velocity_m_s) : position);
+    if constexpr (trusts) {
+      if (status == pinnquad::Status::ok) trust_.motion().velocity(time_us, state.velocity_m_s);
+    }
+    return status;
   }
   /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point. `not_finite` if it asks for no
   /// position, no velocity and no acceleration.
   pinnquad::Status set_point(std::uint64_t time_us, const pinnquad::TrajectoryPoint<float>& wanted) noexcept {
-    pinnquad::Status checked = pinnquad::Status::not_finite;
-    for (const auto* v : {&wanted.position_m, &wanted.velocity_m_s, &wanted.acceleration_m_s2, &wanted.jerk_m_s3}) {
-      for (int i = 0; i < 3; ++i) {
-        if (!pinnquad::is_finite((*v)[i])) continue;
-        if ((*v)[i] > most_plausible || (*v)[i] < -most_plausible) {
-          return set_point_.accept(time_us, wanted, pinnquad::Status::out_of_range);
-        }
-        if (v != &wanted.jerk_m_s3) checked = pinnquad::Status::ok;
-      }
-    }
-    return set_point_.accept(time_us, wanted, checked);
+    return set_point_.accept(time_us, wanted, check_set_point(wanted));
   }
 
   /// Said before each step, by a stack that knows. Until then: its commands drive nothing, the vehicle is not on the ground.
@@ -141,16 +134,22 @@ class NeuralController {
     held_.position_m += by.position_m;
     held_.yaw_rad += by.yaw_rad;
     bias_.resume(bias_.acceleration_m_s2(), bias_.predicted_velocity_m_s() + by.velocity_m_s);
+    if constexpr (trusts) trust_.motion().interrupt();
   }
 
   const pinnquad::BiasEstimate<float>& bias() const noexcept { return bias_; }
   /// 0 to 1: how much of its thrust it uses while it takes off.
   float lift() const noexcept { return take_off_.lift(); }
+  /// How wrong the model has lately been about what was flown, and whether it is trusted; 0 and true without limits of trust.
+  float innovation() const noexcept { return trust_.innovation(); }
+  bool trusted() const noexcept { return trust_.trusted(); }
   /// Goes on from what was logged (replay).
-  void resume(const pinnquad::Vector3<float>& bias_m_s2, const pinnquad::Vector3<float>& predicted_velocity_m_s,
-              float lift) noexcept {
-    bias_.resume(bias_m_s2, predicted_velocity_m_s);
-    take_off_.resume(lift);
+  void resume(const CoreRecord& logged) noexcept {
+    const auto& b = logged.bias_m_s2;
+    const auto& v = logged.predicted_velocity_m_s;
+    bias_.resume({b[0], b[1], b[2]}, {v[0], v[1], v[2]});
+    take_off_.resume(logged.lift);
+    if constexpr (trusts) trust_.resume(logged.innovation, logged.trusted != 0);
   }
 
   /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
@@ -158,10 +157,11 @@ class NeuralController {
   Reaction step(std::uint64_t now_us, pinnquad::Commands<float>& commands, StepReport& report) noexcept {
     report = {};
     const Inverse* inverse = models_.take();
-    checksum_ = models_.checksum(inverse);
+    take_checksum(models_.checksum(inverse));
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
     estimate_bias(now_us, reaction);
     take_off_.update(now_us, situation_, reaction == Reaction::flies && asks_to_climb());
+    if constexpr (trusts) observe(now_us, reaction, inverse);
     if (reaction <= Reaction::levels) {
       pinnquad::Commands<float> answer{};
       report.status = ask(*inverse, reaction, answer, report);
@@ -190,33 +190,17 @@ class NeuralController {
   void skip(std::uint64_t /*now_us*/) noexcept {
     expected_us_ = 0;
     take_off_.skip();
+    if constexpr (trusts) trust_.motion().interrupt();
   }
 
   /// What it was made with.
   CoreSettings settings() const noexcept {
-    const auto us = [](std::uint64_t time_us) noexcept { return static_cast<std::uint32_t>(time_us); };
-    const pinnquad::FlightGains<float>& gains = outer_loop_.gains();
-    CoreSettings all;
-    all.body_rates_us = us(ages_.body_rates_us);
-    all.attitude_us = us(ages_.attitude_us);
-    all.local_us = us(ages_.local_us);
-    all.set_point_us = us(ages_.set_point_us);
-    all.keep_us = us(ages_.keep_us);
-    all.level_us = us(ages_.level_us);
-    all.lowest_command = outputs_.lower;
-    all.highest_command = outputs_.upper;
-    all.position_1_s = gains.position_1_s;
-    all.velocity_1_s = gains.velocity_1_s;
-    all.tilt_1_s = gains.tilt_1_s;
-    all.yaw_1_s = gains.yaw_1_s;
-    all.roll_pitch_rate_1_s = gains.roll_pitch_rate_1_s;
-    all.yaw_rate_1_s = gains.yaw_rate_1_s;
-    all.horizontal_speed_m_s = outer_loop_.limits().max_horizontal_speed_m_s;
-    all.climb_m_s = outer_loop_.limits().max_climb_m_s;
-    all.descent_m_s = outer_loop_.limits().max_descent_m_s;
-    all.take_off_s = take_off_.duration_s();
-    all.bias_bandwidth_1_s = bias_.settings().bandwidth_1_s;
-    all.most_bias_m_s2 = bias_.settings().max_bias_m_s2;
+    CoreSettings all = core_settings(ages_, outputs_, outer_loop_, take_off_, bias_);
+    add_effects(flown_effects(vehicle_), all);
+    if constexpr (trusts) {
+      all.distance_limit = static_cast<float>(Trust::distance_limit);
+      all.innovation_limit = static_cast<float>(Trust::innovation_limit);
+    }
     return all;
   }
 
@@ -245,6 +229,13 @@ class NeuralController {
   const Vehicle& vehicle() const noexcept { return vehicle_; }
 
  private:
+  void take_checksum(std::uint32_t checksum) noexcept {
+    if constexpr (trusts) {
+      if (checksum_ != 0 && checksum != checksum_) trust_.reset();
+    }
+    checksum_ = checksum;
+  }
+
   Reaction judge_ages(std::uint64_t now_us, StepReport& report) noexcept {
     report.body_rates_stale = !rates_.fresh(now_us, ages_.body_rates_us);
     report.attitude_stale = !attitude_.fresh(now_us, ages_.attitude_us);
@@ -288,6 +279,13 @@ class NeuralController {
     expected_us_ = 0;
   }
 
+  /// What the commands of the tick before came to. Out of line, as target() is.
+  PINNQUAD_NOINLINE void observe(std::uint64_t now_us, Reaction reaction, const Inverse* inverse) noexcept {
+    if (!situation_.in_flight()) trust_.reset();
+    const bool known = situation_.in_flight() && answered_ && reaction <= Reaction::holds_position;
+    if (inverse != nullptr) trust_.tick(now_us, known, state(), last_commands_, *inverse);
+  }
+
   /// By 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
   bool asks_to_climb() const noexcept {
     constexpr float noise = 0.1f;
@@ -315,20 +313,8 @@ class NeuralController {
       }
       return held_;
     }
-    const pinnquad::TrajectoryPoint<float>& wanted = set_point_.value();
-    for (int i = 0; i < 3; ++i) {
-      const bool place = pinnquad::is_finite(wanted.position_m[i]);
-      point.position_m[i] = place ? wanted.position_m[i] : now.position_m[i];
-      point.velocity_m_s[i] = or_else(wanted.velocity_m_s[i], place ? 0.0f : now.velocity_m_s[i]);
-      point.acceleration_m_s2[i] = or_else(wanted.acceleration_m_s2[i], 0.0f);
-      point.jerk_m_s3[i] = or_else(wanted.jerk_m_s3[i], 0.0f);
-    }
-    point.yaw_rad = or_else(wanted.yaw_rad, point.yaw_rad);
-    point.yaw_rate_rad_s = or_else(wanted.yaw_rate_rad_s, 0.0f);
-    return point;
+    return completed(set_point_.value(), now, point.yaw_rad);
   }
-
-  static float or_else(float value, float otherwise) noexcept { return pinnquad::is_finite(value) ? value : otherwise; }
 
   /// Outer loop, then the inverse. The network answers the whole demand, feed-forward and feedback together.
   pinnquad::Status ask(const Inverse& inverse, Reaction reaction, pinnquad::Commands<float>& commands,
@@ -336,11 +322,25 @@ class NeuralController {
     pinnquad::MotionInputs<float> wanted;
     const pinnquad::Status outer = want(reaction, wanted);
     if (outer != pinnquad::Status::ok) return outer;
+    report.cause = trusted() ? ask_network(inverse, wanted, commands, report) : pinnquad::Status::distrusted;
+    count_.add(report.cause);
+    if (pinnquad::has_output(report.cause)) return report.cause;
+    pinnquad::Commands<float> replaced{};
+    pinnquad::Status status = formula_(wanted, replaced);
+    if (pinnquad::has_output(status)) status = NetworkGuard::check_commands(replaced.data());
+    if (!pinnquad::has_output(status)) return report.cause;
+    commands = replaced;
+    return pinnquad::Status::fell_back;
+  }
+
+  PINNQUAD_NOINLINE static pinnquad::Status ask_network(const Inverse& inverse,
+                                                        const pinnquad::MotionInputs<float>& wanted,
+                                                        pinnquad::Commands<float>& commands,
+                                                        StepReport& report) noexcept {
     typename Inverse::Report why;
     const pinnquad::Status status = inverse.predict(wanted, commands, why);
-    count_.add(why.cause);
-    report.cause = why.cause;
     report.worst_feature = why.worst_feature;
+    report.squared_distance = why.squared_distance;
     if (why.worst_feature >= 0) report.worst_excess = why.excess[static_cast<std::size_t>(why.worst_feature)];
     return status;
   }
@@ -376,6 +376,7 @@ class NeuralController {
   AgeLimits ages_;
   OutputLimits outputs_;
   Vehicle vehicle_;
+  Formula formula_;
   pinnquad::FlightController<float> outer_loop_;
   ModelSlots<Inverse> models_;
   Input<pinnquad::Vector3<float>> rates_;
@@ -395,6 +396,7 @@ class NeuralController {
   bool ready_ = false;
   std::uint32_t checksum_ = 0;
   pinnquad::FallbackCount count_{};
+  FlownTrust<Trust> trust_;
 };
 
 }  // namespace flight_stacks

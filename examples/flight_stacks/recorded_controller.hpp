@@ -86,11 +86,12 @@ class Recorded : public Controller {
     }
     finished_ = false;
   }
-  void note(std::uint8_t bit) noexcept {
+  PINNQUAD_NOINLINE void note(std::uint8_t bit) noexcept {
     begin();
     record_.came = static_cast<std::uint8_t>(record_.came | bit);
   }
-  void finish(std::uint64_t now_us, const StepReport& report, std::uint8_t asked) noexcept {
+  /// Out of line: what it needs of the stack is free while the controller steps.
+  PINNQUAD_NOINLINE void finish(std::uint64_t now_us, const StepReport& report, std::uint8_t asked) noexcept {
     begin();
     finished_ = true;
     record_.timestamp = now_us;
@@ -109,6 +110,9 @@ class Recorded : public Controller {
     record_.stale_inputs = report.stale_inputs();
     record_.envelope_feature = static_cast<std::int8_t>(report.worst_feature);
     record_.envelope_excess = report.worst_excess;
+    record_.squared_distance = report.squared_distance;
+    record_.innovation = Controller::innovation();
+    record_.trusted = Controller::trusted() ? 1 : 0;
     for (float& u : record_.commands) u = std::numeric_limits<float>::quiet_NaN();
   }
 

@@ -131,6 +131,9 @@ class NeuralControl {
   /// Before the first run(): what makes PX4's controls of the model's commands. The controller's output limits are thrusts, too.
   void propulsion(const Propulsion& propulsion) noexcept { propulsion_ = propulsion; }
 
+  /// battery_status.scale, where the parameter asks for it.
+  void battery_scale(float scale) noexcept { propulsion_.battery_scale(scale); }
+
   const Controller& controller() const noexcept { return controller_; }
 
   /// One tick, after the messages. False: the module has no commands, nothing is to be published to the motors, and
@@ -147,7 +150,7 @@ class NeuralControl {
     if (reaction == flight_stacks::Reaction::gives_up) return false;
     motors.timestamp = end_us;
     motors.timestamp_sample = rates_us_;
-    for (std::size_t i = 0; i < commands.size(); ++i) motors.control[i] = propulsion_.control(commands[i]);
+    propulsion_.controls(commands, motors.control);
     return true;
   }
 

@@ -193,6 +193,11 @@ void PinnquadControl::take_samples() {
     static_cast<void>(_core.take(sample));
     _velocity_m_s[0] = local.vx, _velocity_m_s[1] = local.vy, _velocity_m_s[2] = local.vz;
   }
+  battery_status_s battery;
+  if (_battery_sub.update(&battery)) {
+    const bool scales = _param_battery_scale.get() != 0 && battery.connected;
+    _core.battery_scale(scales ? battery.scale : 1.0f);
+  }
   take_set_point();
 }
 

@@ -12,6 +12,7 @@
 #include <uORB/topics/actuator_motors.h>
 #include <uORB/topics/arming_check_reply.h>
 #include <uORB/topics/arming_check_request.h>
+#include <uORB/topics/battery_status.h>
 #include <uORB/topics/failsafe_flags.h>
 #include <uORB/topics/goto_setpoint.h>
 #include <uORB/topics/manual_control_setpoint.h>
@@ -48,6 +49,14 @@
 using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
 #endif
 
+// And one that says when the model is not to be trusted, as pinnquad train writes it.
+#if __has_include("trust.hpp")
+#include "trust.hpp"
+using FlownLimits = TrainedQuadModelTrust;
+#else
+using FlownLimits = flight_stacks::NoTrust;
+#endif
+
 class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
                         public ModuleParams,
                         public px4::ScheduledWorkItem {
@@ -68,8 +77,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
 
  private:
   using Model = TrainedQuadModel;
-  using Controller =
-      flight_stacks::Recorded<flight_stacks::NeuralController<Model, pinnquad::ModelView<Model>, FlownVehicle>>;
+  using Controller = flight_stacks::Recorded<
+      flight_stacks::NeuralController<Model, pinnquad::ModelView<Model>, FlownVehicle, FlownLimits>>;
   using Core = pinnquad_px4::NeuralControl<Model, Controller>;
 
   /// Room for one block of this model, golden vectors included.
@@ -112,6 +121,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   uORB::Subscription _failsafe_flags_sub{ORB_ID(failsafe_flags)};
   uORB::Subscription _arming_check_request_sub{ORB_ID(arming_check_request)};
   uORB::Subscription _register_reply_sub{ORB_ID(register_ext_component_reply)};
+  uORB::Subscription _battery_sub{ORB_ID(battery_status)};
   uORB::Subscription _parameter_update_sub{ORB_ID(parameter_update)};
 #if PINNQUAD_PX4_SETPOINT_CONFIG
   uORB::Subscription _configured_sub{ORB_ID(setpoint_config_reply)};
@@ -149,7 +159,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
       (ParamFloat<px4::params::PQ_BIAS_W>)_param_bias_bandwidth, (ParamFloat<px4::params::PQ_BIAS_MAX>)_param_bias_most,
       (ParamInt<px4::params::PQ_RECORD>)_param_record, (ParamFloat<px4::params::PQ_STK_XY>)_param_stick_horizontal,
       (ParamFloat<px4::params::PQ_STK_Z>)_param_stick_vertical, (ParamFloat<px4::params::PQ_STK_YAW>)_param_stick_yaw,
-      (ParamFloat<px4::params::PQ_AIR_RHO>)_param_air_density, (ParamFloat<px4::params::PQ_THR_CURVE>)_param_curve)
+      (ParamFloat<px4::params::PQ_AIR_RHO>)_param_air_density, (ParamFloat<px4::params::PQ_THR_CURVE>)_param_curve,
+      (ParamInt<px4::params::PQ_BAT_SCALE>)_param_battery_scale)
 
   const pinnquad_px4::Propulsion _propulsion;
 

@@ -2,6 +2,9 @@
 // Between the model's commands, thrust over the greatest at the rated air density, and PX4's motor controls. Pure C++17.
 #pragma once
 
+#include <algorithm>
+
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 
 namespace pinnquad_px4 {
@@ -23,6 +26,25 @@ class Propulsion {
     if (pinnquad::detail::equal(curve_, px4_curve_)) return there;
     return pinnquad::thrust_fraction(px4_curve_, pinnquad::command_of_fraction(curve_, there));
   }
+  /// The controls of the rotors' thrusts: times the battery's scale, as PX4's rate controller has it; what does not fit below 1
+  /// gives way as thrust, the same for all, so that the torque stays.
+  template <class Thrusts, std::size_t Count>
+  void controls(const Thrusts& thrusts, float (&controls)[Count]) const noexcept {
+    float most = 0;
+    for (std::size_t i = 0; i < Count; ++i) {
+      controls[i] = battery_scale_ * control(thrusts[i]);
+      most = std::max(most, controls[i]);
+    }
+    if (!(battery_scale_ > 1 && most > 1)) return;
+    for (float& u : controls) u = std::max(0.0f, u - (most - 1));
+  }
+
+  /// battery_status.scale: from 1 on; what is none (-1, NaN) or beyond what a battery that may fly has counts as 1.
+  void battery_scale(float scale) noexcept {
+    constexpr float most = 1.5f;
+    battery_scale_ = pinnquad::is_finite(scale) && scale >= 1 && scale <= most ? scale : 1.0f;
+  }
+
   /// The thrust that a control makes.
   float thrust(float control) const noexcept {
     if (pinnquad::detail::equal(curve_, px4_curve_)) return control * thrust_scale_;
@@ -33,6 +55,7 @@ class Propulsion {
   static float within(float curve) noexcept { return curve > 0 ? (curve < 1 ? curve : 1.0f) : 0.0f; }
 
   float thrust_scale_{1};
+  float battery_scale_{1};
   float px4_curve_{0};
   float curve_{0};
 };

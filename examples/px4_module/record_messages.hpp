@@ -37,6 +37,8 @@ void copy_record(const flight_stacks::CoreRecord& from, Message& to) {
   to.lift = from.lift;
   memcpy(to.commands, from.commands, sizeof to.commands);
   to.envelope_excess = from.envelope_excess;
+  to.squared_distance = from.squared_distance;
+  to.innovation = from.innovation;
   to.envelope_feature = from.envelope_feature;
   to.came = from.came;
   to.asked = from.asked;
@@ -46,6 +48,7 @@ void copy_record(const flight_stacks::CoreRecord& from, Message& to) {
   to.status = from.status;
   to.cause = from.cause;
   to.stale_inputs = from.stale_inputs;
+  to.trusted = from.trusted;
 }
 
 /// `Message`: pinnquad_settings_s.
@@ -72,6 +75,11 @@ void copy_settings(const flight_stacks::CoreSettings& from, Message& to) {
   to.take_off_s = from.take_off_s;
   to.bias_bandwidth_1_s = from.bias_bandwidth_1_s;
   to.most_bias_m_s2 = from.most_bias_m_s2;
+  to.effects = from.effects;
+  to.drag_N_s_m = from.drag_N_s_m;
+  to.rate_damping_N_m_s = from.rate_damping_N_m_s;
+  to.distance_limit = from.distance_limit;
+  to.innovation_limit = from.innovation_limit;
 }
 
 }  // namespace pinnquad_px4

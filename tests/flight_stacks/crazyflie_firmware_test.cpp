@@ -4,11 +4,17 @@
 // clipped motor by motor over the platform's greatest thrust.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstring>
 #include <deque>
+#include <fstream>
+#include <string>
+#include <vector>
 
+#include "core_log.h"
 #include "crazyflie/firmware.h"
+#include "flight_stacks/inputs.hpp"
 #include "model_blocks.hpp"
 #include "models/crazyflie_2_1.hpp"
 #include "pinnquad/core/rotation.hpp"
@@ -47,6 +53,57 @@ void step_pid(Pid& of, control_t* control, const state_t* state, stabilizerStep_
   control->yaw = 9;
   control->thrust = 30000 + of.integral;
 }
+
+/// What the deck driver writes to a uSD card of the events that config.txt names: a head that says their variables, then each with
+/// its time, then a checksum.
+class Card {
+ public:
+  void trigger(const eventtrigger& event) {
+    std::size_t id = 0;
+    while (id < events_.size() && events_[id] != &event) ++id;
+    if (id == events_.size()) events_.push_back(&event);
+    add(body_, static_cast<std::uint16_t>(id));
+    add(body_, std::uint64_t{tick_ms} * 1000);
+    body_.append(static_cast<const char*>(event.payload), event.payloadSize);
+    ++count_;
+  }
+  void clear() { events_.clear(), body_.clear(), count_ = 0; }
+  int count() const { return count_; }
+
+  std::string file() const {
+    static constexpr char letter[] = "?BHIbhif";
+    static constexpr unsigned size[] = {0, 1, 2, 4, 1, 2, 4, 4};
+    std::string text = "\xbc";
+    add(text, std::uint16_t{2});
+    add(text, static_cast<std::uint16_t>(events_.size()));
+    for (std::size_t id = 0; id < events_.size(); ++id) {
+      const eventtrigger& event = *events_[id];
+      add(text, static_cast<std::uint16_t>(id));
+      text += event.name + std::string(1, '\0');
+      add(text, std::uint16_t{event.numPayloadVariables});
+      unsigned bytes = 0;
+      for (int i = 0; i < event.numPayloadVariables; ++i) {
+        const eventtriggerPayloadDesc& variable = event.payloadDesc[i];
+        text += std::string(variable.name) + "(" + letter[variable.type] + ")" + std::string(1, '\0');
+        bytes += size[variable.type];
+      }
+      CHECK(bytes == event.payloadSize);  // packed as it is described
+    }
+    text += body_;
+    add(text, pinnquad::crc32(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+    return text;
+  }
+
+ private:
+  template <class Number>
+  static void add(std::string& to, Number number) {
+    for (std::size_t i = 0; i < sizeof number; ++i) to += static_cast<char>(number >> (8 * i) & 0xffu);
+  }
+
+  std::vector<const eventtrigger*> events_;
+  std::string body_;
+  int count_ = 0;
+} card;
 
 /// The stabilizer's loop around the app, and the vehicle.
 class Firmware {
@@ -178,6 +235,7 @@ class Firmware {
 extern "C" {
 uint32_t xTaskGetTickCount(void) { return tick_ms; }
 uint64_t usecTimestamp(void) { return std::uint64_t{tick_ms} * 1000; }
+void eventTrigger(const eventtrigger* event) { card.trigger(*event); }
 void vTaskDelay(uint32_t) { std::longjmp(app_waits, 1); }
 bool supervisorIsFlying(void) { return is_flying; }
 bool supervisorAreMotorsAllowedToRun(void) { return true; }
@@ -262,4 +320,30 @@ TEST_CASE("on the ground the motors idle until a place above is asked for") {
   firmware.run(900);
   CHECK(early_N < 0.6 * firmware.total_thrust_N());
   is_flying = true;
+}
+
+/// The file is for `pinnquad replay`, which runs it through the core again (flight_stacks.crazyflie_log).
+TEST_CASE("what the core received and answered goes to the uSD card, each step, with its settings each second") {
+  Firmware firmware(Estimator::kalman);
+  firmware.run(40);
+  card.clear();
+  firmware.run(3000, true);
+  firmware.place(2);
+  firmware.run(3000, true);
+  firmware.attitude_by_hand();
+  firmware.run(100);
+  firmware.place(1);
+  firmware.estimator_stops();
+  firmware.run(200);
+  CHECK(card.count() == 6300 / 2 + 6);
+  CrazyflieCoreRecord record{};
+  pinnquad_flight_record(&record);
+  CHECK(std::uint32_t{record.timestamp_ms} == tick_ms);
+  CHECK(static_cast<flight_stacks::Reaction>(record.reaction) == flight_stacks::Reaction::gives_up);
+  const std::string file = card.file();
+  const Block block = sound_block<CrazyflieModel>();
+  std::ofstream("flight_stacks_crazyflie.usd", std::ios::binary) << file;
+  std::ofstream model("flight_stacks_crazyflie.block", std::ios::binary);
+  model.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
+  CHECK(model.good());
 }

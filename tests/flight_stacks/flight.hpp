@@ -153,6 +153,7 @@ class FaultyFlight {
       case FaultKind::model_corrupt: offer(corrupt_); break;
       case FaultKind::model_wrong: offer(wrong_); break;
       case FaultKind::model_too_narrow: offer(narrow_); break;
+      case FaultKind::payload: weigh(fault.value); break;
       default: break;
     }
   }
@@ -161,7 +162,14 @@ class FaultyFlight {
     say("over", std::string(fault.text) + "; at worst the module " + to_string(figures_.worst[i]) + "; " +
                     std::to_string(figures_.fell_back[i]) + " of " + std::to_string(figures_.asked[i]) +
                     " answers by the formula");
+    if (fault.kind == FaultKind::payload) weigh(1);
     if (fault.kind == FaultKind::model_swapped || fault.kind == FaultKind::model_too_narrow) offer(sound_);
+  }
+
+  void weigh(double share) {
+    auto airframe = pinnquad::airframe_value<typename Model::Vehicle, double>();
+    airframe.mass_kg *= share;
+    vehicle_ = Vehicle(airframe, pinnquad::paper_site<double>());
   }
 
   bool faulty(FaultKind kind) const {
@@ -262,8 +270,10 @@ class FaultyFlight {
   }
 
   bool step_vehicle() {
+    pinnquad::Commands<double> made = commands_;
+    made[0] *= value_of(FaultKind::bent_rotor, 1);
     for (int i = 0; i < Stack::period_ms; ++i) {
-      if (vehicle_.step(body_, commands_, 1e-3) != Status::ok) return false;
+      if (vehicle_.step(body_, made, 1e-3) != Status::ok) return false;
     }
     return true;
   }

@@ -14,8 +14,9 @@ namespace flight_stacks::test {
 using Block = std::vector<unsigned char>;
 
 template <class Model>
-using Trained = pinnquad::TrainedModel<typename Model::Network,
-                                       pinnquad::Context<typename Model::Features, typename Model::Vehicle>>;
+using Trained =
+    pinnquad::TrainedModel<typename Model::Network, pinnquad::Context<typename Model::Features, typename Model::Vehicle,
+                                                                      typename Model::Outputs>>;
 
 template <class Model>
 Trained<Model> trained_model() {

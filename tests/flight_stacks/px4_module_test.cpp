@@ -3,6 +3,7 @@
 // PX4 does around a mode: the commander registers, unregisters, checks, changes modes; the allocator has the motors in PX4's own.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 #include "px4/world.hpp"
@@ -257,6 +258,32 @@ TEST_CASE("thin air and another thrust curve than PX4's: the motors get the cont
   CHECK(thrust(0.6, hover(0.98, 0.6, 0)) == doctest::Approx(rated * 1.225 / 0.98));
   // a linear propulsion behind PX4's square: the control's root is the signal
   CHECK(std::sqrt(hover(1.225, 0, 1)) == doctest::Approx(rated));
+}
+
+TEST_CASE("a battery that sags: the controls grow by its scale where the parameter asks for it, not beyond 1") {
+  const auto hover = [](int asked, bool connected, float scale) {
+    Px4World world;
+    px4::parameter_values()["PQ_BAT_SCALE"] = asked;
+    REQUIRE(shell("start") == PX4_OK);
+    world.fly();
+    uORB::Publication<battery_status_s> battery{ORB_ID(battery_status)};
+    battery.publish({World::now_us, connected, scale});
+    world.run(20);
+    return double(world.last.control[0]);
+  };
+  const double full = hover(1, true, 1);
+  CHECK(hover(1, true, 1.2f) == doctest::Approx(1.2 * full).epsilon(0.01));
+  CHECK(hover(0, true, 1.2f) == doctest::Approx(full).epsilon(0.01));
+  CHECK(hover(1, false, 1.2f) == doctest::Approx(full).epsilon(0.01));
+  for (const float none : {-1.0f, 0.0f, 30.0f, NAN}) CHECK(hover(1, true, none) == doctest::Approx(full).epsilon(0.01));
+  pinnquad_px4::Propulsion propulsion;
+  propulsion.battery_scale(1.25f);
+  float controls[4];
+  propulsion.controls(std::array<float, 4>{0.9f, 0.8f, 0.5f, 0.1f}, controls);
+  for (const float u : controls) CHECK((u >= 0 && u <= 1));
+  CHECK(controls[0] == doctest::Approx(1));
+  CHECK(controls[0] - controls[1] == doctest::Approx(1.25 * 0.1));  // the torque stays
+  CHECK(controls[1] - controls[2] == doctest::Approx(1.25 * 0.3));
 }
 
 TEST_CASE("propulsion: there and back again, over the whole range; a density that is none is the rated one") {

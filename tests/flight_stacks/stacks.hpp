@@ -41,7 +41,7 @@ Answer answer_of(bool has_commands, const Report& report) {
 }
 
 /// PX4: 1 kHz.
-template <class ModelType>
+template <class ModelType, class Controller = NeuralController<ModelType>>
 class Px4StackOf {
  public:
   using Model = ModelType;
@@ -108,14 +108,14 @@ class Px4StackOf {
   static std::uint64_t clock() { return now_us_; }
   static inline std::uint64_t now_us_ = 0;
 
-  pinnquad_px4::NeuralControl<Model, Recorded<NeuralController<Model>>> core_;
+  pinnquad_px4::NeuralControl<Model, Recorded<Controller>> core_;
 };
 
 /// The paper's quadrotor.
 using Px4Stack = Px4StackOf<DemoQuadModel>;
 
 /// Crazyflie's firmware: 500 Hz; x east, y north, z up; degrees.
-template <class ModelType>
+template <class ModelType, class Controller = NeuralController<ModelType>>
 class CrazyflieStackOf {
  public:
   using Model = ModelType;
@@ -203,7 +203,7 @@ class CrazyflieStackOf {
     enu[2] = static_cast<float>(-ned[2]);
   }
 
-  pinnquad_crazyflie::NeuralControl<Model, Recorded<NeuralController<Model>>> core_;
+  pinnquad_crazyflie::NeuralControl<Model, Recorded<Controller>> core_;
   CrazyflieState state_{};
   CrazyflieSetpoint setpoint_{};
   bool by_hand_ = false;

@@ -106,6 +106,45 @@ print(f"{len(logged)} ticks, commands within {worst:.1e}")
 PY
 done
 
+# a structured model, other effects in the formula, limits of trust: to the bit
+trust=$source_dir/tests/flight_stacks/structured_trust.hpp
+mkdir structured
+"$record" structured eight structured >structured.txt
+structured=(--model structured/sound.block)
+"$pinnquad" replay structured "${structured[@]}" --trust "$trust" --out structured.csv >structured.said ||
+  fail "structured: replay differs: $(tail -3 structured.said)"
+python3 - structured/flight_pinnquad_record_0.csv structured.csv <<'PY'
+import csv, struct, sys
+logged, replayed = (list(csv.DictReader(open(name))) for name in sys.argv[1:3])
+assert len(logged) == len(replayed) > 15000
+bits = lambda number: struct.pack("f", float(number))
+for was, now in zip(logged, replayed):
+    if was["commands[0]"] != "nan":
+        assert all(bits(was[f"commands[{i}]"]) == bits(now[f"u{i + 1}"]) for i in range(4)), (was, now)
+assert sum(row["answered_by"] == "model" for row in replayed) > 20000
+words = " ".join(row["reason"] for row in replayed)
+assert sum(row["cause"] == "distrusted" for row in replayed) > 4000
+assert "innovation 0." in words and "limit 0.018" in words, words[:300]
+PY
+# the formula with other effects answers otherwise, where it answers; one that is not known is refused
+code=0
+"$pinnquad" replay structured "${structured[@]}" --trust "$trust" --set effects=1 >differs.txt || code=$?
+[ "$code" -eq 1 ] && grep -qE 'first at 1[2-9]\.[0-9]* s .*: u1 ' differs.txt || fail "other effects: $(tail -1 differs.txt)"
+expect_line 2 'knew an effect that replay does not \(effects f1\)' "$pinnquad" replay structured "${structured[@]}" \
+  --trust "$trust" --set effects=241
+# limits that flew are asked for; others are said to be others, and the answer is another
+expect_line 2 '--trust: the core that flew had limits' "$pinnquad" replay structured "${structured[@]}"
+sed 's/innovation_limit = 0.018/innovation_limit = 0.118/' "$trust" >loose.hpp
+code=0
+"$pinnquad" replay structured "${structured[@]}" --trust loose.hpp >differs.txt || code=$?
+[ "$code" -eq 1 ] && grep -q '^note .*other limits than those that flew' differs.txt || fail "other limits: $(tail -1 differs.txt)"
+sed 's/distribution_mean = {{/distribution_mean = {{1.0f, /' "$trust" >long.hpp
+expect_line 2 'long.hpp:[0-9]*: expected 210 numbers in `whitening`, found 190' "$pinnquad" replay structured "${structured[@]}" --trust long.hpp
+# behind gaps what was distrusted still is
+python3 "$here/planted.py" structured/flight_pinnquad_record_0.csv planted.csv drop 9000 9100 13000 13003 14000 15000
+"$pinnquad" replay planted.csv "${structured[@]}" --trust "$trust" --set effects=18 --set drag_N_s_m=1 --set rate_damping_N_m_s=0.025 \
+  --set distance_limit=235.03697 --set innovation_limit=0.01800841 >same.txt || fail "gaps: $(tail -2 same.txt)"
+
 f=px4-eight
 models=(--model $f/sound.block --model $f/other.block --model $f/narrow.block)
 log=$f/flight_pinnquad_record_0.csv

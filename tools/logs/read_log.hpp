@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A log whatever its file is: ULog, a folder that ulog2csv wrote, a CSV table.
+// A log whatever its file is: ULog, a folder that ulog2csv wrote, a Crazyflie's uSD card's, a CSV table.
 #pragma once
 
 #include <array>
@@ -16,12 +16,13 @@
 #include "logs/log_selection.hpp"
 #include "logs/ulog.hpp"
 #include "logs/ulog2csv_folder.hpp"
+#include "logs/usd_log.hpp"
 #include "pinnquad/data/file_error.hpp"
 #include "pinnquad/data/text_file.hpp"
 
 namespace programs {
 
-enum class LogKind { ulog, ulog2csv_folder, csv };
+enum class LogKind { ulog, ulog2csv_folder, usd, csv };
 
 namespace detail {
 
@@ -58,9 +59,11 @@ inline LogKind kind_of_log(const std::string& path) {
   pinnquad::detail::TextFile file(path);
   const std::string_view begin(block.data(), file.read(block.data(), block.size()));
   if (begin.substr(0, ulog::magic.size()) == ulog::magic) return LogKind::ulog;
+  if (usd::begins(begin)) return LogKind::usd;
   detail::refuse_compressed(path, begin);
   if (std::filesystem::path(path).extension() == ".ulg" || begin.find('\0') != std::string_view::npos) {
-    throw pinnquad::InputError(path, 0, 0, "a ULog file, a CSV table, or a folder that ulog2csv wrote",
+    throw pinnquad::InputError(path, 0, 0,
+                               "a ULog file, a CSV table, a Crazyflie's log, or a folder that ulog2csv wrote",
                                begin.empty() ? "an empty file" : "neither by its first bytes");
   }
   return LogKind::csv;
@@ -76,6 +79,7 @@ inline FlightLog read_log(const std::string& path, const LogSelection& selection
   switch (kind) {
     case LogKind::ulog: return read_ulog(path, shown);
     case LogKind::ulog2csv_folder: return read_ulog2csv_folder(path, shown);
+    case LogKind::usd: return read_usd_log(path);
     case LogKind::csv: break;
   }
   return read_csv_log(path, shown);

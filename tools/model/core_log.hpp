@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "flight_stacks/core_record.hpp"
@@ -57,6 +58,33 @@ inline const LogColumn& core_column(const LogTopic& topic, const std::string& na
 }
 
 }  // namespace detail
+
+/// A Crazyflie's events (examples/crazyflie_app/src/core_log.h) say times in ms, under names of their own, and leave out what it
+/// does not know: that is as a record is made. Columns are added to the topic.
+template <class Record>
+void complete_core_topic(LogTopic& topic) {
+  const Record layout{};
+  const auto add = [&topic](const std::string& name, double value) {
+    if (topic.column(name) != nullptr) return;
+    const bool is_time = name.size() > 3 && name.compare(name.size() - 3, 3, "_us") == 0;
+    const LogColumn* in_ms = topic.column((is_time ? name.substr(0, name.size() - 3) : name) + "_ms");
+    LogColumn column{name, std::vector<double>(topic.size(), value)};
+    if (in_ms != nullptr) {
+      for (std::size_t row = 0; row < column.values.size(); ++row) column.values[row] = 1000 * in_ms->values[row];
+    }
+    topic.columns.push_back(std::move(column));
+  };
+  Record::each_number(layout, [&add](const char* name, const char*, const auto& value) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if constexpr (std::is_array_v<Value>) {
+      for (std::size_t i = 0; i < std::extent_v<Value>; ++i) {
+        add(name + ("[" + std::to_string(i) + "]"), static_cast<double>(value[i]));
+      }
+    } else {
+      add(name, static_cast<double>(value));
+    }
+  });
+}
 
 /// The rows of a topic as records of a core. Throws InputError, one line: a column that is missing or holds text, a number that
 /// its field can't be.

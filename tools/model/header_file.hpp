@@ -27,16 +27,15 @@ class HeaderFile {
     if (text.find("exported by pinnquad") == std::string::npos || model == std::string::npos) {
       refuse(0, "a header that pinnquad train exported", "something else");
     }
-    const std::string::difference_type before =
-        std::count(text.begin(), text.begin() + static_cast<std::string::difference_type>(model), '\n');
-    std::size_t line = static_cast<std::size_t>(before) + 1;
-    for (std::size_t at = model; at < text.size();) {
-      const std::size_t end = statement_end(text, at);
-      take(text.substr(at, end - at), line + leading_lines(text, at));
-      line += static_cast<std::size_t>(std::count(text.begin() + static_cast<std::string::difference_type>(at),
-                                                  text.begin() + static_cast<std::string::difference_type>(end), '\n'));
-      at = end + 1;
-    }
+    take_all(text, model);
+  }
+  /// Of the struct that stands beside a model's: `first` is the name of its first constant, `expected` what the file is.
+  HeaderFile(const std::string& path, const std::string& first, const std::string& expected) : path_(path) {
+    const std::string text = pinnquad::file_text(path);
+    const std::size_t name = text.find(" " + first + " = ");
+    const std::size_t begin = name == std::string::npos ? name : text.rfind('\n', name);
+    if (begin == std::string::npos) refuse(0, expected, "something else");
+    take_all(text, begin);
   }
 
   const std::string& path() const { return path_; }
@@ -146,6 +145,18 @@ class HeaderFile {
       if (text[at] == '\n') ++lines;
     }
     return lines;
+  }
+
+  /// The statements from there on.
+  void take_all(const std::string& text, std::size_t from) {
+    const auto place = [&text](std::size_t at) { return text.begin() + static_cast<std::string::difference_type>(at); };
+    std::size_t line = static_cast<std::size_t>(std::count(text.begin(), place(from), '\n')) + 1;
+    for (std::size_t at = from; at < text.size();) {
+      const std::size_t end = statement_end(text, at);
+      take(text.substr(at, end - at), line + leading_lines(text, at));
+      line += static_cast<std::size_t>(std::count(place(at), place(end), '\n'));
+      at = end + 1;
+    }
   }
 
   /// What stands between two semicolons, comments before it included.

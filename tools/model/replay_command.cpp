@@ -43,6 +43,7 @@ struct Options {
   programs::ModelHints hints;
   std::string guard = "flight_stack";
   std::vector<std::string> settings;
+  std::string trust;
   double tolerance = 1e-5;
   std::string out;
   bool json = false;
@@ -102,6 +103,10 @@ Replayed replay_flights(const Options& options, const ReplayInput& input, const 
     throw std::invalid_argument(
         "--set: these are settings of a flight stack's core, and the log has none of its records");
   }
+  if (!options.trust.empty()) {
+    throw std::invalid_argument(
+        "--trust: these are limits of a flight stack's core, and the log has none of its records");
+  }
   Replayed replayed;
   replayed.notes = input.notes;
   std::size_t rows = 0;
@@ -146,29 +151,47 @@ class FlownModels {
   std::vector<std::uint32_t> checksums_, strangers_;
 };
 
+/// The limits that the core had. Throws InputError and std::invalid_argument: it had some and none are given.
+void take_trust(const Options& options, programs::CoreReplayOptions& core, Replayed& replayed) {
+  const flight_stacks::CoreSettings& logged = core.settings;
+  if (options.trust.empty()) {
+    if (!(logged.distance_limit > 0)) return;
+    throw std::invalid_argument(
+        "--trust: the core that flew had limits of distance and innovation: give the trust.hpp "
+        "that it was compiled with");
+  }
+  core.trust = programs::read_trust(options.trust);
+  const bool same = static_cast<float>(core.trust->distance_limit) >= logged.distance_limit &&
+                    static_cast<float>(core.trust->distance_limit) <= logged.distance_limit &&
+                    static_cast<float>(core.trust->innovation_limit) >= logged.innovation_limit &&
+                    static_cast<float>(core.trust->innovation_limit) <= logged.innovation_limit;
+  if (!same) replayed.notes.push_back("--trust: other limits than those that flew: what follows may differ for that");
+}
+
 Replayed replay_core(const Options& options, const ReplayInput& input, const std::vector<ReplayModel>& models) {
   Replayed replayed;
   replayed.of_core = true;
   replayed.notes = input.notes;
   replayed.flights = {printable(std::filesystem::path(options.log).filename().string())};
-  programs::CoreReplayOptions of_core{input.settings, options.tolerance};
+  programs::CoreReplayOptions of_core{input.settings, {}, options.tolerance};
   const Airframe<float> airframe = programs::flying_airframe(models.front().identity.airframe);
   if (!input.has_settings) {
     of_core.settings = programs::FlightStackController(airframe).settings();
     replayed.notes.push_back("the log has no topic pinnquad_settings: a core's own limits and gains are taken");
   }
   for (const std::string& setting : options.settings) apply_setting(setting, of_core.settings);
+  take_trust(options, of_core, replayed);
   for (const ReplayModel& model : models) {
     if (model.identity.airframe.name == models.front().identity.airframe.name) continue;
     throw std::invalid_argument("--model: " + models.front().path + " is for " + models.front().identity.airframe.name +
                                 ", " + model.path + " for " + model.identity.airframe.name);
   }
-  programs::CoreReplay core(models, airframe, of_core);
+  const std::unique_ptr<programs::CoreReplay> core = programs::core_replay(models, airframe, of_core);
   FlownModels flown(models);
   programs::ProgressLine progress("replaying " + std::to_string(input.ticks.size()) + " ticks");
   replayed.rows.reserve(input.ticks.size());
   for (const flight_stacks::CoreRecord& tick : input.ticks) {
-    replayed.rows.push_back(core.run(tick, flown.of(tick, replayed), replayed));
+    replayed.rows.push_back(core->run(tick, flown.of(tick, replayed), replayed));
     progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(input.ticks.size()));
   }
   return replayed;
@@ -192,6 +215,7 @@ int replay(const Options& options) {
   programs::FileRoles roles;
   roles.reads("LOG", options.log);
   for (const std::string& model : options.models) roles.reads("--model", model);
+  if (!options.trust.empty()) roles.reads("--trust", options.trust);
   roles.writes("--out", options.out);
   std::vector<ReplayModel> models;
   for (const std::string& path : options.models) models.push_back(read_model(path, options));
@@ -247,6 +271,8 @@ programs::Command programs::replay_command(CLI::App& program) {
   line->add_option("--set", options->settings,
                    "a setting of the core other than the log's, to see what it would have done: --set tilt_1_s=7")
       ->type_name("NAME=VALUE");
+  add_path(*line, "--trust", options->trust, "TRUST.hpp",
+           "limits of distance and innovation that the core was compiled with, as pinnquad train wrote them");
   add_number(*line, "--tolerance", options->tolerance, 0.0, 1.0,
              "largest difference of a command from the core's log that counts as the same");
   add_path(*line, "--out", options->out, "FILE.csv", "every row: status, who answered, commands, the reason in words");

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,7 +13,10 @@
 
 #include "model/core_words.hpp"
 #include "model/flight_stack.hpp"
+#include "model/log_schemas.hpp"
+#include "model/recorded_effects.hpp"
 #include "model/replay_reason.hpp"
+#include "model/run_time_trust.hpp"
 
 namespace programs {
 
@@ -31,51 +35,80 @@ struct ReplayModel {
 
 struct CoreReplayOptions {
   flight_stacks::CoreSettings settings;
+  std::optional<TrustLimits> trust;
   double tolerance = 1e-5;  ///< of a command
 };
 
 /// Runs records of one core, in their order, through controllers of the airframe of `models`, which is the same for all.
 class CoreReplay {
-  using Shape = RunTimeShape<pinnquad::PaperFeatures, float>;
-  using View = RunTimeView<pinnquad::PaperFeatures, float>;
+ public:
+  CoreReplay() = default;
+  CoreReplay(const CoreReplay&) = delete;
+  CoreReplay& operator=(const CoreReplay&) = delete;
+  virtual ~CoreReplay() = default;
+
+  /// One tick. `model`: which of the models flew, or none.
+  virtual ReplayedRow run(const flight_stacks::CoreRecord& record, std::optional<std::size_t> model,
+                          Replayed& replayed) = 0;
+};
+
+/// `models` must stay where they are. Throws std::invalid_argument for a model that no flight stack flies, for some of different
+/// features, for an effect or limits of trust that are not known.
+std::unique_ptr<CoreReplay> core_replay(const std::vector<ReplayModel>& models,
+                                        const pinnquad::Airframe<float>& airframe, const CoreReplayOptions& options);
+
+namespace detail {
+
+/// Calls `function` with the schemas, if there are any, that a model of these features has, as each_schema() does.
+template <class FeatureSet, class Function>
+void each_schema_of(const ReplayModel& model, const Function& function) {
+  const auto try_schema = [&](auto features, auto outputs) {
+    if constexpr (std::is_same_v<decltype(features), FeatureSet>) {
+      using Outputs = decltype(outputs);
+      if (!model.block.is_double && shape_hash_of<FeatureSet, Outputs>(
+                                        model.identity.answer, model.identity.airframe) == model.block.shape_hash) {
+        function(outputs);
+      }
+    }
+  };
+  each_schema(try_schema);
+  each_log_schema(try_schema);
+}
+
+/// Of models whose features are these.
+template <class FeatureSet>
+class CoreReplayOf : public CoreReplay {
+  using Shape = RunTimeShape<FeatureSet, float>;
+  using View = RunTimeView<FeatureSet, float>;
+  using Vehicle = pinnquad::Quadrotor<float, RecordedEffects>;
+  using Trust = RunTimeTrust<FeatureSet>;
+  using Controller = flight_stacks::NeuralController<Shape, View, Vehicle, Trust>;
   using Record = flight_stacks::CoreRecord;
-  using Features = Shape::Features;
+  using Features = typename Shape::Features;
 
  public:
-  /// Throws std::invalid_argument for a model that no flight stack flies.
-  CoreReplay(const std::vector<ReplayModel>& models, const pinnquad::Airframe<float>& airframe,
-             const CoreReplayOptions& options)
-      : models_(models), airframe_(airframe), options_(options), words_(options.settings) {
+  CoreReplayOf(const std::vector<ReplayModel>& models, const pinnquad::Airframe<float>& airframe,
+               const CoreReplayOptions& options)
+      : models_(models),
+        vehicle_(airframe, {}, recorded_effects(options.settings)),
+        options_(options),
+        words_(options.settings) {
+    if (options.trust) Trust::set(*options.trust);
     for (const ReplayModel& model : models) {
-      bool flies = false;
-      each_schema([&](auto features, auto outputs) {
-        if constexpr (std::is_same_v<decltype(features), pinnquad::PaperFeatures>) {
-          using Outputs = decltype(outputs);
-          if (flies || model.block.is_double ||
-              detail::shape_hash_of<pinnquad::PaperFeatures, Outputs>(model.identity.answer, model.identity.airframe) !=
-                  model.block.shape_hash) {
-            return;
-          }
-          flies = true;
-          const View view = View::of(model.block, model.identity, outputs);
-          View::know(model.bytes.data(), view);
-          reasons_.emplace_back(view);
-        }
-      });
-      if (!flies) {
-        throw std::invalid_argument(model.path +
-                                    ": a flight stack's core flies float models of the paper's features (" +
-                                    "vdot_bx..cos_yaw); this one is another");
-      }
+      std::optional<View> view;
+      each_schema_of<FeatureSet>(model, [&](auto outputs) { view = View::of(model.block, model.identity, outputs); });
+      if (!view)
+        throw std::invalid_argument("--model: " + models.front().path + " and " + model.path + " differ in features");
+      View::know(model.bytes.data(), *view);
+      reasons_.emplace_back(*view);
     }
     restart();
   }
 
-  /// One tick. `model`: which of the models flew, or none.
-  ReplayedRow run(const Record& record, std::optional<std::size_t> model, Replayed& replayed) {
+  ReplayedRow run(const Record& record, std::optional<std::size_t> model, Replayed& replayed) override {
     take_gap(record);
     take_model(model);
-    controller_->jump({vector(record.jump_position_m), vector(record.jump_velocity_m_s), record.jump_yaw_rad});
+    take_jump(record);
     ReplayedRow row;
     row.row = record.tick;
     row.time_s = static_cast<double>(record.timestamp) / 1e6;
@@ -97,7 +130,7 @@ class CoreReplay {
     if (!report.set_point_stale) holding_unknown_ = false;
     if (row.answerer == Answerer::model || row.answerer == Answerer::formula) answer_unknown_ = false;
     // each tick is judged by itself: the next one starts from what this one logged
-    resume(record);
+    controller_->resume(record);
     last_tick_ = record.tick;
     return row;
   }
@@ -105,10 +138,8 @@ class CoreReplay {
  private:
   static pinnquad::Vector3<float> vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-  void resume(const Record& r) { controller_->resume(vector(r.bias_m_s2), vector(r.predicted_velocity_m_s), r.lift); }
-
   void restart() {
-    controller_.emplace(airframe_, age_limits(options_.settings), output_limits(options_.settings),
+    controller_.emplace(vehicle_, age_limits(options_.settings), output_limits(options_.settings),
                         flight_gains(options_.settings), speed_limits(options_.settings),
                         bias_settings(options_.settings));
     flown_.reset();
@@ -126,13 +157,20 @@ class CoreReplay {
     restart();
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
-    resume(record);
+    window_known_us_ = record.timestamp + 2 * flight_stacks::FlownMotion::window_us;
+    controller_->resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 15));
     for (int i = 0; i < 4; ++i) {  // what was refused hides the good one before it
       if (words_.refused(i)) unknown_inputs_ = static_cast<std::uint8_t>(unknown_inputs_ | (1 << i));
     }
     refused_base_ = record.refused_samples;
     refused_base_known_ = false;
+  }
+
+  void take_jump(const Record& record) {
+    const flight_stacks::EstimateJump by{vector(record.jump_position_m), vector(record.jump_velocity_m_s),
+                                         record.jump_yaw_rad};
+    if (!by.position_m.isZero(0) || !by.velocity_m_s.isZero(0) || std::fabs(by.yaw_rad) > 0) controller_->jump(by);
   }
 
   void take_model(std::optional<std::size_t> model) {
@@ -211,12 +249,26 @@ class CoreReplay {
     if (!model) row.reason = "no model was accepted yet";
     const bool has_cause = report.cause != pinnquad::Status::ok || report.status != pinnquad::Status::ok;
     if (model && has_cause) {
-      const std::string why = reasons_[*model](report.cause, Excess(report), Features::last<float>);
+      const std::string distrust = distrust_in_words(report);
+      const std::string why =
+          distrust.empty() ? reasons_[*model](report.cause, Excess(report), Features::template last<float>) : distrust;
       row.reason += (row.reason.empty() || why.empty() ? "" : "; ") + why;
       if (!pinnquad::has_output(report.status)) {
         row.reason += std::string("; the formula declines too: ") + pinnquad::to_string(report.status);
       }
     }
+  }
+
+  std::string distrust_in_words(const flight_stacks::StepReport& report) const {
+    if (report.cause == pinnquad::Status::distrusted) {
+      return in_words("innovation %.4g, limit %.4g, cleared at %.4g", static_cast<double>(controller_->innovation()),
+                      Trust::innovation_limit, Trust::innovation_cleared);
+    }
+    if (report.cause == pinnquad::Status::outside_distribution) {
+      return in_words("squared distance %.4g, limit %.4g", static_cast<double>(report.squared_distance),
+                      Trust::distance_limit);
+    }
+    return "";
   }
 
   /// A step's report as that of a guard: of the features outside it knows the worst alone.
@@ -272,16 +324,28 @@ class CoreReplay {
                      static_cast<double>(record.bias_m_s2[i])));
       }
     }
-    bool commands_differ = false;
+    if (options_.trust && record.timestamp >= window_known_us_) compare_trust(record, say);
     for (std::size_t i = 0; i < 4; ++i) {
       const double mine = row.commands[i], theirs = row.logged[i];
       const bool same = std::isnan(mine) ? std::isnan(theirs) : std::fabs(mine - theirs) <= options_.tolerance;
       if (!same) say(in_words("u%zu %.7g, logged %.7g", i + 1, mine, theirs));
-      commands_differ = commands_differ || !same;
     }
     if (!row.differs.empty() && at_the_edge(record, report)) {
       ++replayed.at_the_edge;
       row.differs.clear();
+    }
+  }
+
+  template <class Say>
+  void compare_trust(const Record& record, const Say& say) {
+    constexpr float rounding = 1e-5f;
+    const float innovation = controller_->innovation();
+    if (!(std::fabs(innovation - record.innovation) <= rounding)) {
+      say(in_words("innovation %.6g, logged %.6g", static_cast<double>(innovation),
+                   static_cast<double>(record.innovation)));
+    }
+    if (controller_->trusted() != (record.trusted != 0)) {
+      say(std::string("the model is ") + (controller_->trusted() ? "trusted" : "distrusted") + ", logged otherwise");
     }
   }
 
@@ -298,17 +362,19 @@ class CoreReplay {
   }
 
   const std::vector<ReplayModel>& models_;
-  pinnquad::Airframe<float> airframe_;
+  Vehicle vehicle_;
   CoreReplayOptions options_;
   CoreWords words_;
   std::vector<ReasonOf<Features, View>> reasons_;  ///< of each model
-  std::optional<FlightStackController> controller_;
+  std::optional<Controller> controller_;
   std::optional<std::size_t> flown_;
   std::uint32_t last_tick_ = 0;
+  std::uint64_t window_known_us_ = 0;  ///< behind a gap: from then on its windows of flown motion are those of the core
   std::uint32_t refused_base_ = 0;
   bool refused_base_known_ = true;
   std::uint8_t unknown_inputs_ = 0;  ///< behind a gap: bits of inputs of which the last good sample is not known
   bool holding_unknown_ = false, answer_unknown_ = false;
 };
 
+}  // namespace detail
 }  // namespace programs

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `replay` is given as a log: a recorded flight, a folder of imported flights, or what a flight stack's core logged (a ULog
-// file, a folder that ulog2csv wrote, a CSV table).
+// file, a folder that ulog2csv wrote, a Crazyflie's log from its uSD card, a CSV table).
 #pragma once
 
 #include <algorithm>
@@ -162,7 +162,14 @@ inline ReplayInput read_replay_input(const std::string& path) {
   }
   LogSelection selection;
   selection.topics = {flight_stacks::CoreRecord::topic, flight_stacks::CoreSettings::topic};
-  return detail::read_core_topics(path, read_log(path, selection));
+  FlightLog log = read_log(path, selection);
+  if (kind_of_log(path) == LogKind::usd) {
+    for (LogTopic& topic : log.topics) {
+      if (topic.name == flight_stacks::CoreRecord::topic) complete_core_topic<flight_stacks::CoreRecord>(topic);
+      if (topic.name == flight_stacks::CoreSettings::topic) complete_core_topic<flight_stacks::CoreSettings>(topic);
+    }
+  }
+  return detail::read_core_topics(path, log);
 }
 
 }  // namespace programs

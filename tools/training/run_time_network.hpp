@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -326,6 +327,13 @@ class RunTimeNetwork {
     for (const double parameter : detail::plain_parameters(spec_, own, parameters.data() + parameters.size())) {
       parameters_.push_back(static_cast<Scalar>(parameter));
     }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(spec_.inputs); ++i) order_.push_back(i);
+    std::stable_partition(order_.begin(), order_.end(), [this](std::size_t column) {
+      return std::none_of(spec_.threes.begin(), spec_.threes.end(), [column](int place) {
+        const auto first = static_cast<std::size_t>(place);
+        return column >= first && column < first + 3;
+      });
+    });
   }
 
   std::vector<Scalar> forward(const std::vector<Scalar>& x) const {
@@ -360,6 +368,7 @@ class RunTimeNetwork {
   template <std::size_t Count>
   std::vector<std::array<Scalar, Count>> through_layers(std::vector<std::array<Scalar, Count>> x) const {
     const Scalar* own = parameters_.data();
+    std::vector<std::size_t> order = order_;
     for (const LayerSpec& layer : spec_.layers) {
       if (layer.size == 0) {
         const Activation<Scalar>& activation = activations<Scalar>()[layer.activation];
@@ -378,7 +387,7 @@ class RunTimeNetwork {
       for (std::size_t row = 0; row < rows; ++row) {
         std::array<Scalar, Count> sum{};
         if (layer.has_bias) sum[0] = bias[row];
-        for (std::size_t column = 0; column < x.size(); ++column) {
+        for (const std::size_t column : order) {
           const Scalar weight = own[row * x.size() + column];
           for (std::size_t k = 0; k < Count; ++k) sum[k] = pinnquad::multiply_add(weight, x[column][k], sum[k]);
         }
@@ -386,6 +395,8 @@ class RunTimeNetwork {
       }
       own = bias + (layer.has_bias ? rows : 0);
       x = std::move(y);
+      order.resize(rows);
+      std::iota(order.begin(), order.end(), std::size_t{0});
     }
     return x;
   }
@@ -404,6 +415,7 @@ class RunTimeNetwork {
   }
 
   NetworkSpec spec_;
+  std::vector<std::size_t> order_;             ///< of the features in a sum: as AxisAligned adds them, its threes last
   std::vector<std::array<Scalar, 2>> bounds_;  ///< of each output, where it has some
   std::vector<Scalar> parameters_;
 };

@@ -2,13 +2,38 @@
 // The controller behind its C interface: one, in static memory.
 #include "neural_control_core.hpp"
 
+#include <cstring>
 #include <new>
 
+#include "core_log.h"
+#include "flight_stacks/recorded_controller.hpp"
+
+// A model.hpp beside the app, as pinnquad train writes it, takes the place of the one for the Crazyflie 2.1; a flown_vehicle.hpp
+// says which effects the formula knows, a trust.hpp when the model is not to be trusted.
+#if __has_include("model.hpp")
+#include "model.hpp"
+using FlownModel = TrainedQuadModel;
+#else
 #include "models/crazyflie_2_1.hpp"
+using FlownModel = CrazyflieModel;
+#endif
+#if __has_include("flown_vehicle.hpp")
+#include "flown_vehicle.hpp"
+#else
+using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
+#endif
+#if __has_include("model.hpp") && __has_include("trust.hpp")
+#include "trust.hpp"
+using FlownLimits = TrainedQuadModelTrust;
+#else
+using FlownLimits = flight_stacks::NoTrust;
+#endif
 
 namespace {
 
-using Control = pinnquad_crazyflie::NeuralControl<CrazyflieModel>;
+using Controller = flight_stacks::Recorded<
+    flight_stacks::NeuralController<FlownModel, pinnquad::ModelView<FlownModel>, FlownVehicle, FlownLimits>>;
+using Control = pinnquad_crazyflie::NeuralControl<FlownModel, Controller>;
 
 alignas(Control) unsigned char memory[sizeof(Control)];
 Control* made = nullptr;
@@ -23,16 +48,32 @@ Control& controller(float most_command = 1.0f) noexcept {
   return *made;
 }
 
+// As core_log.h packs a record: no number of it need be aligned.
+#define PINNQUAD_COPY_ONE(type, name) std::memcpy(&to->name, &from.name, sizeof to->name);
+#define PINNQUAD_COPY_MANY(count, type, name) PINNQUAD_COPY_ONE(type, name)
+#define PINNQUAD_COPY_TIME(of, name) to->name = static_cast<std::uint32_t>(from.of / 1000);
+
 }  // namespace
 
 extern "C" {
+
+void pinnquad_flight_record(CrazyflieCoreRecord* to) {
+  const flight_stacks::CoreRecord& from = controller().controller().record();
+  PINNQUAD_RECORD_LIST(PINNQUAD_COPY_ONE, PINNQUAD_COPY_MANY, PINNQUAD_COPY_TIME)
+}
+
+void pinnquad_flight_settings(uint32_t now_ms, CrazyflieCoreSettings* to) {
+  flight_stacks::CoreSettings from = controller().controller().settings();
+  from.timestamp = std::uint64_t{now_ms} * 1000;
+  PINNQUAD_SETTINGS_LIST(PINNQUAD_COPY_ONE, PINNQUAD_COPY_MANY, PINNQUAD_COPY_TIME)
+}
 
 uint8_t pinnquad_flight_offer_model(const void* block, size_t length) {
   return static_cast<uint8_t>(controller().offer_model(block, length));
 }
 
 float pinnquad_flight_start(float most_thrust_N) {
-  const float rotor_N = pinnquad::airframe_value<CrazyflieModel::Vehicle, float>().max_rotor_thrust_N();
+  const float rotor_N = pinnquad::airframe_value<FlownModel::Vehicle, float>().max_rotor_thrust_N();
   if (!(most_thrust_N > 0.0f)) return 1.0f;
   static_cast<void>(controller(most_thrust_N / rotor_N));
   return rotor_N / most_thrust_N;

@@ -30,8 +30,8 @@ class NeuralControl {
   const Controller& controller() const noexcept { return controller_; }
 
   /// `forces`: 4 of them, untouched where it has none.
-  bool step(std::uint32_t now_ms, const CrazyflieState& state, const CrazyflieSetpoint& setpoint, float* forces,
-            CrazyflieReport& report) noexcept {
+  PINNQUAD_ALWAYS_INLINE bool step(std::uint32_t now_ms, const CrazyflieState& state, const CrazyflieSetpoint& setpoint,
+                                   float* forces, CrazyflieReport& report) noexcept {
     why_ = {};
     bool has_commands = false;
     if (asks_for_a_place(setpoint)) {

@@ -10,6 +10,8 @@
 #include "config.h"
 #include "controller.h"
 #include "controller_pid.h"
+#include "core_log.h"
+#include "eventtrigger.h"
 #include "log.h"
 #include "neural_control_core.h"
 #include "param.h"
@@ -60,6 +62,29 @@ static float forces[STABILIZER_NR_OF_MOTORS];
 static struct CrazyflieSampleClock attitude_clock, position_clock;
 /* The PID controller's own: its output holds state between its slower steps, and forces lie in the same bytes. */
 static control_t pid_control;
+
+/* What the core received and answered, and what it was made with: for the uSD card, where config.txt asks for them. By hand what
+ * the firmware's EVENTTRIGGER does for up to five variables. */
+static struct CrazyflieCoreRecord record;
+static const eventtriggerPayloadDesc record_variables[] = {
+    PINNQUAD_RECORD_LIST(PINNQUAD_EVENT_ONE, PINNQUAD_EVENT_MANY, PINNQUAD_EVENT_TIME)};
+static const eventtrigger record_event __attribute__((section(".eventtrigger.pinnquad_record"), used)) = {
+    .name = "pinnquad_record",
+    .payloadDesc = record_variables,
+    .numPayloadVariables = sizeof record_variables / sizeof record_variables[0],
+    .payload = &record,
+    .payloadSize = sizeof record};
+static struct CrazyflieCoreSettings settings;
+static const eventtriggerPayloadDesc settings_variables[] = {
+    PINNQUAD_SETTINGS_LIST(PINNQUAD_EVENT_ONE, PINNQUAD_EVENT_MANY, PINNQUAD_EVENT_TIME)};
+static const eventtrigger settings_event __attribute__((section(".eventtrigger.pinnquad_settings"), used)) = {
+    .name = "pinnquad_settings",
+    .payloadDesc = settings_variables,
+    .numPayloadVariables = sizeof settings_variables / sizeof settings_variables[0],
+    .payload = &settings,
+    .payloadSize = sizeof settings};
+_Static_assert(sizeof record <= 255 && sizeof settings <= 255, "pinnquad: an event's payload has at most 255 bytes");
+static uint8_t record_every = 1; /* of the steps; 0: none */
 
 static uint32_t now_ms(void) { return T2M(xTaskGetTickCount()); }
 
@@ -118,6 +143,23 @@ static void copy_setpoint(const setpoint_t* setpoint) {
   wanted.mode_yaw = (uint8_t)setpoint->mode.yaw;
 }
 
+/* After a step. A card that is too slow loses whole events: ticks that were not logged, which replay knows. */
+static void write_record(void) {
+  static uint8_t since_record;
+  static uint16_t since_settings = UINT16_MAX;
+  if (record_every == 0) return;
+  if (++since_record >= record_every) {
+    since_record = 0;
+    pinnquad_flight_record(&record);
+    eventTrigger(&record_event);
+  }
+  if (++since_settings >= 500 || since_settings == 0) { /* each second: logging may start at any time */
+    since_settings = 1;
+    pinnquad_flight_settings(now_ms(), &settings);
+    eventTrigger(&settings_event);
+  }
+}
+
 void controllerOutOfTree(control_t* control, const setpoint_t* setpoint, const sensorData_t* sensors,
                          const state_t* state, const stabilizerStep_t stabilizerStep) {
   /* The PID controller is stepped while the network flies: its filters follow, and taking over is warm. */
@@ -128,6 +170,7 @@ void controllerOutOfTree(control_t* control, const setpoint_t* setpoint, const s
     const uint64_t start_us = usecTimestamp();
     const bool has_forces = pinnquad_flight_step(now_ms(), &at, &wanted, forces, &report);
     step_us = (uint16_t)(usecTimestamp() - start_us);
+    write_record();
     /* Off, or flown by hand: the PID controller's, and the module may fly again afterwards. Given up: the PID
      * controller's until then. */
     const bool by_hand =
@@ -149,6 +192,7 @@ void controllerOutOfTree(control_t* control, const setpoint_t* setpoint, const s
 
 PARAM_GROUP_START(pinnquad)
 PARAM_ADD(PARAM_FLOAT, forceScale, &force_scale)
+PARAM_ADD(PARAM_UINT8, recordEvery, &record_every)
 PARAM_GROUP_STOP(pinnquad)
 
 LOG_GROUP_START(pinnquad)

@@ -237,7 +237,7 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   static_assert(is_finite_constant(double(Agreed::type::largest_difference)) && Agreed::type::largest_difference > 0,
                 "pinnquad: the largest difference of an Agreement must be a positive number");
 
-  static_assert(is_finite_constant(double(Distribution::distance_limit)) && Distribution::distance_limit > 0,
+  static_assert(detail::sound_distance_limit<Distribution>(),
                 "pinnquad: the distance limit of a JointDistance must be a positive number");
 
   Guard() = default;

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/inference/model_records.hpp"
 
@@ -20,7 +21,8 @@ namespace pinnquad {
 /// Contract of a Distribution, a struct that deploy/trust_writer.hpp writes beside the model, constants all:
 ///   array distribution_mean, size numbers, physical units; array whitening, size (size + 1) / 2 numbers: W, lower
 ///   triangular, column after column from its diagonal down; double distance_limit; optional std::uint64_t
-///   training_data_hash, that of the model.
+///   training_data_hash, that of the model. A program on the ground may read them while it runs: static members that are no
+///   constants, of which nothing is checked while compiling.
 template <class Distribution>
 struct JointDistance {};
 
@@ -32,6 +34,24 @@ template <class Distribution>
 struct IsDistribution<Distribution,
                       std::void_t<decltype(Distribution::distribution_mean), decltype(Distribution::whitening),
                                   decltype(double{Distribution::distance_limit})>> : std::true_type {};
+
+/// False of numbers that a program reads while it runs, in static members that are no constants: what is checked here of
+/// constants is checked by whoever reads those.
+template <class Distribution, class = void>
+struct IsConstantDistribution : std::false_type {};
+template <class Distribution>
+struct IsConstantDistribution<Distribution, std::void_t<std::bool_constant<(Distribution::distance_limit > 0)>>>
+    : std::true_type {};
+
+/// A positive number, where it is a constant.
+template <class Distribution>
+constexpr bool sound_distance_limit() noexcept {
+  if constexpr (IsConstantDistribution<Distribution>::value) {
+    return is_finite_constant(double(Distribution::distance_limit)) && Distribution::distance_limit > 0;
+  } else {
+    return true;
+  }
+}
 
 template <class First, class Second, class = void>
 struct HaveHashes : std::false_type {};
@@ -55,9 +75,11 @@ constexpr bool require_distribution() noexcept {
     static_assert(std::is_same_v<std::decay_t<decltype(Distribution::distribution_mean[0])>, typename Model::Scalar> &&
                       std::is_same_v<std::decay_t<decltype(Distribution::whitening[0])>, typename Model::Scalar>,
                   "pinnquad: the distribution of a JointDistance has another Scalar than the model");
-    static_assert(
-        all_finite_constants(Distribution::distribution_mean) && all_finite_constants(Distribution::whitening),
-        "pinnquad: a number of the distribution of a JointDistance is NaN or infinite");
+    if constexpr (IsConstantDistribution<Distribution>::value) {
+      static_assert(
+          all_finite_constants(Distribution::distribution_mean) && all_finite_constants(Distribution::whitening),
+          "pinnquad: a number of the distribution of a JointDistance is NaN or infinite");
+    }
     if constexpr (HaveHashes<Distribution, Model>::value) {
       static_assert(Distribution::training_data_hash == Model::training_data_hash,
                     "pinnquad: the distribution of a JointDistance is that of other training data than the model's");

@@ -102,6 +102,8 @@ class Quadrotor {
   const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
   const Site<Scalar>& site() const noexcept { return site_; }
   const Rotors<Scalar>& rotors() const noexcept { return rotors_; }
+  /// In their order, bound to the airframe.
+  const std::tuple<BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
 
   /// Not ok, and neither step() nor the inverse has an answer: `invalid_airframe`, `no_solution` for an allocation that
   /// can't be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.

@@ -37,6 +37,28 @@ typedef uint32_t stabilizerStep_t;
 #define LOG_GROUP_STOP(name)
 #define LOG_ADD(type, name, address)
 
+/* Events with a payload: what a uSD card's log is made of. Variables lie packed in `payload`, in the order of the description. */
+enum eventtriggerType_e {
+  eventtriggerType_uint8 = 1,
+  eventtriggerType_uint16,
+  eventtriggerType_uint32,
+  eventtriggerType_int8,
+  eventtriggerType_int16,
+  eventtriggerType_int32,
+  eventtriggerType_float,
+};
+typedef struct {
+  enum eventtriggerType_e type;
+  const char* name;
+} eventtriggerPayloadDesc;
+typedef struct {
+  const char* name;
+  const eventtriggerPayloadDesc* payloadDesc;
+  uint8_t numPayloadVariables;
+  void* payload;
+  uint8_t payloadSize;
+} eventtrigger;
+
 typedef struct {
   float x, y, z;
 } Axis3f;
@@ -100,6 +122,7 @@ extern "C" {
 uint32_t xTaskGetTickCount(void);
 void vTaskDelay(uint32_t ticks);
 uint64_t usecTimestamp(void);
+void eventTrigger(const eventtrigger* event);
 bool supervisorIsFlying(void);
 bool supervisorAreMotorsAllowedToRun(void);
 void controllerPidInit(void);

@@ -24,6 +24,11 @@ struct trajectory_setpoint_s {
   uint64_t timestamp;
   float position[3], velocity[3], acceleration[3], jerk[3], yaw, yawspeed;
 };
+struct battery_status_s {
+  uint64_t timestamp;
+  bool connected;
+  float scale;  ///< from 1 on; -1: not known
+};
 struct goto_setpoint_s {
   uint64_t timestamp;
   float position[3];
@@ -147,7 +152,7 @@ struct pinnquad_record_s {
   float jump_yaw_rad;
   float lift;
   float commands[4];
-  float envelope_excess;
+  float envelope_excess, squared_distance, innovation;
   int8_t envelope_feature;
   uint8_t came;
   uint8_t asked;
@@ -157,6 +162,7 @@ struct pinnquad_record_s {
   uint8_t status;
   uint8_t cause;
   uint8_t stale_inputs;
+  uint8_t trusted;
 };
 struct pinnquad_settings_s {
   uint64_t timestamp;
@@ -180,6 +186,8 @@ struct pinnquad_settings_s {
   float take_off_s;
   float bias_bandwidth_1_s;
   float most_bias_m_s2;
+  uint32_t effects;
+  float drag_N_s_m, rate_damping_N_m_s, distance_limit, innovation_limit;
 };
 struct pinnquad_status_s {
   uint64_t timestamp;

@@ -151,8 +151,8 @@ using ParamInt = Parameter<Name, int32_t>;
 #define PINNQUAD_TEST_EACH8(m, a, b, c, d, ...) m(a) m(b) m(c) m(d) PINNQUAD_TEST_EACH4(m, __VA_ARGS__)
 #define PINNQUAD_TEST_EACH21(m, a, b, c, d, e, f, g, h, i, j, k, l, n, ...) \
   m(a) m(b) m(c) m(d) m(e) m(f) m(g) m(h) m(i) m(j) m(k) m(l) m(n) PINNQUAD_TEST_EACH8(m, __VA_ARGS__)
-#define PINNQUAD_TEST_EACH23(m, a, b, ...) m(a) m(b) PINNQUAD_TEST_EACH21(m, __VA_ARGS__)
-#define DEFINE_PARAMETERS(...) PINNQUAD_TEST_EACH23(PINNQUAD_TEST_MEMBER, __VA_ARGS__)
+#define PINNQUAD_TEST_EACH24(m, a, b, o, ...) m(a) m(b) m(o) PINNQUAD_TEST_EACH21(m, __VA_ARGS__)
+#define DEFINE_PARAMETERS(...) PINNQUAD_TEST_EACH24(PINNQUAD_TEST_MEMBER, __VA_ARGS__)
 
 PINNQUAD_TEST_NAME(PQ_OUT_MIN)
 PINNQUAD_TEST_NAME(PQ_AGE_RATES)
@@ -177,6 +177,7 @@ PINNQUAD_TEST_NAME(PQ_STK_Z)
 PINNQUAD_TEST_NAME(PQ_STK_YAW)
 PINNQUAD_TEST_NAME(PQ_AIR_RHO)
 PINNQUAD_TEST_NAME(PQ_THR_CURVE)
+PINNQUAD_TEST_NAME(PQ_BAT_SCALE)
 
 /// The shell's side of a module: a stop waits 5 s for the module to go by itself, then takes it away. `Shell` says where the module
 /// is kept.

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Both cores with limits of trust: a vehicle that is another one is noticed and the formula flies; a calm flight, outages of
+// samples and commands included, is no reason.
+#include <doctest/doctest.h>
+
+#include "flight.hpp"
+#include "flight_paths.hpp"
+#include "trusting_stacks.hpp"
+
+namespace {
+
+using namespace flight_stacks::test;
+using flight_stacks::CoreRecord;
+using flight_stacks::Reaction;
+
+/// What the innovation came to in a flight.
+struct Trusted {
+  double distrusted_s = 0;  ///< the first time; 0: never
+  double cleared_s = 0;     ///< the last time that it was trusted again
+  float most_innovation = 0;
+  long ticks = 0, by_formula_while_distrusted = 0, distrusted = 0, far = 0;
+  FlightFigures figures;
+};
+
+template <class Stack, class Target, class Faults>
+Trusted flown(const Target& target, double duration_s, const Faults& faults) {
+  FaultyFlight<Stack> flight;
+  REQUIRE(flight.boot());
+  Trusted result;
+  bool before = true;
+  result.figures = flight.fly(target, duration_s, faults, [&](const CoreRecord& tick) {
+    const bool trusted = tick.trusted != 0;
+    const double time_s = 1e-6 * static_cast<double>(tick.timestamp) - 5;
+    if (!trusted && !(result.distrusted_s > 0)) result.distrusted_s = time_s;
+    if (trusted && !before) result.cleared_s = time_s;
+    before = trusted;
+    result.most_innovation = std::max(result.most_innovation, tick.innovation);
+    ++result.ticks;
+    result.far += tick.cause == static_cast<std::uint8_t>(Status::outside_distribution) ? 1 : 0;
+    if (trusted || tick.reaction > static_cast<std::uint8_t>(Reaction::levels)) return;
+    ++result.distrusted;
+    const bool by_formula = tick.status == static_cast<std::uint8_t>(Status::fell_back) &&
+                            tick.cause == static_cast<std::uint8_t>(Status::distrusted);
+    result.by_formula_while_distrusted += by_formula ? 1 : 0;
+  });
+  return result;
+}
+
+template <class Stack>
+void no_alarm(const char* path, const Trusted& flight) {
+  INFO(Stack::name, ", ", path);
+  std::printf("%s %s: innovation up to %.4f, limit %.4f; %ld of %ld answers outside the distribution\n", Stack::name,
+              path, static_cast<double>(flight.most_innovation), StructuredQuadModelTrust::innovation_limit, flight.far,
+              flight.ticks);
+  CHECK_FALSE(flight.figures.crashed);
+  CHECK(flight.most_innovation > 1e-4f);  // it was measured
+  CHECK(flight.distrusted == 0);
+  CHECK(flight.far < flight.ticks / 50);
+}
+
+template <class Stack, class Target>
+void noticed(const char* what, const Target& target, FaultKind kind, double value) {
+  INFO(Stack::name, ", ", what);
+  constexpr double from_s = 6, to_s = 16;
+  const std::vector<Fault> fault = {{from_s, to_s - from_s, kind, value, what, Reaction::flies}};
+  const Trusted flight = flown<Stack>(target, 22, fault);
+  std::printf(
+      "%s, %s: distrusted after %.1f s, trusted again %.1f s after it was over, innovation up to %.4f, error up to "
+      "%.2f m\n",
+      Stack::name, what, flight.distrusted_s - from_s, flight.cleared_s - to_s,
+      static_cast<double>(flight.most_innovation), flight.figures.max_error_m);
+  CHECK_FALSE(flight.figures.crashed);
+  CHECK(flight.distrusted_s > from_s);
+  CHECK(flight.distrusted_s < from_s + 2);
+  CHECK(flight.distrusted > 0);
+  CHECK(flight.by_formula_while_distrusted == flight.distrusted);
+  CHECK(flight.cleared_s > to_s);
+  CHECK(flight.cleared_s < to_s + 4);
+}
+
+template <class Stack>
+void judge_stack() {
+  constexpr std::array<Fault, 0> none = {};
+  no_alarm<Stack>("hover", flown<Stack>(hover, 20, none));
+  no_alarm<Stack>("eight", flown<Stack>(Eight(4, 9), 20, none));
+  no_alarm<Stack>("random places", flown<Stack>(RandomPlaces(1.5), 33, none));
+  no_alarm<Stack>("eight, all faults", flown<Stack>(Eight(4, 9), 33, fault_script));
+  noticed<Stack>("25 % heavier", hover, FaultKind::payload, 1.25);
+  noticed<Stack>("25 % heavier on the figure-eight", Eight(4, 9), FaultKind::payload, 1.25);
+  noticed<Stack>("a rotor that makes 85 %", hover, FaultKind::bent_rotor, 0.85);
+}
+
+/// Every motion is too far.
+struct NarrowTrust : StructuredQuadModelTrust {
+  static constexpr double distance_limit = 1e-3;
+};
+using NarrowStack =
+    Px4StackOf<StructuredQuadModel,
+               flight_stacks::NeuralController<StructuredQuadModel, pinnquad::ModelView<StructuredQuadModel>,
+                                               pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>, NarrowTrust>>;
+
+}  // namespace
+
+TEST_CASE("limits of trust: a payload and a bent rotor are noticed, calm flight and outages are not; PX4's core") {
+  judge_stack<TrustingPx4Stack>();
+}
+
+TEST_CASE(
+    "limits of trust: a payload and a bent rotor are noticed, calm flight and outages are not; the Crazyflie's core") {
+  judge_stack<TrustingCrazyflieStack>();
+}
+
+TEST_CASE("limits of trust: beyond the distance the formula flies") {
+  const Trusted flight = flown<NarrowStack>(hover, 2, std::array<Fault, 0>{});
+  CHECK(flight.far == flight.ticks);
+  CHECK(flight.figures.fallback_share == 1);
+  CHECK_FALSE(flight.figures.crashed);
+}
+
+TEST_CASE("limits of trust: a model of other training data than theirs is refused") {
+  TrustingPx4Stack stack;
+  const Block other = other_block<StructuredQuadModel>(), sound = sound_block<StructuredQuadModel>();
+  CHECK(stack.offer(other.data(), other.size()) == Status::block_incompatible);
+  CHECK_FALSE(stack.ready());
+  CHECK(stack.offer(sound.data(), sound.size()) == Status::ok);
+  CHECK(stack.settings().distance_limit == static_cast<float>(StructuredQuadModelTrust::distance_limit));
+}
