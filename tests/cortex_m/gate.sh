@@ -58,8 +58,9 @@ for optimisation in -Os -O2 -O3; do
     at_most "ulps of the $model model's commands" "$commands" 16
     at_most "instructions of the $model model" "$(largest instructions "$name.$model.txt")" \
       "$(largest instructions "$name.predict.txt")"
-    # its layers are wider than the paper's
-    case $model in structured) stack=552 ;; *) stack=$(largest stack "$name.predict.txt") ;; esac
+    # its layers are wider than the paper's, and on an M7 the compiler saves more registers around them
+    stack=$(largest stack "$name.predict.txt")
+    case $model:$target in structured:m4f) stack=552 ;; structured:*) stack=576 ;; esac
     at_most "stack of the $model model" "$(largest stack "$name.$model.txt")" "$stack"
     echo "$target $optimisation predict, $model model: $(largest instructions "$name.$model.txt") instructions," \
       "$(largest stack "$name.$model.txt") B stack, commands $commands ulp from the host"

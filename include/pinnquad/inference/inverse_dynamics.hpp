@@ -166,8 +166,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   }
   /// The same, and x is overwritten: less of the stack.
   PINNQUAD_ALWAYS_INLINE void evaluate_over(Scalar* x, Scalar* commands) const noexcept {
-    Scalar outputs[Network::outputs] = {};
-    Pipeline::run_over(Numbers::scales(model()), x, outputs, commands,
+    Pipeline::run_over(Numbers::scales(model()), x, commands,
                        [this](const Scalar* standardised, Scalar* made)
                            PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }

@@ -47,17 +47,24 @@ struct Pipeline {
     command(scales, x, 1, static_cast<const Scalar*>(outputs), 1, outputs, commands);
   }
 
-  /// The same of features that the caller has done with: they are standardised where they stand, if the schema does not want
-  /// them too.
+  /// The commands of features that the caller has done with: standardised where they stand, if the schema does not want them too.
+  /// The network answers where the commands will be. Less of the stack.
   template <class Scalar, class Forward>
-  static PINNQUAD_ALWAYS_INLINE void run_over(const Scales<Scalar>& scales, Scalar* x, Scalar* outputs,
-                                              Scalar* commands, const Forward& forward) noexcept {
-    if constexpr (Map::takes_features) {
-      run(scales, static_cast<const Scalar*>(x), outputs, commands, forward);
+  static PINNQUAD_ALWAYS_INLINE void run_over(const Scales<Scalar>& scales, Scalar* x, Scalar* commands,
+                                              const Forward& forward) noexcept {
+    if constexpr (Map::takes_features || Map::size > rotor_count) {
+      Scalar outputs[Map::size] = {};
+      run(scales, static_cast<const Scalar*>(x), static_cast<Scalar*>(outputs), commands, forward);
     } else {
-      standardise<Features::size, 1>(scales.input_mean, scales.input_spread, static_cast<const Scalar*>(x), 1, 1, x);
-      forward(static_cast<const Scalar*>(x), outputs);
-      command(scales, static_cast<const Scalar*>(x), 1, static_cast<const Scalar*>(outputs), 1, outputs, commands);
+      const Scalar* const seen = x;
+      standardise<Features::size, 1>(scales.input_mean, scales.input_spread, seen, 1, 1, x);
+      forward(seen, commands);
+      if constexpr (Map::rotor_by_rotor) {
+        command(scales, seen, 1, static_cast<const Scalar*>(commands), 1, commands, commands);
+      } else {
+        Scalar outputs[Map::size];
+        command(scales, seen, 1, static_cast<const Scalar*>(commands), 1, static_cast<Scalar*>(outputs), commands);
+      }
     }
   }
 

@@ -91,9 +91,9 @@ class PortablePass {
     detail::walk_forward<NetworkType, Kernel>(Visitor{y}, At{parameters, x, even, odd});
   }
   /// The same for inputs that `fill(x)` writes: into the buffer that the first step leaves alone, so that they have no place
-  /// of their own on the stack.
+  /// of their own on the stack. Inlined, so that the caller has none beside it.
   template <class Fill>
-  static void forward_of(const Scalar* parameters, const Fill& fill, Scalar* y) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void forward_of(const Scalar* parameters, const Fill& fill, Scalar* y) noexcept {
     Scalar even[static_cast<std::size_t>(NetworkType::widest)];
     Scalar odd[static_cast<std::size_t>(NetworkType::widest)];
     fill(static_cast<Scalar*>(odd));
