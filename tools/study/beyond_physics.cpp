@@ -18,7 +18,7 @@ namespace study {
 namespace {
 
 /// Those of the structured model.
-using Features = pinnquad::InverseFeatures;
+using Shown = pinnquad::InverseFeatures;
 
 template <class Answer, class AnyContext>
 std::shared_ptr<const JudgedModel> judged(const Answer& answer, const AnyContext& context,
@@ -49,7 +49,7 @@ BeyondTraining train_network(const BeyondTask& task, const Loss& loss, double we
 }  // namespace
 
 BeyondTraining train_network_on_physics(const BeyondTask& task) {
-  return train_network<Features>(task, pinnquad::Mse{}, programs::best::vanilla_decay);
+  return train_network<Shown>(task, pinnquad::Mse{}, programs::best::vanilla_decay);
 }
 
 BeyondTraining train_match(const BeyondTask& task) {
@@ -64,7 +64,7 @@ BeyondTraining train_paper_with_altitude(const BeyondTask& task) {
 }
 
 BeyondTraining train_ridge(const BeyondTask& task) {
-  using Context = pinnquad::Context<Features, pinnquad::GivenAirframe>;
+  using Context = pinnquad::Context<Shown, pinnquad::GivenAirframe>;
   const auto context = pinnquad::make_context<Context>(task.split.train, task.airframe);
   const auto groups = pinnquad::regression_sums(context, pinnquad::left_out_groups(task.split.train));
   pinnquad::RegressionSums sums = groups.front();
