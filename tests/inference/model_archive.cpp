@@ -14,6 +14,7 @@
 #include "models/v2/crazyflie_tanh.hpp"
 #include "models/v2/demo_quadrotor.hpp"
 #include "models/v3/demo_quadrotor.hpp"
+#include "models/v3/near_ground_quadrotor.hpp"
 #include "models/v3/own_racer.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
@@ -22,8 +23,9 @@ namespace {
 using namespace pinnquad;
 
 /// Headers included above, by path below tests/models.
-const std::vector<std::string> archived = {"v1/demo_quadrotor.hpp", "v2/crazyflie_tanh.hpp", "v2/demo_quadrotor.hpp",
-                                           "v3/demo_quadrotor.hpp", "v3/own_racer.hpp"};
+const std::vector<std::string> archived = {"v1/demo_quadrotor.hpp",        "v2/crazyflie_tanh.hpp",
+                                           "v2/demo_quadrotor.hpp",        "v3/demo_quadrotor.hpp",
+                                           "v3/near_ground_quadrotor.hpp", "v3/own_racer.hpp"};
 
 template <class Model, class Known>
 void replay() {
@@ -63,6 +65,9 @@ TEST_CASE(
   replay<OwnRacerV3, test::KnownOwnRacerV3>();
   using Mine = Caller<CommandMeaning::pulse_width, OwnRacerV3Airframe, PeriodMicroseconds<10000>>;
   CHECK(self_test(InverseDynamics<OwnRacerV3, TrainingGuard, Mine>{}) == Status::ok);
+  // one that is monotone, and is shown the altitude
+  static_assert(NearGroundQuadModel::format_version == 3);
+  CHECK(self_test(InverseDynamics<NearGroundQuadModel>{}) == Status::ok);
 }
 
 TEST_CASE("the weights of a header are those it had in the format before") {

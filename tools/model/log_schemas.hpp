@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The feature sets of models that `train` fits to logged flights (training/log_features.hpp), with the output schemas that
-// they have; and those of monotone models on a formula and on windows.
+// they have; and those of monotone models on a formula.
 #pragma once
 
 #include "pinnquad/inference/output_schema.hpp"
@@ -20,6 +20,8 @@ void each_log_schema(const Function& function) {
     function(Present{}, CommandOutputs{});
     function(LogCausalWindow<Present>{}, CommandOutputs{});
     function(LogCentredWindow<Present>{}, CommandOutputs{});
+    function(LogCausalWindow<Present>{}, SignedSumOutputs{});
+    function(LogCentredWindow<Present>{}, SignedSumOutputs{});
   };
   reaches(PhysicsFeatures{});
   reaches(PhysicsFeaturesWithoutVelocity{});
@@ -28,8 +30,9 @@ void each_log_schema(const Function& function) {
   function(WithColumns<PaperFeatures, BatteryVoltage>{}, CommandOutputs{});
   function(PaperFeatures{}, ResidualOutputs<LinearizedInverse>{});
   function(PhysicsFeatures{}, SignedSumsOn<RigidBodyInverse>{});
-  function(LogCausalWindow<PhysicsFeatures>{}, SignedSumOutputs{});
-  function(LogCentredWindow<PhysicsFeatures>{}, SignedSumOutputs{});
+  function(PhysicsFeaturesWithoutVelocity{}, SignedSumOutputs{});  // each_schema() has PhysicsFeatures
+  function(WithColumns<PhysicsFeatures, BatteryVoltage>{}, SignedSumOutputs{});
+  function(WithColumns<PhysicsFeaturesWithoutVelocity, BatteryVoltage>{}, SignedSumOutputs{});
 }
 
 }  // namespace programs
