@@ -37,7 +37,9 @@ inline std::vector<Result> judge_all(const TrainingPlan& plan, const std::vector
           const pinnquad::Airframe<double> airframe = plan.airframe.airframe<double>();
           judge_one(
               i, [&](const pinnquad::RowSet& rows) { return linear_predictions(airframe, rows); },
-              [&](const pinnquad::RowSet& rows) { return derivative_figures(rows, linear_derivatives(plan.airframe)); });
+              [&](const pinnquad::RowSet& rows) {
+                return derivative_figures(rows, linear_derivatives(plan.airframe));
+              });
           return true;
         }
         const Training& training = trainings[i - 1];
