@@ -132,8 +132,8 @@ struct CoreSettings {
   float most_bias_m_s2{0};
   // of the formula's vehicle: FlownEffects
   std::uint32_t effects{0};
-  float drag_N_s_m{0};
-  float rate_damping_N_m_s{0};
+  float drag_n_s_m{0};
+  float rate_damping_n_m_s{0};
   // of trust; 0: none
   float distance_limit{0};
   float innovation_limit{0};
@@ -163,8 +163,8 @@ struct CoreSettings {
     visit("bias_bandwidth_1_s", "1/s", self.bias_bandwidth_1_s);
     visit("most_bias_m_s2", "m/s^2", self.most_bias_m_s2);
     visit("effects", "1", self.effects);
-    visit("drag_N_s_m", "N s/m", self.drag_N_s_m);
-    visit("rate_damping_N_m_s", "N m s", self.rate_damping_N_m_s);
+    visit("drag_n_s_m", "N s/m", self.drag_n_s_m);
+    visit("rate_damping_n_m_s", "N m s", self.rate_damping_n_m_s);
     visit("distance_limit", "1", self.distance_limit);
     visit("innovation_limit", "1", self.innovation_limit);
   }

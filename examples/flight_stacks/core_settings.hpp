@@ -40,8 +40,8 @@ inline CoreSettings core_settings(const AgeLimits& ages, const OutputLimits& out
 
 inline void add_effects(const FlownEffects& effects, CoreSettings& to) noexcept {
   to.effects = effects.code;
-  to.drag_N_s_m = effects.drag_N_s_m;
-  to.rate_damping_N_m_s = effects.rate_damping_N_m_s;
+  to.drag_n_s_m = effects.drag_N_s_m;
+  to.rate_damping_n_m_s = effects.rate_damping_N_m_s;
 }
 
 }  // namespace flight_stacks

@@ -76,8 +76,8 @@ void copy_settings(const flight_stacks::CoreSettings& from, Message& to) {
   to.bias_bandwidth_1_s = from.bias_bandwidth_1_s;
   to.most_bias_m_s2 = from.most_bias_m_s2;
   to.effects = from.effects;
-  to.drag_N_s_m = from.drag_N_s_m;
-  to.rate_damping_N_m_s = from.rate_damping_N_m_s;
+  to.drag_n_s_m = from.drag_n_s_m;
+  to.rate_damping_n_m_s = from.rate_damping_n_m_s;
   to.distance_limit = from.distance_limit;
   to.innovation_limit = from.innovation_limit;
 }

@@ -53,7 +53,12 @@ std::vector<std::string> fields(const std::string& file) {
   for (std::string line; std::getline(text, line);) {
     std::istringstream words(line.substr(0, line.find('#')));
     std::string type, name;
-    if (words >> type >> name) all.push_back(type + " " + name);
+    if (!(words >> type >> name)) continue;
+    CAPTURE(name);
+    // what PX4's generator takes: small letters, digits, single underscores
+    CHECK(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos);
+    CHECK(name.find("__") == std::string::npos);
+    all.push_back(type + " " + name);
   }
   return all;
 }

@@ -142,7 +142,7 @@ sed 's/distribution_mean = {{/distribution_mean = {{1.0f, /' "$trust" >long.hpp
 expect_line 2 'long.hpp:[0-9]*: expected 210 numbers in `whitening`, found 190' "$pinnquad" replay structured "${structured[@]}" --trust long.hpp
 # behind gaps what was distrusted still is
 python3 "$here/planted.py" structured/flight_pinnquad_record_0.csv planted.csv drop 9000 9100 13000 13003 14000 15000
-"$pinnquad" replay planted.csv "${structured[@]}" --trust "$trust" --set effects=18 --set drag_N_s_m=1 --set rate_damping_N_m_s=0.025 \
+"$pinnquad" replay planted.csv "${structured[@]}" --trust "$trust" --set effects=18 --set drag_n_s_m=1 --set rate_damping_n_m_s=0.025 \
   --set distance_limit=235.03697 --set innovation_limit=0.01800841 >same.txt || fail "gaps: $(tail -2 same.txt)"
 
 f=px4-eight

@@ -45,7 +45,7 @@ inline RecordedEffects recorded_effects(const flight_stacks::CoreSettings& setti
                  "LinearDamping are known",
                  settings.effects));
   }
-  return {{settings.effects, settings.drag_N_s_m, settings.rate_damping_N_m_s}};
+  return {{settings.effects, settings.drag_n_s_m, settings.rate_damping_n_m_s}};
 }
 
 }  // namespace programs

@@ -68,8 +68,8 @@
   ONE(float, bias_bandwidth_1_s)                \
   ONE(float, most_bias_m_s2)                    \
   ONE(uint32, effects)                          \
-  ONE(float, drag_N_s_m)                        \
-  ONE(float, rate_damping_N_m_s)                \
+  ONE(float, drag_n_s_m)                        \
+  ONE(float, rate_damping_n_m_s)                \
   ONE(float, distance_limit)                    \
   ONE(float, innovation_limit)
 

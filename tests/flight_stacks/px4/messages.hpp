@@ -187,7 +187,7 @@ struct pinnquad_settings_s {
   float bias_bandwidth_1_s;
   float most_bias_m_s2;
   uint32_t effects;
-  float drag_N_s_m, rate_damping_N_m_s, distance_limit, innovation_limit;
+  float drag_n_s_m, rate_damping_n_m_s, distance_limit, innovation_limit;
 };
 struct pinnquad_status_s {
   uint64_t timestamp;
