@@ -3,8 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <random>
 #include <type_traits>
 #include <vector>
 
@@ -96,6 +98,61 @@ TEST_CASE("weights are row-major: row = output, column = input; the bias follows
   network.forward(x, y);
   CHECK(y[0] == 7000 + 1 + 40 + 900);
   CHECK(y[1] == 8000 + 4 + 100 + 1800);
+}
+
+namespace {
+/// Each layer alone, one behind the other.
+template <class NetworkType, int Index = 0>
+void layer_by_layer(const typename NetworkType::Scalar* parameters, const typename NetworkType::Scalar* x,
+                    typename NetworkType::Scalar* y) {
+  using Layer = typename NetworkType::template Layer<Index>;
+  typename NetworkType::Scalar made[Layer::outputs];
+  Layer::forward(parameters, x, made);
+  if constexpr (Index + 1 < NetworkType::layer_count) {
+    layer_by_layer<NetworkType, Index + 1>(parameters + Layer::parameter_count, made, y);
+  } else {
+    std::copy(made, made + Layer::outputs, y);
+  }
+}
+/// Every second of an array.
+template <class Scalar>
+struct EverySecond {
+  const Scalar* x;
+  Scalar operator[](int i) const noexcept { return x[2 * i]; }
+};
+}  // namespace
+
+TEST_CASE_TEMPLATE("a wide last hidden layer, made in parts, has the bits of each layer alone", Type,
+                   Mlp<float, InputSize<16>, Hidden<2, 32>, OutputSize<4>, Relu>,
+                   Mlp<float, InputSize<16>, Hidden<1, 32>, OutputSize<4>, Relu>,
+                   Mlp<float, InputSize<30>, Hidden<3, 48>, OutputSize<5>, Tanh>,
+                   Mlp<double, InputSize<28>, Hidden<3, 28>, OutputSize<4>, Tanh>,
+                   Mlp<float, InputSize<7>, Hidden<2, 27>, OutputSize<4>, Relu>,
+                   Network<float, InputSize<6>, Dense<32>, Dense<40>, Relu, Dense<3>, Tanh>,
+                   Network<float, InputSize<32>, Dense<32>, Relu, Dense<32>, Relu>) {
+  using Scalar = typename Type::Scalar;
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int round = 0; round < 20; ++round) {
+    Type network;
+    for (Scalar& parameter : network.parameters) parameter = static_cast<Scalar>(uniform(engine));
+    Scalar apart[2 * Type::inputs], x[Type::inputs], y[Type::outputs], of_apart[Type::outputs], alone[Type::outputs];
+    for (Scalar& value : apart) value = static_cast<Scalar>(uniform(engine));
+    for (int i = 0; i < Type::inputs; ++i) x[i] = apart[2 * i];
+    network.forward(x, y);
+    pinnquad::PortablePass<Type>::forward_of(network.parameters.data(), EverySecond<Scalar>{apart}, of_apart);
+    layer_by_layer<Type>(network.parameters.data(), x, alone);
+    for (int i = 0; i < Type::outputs; ++i) {
+      CHECK(y[i] == alone[i]);
+      CHECK(of_apart[i] == alone[i]);
+    }
+  }
+}
+
+TEST_CASE("workspace: the inputs have none, a last hidden layer made in parts almost none") {
+  CHECK(Mlp<float, InputSize<16>, Hidden<2, 32>, OutputSize<4>, Relu>::workspace_bytes == (32 + 4) * sizeof(float));
+  CHECK(Mlp<float, InputSize<16>, Hidden<3, 32>, OutputSize<4>, Relu>::workspace_bytes == 64 * sizeof(float));
+  CHECK(Mlp<float, InputSize<16>, Hidden<2, 24>, OutputSize<4>, Relu>::workspace_bytes == 48 * sizeof(float));
 }
 
 TEST_CASE_TEMPLATE("forward agrees with plain loops in double", Scalar, float, double) {

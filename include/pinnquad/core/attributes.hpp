@@ -33,3 +33,11 @@
 #else
 #define PINNQUAD_FLATTEN
 #endif
+
+/// Makes the compiler forget where a pointer points: what stands there is read anew where it is used, instead of being kept, on
+/// the stack where there are too few registers.
+#if defined(__GNUC__) || defined(__clang__)
+#define PINNQUAD_FORGET(pointer) __asm__("" : "+r"(pointer))
+#else
+#define PINNQUAD_FORGET(pointer) static_cast<void>(pointer)
+#endif

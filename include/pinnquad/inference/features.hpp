@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -92,7 +93,8 @@ struct PaperFeatures {
 /// What a network near the ground is asked besides.
 template <class Scalar>
 struct MotionInputsWithAltitude : MotionInputs<Scalar> {
-  Scalar altitude_m{0};  ///< above ground, positive up
+  /// Above ground, positive up. What nobody measured is refused as not finite: no default would be a safe one.
+  Scalar altitude_m = std::numeric_limits<Scalar>::quiet_NaN();
 };
 
 namespace detail {

@@ -71,15 +71,13 @@ struct Withheld : AnswerBase<Withheld<Inner, FeatureCount, First...>, typename I
   using Withheld::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    const auto see = [x](Scalar* seen) PINNQUAD_INLINE_LAMBDA {
-      Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { seen[n] = x[feature]; });
-    };
+    const typename Threes::template InPlace<Scalar> seen{x};
     if constexpr (is_network<Inner>) {
-      PortablePass<Inner>::forward_of(parameters, see, y);
+      PortablePass<Inner>::forward_of(parameters, seen, y);
     } else {
-      Scalar seen[Threes::others];
-      see(static_cast<Scalar*>(seen));
-      Inner::forward(parameters, static_cast<const Scalar*>(seen), y);
+      Scalar copy[Threes::others];
+      for (int i = 0; i < Threes::others; ++i) copy[i] = seen[i];
+      Inner::forward(parameters, static_cast<const Scalar*>(copy), y);
     }
   }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {

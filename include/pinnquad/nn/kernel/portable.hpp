@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
@@ -83,8 +84,8 @@ PINNQUAD_ALWAYS_INLINE void multiply_held(const Scalar* weight, int stride, Star
 }
 
 /// y = activate(start + W x), wide rows in parts of equal width: sums rest in y from one part to the next.
-template <int Rows, int Columns, class Scalar, class Start, class Activate>
-PINNQUAD_ALWAYS_INLINE void multiply_parts(const Scalar* weight, Start start, const Scalar* x, Scalar* y,
+template <int Rows, int Columns, class Scalar, class Start, class X, class Activate>
+PINNQUAD_ALWAYS_INLINE void multiply_parts(const Scalar* weight, Start start, X x, Scalar* y,
                                            Activate activate) noexcept {
   constexpr int parts = (Columns + held_inputs - 1) / held_inputs;
   constexpr int width = (Columns + parts - 1) / parts;
@@ -92,6 +93,7 @@ PINNQUAD_ALWAYS_INLINE void multiply_parts(const Scalar* weight, Start start, co
   if constexpr (parts == 1) {
     multiply_held<Rows, Columns>(weight, Columns, start, x, y, activate);
   } else {
+    static_assert(std::is_pointer_v<X>, "pinnquad: inputs that are taken in parts stand in a row");
     for (int row = 0; row < Rows; ++row) y[row] = start[row];
     const Scalar* const sums = y;
     for (int part = 0; part < last; part += width) {
@@ -104,11 +106,20 @@ PINNQUAD_ALWAYS_INLINE void multiply_parts(const Scalar* weight, Start start, co
 }  // namespace detail
 
 /// y = activate(W x + b), entry by entry; W is Rows x Columns, row-major (row = output, column = input). y may not
-/// overlap x.
-template <int Rows, int Columns, class Scalar, class Activate = detail::Unchanged>
-PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* bias, const Scalar* x, Scalar* y,
+/// overlap x: a pointer, or, where all columns are held at a time, anything else with [column].
+template <int Rows, int Columns, class Scalar, class X, class Activate = detail::Unchanged>
+PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* bias, X x, Scalar* y,
                                                Activate activate = {}) noexcept {
   detail::multiply_parts<Rows, Columns>(weight, bias, x, y, activate);
+}
+
+/// y += W x for the `Count` columns from `weight` on, at most held_inputs, of rows `stride` apart. Columns taken so in their
+/// order give the bits of multiply_row_major().
+template <int Rows, int Count, class Scalar>
+PINNQUAD_ALWAYS_INLINE void add_columns(const Scalar* weight, int stride, const Scalar* x, Scalar* y) noexcept {
+  static_assert(Count <= detail::held_inputs);
+  const Scalar* const sums = y;
+  detail::multiply_held<Rows, Count>(weight, stride, sums, x, y, detail::Unchanged{});
 }
 
 /// y = W x.
