@@ -22,11 +22,11 @@ namespace {
 
 using namespace pinnquad;
 
-constexpr const char* exit_codes = "Exit codes: 0; 2 bad input or a file that can't be read or written.";
+constexpr const char* airframe_exit_codes = "Exit codes: 0; 2 bad input or a file that can't be read or written.";
 
-std::string footer(const std::string& examples) { return "Examples:\n" + examples + exit_codes; }
+std::string footer(const std::string& examples) { return "Examples:\n" + examples + airframe_exit_codes; }
 
-struct Options {
+struct AirframeOptions {
   std::string airframe;
   std::string out;
   std::string struct_name = "MyQuadrotor";
@@ -36,7 +36,7 @@ bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-int check(const Options& options) {
+int check(const AirframeOptions& options) {
   const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   const Airframe<double>& a = airframe.value;
   std::printf("%s: %.3f kg, rotors up to %.0f rpm, thrust-to-weight %.3f\n", printable(airframe.name).c_str(),
@@ -50,7 +50,7 @@ int check(const Options& options) {
   return 0;
 }
 
-int convert(const Options& options) {
+int convert(const AirframeOptions& options) {
   const bool as_struct = ends_with(options.out, ".hpp");
   if (!as_struct && !programs::is_airframe_file(options.out)) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml or .hpp was expected");
@@ -78,7 +78,7 @@ programs::Command programs::airframe_command(CLI::App& program) {
       footer("  pinnquad airframe list\n"
              "  pinnquad airframe convert racer_5_inch --out mine.toml      to begin one's own\n"
              "  pinnquad airframe check mine.toml\n"));
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AirframeOptions>();
   const std::string known = "a file, or one of: " + airframe_names();
 
   CLI::App* list =

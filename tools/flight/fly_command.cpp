@@ -33,7 +33,7 @@ namespace {
 
 using namespace pinnquad;
 
-struct Options {
+struct FlyOptions {
   std::string flight = AgileFlight::name;
   std::string out;
   std::uint64_t seed = 1;
@@ -57,7 +57,7 @@ struct Options {
 struct Interrupted {};
 
 /// No output takes the place of the sticks or of another output.
-void require_separate_files(const Options& options) {
+void require_separate_files(const FlyOptions& options) {
   programs::FileRoles roles;
   roles.reads("--sticks", options.sticks);
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
@@ -86,7 +86,7 @@ void make_folder(const std::string& path) {
 template <class PaperFlight>
 class ChosenFlight {
  public:
-  ChosenFlight(const Options& options, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect)
+  ChosenFlight(const FlyOptions& options, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect)
       : options_(options),
         name_(airframe.name),
         ground_effect_(ground_effect),
@@ -251,7 +251,7 @@ class ChosenFlight {
     }
   }
 
-  const Options& options_;
+  const FlyOptions& options_;
   std::string name_;  ///< the airframe's
   GroundEffectModel ground_effect_;
   typename PaperFlight::SwitchableVehicle vehicle_;
@@ -262,7 +262,7 @@ class ChosenFlight {
 };
 
 /// What contradicts itself; empty if nothing does.
-std::string contradiction(const Options& o) {
+std::string contradiction(const FlyOptions& o) {
   const bool single_output = !o.record_sticks.empty() || !o.pictures.empty() || !o.replay.empty();
   if (o.out.empty() && !single_output && o.statistics == 0) return "--out FILE.csv is needed (see --help)";
   if (o.statistics > 0 && !o.sticks.empty()) return "--statistics flies seeds, --sticks a recording: one of them";
@@ -272,7 +272,7 @@ std::string contradiction(const Options& o) {
 }
 
 template <class Function>
-void with_all_choices(const Options& options, const Function& function) {
+void with_all_choices(const FlyOptions& options, const Function& function) {
   GroundEffectModel model = GroundEffectModel::none;
   if (!options.ground_effect.empty() && !programs::ground_effect_of(options.ground_effect, model)) {
     throw std::invalid_argument("no ground effect named '" + options.ground_effect +
@@ -289,7 +289,7 @@ void with_all_choices(const Options& options, const Function& function) {
 }
 
 /// Flies what the options ask for: the exit code.
-int fly_chosen(const Options& options) {
+int fly_chosen(const FlyOptions& options) {
   const std::string fault = contradiction(options);
   if (!fault.empty()) throw std::invalid_argument(fault);
   require_separate_files(options);
@@ -305,7 +305,7 @@ int fly_chosen(const Options& options) {
   return code;
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(CLI::App& app, FlyOptions& options) {
   using programs::add_number;
   using programs::add_path;
   std::string flights = "the flight";
@@ -354,7 +354,7 @@ void add_options(CLI::App& app, Options& options) {
                "print the airframes and where their values are from, and stop");
 }
 
-int run(const Options& options) {
+int run(const FlyOptions& options) {
   if (options.list_airframes) {
     programs::list_airframes();
     return 0;
@@ -372,7 +372,7 @@ int run(const Options& options) {
 programs::Command programs::fly_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "fly", "Flies a simulated quadrotor on one of the paper's three flights and records it as CSV");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FlyOptions>();
   add_options(*line, *options);
   return {line, [options] { return run(*options); }};
 }

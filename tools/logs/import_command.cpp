@@ -22,7 +22,7 @@
 
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::vector<std::string> logs;
   std::string mapping;
   std::string airframe;
@@ -74,7 +74,7 @@ void print_text(const programs::ImportedDataset& dataset, const std::string& out
               dataset.flights.size(), dataset.sample_period_s, dataset.lag_removed_s, out.c_str());
 }
 
-programs::ImportRequest request_of(const Options& options) {
+programs::ImportRequest request_of(const ImportOptions& options) {
   programs::ImportRequest request;
   request.logs = options.logs;
   request.mapping = options.mapping;
@@ -94,7 +94,7 @@ programs::ImportRequest request_of(const Options& options) {
   return request;
 }
 
-int run(const Options& options) {
+int run(const ImportOptions& options) {
   if (options.list) {
     list_mappings();
     return 0;
@@ -137,7 +137,7 @@ int run(const Options& options) {
 
 programs::Command programs::import_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, ulog2csv, CSV");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ImportOptions>();
   add_paths(*line, "logs", options->logs, "LOG", "ULog files, CSV tables, folders of ulog2csv or of ULog files");
   line->add_option("--mapping", options->mapping, "what the columns mean: " + mapping_names() + ", or a file")
       ->type_name("NAME|FILE.toml");

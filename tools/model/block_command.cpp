@@ -20,12 +20,12 @@ namespace {
 using namespace pinnquad;
 using programs::HeaderFile;
 
-struct Options {
+struct BlockOptions {
   std::string header;
   std::string out;
 };
 
-int write_block(const Options& options) {
+int write_block(const BlockOptions& options) {
   programs::end_at_interrupt();
   programs::FileRoles roles;
   roles.reads("header", options.header);
@@ -42,7 +42,7 @@ int write_block(const Options& options) {
 
 programs::Command programs::block_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("block", "Writes an exported header as a model block, without compiling");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BlockOptions>();
   add_path(*line, "header", options->header, "MODEL.hpp", "a header of format 2 or 3, as pinnquad train writes it")
       ->required();
   add_path(*line, "--out", options->out, "FILE", "the block to write")->required();

@@ -34,7 +34,7 @@ using namespace pinnquad;
 constexpr int exit_neither = 3;
 constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name};
 
-struct Options {
+struct CertifyOptions {
   std::string model;
   programs::ModelHints hints;
   double seconds = 5;
@@ -185,7 +185,7 @@ programs::SearchedModel searched_model(const programs::Block& block, const progr
   return searched;
 }
 
-Findings findings_of(const Options& options, const programs::Block& block, const programs::Identity& identity) {
+Findings findings_of(const CertifyOptions& options, const programs::Block& block, const programs::Identity& identity) {
   const auto model = programs::asked_model(block, identity);
   Findings findings;
   findings.names = model->names;
@@ -337,7 +337,7 @@ void print_text(const programs::Block& block, const programs::Identity& identity
               found.step, found.sum, found.sum_of_more, found.derivative);
 }
 
-int certify(const Options& options) {
+int certify(const CertifyOptions& options) {
   programs::end_at_interrupt();
   programs::ModelHints hints = options.hints;
   const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
@@ -353,7 +353,7 @@ int certify(const Options& options) {
 programs::Command programs::certify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "certify", "Proves that a model's commands follow the angular acceleration that is asked, or refutes it");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CertifyOptions>();
   add_model(*line, options->model);
   add_model_hints(*line, options->hints);
   line->add_option("--seconds", options->seconds,

@@ -29,7 +29,7 @@ namespace {
 
 using namespace pinnquad;
 
-struct Options {
+struct EvaluateOptions {
   std::string model;
   std::vector<std::string> flights;
   programs::ModelHints hints;
@@ -38,15 +38,15 @@ struct Options {
 };
 
 /// What was found.
-struct Evaluation {
+struct EvaluatedModel {
   std::size_t without_features = 0;  ///< rows without a whole window
   std::size_t outside_envelope = 0;
   programs::PredictedRows answered;
   programs::DerivativeFigures derivatives;
 };
 
-Evaluation evaluated(const programs::AskedModel& model, const RowSet& rows) {
-  Evaluation result;
+EvaluatedModel evaluated(const programs::AskedModel& model, const RowSet& rows) {
+  EvaluatedModel result;
   programs::Predictions predictions(rows.size());
   std::vector<bool> counts(rows.size(), false);
   programs::DerivativeSigns signs;
@@ -66,7 +66,7 @@ Evaluation evaluated(const programs::AskedModel& model, const RowSet& rows) {
 
 /// The rows to judge: all of the flights, or of each (of the last one, where there are more than two) those that
 /// `train` tests on.
-RowSet chosen_rows(const Options& options, const Dataset& dataset) {
+RowSet chosen_rows(const EvaluateOptions& options, const Dataset& dataset) {
   if (options.rows == "test") {
     return dataset.size() < 3 ? split_each_flight(dataset).test : split_by_flight(dataset).test;
   }
@@ -75,8 +75,8 @@ RowSet chosen_rows(const Options& options, const Dataset& dataset) {
   return all;
 }
 
-void print_json(const Options& options, const programs::Block& block, const programs::Identity& identity,
-                const Dataset& dataset, double golden_difference, const Evaluation& evaluation,
+void print_json(const EvaluateOptions& options, const programs::Block& block, const programs::Identity& identity,
+                const Dataset& dataset, double golden_difference, const EvaluatedModel& evaluation,
                 const programs::Judgement& judged) {
   nlohmann::json all = nlohmann::json::object();
   for (const programs::Figure& figure : programs::figures()) all[figure.name] = figure.of(judged, figure.index);
@@ -96,7 +96,7 @@ void print_json(const Options& options, const programs::Block& block, const prog
 }
 
 void print_table(const programs::Block& block, const programs::Identity& identity, const Dataset& dataset,
-                 const Evaluation& evaluation, const programs::Judgement& judged) {
+                 const EvaluatedModel& evaluation, const programs::Judgement& judged) {
   std::printf("model       %s: %s, for %s\n", printable(block.path).c_str(), identity.answer.c_str(),
               identity.airframe.name.c_str());
   std::printf("rows        %zu of %s, %zu outside the training envelope\n", evaluation.answered.rows.size(),
@@ -110,7 +110,7 @@ void print_table(const programs::Block& block, const programs::Identity& identit
   programs::print_signs(results, {"model"});
 }
 
-int evaluate(const Options& options) {
+int evaluate(const EvaluateOptions& options) {
   programs::end_at_interrupt();
   programs::ModelHints hints = options.hints;
   const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
@@ -121,7 +121,7 @@ int evaluate(const Options& options) {
     throw InputError(block.path, 0, 0, "golden commands that its weights give", "others");
   }
   const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model->columns);
-  const Evaluation evaluation = evaluated(*model, chosen_rows(options, dataset));
+  const EvaluatedModel evaluation = evaluated(*model, chosen_rows(options, dataset));
   if (evaluation.answered.rows.empty()) {
     throw std::invalid_argument("--flight: no row of " + programs::flight_names(dataset) +
                                 " has the whole window of instants that the model asks for");
@@ -146,7 +146,7 @@ int evaluate(const Options& options) {
 programs::Command programs::evaluate_command(CLI::App& program) {
   CLI::App* line =
       program.add_subcommand("evaluate", "Judges an exported model on recorded flights, without compiling");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<EvaluateOptions>();
   add_model(*line, options->model);
   add_paths(*line, "--flight", options->flights, "FILE.csv", "recorded flights to judge it on")->required();
   line->add_option("--rows", options->rows,

@@ -37,7 +37,7 @@ using programs::Replayed;
 using programs::ReplayInput;
 using programs::ReplayModel;
 
-struct Options {
+struct ReplayOptions {
   std::string log;
   std::vector<std::string> models;
   programs::ModelHints hints;
@@ -49,12 +49,12 @@ struct Options {
   bool json = false;
 };
 
-programs::ReplayGuard guard_of(const Options& options) {
+programs::ReplayGuard guard_of(const ReplayOptions& options) {
   return options.guard == "training" ? programs::ReplayGuard::training : programs::ReplayGuard::flight_stack;
 }
 
 /// Throws InputError and std::invalid_argument: no model, one that does not give its golden commands.
-ReplayModel read_model(const std::string& path, const Options& options) {
+ReplayModel read_model(const std::string& path, const ReplayOptions& options) {
   ReplayModel model;
   model.path = path;
   programs::ModelHints hints = options.hints;
@@ -94,7 +94,8 @@ void apply_setting(const std::string& text, flight_stacks::CoreSettings& setting
   if (!found) throw std::invalid_argument("--set: no setting named '" + name + "'; known: " + known);
 }
 
-Replayed replay_flights(const Options& options, const ReplayInput& input, const std::vector<ReplayModel>& models) {
+Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
+                        const std::vector<ReplayModel>& models) {
   if (models.size() > 1) {
     throw std::invalid_argument(
         "--model: a log of flights takes one model; several are for a log of a core, which names them");
@@ -152,7 +153,7 @@ class FlownModels {
 };
 
 /// The limits that the core had. Throws InputError and std::invalid_argument: it had some and none are given.
-void take_trust(const Options& options, programs::CoreReplayOptions& core, Replayed& replayed) {
+void take_trust(const ReplayOptions& options, programs::CoreReplayOptions& core, Replayed& replayed) {
   const flight_stacks::CoreSettings& logged = core.settings;
   if (options.trust.empty()) {
     if (!(logged.distance_limit > 0)) return;
@@ -168,7 +169,7 @@ void take_trust(const Options& options, programs::CoreReplayOptions& core, Repla
   if (!same) replayed.notes.push_back("--trust: other limits than those that flew: what follows may differ for that");
 }
 
-Replayed replay_core(const Options& options, const ReplayInput& input, const std::vector<ReplayModel>& models) {
+Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, const std::vector<ReplayModel>& models) {
   Replayed replayed;
   replayed.of_core = true;
   replayed.notes = input.notes;
@@ -197,7 +198,7 @@ Replayed replay_core(const Options& options, const ReplayInput& input, const std
   return replayed;
 }
 
-void print_head(const Options& options, const Replayed& replayed, const std::vector<ReplayModel>& models) {
+void print_head(const ReplayOptions& options, const Replayed& replayed, const std::vector<ReplayModel>& models) {
   std::printf("%-11s %s\n", "log", printable(options.log).c_str());
   for (const ReplayModel& model : models) {
     std::printf("%-11s %s (checksum %08x), for %s\n", "model", printable(model.path).c_str(), model.checksum(),
@@ -210,7 +211,7 @@ void print_head(const Options& options, const Replayed& replayed, const std::vec
                   : "InverseDynamics behind the flight stacks' guard: falls back to the formula");
 }
 
-int replay(const Options& options) {
+int replay(const ReplayOptions& options) {
   programs::end_at_interrupt();
   programs::FileRoles roles;
   roles.reads("LOG", options.log);
@@ -254,7 +255,7 @@ programs::Command programs::replay_command(CLI::App& program) {
       "replay",
       "Runs a model, or a flight stack's core, over a log: who answered, what, and why not (a flight as a page in "
       "3D: fly --replay)");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   add_path(*line, "log", options->log, "LOG",
            "a recorded flight (FILE.csv), a folder that pinnquad import wrote, or what a flight stack's core logged: a "
            "ULog file, a folder that ulog2csv wrote, NAME_pinnquad_record_0.csv")

@@ -30,7 +30,7 @@ namespace {
 using namespace pinnquad;
 namespace fs = std::filesystem;
 
-struct Options {
+struct NewOptions {
   std::string folder;
   std::string airframe;  ///< a name or a file; empty: the header's, or the paper's
   std::string model;     ///< an exported header whose types the project begins with; empty: the paper's
@@ -126,7 +126,7 @@ Filling airframe_of(const programs::HeaderFile& header) {
 }
 
 /// What the places of the template become.
-Filling filling(const Options& options) {
+Filling filling(const NewOptions& options) {
   std::string name = "TrainedQuadModel", airframe = options.airframe;
   Filling places, types = {{"features", "PaperFeatures"},
                            {"outputs", "CommandOutputs"},
@@ -177,7 +177,7 @@ class EmptyFolder {
   std::vector<fs::path> made_;  ///< the innermost first
 };
 
-int write_project(const Options& options) {
+int write_project(const NewOptions& options) {
   const Filling places = filling(options);
   const EmptyFolder folder(options.folder);
   std::vector<std::unique_ptr<AtomicFile>> files;
@@ -203,7 +203,7 @@ int write_project(const Options& options) {
 programs::Command programs::new_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "new", "Writes a small project that trains: feature set, network, loss, schedule, optimiser as types to edit");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<NewOptions>();
   add_path(*line, "folder", options->folder, "FOLDER", "where to write it: not there yet, or empty")->required();
   add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
            "what flies: a file (examples/airframes), or one of: " + airframe_names() +

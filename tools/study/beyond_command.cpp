@@ -19,7 +19,7 @@
 
 namespace {
 
-struct Options {
+struct BeyondOptions {
   std::string out, shard = "1/1", airframe = study::Airframe::name;
   std::vector<std::string> conditions, models, flights;
   int seeds = 10, epochs = programs::paper_epochs, flight_count = 3;
@@ -158,7 +158,7 @@ void print_found(const std::vector<study::Condition>& conditions, const std::vec
   }
 }
 
-int run(const Options& options) {
+int run(const BeyondOptions& options) {
   if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
   std::vector<study::Condition> conditions = study::chosen_conditions(study::flown_conditions(), options.conditions);
   if (options.conditions.empty() && !options.flights.empty()) conditions.clear();
@@ -218,7 +218,7 @@ programs::Command programs::beyond_command(CLI::App& study) {
       study.add_subcommand("beyond",
                            "What goes beyond the paper: structured models beside its network, condition by "
                            "condition; rows.csv, beyond.html, beyond.json");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BeyondOptions>();
   add_path(*line, "--out", options->out, "DIR",
            "folder of rows.csv, study.json, beyond.html, beyond.json and beyond.svg");
   line->add_option("--conditions", options->conditions, "some of the conditions (default: all; with --flight none)")

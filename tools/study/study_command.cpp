@@ -30,7 +30,7 @@
 
 namespace {
 
-struct Options {
+struct StudyOptions {
   std::string out;
   std::string models;
   std::string shard = "1/1";
@@ -45,7 +45,7 @@ struct Options {
   unsigned threads = 0;
 };
 
-void add_campaign_options(CLI::App& app, Options& options) {
+void add_campaign_options(CLI::App& app, StudyOptions& options) {
   using programs::add_number;
   add_number(app, "--seeds", options.seeds, 1, static_cast<int>(pinnquad::most_pairs),
              "trainings of each model, from seeds 1, 2, ...");
@@ -65,7 +65,7 @@ void add_campaign_options(CLI::App& app, Options& options) {
       ->capture_default_str();
 }
 
-int run_campaign(const Options& options, const char* kind, std::vector<study::Contender> contenders) {
+int run_campaign(const StudyOptions& options, const char* kind, std::vector<study::Contender> contenders) {
   if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
   study::Plan plan;
   plan.kind = kind;
@@ -95,8 +95,8 @@ int run_campaign(const Options& options, const char* kind, std::vector<study::Co
 }
 
 /// Options of a command that trains; `flights` is how many flights it takes.
-std::shared_ptr<Options> training_options(CLI::App& line, int flights, const char* flights_are) {
-  const auto options = std::make_shared<Options>();
+std::shared_ptr<StudyOptions> training_options(CLI::App& line, int flights, const char* flights_are) {
+  const auto options = std::make_shared<StudyOptions>();
   options->flights = flights;
   programs::add_path(line, "--out", options->out, "DIR", "folder of rows.csv, study.json and series/");
   programs::add_number(line, "--flights", options->flights, 1, 1000, flights_are);
@@ -104,7 +104,7 @@ std::shared_ptr<Options> training_options(CLI::App& line, int flights, const cha
   return options;
 }
 
-constexpr const char* exit_codes =
+constexpr const char* study_exit_codes =
     "Exit codes: 0 all trainings are there, whatever the verdicts; 1 (merge) some are missing; 2 bad input or a file "
     "that can't be read or written; 130 interrupted: the same command goes on.";
 
@@ -120,7 +120,7 @@ programs::Command paper_command(CLI::App& parent) {
                            "  pinnquad study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
                            "  pinnquad study merge study/* --out study/all         joins such parts\n"
                            "The same command goes on where it was stopped or killed.\n") +
-               exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
+               study_exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
   return {line, [options] { return run_campaign(*options, "table 2", study::chosen_models(options->models)); }};
 }
 
@@ -131,13 +131,13 @@ programs::Command ablation_command(CLI::App& parent) {
   const auto options = training_options(*line, 1, "flights d1, the seeds from --flight-seed on");
   line->add_option("--variants", options->variants, "some of the variants, by the names in rows.csv (default: all)")
       ->delimiter(',');
-  line->footer(exit_codes);
+  line->footer(study_exit_codes);
   return {line, [options] { return run_campaign(*options, "ablation", study::chosen_variants(options->variants)); }};
 }
 
 programs::Command merge_command(CLI::App& parent) {
   CLI::App* line = parent.add_subcommand("merge", "Joins the folders of a study's shards into one");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StudyOptions>();
   line->add_option("parts", options->parts, "folders to join")->type_name("DIR")->required();
   programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
   line->footer(
@@ -153,7 +153,7 @@ programs::Command merge_command(CLI::App& parent) {
 
 programs::Command programs::study_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("study", "The paper's campaign: its models trained and judged, seed by seed");
-  line->footer(exit_codes);
+  line->footer(study_exit_codes);
   const std::vector<Command> commands = {paper_command(*line), ablation_command(*line), beyond_command(*line),
                                          merge_command(*line)};
   return {line, [commands] { return run_chosen(commands); }};

@@ -49,7 +49,7 @@ using namespace pinnquad;
 /// Fewer rows than this can't train 6,379 weights to anything worth flying: 20 batches of 64 in the 60 % that train.
 constexpr std::size_t minimum_rows = 2200;
 
-struct Options {
+struct TrainOptions {
   std::vector<std::string> flights;
   std::string airframe = PaperQuadrotor::name;
   std::string out = "demo_out";
@@ -104,7 +104,7 @@ void draw(const ContextAirframe<GivenAirframe>& airframe, const std::string& fol
 }
 
 /// "; of an earlier training: ..." with the files an export would have replaced; nothing where there are none.
-std::string earlier_export(const Options& options) {
+std::string earlier_export(const TrainOptions& options) {
   std::vector<std::string> there;
   for (const std::string& path :
        {options.out + "/model.hpp", options.out + "/trust.hpp", options.out + "/replay.txt", options.block}) {
@@ -116,7 +116,7 @@ std::string earlier_export(const Options& options) {
 
 /// Says how the chosen model stands beside the mean and linear regression. Why it must not be exported; empty if it
 /// may.
-std::string reason_against_export(const Options& options, const programs::Chosen& chosen,
+std::string reason_against_export(const TrainOptions& options, const programs::Chosen& chosen,
                                   programs::TrainingReport& report) {
   const Verdict& verdict = chosen.verdict;
   std::printf(
@@ -156,7 +156,7 @@ void warn_of_better_network(const std::vector<programs::LossName>& losses, const
 }
 
 /// What is proven of an export's signs, as `certify` finds it in the header.
-void say_certificate(const Options& options, const programs::TrainedNetwork& network,
+void say_certificate(const TrainOptions& options, const programs::TrainedNetwork& network,
                      const ContextAirframe<GivenAirframe>& airframe, programs::TrainingReport& report) {
   const std::optional<Certificate> certificate = network.certificate();
   if (!certificate || !certificate->proven()) {
@@ -178,7 +178,7 @@ void say_certificate(const Options& options, const programs::TrainedNetwork& net
 }
 
 /// When the export is not to be trusted, where its kind and the validation rows tell; of an earlier training nothing stays.
-void export_trust(const Options& options, const programs::TrainedNetwork& network, const RowSplit& split,
+void export_trust(const TrainOptions& options, const programs::TrainedNetwork& network, const RowSplit& split,
                   const Provenance& provenance) {
   const std::string path = options.out + "/trust.hpp";
   try {
@@ -194,7 +194,7 @@ void export_trust(const Options& options, const programs::TrainedNetwork& networ
   std::filesystem::remove(path, ignored);
 }
 
-void export_network(const Options& options, const programs::Training& training, const RowSplit& split,
+void export_network(const TrainOptions& options, const programs::Training& training, const RowSplit& split,
                     const Provenance& provenance) {
   const programs::TrainedNetwork& network = *training.network;
   network.write_header(options.out + "/model.hpp", options.model_name, split.train, provenance);
@@ -227,7 +227,7 @@ void print_training_time(const std::vector<programs::LossName>& losses, const st
   if (!kinds.empty()) std::printf("  training took, per model and core: %s\n", kinds.c_str());
 }
 
-int train_judge_export(const Options& options, const programs::Recipe& recipe,
+int train_judge_export(const TrainOptions& options, const programs::Recipe& recipe,
                        const std::vector<programs::LossName>& losses, const programs::NamedAirframe& given,
                        const Dataset& dataset) {
   const RowSplit split = dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
@@ -331,7 +331,7 @@ constexpr std::array<const char*, 8> output_names = {"results.csv",    "report.j
                                                      "prediction.svg", "model.hpp",   "trust.hpp",    "replay.txt"};
 
 /// No output takes the place of a flight or of another output.
-void require_separate_files(const Options& options) {
+void require_separate_files(const TrainOptions& options) {
   programs::FileRoles roles;
   for (const std::string& path : options.flights) roles.reads("--flight", path);
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
@@ -342,7 +342,7 @@ void require_separate_files(const Options& options) {
 
 /// What logs and flights have in common, as training on logs takes it; `given(name)`: the option is in the command line.
 template <class Given>
-programs::LogTrainingOptions log_options(const Options& options, const Given& given) {
+programs::LogTrainingOptions log_options(const TrainOptions& options, const Given& given) {
   programs::LogTrainingOptions logs = options.logs;
   logs.airframe = given("--airframe") ? options.airframe : "";
   logs.out = options.out;
@@ -357,13 +357,14 @@ programs::LogTrainingOptions log_options(const Options& options, const Given& gi
 }
 
 /// Trains on the flights of the options: the exit code.
-int train_chosen(const Options& options) {
+int train_chosen(const TrainOptions& options) {
   if (!is_identifier(options.model_name)) {
     throw std::invalid_argument("--name " + options.model_name +
                                 ": a C++ identifier was expected, no keyword and no name that C++ reserves");
   }
   const programs::Recipe recipe = programs::chosen_recipe(options.recipe);
-  if (recipe.besides.empty() && (options.altitude != Options{}.altitude || options.slopes != Options{}.slopes)) {
+  if (recipe.besides.empty() &&
+      (options.altitude != TrainOptions{}.altitude || options.slopes != TrainOptions{}.slopes)) {
     throw std::invalid_argument("--altitude and --slopes go with --recipe structured, not with " + options.recipe);
   }
   std::vector<programs::LossName> losses = programs::chosen_losses(options.losses);
@@ -379,7 +380,7 @@ int train_chosen(const Options& options) {
   return train_judge_export(options, recipe, losses, airframe, dataset);
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(CLI::App& app, TrainOptions& options) {
   using programs::add_number;
   using programs::add_path;
   app.footer(
@@ -449,7 +450,7 @@ void add_options(CLI::App& app, Options& options) {
 programs::Command programs::train_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "train", "Trains models on flights, judges them on rows that none was trained on, exports the best as a header");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TrainOptions>();
   add_options(*line, *options);
   add_log_options(*line, options->logs);
   return {line, [options, line] {

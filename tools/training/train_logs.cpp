@@ -38,7 +38,7 @@ using namespace pinnquad;
 using programs::LogTrainingOptions;
 
 /// The files of --out.
-constexpr std::array<const char*, 4> output_names = {"report.json", "report.html", "model.hpp", "replay.txt"};
+constexpr std::array<const char*, 4> log_output_names = {"report.json", "report.html", "model.hpp", "replay.txt"};
 
 void require_separate_files(const LogTrainingOptions& options) {
   programs::FileRoles roles;
@@ -46,7 +46,7 @@ void require_separate_files(const LogTrainingOptions& options) {
   roles.reads("--dataset", options.dataset);
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
-  for (const char* name : output_names) roles.writes("--out", options.out + "/" + name);
+  for (const char* name : log_output_names) roles.writes("--out", options.out + "/" + name);
   roles.writes("--block", options.block);
 }
 
@@ -356,7 +356,7 @@ int programs::train_on_logs(const LogTrainingOptions& options) {
   require_sound(folder, dataset, folds);
   const FolderLock lock(options.out);
   if (!options.logs.empty()) write_dataset_folder(folder, dataset);
-  for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
+  for (const char* name : log_output_names) AtomicFile probe(options.out + "/" + name);
   if (!options.block.empty()) AtomicFile probe(options.block);
   std::printf("      %zu rows of %zu flights\n", dataset.flights.rows(), dataset.flights.size());
   print_folds(folds);
