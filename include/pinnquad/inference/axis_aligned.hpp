@@ -37,7 +37,7 @@ struct AxisAligned : AnswerBase<AxisAligned<ScalarType, FeatureCount, First...>,
                                                typename Threes::template InPlace<Scalar>{x}, y, detail::Unchanged{});
     } else {
       Scalar seen[Threes::others];
-      Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { seen[n] = x[feature]; });
+      Threes::copy_others(x, static_cast<Scalar*>(seen));
       multiply_row_major<4, Threes::others>(parameters + weights, parameters + intercepts,
                                             static_cast<const Scalar*>(seen), y);
     }

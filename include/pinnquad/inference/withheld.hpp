@@ -34,6 +34,11 @@ struct Triples {
     (until(First), ...);
     until(FeatureCount);
   }
+  /// Writes the others of `x` one after the other.
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void copy_others(const Scalar* x, Scalar* others_of_x) noexcept {
+    each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { others_of_x[n] = x[feature]; });
+  }
   /// The n-th of the others as a feature.
   static PINNQUAD_ALWAYS_INLINE constexpr int other(int n) noexcept {
     ((n += n >= First ? 3 : 0), ...);
@@ -71,18 +76,17 @@ struct Withheld : AnswerBase<Withheld<Inner, FeatureCount, First...>, typename I
   using Withheld::AnswerBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    const typename Threes::template InPlace<Scalar> seen{x};
     if constexpr (is_network<Inner>) {
-      PortablePass<Inner>::forward_of(parameters, seen, y);
+      PortablePass<Inner>::forward_of(parameters, typename Threes::template InPlace<Scalar>{x}, y);
     } else {
-      Scalar copy[Threes::others];
-      for (int i = 0; i < Threes::others; ++i) copy[i] = seen[i];
-      Inner::forward(parameters, static_cast<const Scalar*>(copy), y);
+      Scalar seen[Threes::others];
+      Threes::copy_others(x, static_cast<Scalar*>(seen));
+      Inner::forward(parameters, static_cast<const Scalar*>(seen), y);
     }
   }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar seen[Threes::others], by_seen[Inner::outputs * Threes::others];
-    Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { seen[n] = x[feature]; });
+    Threes::copy_others(x, static_cast<Scalar*>(seen));
     answer_jacobian<Inner>(parameters, static_cast<const Scalar*>(seen), y, static_cast<Scalar*>(by_seen));
     for (int i = 0; i < Inner::outputs * FeatureCount; ++i) by_x[i] = Scalar(0);
     Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA {

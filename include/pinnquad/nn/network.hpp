@@ -118,13 +118,13 @@ class PortablePass {
   }
   static constexpr int even_size = entries<StepAt<0>>(true);
   static constexpr int odd_size = entries<StepAt<0>>(false);
+  /// True where the first layer takes inputs from anywhere: it is a Dense, and the kernel holds them all.
+  static constexpr bool takes_any =
+      detail::is_dense<typename StepAt<0>::Layer> && NetworkType::inputs <= detail::held_inputs;
 
  public:
   /// Stack that forward() needs for activations.
   static constexpr std::size_t workspace_bytes = sizeof(Scalar) * static_cast<std::size_t>(even_size + odd_size);
-  /// True where the first layer takes inputs from anywhere: it is a Dense, and the kernel holds them all.
-  static constexpr bool takes_any =
-      detail::is_dense<typename StepAt<0>::Layer> && NetworkType::inputs <= detail::held_inputs;
 
   /// y = network(x); out of line, so that an image holds it once.
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept { run(parameters, x, y); }
