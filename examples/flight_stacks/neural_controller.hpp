@@ -166,7 +166,7 @@ class NeuralController {
       pinnquad::Commands<float> answer{};
       report.status = ask(*inverse, reaction, answer, report);
       if (pinnquad::has_output(report.status)) {
-        last_commands_ = pinnquad::keep_torque(vehicle_.rotors(), {outputs_.lower, outputs_.upper}, answer);
+        last_commands_ = pinnquad::desaturate(vehicle_.rotors(), answer, {outputs_.lower, outputs_.upper});
         const float lift = take_off_.lift();
         if (lift < 1.0f) {
           for (float& u : last_commands_) u = outputs_.lower + lift * (u - outputs_.lower);

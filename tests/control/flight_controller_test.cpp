@@ -12,7 +12,7 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/feed_forward.hpp"
-#include "pinnquad/control/torque_priority.hpp"
+#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "support/uneven_airframe.hpp"
@@ -40,7 +40,7 @@ Status fly_set_point(const Vehicle<Scalar>& quadrotor, const SetPoint<Scalar>& w
     Accelerations<Scalar> demand;
     Status status = controller(state.body, wanted, demand);
     if (status == Status::ok) status = inverse_commands(quadrotor, state.body, demand, Scalar(state.time_s), commands);
-    if (status == Status::ok) status = quadrotor.step(state, keep_torque(quadrotor.rotors(), commands), step_s);
+    if (status == Status::ok) status = quadrotor.step(state, desaturate(quadrotor.rotors(), commands), step_s);
     if (status != Status::ok) return status;
   }
   return Status::ok;

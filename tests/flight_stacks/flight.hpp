@@ -265,7 +265,7 @@ class FaultyFlight {
     wanted.angular_rad_s2 += demand.feedback_angular_acceleration_rad_s2;
     pinnquad::Commands<double> commands{};
     if (pinnquad::inverse_commands(vehicle_, body_.body, wanted, body_.time_s, commands) == Status::ok) {
-      commands_ = pinnquad::clipped(pinnquad::keep_torque(vehicle_.rotors(), commands));
+      commands_ = pinnquad::desaturate(vehicle_.rotors(), commands);
     }
   }
 

@@ -66,7 +66,7 @@ Flight flown_on(const Vehicle& quadrotor, Pilot pilot, VehicleState<double> vehi
       Accelerations<double> demand;
       REQUIRE(controller(vehicle.body, pilot(vehicle.body, vehicle.time_s), demand) == Status::ok);
       REQUIRE(inverse_commands(quadrotor, vehicle.body, demand, vehicle.time_s, commands) == Status::ok);
-      commands = keep_torque(quadrotor.rotors(), commands);
+      commands = desaturate(quadrotor.rotors(), commands);
       REQUIRE(quadrotor.step(vehicle, commands, 0.001) == Status::ok);
       REQUIRE(quadrotor.step(vehicle, commands, 0.001) == Status::ok);
     }

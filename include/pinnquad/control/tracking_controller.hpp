@@ -5,7 +5,7 @@
 
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/control/torque_priority.hpp"
+#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/dynamics/inertia.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
@@ -46,7 +46,7 @@ class TrackingController {
     const ThrustFractions<Scalar> correction = rotors_.fractions_for(feedback, rotor_scale_);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += correction[i];
     if (!all_finite(sum)) return Status::output_not_finite;
-    commands = keep_torque(rotors_, rotors_.commands_of(sum));
+    commands = desaturate(rotors_, rotors_.commands_of(sum));
     return Status::ok;
   }
 

@@ -11,7 +11,7 @@
 
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/control/torque_priority.hpp"
+#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/simulation/pilot.hpp"
 #include "pinnquad/simulation/recorder.hpp"
@@ -55,7 +55,7 @@ struct HasGroundEffectSwitch<Vehicle, Model,
 
 /// Flies `Vehicle` (a Quadrotor<double, Effects...> or a SwitchableQuadrotor) as `Pilot` asks and records it by
 /// `Recorder`; all are copies, and so is a copy of a simulator, which flies on like its original.
-/// A tick: the pilot's set point, the controller's demand, the inverse's commands, torque before thrust, and physics
+/// A tick: the pilot's set point, the controller's demand, the inverse's commands, desaturated, and physics
 /// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
 /// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
 /// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row, and
@@ -192,7 +192,7 @@ class Simulator {
     Accelerations<double> demand;
     Status status = controller_(vehicle_.body, pilot_(vehicle_.body, vehicle_.time_s), demand);
     if (status == Status::ok) status = inverse_commands(quadrotor, vehicle_.body, demand, vehicle_.time_s, commands_);
-    if (status == Status::ok) commands_ = keep_torque(quadrotor.rotors(), commands_);
+    if (status == Status::ok) commands_ = desaturate(quadrotor.rotors(), commands_);
     return status;
   }
 
