@@ -151,7 +151,7 @@ using Vehicle = std::conditional_t<knows_altitude, NearGround, Distant>;
 struct Altimeter {
   double ground_z_m = 0;
 
-  void operator()(const State<double>& state, double, Model::Inputs& present) const noexcept {
+  void operator()(const State<double>& state, std::uint64_t, Model::Inputs& present) const noexcept {
     set_altitude(present, ground_z_m - state.position_m[2]);
   }
 };
@@ -203,8 +203,9 @@ TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const Figu
     std::snprintf(fallback, sizeof fallback, "%u of %u (%.2f %%)", r.fallback.fallbacks(), r.fallback.asked,
                   100.0 * r.fallback.fallbacks() / r.fallback.asked);
   }
+  const Status ended = r.status != Status::ok ? r.status : r.declined;
   std::printf("  %-28s %8.2f %8.2f %9.2f   %-22s%s\n", label, 100 * r.rmse_m, 100 * r.max_error_m, r.max_speed_m_s,
-              fallback, r.status == Status::ok ? "" : to_string(r.status));
+              fallback, ended == Status::ok ? "" : to_string(ended));
   return r;
 }
 

@@ -13,6 +13,7 @@
 // CASE JOINED_INPUTS: pinnquad: feature sets that are Joined have the same Inputs
 // CASE CENTRED_HISTORY: pinnquad: a centred window looks ahead, and no loop can
 // CASE UNMEASURED_INPUT: pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument
+// CASE MEASURING_IN_SECONDS: pinnquad: what measures for NetworkInverse is called .*; time is a std::uint64_t of microseconds
 // CASE MEASURING_MAY_THROW: pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be noexcept
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/inference/motion_parts.hpp"
@@ -70,8 +71,14 @@ struct Inverse {
   }
 };
 
+#if defined(MEASURING_IN_SECONDS)
+using Time = double;
+#else
+using Time = std::uint64_t;
+#endif
+
 struct Ammeter {
-  void operator()(const State<double>&, double, Measured::Inputs<float>& inputs) const
+  void operator()(const State<double>&, Time, Measured::Inputs<float>& inputs) const
 #if !defined(MEASURING_MAY_THROW)
       noexcept
 #endif
@@ -95,5 +102,5 @@ using FeedForward = NetworkInverse<Inverse, Ammeter>;
 int main() {
   FeedForward feed_forward{Inverse{}};
   Commands<double> commands{};
-  return feed_forward(State<double>{}, Accelerations<double>{}, 0.0, commands) == Status::ok ? 0 : 1;
+  return feed_forward(State<double>{}, Accelerations<double>{}, std::uint64_t(0), commands) == Status::ok ? 0 : 1;
 }

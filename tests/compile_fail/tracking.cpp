@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
 // CASE NOT_A_FEED_FORWARD: pinnquad: this type is no feed-forward policy
+// CASE FEED_FORWARD_IN_SECONDS: pinnquad: this type is no feed-forward policy; time is a std::uint64_t of microseconds
 // CASE FEED_FORWARD_MAY_THROW: pinnquad: a feed-forward policy flies: its operator.. must be noexcept
 #include "pinnquad/control/tracking_controller.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 
 namespace {
+
+#if defined(FEED_FORWARD_IN_SECONDS)
+using Time = double;
+#else
+using Time = std::uint64_t;
+#endif
 
 /// Half throttle, whatever is wanted.
 struct Policy {
@@ -14,7 +21,7 @@ struct Policy {
 #else
   pinnquad::Status operator()(
 #endif
-      const pinnquad::State<Scalar>&, const pinnquad::Accelerations<Scalar>&, Scalar, pinnquad::Commands<Scalar>& u)
+      const pinnquad::State<Scalar>&, const pinnquad::Accelerations<Scalar>&, Time, pinnquad::Commands<Scalar>& u)
 #if !defined(FEED_FORWARD_MAY_THROW)
       noexcept
 #endif

@@ -179,8 +179,8 @@ Best best_by_vertices(const pinnquad::Rotors<double>& rotors, const Commands<dou
     w.torque_N_m = {roll, pitch, yaw};
     return rotors.fractions_for(w, 1.0);
   };
-  const auto tilt = made_by(0, asked.torque_N_m[0], asked.torque_N_m[1], 0), yaw = made_by(0, 0, 0, asked.torque_N_m[2]),
-             along = made_by(1, 0, 0, 0);
+  const auto tilt = made_by(0, asked.torque_N_m[0], asked.torque_N_m[1], 0),
+             yaw = made_by(0, 0, 0, asked.torque_N_m[2]), along = made_by(1, 0, 0, 0);
   const auto lower = rotors.fractions({range.lower, range.lower, range.lower, range.lower}),
              upper = rotors.fractions({range.upper, range.upper, range.upper, range.upper});
   constexpr int rows = 12;

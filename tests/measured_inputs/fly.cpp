@@ -19,8 +19,8 @@ struct Voltmeter {
   double offset_V = 0;
 
   template <class Inputs>
-  void operator()(const State<double>& /*state*/, double time_s, Inputs& inputs) const noexcept {
-    inputs.template column<BatteryVoltage>() = float(pack.voltage_V(time_s) + offset_V);
+  void operator()(const State<double>& /*state*/, std::uint64_t time_us, Inputs& inputs) const noexcept {
+    inputs.template column<BatteryVoltage>() = float(pack.voltage_V(seconds_of(time_us)) + offset_V);
   }
 };
 

@@ -89,7 +89,7 @@ using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersG
 struct Altimeter {
   bool stuck;  ///< at a height where the ground is hardly felt
 
-  void operator()(const State<double>& state, double, MotionInputsWithAltitude<float>& present) const noexcept {
+  void operator()(const State<double>& state, std::uint64_t, MotionInputsWithAltitude<float>& present) const noexcept {
     const double height_m = paper_site<double>().ground_z_m - state.position_m[2];
     present.altitude_m = stuck ? 1.2F : static_cast<float>(height_m);
   }

@@ -138,12 +138,66 @@ TEST_CASE("one way to fall back: the guard's, in the loop too") {
   CHECK(fallen.fallback.asked == 15000);
   CHECK(fallen.fallback.of(Status::outside_envelope) == 15000);
 
-  // without a fallback the policy declines, and the flight ends where the network does
+  // without a fallback the policy declines: the rigid body and the feedback fly on, worse by the air that it does not know
   using Declining = InverseDynamics<test::NowhereTrained>;
   const TrackingResult<double> declined = tracked(NetworkInverse<Declining>(Declining{}));
-  CHECK(declined.status == Status::outside_envelope);
-  CHECK(declined.flown_s == 0);
-  CHECK(declined.fallback.fallbacks() == 1);
+  CHECK(analytic.declined == Status::ok);
+  CHECK(fallen.declined == Status::ok);
+  CHECK(declined.declined == Status::outside_envelope);
+  CHECK(declined.status == Status::ok);
+  CHECK(declined.flown_s == doctest::Approx(30));
+  CHECK(declined.fallback.fallbacks() == 15000);
+  CHECK(declined.rmse_m < tracked(trim()).rmse_m);
+}
+
+namespace {
+
+/// Comes to a Status that a test chooses; the hover's commands where it has output.
+struct Chosen {
+  HoverTrim<double> inner;
+  Status status;
+
+  Status operator()(const State<double>& state, const Accelerations<double>& desired, std::uint64_t time_us,
+                    Commands<double>& commands) noexcept {
+    return has_output(status) ? (static_cast<void>(inner(state, desired, time_us, commands)), status) : status;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a tick says what the feed-forward came to, and keeps the feedback whatever that is") {
+  const Vehicle quadrotor = vehicle();
+  State<double> off;  // rolled to the left of where it should be, and turning further
+  off.position_m = Vector3<double>(0, 0, -20);
+  off.attitude = from_euler<double>({-0.3, 0, 0});
+  off.body_rates_rad_s[0] = -0.5;
+  const TrajectoryPoint<double> still = Hover<double>{Vector3<double>(0, 0, -20), 0.0}.sample(0);
+  for (int i = 0; i < status_count; ++i) {
+    const auto chosen = static_cast<Status>(i);
+    TrackingController<double, Chosen> controller(quadrotor.airframe(), FlightController<double>{}, {trim(), chosen});
+    Commands<double> commands{};
+    CAPTURE(to_string(chosen));
+    CHECK(controller(off, still, 0, commands) == (has_output(chosen) ? chosen : Status::fell_back));
+    CHECK(controller.feed_forward_status() == chosen);
+    const Wrench<double> made = quadrotor.rotors().wrench(commands, 1.0);
+    CHECK(made.torque_N_m[0] > 0.01);  // back to the right
+    CHECK(-made.force_N[2] > 0.7 * quadrotor.airframe().mass_kg * standard_gravity_m_s2<double>);
+  }
+}
+
+TEST_CASE("a sum that leaves the commands' range is said to be limited, and does not hide a fallback") {
+  const Vehicle quadrotor = vehicle();
+  HoverTrim<double> much;
+  much.commands = {0.98, 0.98, 0.98, 0.98};
+  State<double> off;
+  off.attitude = from_euler<double>({-0.3, 0, 0});
+  const TrajectoryPoint<double> still = Hover<double>{}.sample(0);
+  Commands<double> commands{};
+  for (const Status chosen : {Status::ok, Status::limited, Status::fell_back}) {
+    TrackingController<double, Chosen> controller(quadrotor.airframe(), FlightController<double>{}, {much, chosen});
+    CHECK(controller(off, still, 0, commands) == (chosen == Status::ok ? Status::limited : chosen));
+    CHECK(saturated(commands));
+  }
 }
 
 TEST_CASE("a circle, and a hover that stays") {
@@ -170,10 +224,10 @@ struct Witness {
   HoverTrim<double> inner;
   std::vector<Seen>* seen;
 
-  Status operator()(const State<double>& state, const Accelerations<double>& desired, double time_s,
+  Status operator()(const State<double>& state, const Accelerations<double>& desired, std::uint64_t time_us,
                     Commands<double>& commands) noexcept {
-    seen->push_back({state, time_s});  // has room
-    const Status status = inner(state, desired, time_s, commands);
+    seen->push_back({state, seconds_of(time_us)});  // has room
+    const Status status = inner(state, desired, time_us, commands);
     if (seen->size() % 4 == 0) commands = {2, 2, 2, 2};
     return status;
   }
@@ -227,8 +281,8 @@ TEST_CASE("the loop recovers from a start far off, in every direction") {
     state.rotors = trim().commands;
     TrackingController<double, HoverTrim<double>> controller(quadrotor.airframe(), FlightController<double>{}, trim());
     Commands<double> commands{};
-    for (int i = 0; i < 8000; ++i) {
-      REQUIRE(controller(state.body, goal.sample(state.time_s), state.time_s, commands) == Status::ok);
+    for (std::uint64_t i = 0; i < 8000; ++i) {
+      REQUIRE(has_output(controller(state.body, goal.sample(state.time_s), 1000 * i, commands)));
       REQUIRE(quadrotor.step(state, commands, 0.001) == Status::ok);
     }
     CHECK((state.body.position_m - Vector3<double>(0, 0, -20)).norm() <= 0.01);
@@ -268,6 +322,6 @@ TEST_CASE("bad input ends the flight with its Status") {
   Commands<double> commands{42, 42, 42, 42};
   State<double> state;
   state.velocity_m_s[0] = std::numeric_limits<double>::infinity();
-  CHECK(controller(state, course().sample(1.0), 1.0, commands) == Status::not_finite);
+  CHECK(controller(state, course().sample(1.0), 1'000'000, commands) == Status::not_finite);
   CHECK(commands[0] == 42);
 }

@@ -22,11 +22,11 @@ class ModelFeedForward {
   ModelFeedForward(const RowPredictions& model, const Commands& hover, double ground_z_m)
       : model_(model), hover_(hover), ground_z_m_(ground_z_m) {}
 
-  Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired, double time_s,
-                    Commands& commands) noexcept {
+  Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
+                    std::uint64_t time_us, Commands& commands) noexcept {
     try {
       pinnquad::Flight row;
-      row.push_back(programs::wanted_row(state, desired, time_s, ground_z_m_));
+      row.push_back(programs::wanted_row(state, desired, pinnquad::seconds_of(time_us), ground_z_m_));
       const Commands made = model_(pinnquad::RowSet(row, {0, 1})).front();
       const bool answered = pinnquad::all_finite(made);
       count_.add(answered ? Status::ok : Status::outside_envelope);
@@ -61,7 +61,7 @@ LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<do
   const ModelFeedForward policy(model, trim.commands, vehicle.site().ground_z_m);
   const auto fly = [&](std::size_t i, const auto& trajectory) {
     const TrackingResult<double> result = track(vehicle, trajectory, controller, policy);
-    if (result.status != Status::ok) return;
+    if (result.status != Status::ok || result.declined != Status::ok) return;
     figures.rmse_m[i] = result.rmse_m;
     figures.declined_share[i] = result.fallback.fallbacks() / static_cast<double>(result.fallback.asked);
   };

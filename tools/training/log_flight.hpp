@@ -50,9 +50,9 @@ class LoggedFeedForward {
   }
 
   pinnquad::Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
-                              double time_s, pinnquad::Commands<double>& commands) noexcept {
+                              std::uint64_t time_us, pinnquad::Commands<double>& commands) noexcept {
     try {
-      remember(state, desired, time_s);
+      remember(state, desired, pinnquad::seconds_of(time_us));
       pinnquad::Flight flight;
       for (const pinnquad::Sample& sample : past_) flight.push_back(sample);
       for (pinnquad::ExtraColumn column : held_) {
@@ -66,7 +66,7 @@ class LoggedFeedForward {
         for (std::size_t i = 0; i < commands.size(); ++i) commands[i] = std::clamp(made[i], 0.0, 1.0);
         return pinnquad::Status::ok;
       }
-      return formula_(state, desired, time_s, commands);
+      return formula_(state, desired, time_us, commands);
     } catch (const std::exception&) {
       return pinnquad::Status::not_finite;
     }
@@ -163,17 +163,18 @@ inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& mo
   plan.steps_per_control = 4;
   const pinnquad::FlightController<double> controller({}, pinnquad::flight_limits(*made, 1.0));
   const auto told = [](const pinnquad::TrackingResult<double>& flown) {
+    constexpr auto ok = pinnquad::Status::ok;
     return nlohmann::json{{"rmse_m", flown.rmse_m},
                           {"largest_error_m", flown.max_error_m},
                           {"flown_s", flown.flown_s},
-                          {"status", pinnquad::to_string(flown.status)}};
+                          {"status", pinnquad::to_string(flown.status != ok ? flown.status : flown.declined)}};
   };
   // the policy is copied into the loop: what it counts is shared
   struct Counted {
     std::shared_ptr<LoggedFeedForward> policy;
     pinnquad::Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
-                                double time_s, pinnquad::Commands<double>& commands) noexcept {
-      return (*policy)(state, desired, time_s, commands);
+                                std::uint64_t time_us, pinnquad::Commands<double>& commands) noexcept {
+      return (*policy)(state, desired, time_us, commands);
     }
   };
   const Counted policy{std::make_shared<LoggedFeedForward>(model, reach, vehicle, training)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Desaturation: commands that leave their range give up thrust first, then yaw torque, then roll and pitch torque, so that the
-// attitude stays in hand.
+// Desaturation: commands that leave their range give up thrust first, then yaw torque, then roll and pitch torque, so
+// that the attitude stays in hand.
 #pragma once
 
 #include <limits>
@@ -18,8 +18,8 @@ struct CommandRange {
 
 namespace detail {
 
-/// Ends of the thrust fractions, and the fractions that make thrust and no torque. A rotor with a part below `nothing` has no
-/// part in pure thrust.
+/// Ends of the thrust fractions, and the fractions that make thrust and no torque. A rotor whose part is below `nothing`
+/// has no part in pure thrust.
 template <class Scalar>
 struct ThrustRoom {
   ThrustFractions<Scalar> lower, upper, along;
@@ -66,14 +66,14 @@ struct TorqueShares {
   Scalar yaw{1};
 };
 
-/// The greatest share, 0 to 1, of `tilt` that some share of `yaw` and some thrust can carry on top of `base`; then the greatest
-/// share of `yaw`. For each pair of rotors the lower end of the one must not lie above the upper end of the other:
+/// The greatest share, 0 to 1, of `tilt` that some share of `yaw` and some thrust can carry on top of `base`; then the
+/// greatest share of `yaw`. For each pair of rotors the lower end of the one must not lie above the upper end of the
+/// other:
 ///   tilt share * row.tilt + yaw share * row.yaw <= row.room
 /// The yaw share is eliminated from each two rows that bound it from both sides (Fourier and Motzkin).
 template <class Scalar>
 TorqueShares<Scalar> shares_that_fit(const ThrustRoom<Scalar>& room, const ThrustFractions<Scalar>& base,
-                                     const ThrustFractions<Scalar>& tilt,
-                                     const ThrustFractions<Scalar>& yaw) noexcept {
+                                     const ThrustFractions<Scalar>& tilt, const ThrustFractions<Scalar>& yaw) noexcept {
   struct Row {
     Scalar tilt, yaw, room;
   };
@@ -84,8 +84,7 @@ TorqueShares<Scalar> shares_that_fit(const ThrustRoom<Scalar>& room, const Thrus
   for (std::size_t i = 0; i < rotor_count; ++i) {
     for (std::size_t j = 0; j < rotor_count; ++j) {
       if (i == j || !(room.carries(i) && room.carries(j))) continue;
-      const Row row{tilt[j] / room.along[j] - tilt[i] / room.along[i],
-                    yaw[j] / room.along[j] - yaw[i] / room.along[i],
+      const Row row{tilt[j] / room.along[j] - tilt[i] / room.along[i], yaw[j] / room.along[j] - yaw[i] / room.along[i],
                     (room.upper[j] - base[j]) / room.along[j] - (room.lower[i] - base[i]) / room.along[i]};
       if (row.yaw > largest) largest = row.yaw;
       rows[count++] = row;
@@ -119,9 +118,9 @@ TorqueShares<Scalar> shares_that_fit(const ThrustRoom<Scalar>& room, const Thrus
 
 }  // namespace detail
 
-/// Commands within the range, with the torque of those given as far as it can be had; of rotors that may differ, sit anywhere and
-/// have curves. Gives way in this order: thrust, then yaw torque, then roll and pitch torque by one share, so that their
-/// direction stays. No torque is greater than asked or of the other sign. Commands within the range stay, to the bit.
+/// Commands within the range, with the torque of those given as far as it can be had; of rotors that may differ, sit
+/// anywhere and have curves. Gives way in this order: thrust, then yaw torque, then roll and pitch torque by one share,
+/// so that their direction stays. No torque is greater than asked or of the other sign. Commands within the range stay, to the bit.
 /// A rotor that has no part in pure thrust is clipped. NaN passes through.
 template <class Scalar>
 Commands<Scalar> desaturate(const Rotors<Scalar>& rotors, const Commands<Scalar>& commands,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Feed-forward policies: the commands for a motion wanted, before any feedback.
-// Contract: `Status operator()(const State<S>&, const Accelerations<S>& desired, S time_s, Commands<S>&) noexcept`; the
-// commands are untouched unless has_output(status). AnalyticInverse (inference/analytic_inverse.hpp) is one.
+// Contract: `Status operator()(const State<S>&, const Accelerations<S>& desired, std::uint64_t time_us, Commands<S>&)
+// noexcept`; the commands are untouched unless has_output(status). One is AnalyticInverse
+// (inference/analytic_inverse.hpp).
+// Time is a count of microseconds from any start: seconds in float are 4 ms apart after ten hours.
 #pragma once
 
 #include <array>
@@ -14,22 +16,33 @@
 namespace pinnquad {
 
 namespace detail {
+/// The call, its time in braces: a policy that would take it as a floating-point number fails here.
+template <class Policy, class Scalar>
+using FeedForwardStatus =
+    decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(),
+                                     {std::declval<std::uint64_t>()}, std::declval<Commands<Scalar>&>()));
+
 template <class Policy, class Scalar, class = void>
 struct IsFeedForward : std::false_type {
   static constexpr bool is_noexcept = true;
 };
 template <class Policy, class Scalar>
-struct IsFeedForward<Policy, Scalar,
-                     std::void_t<decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
-                                                                  std::declval<const Accelerations<Scalar>&>(),
-                                                                  Scalar(0), std::declval<Commands<Scalar>&>()))>>
-    : std::is_same<Status, decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
-                                                            std::declval<const Accelerations<Scalar>&>(), Scalar(0),
-                                                            std::declval<Commands<Scalar>&>()))> {
-  static constexpr bool is_noexcept = noexcept(std::declval<Policy&>()(std::declval<const State<Scalar>&>(),
-                                                                       std::declval<const Accelerations<Scalar>&>(),
-                                                                       Scalar(0), std::declval<Commands<Scalar>&>()));
+struct IsFeedForward<Policy, Scalar, std::void_t<FeedForwardStatus<Policy, Scalar>>>
+    : std::is_same<Status, FeedForwardStatus<Policy, Scalar>> {
+  static constexpr bool is_noexcept = noexcept(
+      std::declval<Policy&>()(std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(),
+                              {std::declval<std::uint64_t>()}, std::declval<Commands<Scalar>&>()));
 };
+
+/// The same of what measures for NetworkInverse.
+template <class Measured, class Scalar, class Present, class = void>
+struct Measures : std::false_type {};
+template <class Measured, class Scalar, class Present>
+struct Measures<Measured, Scalar, Present,
+                std::void_t<decltype(std::declval<Measured&>()(
+                    std::declval<const State<Scalar>&>(), {std::declval<std::uint64_t>()}, std::declval<Present&>()))>>
+    : std::bool_constant<noexcept(std::declval<Measured&>()(
+          std::declval<const State<Scalar>&>(), {std::declval<std::uint64_t>()}, std::declval<Present&>()))> {};
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
@@ -45,7 +58,7 @@ template <class Scalar>
 struct HoverTrim {
   Commands<Scalar> commands{};
 
-  Status operator()(const State<Scalar>& /*state*/, const Accelerations<Scalar>& /*desired*/, Scalar /*time_s*/,
+  Status operator()(const State<Scalar>& /*state*/, const Accelerations<Scalar>& /*desired*/, std::uint64_t /*time_us*/,
                     Commands<Scalar>& result) noexcept {
     result = commands;
     return Status::ok;
@@ -88,8 +101,9 @@ struct MotionAlone {};
 /// interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in its guard
 /// the policy declines where the network does.
 /// A model with a past gets its window of what this policy was asked, by the times given: it declines as `warming_up` first.
-/// A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, called before each prediction:
-/// `void operator()(const State<Scalar>&, Scalar time_s, Inputs& present) noexcept` sets what the motion does not say.
+/// A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, called before each
+/// prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs& present) noexcept` sets what the
+/// motion does not say.
 template <class InverseDynamics, class Measured = MotionAlone>
 class NetworkInverse {
  public:
@@ -109,21 +123,22 @@ class NetworkInverse {
       : inverse_(inverse), measured_(measured) {}
 
   template <class Scalar>
-  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, Scalar time_s,
+  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
     Present present;
     static_cast<MotionInputs<NetworkScalar>&>(present) = narrowed(motion_inputs(state, desired));
     if constexpr (!std::is_same_v<Measured, MotionAlone>) {
-      static_assert(
-          std::is_nothrow_invocable_v<Measured&, const State<Scalar>&, Scalar, Present&>,
-          "pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be noexcept "
-          "(control/feed_forward.hpp)");
-      measured_(state, time_s, present);
+      static_assert(detail::Measures<Measured, Scalar, Present>::value,
+                    "pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be "
+                    "noexcept; time "
+                    "is a std::uint64_t of microseconds (control/feed_forward.hpp)");
+      measured_(state, time_us, present);
     }
-    static_cast<void>(history_.take(present, static_cast<double>(time_s)));  // predict() says it too
+    const double time_s = seconds_of(time_us);
+    static_cast<void>(history_.take(present, time_s));  // predict() says it too
     Commands<NetworkScalar> predicted{};
     typename InverseDynamics::Report report;
-    const PlaceAndTime<Scalar> place{state.position_m, time_s};
+    const PlaceAndTime<Scalar> place{state.position_m, static_cast<Scalar>(time_s)};
     const Status status = inverse_.predict(history_.inputs(), place, predicted, report);
     count_.add(report.cause);
     if (!has_output(status)) return status;

@@ -143,6 +143,7 @@ class FlightController {
 
   constexpr const FlightGains<Scalar>& gains() const noexcept { return gains_; }
   constexpr const FlightLimits<Scalar>& limits() const noexcept { return limits_; }
+  constexpr Scalar gravity_m_s2() const noexcept { return gravity_m_s2_; }
 
   /// Pilot's loop: the accelerations that bring the vehicle to the velocity and yaw rate wanted; yaw itself is free.
   /// `not_finite` for a bad input, `output_not_finite` for one so large that a sum overflows; `demand` is untouched unless

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Trajectory tracking: commands = feed-forward of the reference motion + allocation of the feedback.
-// The feedback law is the same whatever the feed-forward policy, so that policies can be compared.
+// The feedback law is the same whatever the feed-forward policy, so that policies can be compared. It flies where the
+// policy has no answer too.
 #pragma once
 
+#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
@@ -14,7 +16,8 @@ namespace pinnquad {
 template <class Scalar, class FeedForward>
 class TrackingController {
   static_assert(is_feed_forward<FeedForward, Scalar>,
-                "pinnquad: this type is no feed-forward policy (control/feed_forward.hpp)");
+                "pinnquad: this type is no feed-forward policy; time is a std::uint64_t of microseconds "
+                "(control/feed_forward.hpp)");
   static_assert(is_noexcept_feed_forward<FeedForward, Scalar>,
                 "pinnquad: a feed-forward policy flies: its operator() must be noexcept (control/feed_forward.hpp)");
 
@@ -28,29 +31,43 @@ class TrackingController {
         feed_forward_(feed_forward),
         rotor_scale_(rotor_scale) {}
 
-  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust fractions, torque
-  /// before thrust.
-  /// Any Status of controller or policy; the commands are untouched unless it is ok.
-  Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, Scalar time_s,
+  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust fractions,
+  /// then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's rigid-body wrench,
+  /// without air.
+  /// `ok`. `limited`: the policy limited, or the sum was desaturated. `fell_back`: the policy fell back, or declined
+  /// (feed_forward_status() says why). Any other Status of the controller, and `output_not_finite`: the commands are
+  /// untouched.
+  Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
     TrackingDemand<Scalar> demand;
-    Status status = controller_(state, point, demand);
-    if (status != Status::ok) return status;
+    const Status demanded = controller_(state, point, demand);
+    if (demanded != Status::ok) return demanded;
     Commands<Scalar> reference{};
-    status = feed_forward_(state, demand.reference, time_s, reference);
-    if (!has_output(status)) return status;
+    feed_forward_status_ = feed_forward_(state, demand.reference, time_us, reference);
+    Status status = feed_forward_status_;
+    ThrustFractions<Scalar> sum = rotors_.fractions(reference);
+    if (!has_output(status)) {
+      status = Status::fell_back;
+      sum = rotors_.fractions_for(required_wrench(airframe_, state, demand.reference, controller_.gravity_m_s2()),
+                                  rotor_scale_);
+    }
     Wrench<Scalar> feedback;
     feedback.force_N[2] = airframe_.mass_kg * demand.feedback_acceleration_m_s2[2];
     feedback.torque_N_m = inertia_times(airframe_, demand.feedback_angular_acceleration_rad_s2);
-    ThrustFractions<Scalar> sum = rotors_.fractions(reference);
     const ThrustFractions<Scalar> correction = rotors_.fractions_for(feedback, rotor_scale_);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += correction[i];
     if (!all_finite(sum)) return Status::output_not_finite;
-    commands = desaturate(rotors_, rotors_.commands_of(sum));
-    return Status::ok;
+    const Commands<Scalar> wanted = rotors_.commands_of(sum);
+    commands = desaturate(rotors_, wanted);
+    return status == Status::ok && clipped(wanted) != wanted ? Status::limited : status;
   }
+  /// Time in seconds would be truncated.
+  template <class Seconds, std::enable_if_t<std::is_floating_point_v<Seconds>, int> = 0>
+  Status operator()(const State<Scalar>&, const TrajectoryPoint<Scalar>&, Seconds, Commands<Scalar>&) = delete;
 
   const FeedForward& feed_forward() const noexcept { return feed_forward_; }
+  /// What the policy itself came to in the last tick that asked it.
+  Status feed_forward_status() const noexcept { return feed_forward_status_; }
 
  private:
   Airframe<Scalar> airframe_;
@@ -58,6 +75,7 @@ class TrackingController {
   FlightController<Scalar> controller_;
   FeedForward feed_forward_;
   Scalar rotor_scale_;
+  Status feed_forward_status_{Status::ok};
 };
 
 }  // namespace pinnquad

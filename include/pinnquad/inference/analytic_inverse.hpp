@@ -25,9 +25,9 @@ class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
   explicit AnalyticInverse(const Quadrotor<Scalar, Effects...>& quadrotor) noexcept : quadrotor_(quadrotor) {}
 
   /// As a feed-forward policy (control/feed_forward.hpp).
-  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, Scalar time_s,
+  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, std::uint64_t time_us,
                     Commands<Scalar>& commands) const noexcept {
-    return inverse_commands(quadrotor_, state, desired, time_s, commands);
+    return inverse_commands(quadrotor_, state, desired, static_cast<Scalar>(seconds_of(time_us)), commands);
   }
 
   /// As a fallback. Any Status of inverse_commands(); the attitude may be a unit quaternion to its tolerance, as for a

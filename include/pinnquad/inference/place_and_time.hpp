@@ -2,11 +2,17 @@
 // Where and when: what a fallback may need to know and a network's features need not say.
 #pragma once
 
+#include <cstdint>
+
 #include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
 
-/// Where and when a motion is wanted, for a fallback that needs to know (ground effect, density, wind).
+/// A flight stack's clock in seconds. After 30 days doubles are 5e-10 s apart, floats 0.25 s.
+constexpr double seconds_of(std::uint64_t time_us) noexcept { return 1e-6 * static_cast<double>(time_us); }
+
+/// Where and when a motion is wanted, for a fallback that needs to know (ground effect, density, wind). Effects read
+/// the time in their vehicle's scalar: in float it is to count from the flight's start.
 template <class Real>
 struct PlaceAndTime {
   Vector3<Real> position_m = Vector3<Real>::Zero();  ///< NED, of the vehicle's site

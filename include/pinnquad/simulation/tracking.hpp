@@ -26,12 +26,13 @@ struct TrackingResult {
   Scalar max_error_m = Scalar(0);
   Scalar max_speed_m_s = Scalar(0);
   Scalar saturated_share = Scalar(0);  ///< of the control ticks, with a rotor at its end
+  Status declined{Status::ok};         ///< of the first tick in which the policy had no answer and the rigid body flew
   FallbackCount fallback{};            ///< of a policy that has one, else zero
 };
 
 /// Flies `trajectory` from its point at time 0, at rest with level attitude if the trajectory starts so.
-/// The flight ends early if controller, policy or physics give a Status that isn't ok; the figures cover what was flown
-/// until then.
+/// The flight ends early where controller or physics give a Status without output; where the policy declines it goes
+/// on (TrackingController). The figures cover what was flown.
 template <class Scalar, class... Effects, class Trajectory, class FeedForward>
 TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, const Trajectory& trajectory,
                              const FlightController<Scalar>& flight_controller, const FeedForward& feed_forward,
@@ -61,14 +62,20 @@ TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, con
   for (; Scalar(ticks) * tick_s < plan.duration_s; ++ticks) {
     const Scalar time_s = Scalar(ticks) * tick_s;
     vehicle.time_s = static_cast<double>(time_s);
+    const double time_us = 1e6 * static_cast<double>(ticks) * static_cast<double>(tick_s);
     const TrajectoryPoint<Scalar> point = trajectory.sample(time_s);
     const Scalar square = (point.position_m - vehicle.body.position_m).squaredNorm();
     squares += square;
     if (square > largest_square) largest_square = square;
     const Scalar speed_square = vehicle.body.velocity_m_s.squaredNorm();
     if (speed_square > largest_speed_square) largest_speed_square = speed_square;
-    result.status = controller(vehicle.body, point, time_s, commands);
+    result.status = controller(vehicle.body, point, static_cast<std::uint64_t>(time_us + 0.5), commands);
     if (saturated(commands)) ++ticks_at_end;
+    if (!has_output(result.status)) break;
+    if (result.declined == Status::ok && !has_output(controller.feed_forward_status())) {
+      result.declined = controller.feed_forward_status();
+    }
+    result.status = Status::ok;
     for (int i = 0; i < plan.steps_per_control && result.status == Status::ok; ++i) {
       result.status = quadrotor.step(vehicle, commands, plan.physics_step_s);
     }
