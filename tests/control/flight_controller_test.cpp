@@ -11,8 +11,8 @@
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
-#include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/desaturate.hpp"
+#include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "support/uneven_airframe.hpp"
@@ -325,6 +325,35 @@ TEST_CASE("bad input: a Status, and the demand is left alone") {
   SUBCASE("sticks") { wanted.stick_rad_s[2] = nan; }
   CHECK(controller(state, wanted, demand) == Status::not_finite);
   CHECK(demand.linear_m_s2[0] == 42);
+}
+
+TEST_CASE("finite numbers never come to not_finite, wherever a sum overflows") {
+  const FlightController<float> controller;
+  std::mt19937_64 engine(21);
+  int overflowed = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto any = [&] {  // of every magnitude that a float has
+      const double exponent = uniform(engine, -3, 38.5);
+      return static_cast<float>((uniform(engine, -1, 1) < 0 ? -1 : 1) * std::pow(10, exponent));
+    };
+    const auto vector = [&] { return Vector3<float>(any(), any(), any()); };
+    State<float> state;
+    SetPoint<float> wanted;
+    TrajectoryPoint<float> point;
+    if (i % 3 != 0) state.velocity_m_s = vector();
+    if (i % 2 == 0) state.body_rates_rad_s = vector();
+    wanted.velocity_m_s = vector();
+    wanted.yaw_rate_rad_s = any();
+    point.position_m = vector();
+    point.velocity_m_s = vector();
+    Accelerations<float> demand;
+    TrackingDemand<float> tracking;
+    for (const Status status : {controller(state, wanted, demand), controller(state, point, tracking)}) {
+      overflowed += status == Status::output_not_finite;
+      REQUIRE(status != Status::not_finite);
+    }
+  }
+  CHECK(overflowed > 1000);
 }
 
 TEST_CASE("numbers so large that a sum overflows: a Status, and the demand is left alone") {

@@ -262,6 +262,7 @@ class FlightController {
   /// Rotation from the attitude that points the thrust along `acceleration` - gravity, into the current one.
   Status attitude_error(const State<Scalar>& state, const Vector3<Scalar>& acceleration, const Heading<Scalar>& yaw,
                         Quaternion<Scalar>& error) const noexcept {
+    if (!all_finite(acceleration)) return Status::output_not_finite;  // of finite inputs: a sum has overflowed
     Matrix<Scalar, 3, 3> axes;
     const Vector3<Scalar> force = acceleration - Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2_);
     const Status status = body_axes(force, yaw, axes);
