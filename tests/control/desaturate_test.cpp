@@ -261,3 +261,20 @@ TEST_CASE("NaN passes through, beside commands out of the range too") {
   CHECK(std::isnan(desaturate(rotors, {nan, 0.2, 0.3, 0.4})[0]));
   CHECK(std::isnan(desaturate(rotors, {nan, 1.2, 0.3, 0.4})[0]));
 }
+
+TEST_CASE("of rotors that are alike: more torque asked about an axis is never less made, whatever else is asked") {
+  const pinnquad::Rotors<double> rotors(pinnquad::PaperQuadrotor::value<double>());
+  std::mt19937_64 engine(13);
+  for (int i = 0; i < 30'000; ++i) {
+    Commands<double> wanted{};
+    for (double& u : wanted) u = pinnquad::uniform(engine, -0.5, 1.8);
+    const int axis = i % 3;
+    pinnquad::Wrench<double> step;
+    step.torque_N_m[axis] = std::pow(10, pinnquad::uniform(engine, -6, 0)) * (axis == 2 ? 0.1 : 1);
+    const Commands<double> by = rotors.commands(step, 1.0);
+    Commands<double> more = wanted;
+    for (std::size_t k = 0; k < more.size(); ++k) more[k] += by[k];
+    const double before = rotors.wrench(desaturate(rotors, wanted), 1.0).torque_N_m[axis];
+    REQUIRE(rotors.wrench(desaturate(rotors, more), 1.0).torque_N_m[axis] >= before - rounding);
+  }
+}

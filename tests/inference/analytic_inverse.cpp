@@ -84,7 +84,8 @@ TEST_CASE("from the network's inputs: the same commands as from the whole state"
     auto state = random.state<double>();
     state.position_m[2] = 0.877 - random.scalar<double>(0.3, 8.0);  // near the ground, where height matters
     const auto motion = random.motion<double>();
-    const double time_s = random.scalar<double>(0, 20);
+    const auto time_us = static_cast<std::uint64_t>(random.scalar<double>(0, 20e6));
+    const double time_s = seconds_of(time_us);
     MotionInputsWithAltitude<double> inputs;
     static_cast<MotionInputs<double>&>(inputs) = motion_inputs(state, motion);
     inputs.altitude_m = 0.877 - state.position_m[2];
@@ -108,7 +109,7 @@ TEST_CASE("from the network's inputs: the same commands as from the whole state"
     REQUIRE(wind(inputs, drifted, commands) == Status::ok);
     check_equal(commands, expected_of(gusty, state, motion, time_s));
     // as a feed-forward policy
-    REQUIRE(wind(state, motion, time_s, commands) == Status::ok);
+    REQUIRE(wind(state, motion, time_us, commands) == Status::ok);
     check_equal(commands, expected_of(gusty, state, motion, time_s));
   }
 }

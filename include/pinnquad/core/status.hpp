@@ -21,7 +21,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     self_test_failed,     ///< a golden vector was not reproduced
     outside_limits,       ///< a command lies outside the output limits, and the guard refuses it
     limited,              ///< features clamped to the envelope or commands clipped to limits; they are written
-    fell_back,            ///< the network declined; the commands written are the fallback's
+    fell_back,            ///< the network declined; the commands written are the fallback's, or its beyond the edge (Fallback)
     block_truncated,      ///< a model block is shorter than it says, or not aligned
     block_incompatible,   ///< a block of another format, network or feature set
     block_corrupt,        ///< a block whose checksum or contents are wrong

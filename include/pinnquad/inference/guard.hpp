@@ -52,8 +52,14 @@ struct RefuseCommands {};
 template <class Limits = UnitCommands>
 struct ClipCommands {};
 
-/// Asked where the network declines; its commands pass the same output checks and the Status is `fell_back`. Where it declines
-/// too, the Status is the network's and nothing is written.
+/// Asked where the network declines; its commands pass the same output checks and the Status is `fell_back`. Where it
+/// declines too, the Status is the network's and nothing is written.
+/// Beside TrainingEnvelope, a motion that is outside by its angular acceleration alone is answered by both:
+///   commands(w) = network(c) + fallback(w - c) - fallback(0),  c = w clamped to the envelope,  then ClipCommands
+/// This is the network's answer at the edge, without a jump. Where each command of both moves with w as its rotor's torque
+/// does, which a certificate says of a structured model and which holds of an analytic inverse with rotors alike, the
+/// signed sum of an axis does not fall where more is asked about it, inside, outside and across. Other switches promise
+/// no order: other features at the envelope's edge, RefuseCommands, JointDistance, Agreement (docs/guide.md).
 /// Contract: `Status operator()(const Inputs&, Commands<Scalar>&) const noexcept`, or with a `const PlaceAndTime<Real>&` in
 /// the middle, or both; commands are taken if has_output(status). It checks its inputs itself: it is asked with those that the
 /// guard refused. inference/analytic_inverse.hpp is one.

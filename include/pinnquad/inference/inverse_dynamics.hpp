@@ -96,7 +96,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   const Guard& guard() const noexcept { return detail::Held<Guard>::held(); }
 
   /// Commands that make the motion asked for; not clipped to 0..1 unless the guard does (the rotor clips).
-  /// `ok`, `limited`: the network's. `fell_back`: the fallback's. `not_finite`, `not_unit_quaternion`: a bad input.
+  /// `ok`, `limited`: the network's. `fell_back`: the fallback's (Fallback). `not_finite`, `not_unit_quaternion`: a bad input.
   /// `outside_envelope`: a feature beyond the training data. `outside_distribution`: all of them together too far from it
   /// (JointDistance). `outside_limits`: the guard refuses the commands.
   /// `output_not_finite`: the network's weights are broken. `disagreement`: too far from another inverse's (Agreement).
@@ -223,6 +223,9 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
         for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
         return status;
       }
+      if constexpr (extends) {
+        if (status == Status::outside_envelope && extend(inputs, commands, report, place...)) return Status::fell_back;
+      }
       return declined(status, inputs, commands, report, place...);
     }
   }
@@ -273,6 +276,52 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     const bool inside = inside_distribution(x, squared);
     if constexpr (reports<ReportType>) report.squared_distance = squared;
     return inside;
+  }
+
+  /// True where a motion that leaves the envelope by its angular acceleration alone is answered by both (Fallback).
+  static constexpr bool extends = Guard::falls_back && Guard::refuses_outside_envelope &&
+                                  Features::angular_acceleration >= 0 &&
+                                  std::is_base_of_v<MotionInputs<Scalar>, Inputs>;
+
+  /// The network at the angular acceleration clamped to the envelope, and what the fallback adds for the rest of it; true if
+  /// that was written. False where other features lie outside too, where JointDistance refuses or the fallback declines.
+  ///   commands(w) = network(c) + fallback(w - c) - fallback(0),  c = w clamped
+  /// The fallback is not asked for c: its share depends on the rest alone, and each part rises by itself.
+  template <class ReportType, class... Place>
+  PINNQUAD_NOINLINE bool extend(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
+                                const Place&... place) const noexcept {
+    constexpr int first = Features::angular_acceleration;
+    const Scalar* lower = Numbers::lower(model()) + first;
+    const Scalar* upper = Numbers::upper(model()) + first;
+    Inputs nearest = inputs;
+    Vector3<Scalar> rest;
+    for (int i = 0; i < 3; ++i) {
+      const Scalar wanted = inputs.angular_acceleration_rad_s2[i];
+      const Scalar clamped = wanted < lower[i] ? lower[i] : (upper[i] < wanted ? upper[i] : wanted);
+      nearest.angular_acceleration_rad_s2[i] = clamped;
+      rest[i] = wanted - clamped;
+    }
+    Scalar x[Features::size];
+    Features::extract(nearest, x);
+    Scalar squared(0);
+    if (!inside_envelope(x) || !inside_distribution(x, squared)) return false;
+    Commands<Scalar> made{}, with{}, without{};
+    evaluate_over(x, made.data());
+    nearest.angular_acceleration_rad_s2 = rest;
+    if (!has_output(ask_fallback(nearest, with, place...))) return false;
+    nearest.angular_acceleration_rad_s2 = Vector3<Scalar>::Zero();
+    if (!has_output(ask_fallback(nearest, without, place...))) return false;
+    for (std::size_t i = 0; i < rotor_count; ++i) made[i] += with[i] - without[i];
+    const Status checked = Guard::check_commands(made.data());
+    if (!has_output(checked)) return false;
+    if constexpr (reports<ReportType>) {
+      report.fallback_asked = true;
+      report.fallback = checked;
+      report.squared_distance = squared;
+      report.commands_clipped = checked == Status::limited;
+    }
+    commands = made;
+    return true;
   }
 
   /// The fallback's commands, or `cause`.
