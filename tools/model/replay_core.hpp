@@ -260,6 +260,10 @@ class CoreReplayOf : public CoreReplay {
   }
 
   std::string distrust_in_words(const flight_stacks::StepReport& report) const {
+    if (report.cause == pinnquad::Status::distrusted && controller_->trusted()) {
+      return in_words("the bias stood at its bound, %.4g m/s^2: the model does not make the acceleration asked for",
+                      static_cast<double>(options_.settings.most_bias_m_s2));
+    }
     if (report.cause == pinnquad::Status::distrusted) {
       return in_words("innovation %.4g, limit %.4g, cleared at %.4g", static_cast<double>(controller_->innovation()),
                       Trust::innovation_limit, Trust::innovation_cleared);
