@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "flight_stacks/bias_alarm.hpp"
 #include "flight_stacks/core_record.hpp"
 #include "flight_stacks/core_settings.hpp"
 #include "flight_stacks/flown_effects.hpp"
@@ -143,6 +144,8 @@ class NeuralController {
   /// How wrong the model has lately been about what was flown, and whether it is trusted; 0 and true without limits of trust.
   float innovation() const noexcept { return trust_.innovation(); }
   bool trusted() const noexcept { return trust_.trusted(); }
+  /// Whether the bias stood at its bound for too long: the formula flies, `distrusted`.
+  bool bias_alarm() const noexcept { return bias_alarm_.raised(); }
   /// Goes on from what was logged (replay).
   void resume(const CoreRecord& logged) noexcept {
     const auto& b = logged.bias_m_s2;
@@ -150,6 +153,10 @@ class NeuralController {
     bias_.resume({b[0], b[1], b[2]}, {v[0], v[1], v[2]});
     take_off_.resume(logged.lift);
     if constexpr (trusts) trust_.resume(logged.innovation, logged.trusted != 0);
+    // of a model that the innovation trusts `distrusted` is the bias' alarm
+    if (logged.trusted != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels) && logged.asked != 0) {
+      bias_alarm_.resume(logged.cause == static_cast<std::uint8_t>(pinnquad::Status::distrusted));
+    }
   }
 
   /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
@@ -230,8 +237,9 @@ class NeuralController {
 
  private:
   void take_checksum(std::uint32_t checksum) noexcept {
-    if constexpr (trusts) {
-      if (checksum_ != 0 && checksum != checksum_) trust_.reset();
+    if (checksum_ != 0 && checksum != checksum_) {
+      bias_alarm_.reset();
+      if constexpr (trusts) trust_.reset();
     }
     checksum_ = checksum;
   }
@@ -270,9 +278,11 @@ class NeuralController {
 
   /// Compares what the last answer was to do with what the vehicle did. Only in flight, off the actuators' ends, with a velocity.
   void estimate_bias(std::uint64_t now_us, Reaction reaction) noexcept {
+    if (!situation_.in_flight()) bias_alarm_.reset();
     if (reaction <= Reaction::holds_position && situation_.in_flight() && expected_us_ != 0) {
       const float step_s = 1e-6f * static_cast<float>(now_us - expected_us_);
       bias_.update(local_.value().velocity_m_s, expected_m_s2_, step_s);
+      bias_alarm_.update(bias_, step_s);
     } else {
       bias_.freeze(local_.value().velocity_m_s);
     }
@@ -322,7 +332,8 @@ class NeuralController {
     pinnquad::MotionInputs<float> wanted;
     const pinnquad::Status outer = want(reaction, wanted);
     if (outer != pinnquad::Status::ok) return outer;
-    report.cause = trusted() ? ask_network(inverse, wanted, commands, report) : pinnquad::Status::distrusted;
+    report.cause = trusted() && !bias_alarm() ? ask_network(inverse, wanted, commands, report)
+                                              : pinnquad::Status::distrusted;
     count_.add(report.cause);
     if (pinnquad::has_output(report.cause)) return report.cause;
     pinnquad::Commands<float> replaced{};
@@ -387,6 +398,7 @@ class NeuralController {
   bool holding_ = false;
   pinnquad::Commands<float> last_commands_{};
   pinnquad::BiasEstimate<float> bias_;
+  BiasAlarm bias_alarm_;
   pinnquad::Vector3<float> expected_m_s2_ = pinnquad::Vector3<float>::Zero();  ///< of the last answer, NED
   std::uint64_t expected_us_ = 0;                                              ///< 0: nothing to compare with
   Situation situation_{};

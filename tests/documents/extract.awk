@@ -7,7 +7,7 @@
 # Hidden comments that stand right above a fence:
 #   <!-- not run: reason -->          skip
 #   <!-- from: examples/a.cpp -->     the block is that file without the comment at its head
-#   <!-- compiled against: folder --> compiled with that folder of declarations, not run
+#   <!-- run against: folder -->      compiled with that folder of stand-ins, run with its run.cpp
 #   <!-- output of: command -->       every line that the command writes stands in the block
 #   <!-- given: text -->              what must stand around it; may have many lines. Code is put where it has the line
 #                                     "...", else after it
@@ -26,7 +26,7 @@ function end_of_directives(line) {
 function forget() { action = "run"; argument = ""; given = ""; given_line = 0; pending = 0 }
 
 function directive(line, text,   key) {
-  if (match(text, /^(not run|from|output of|compiled against|given):/) == 0) return
+  if (match(text, /^(not run|from|output of|run against|given):/) == 0) return
   key = substr(text, 1, RLENGTH - 1)
   text = substr(text, RLENGTH + 1)
   sub(/^[ \t]+/, "", text)
@@ -38,7 +38,7 @@ function directive(line, text,   key) {
     given = text
     return
   }
-  action = key == "from" ? "from" : key == "output of" ? "output" : key == "compiled against" ? "against" : "skip"
+  action = key == "from" ? "from" : key == "output of" ? "output" : key == "run against" ? "against" : "skip"
   argument = text
 }
 

@@ -23,6 +23,7 @@ enum class FaultKind {
   model_corrupt,     ///< offered, with a flipped bit
   model_wrong,       ///< offered, with a weight that is wrong under a right checksum
   model_too_narrow,  ///< a sound one whose envelope holds hardly any motion: all is the formula's
+  model_soft,        ///< a sound one whose thrust makes 40 % of what is asked beyond hover
   payload,           ///< the vehicle weighs `value` times what it did
   bent_rotor,        ///< rotor 1 makes `value` of its thrust
   flown_by_hand,     ///< the pilot has it, or it is disarmed: nothing is asked of the module

@@ -32,6 +32,7 @@ struct FlightFigures {
   int takeovers = 0;
   float fallback_share = 0;
   unsigned refused_samples = 0;
+  long distrusted = 0;                ///< ticks
   std::vector<Reaction> worst;        ///< of each fault
   std::vector<int> fell_back, asked;  ///< ticks of each fault
   std::vector<Status> offered;        ///< what became of the models offered, in order
@@ -153,6 +154,7 @@ class FaultyFlight {
       case FaultKind::model_corrupt: offer(corrupt_); break;
       case FaultKind::model_wrong: offer(wrong_); break;
       case FaultKind::model_too_narrow: offer(narrow_); break;
+      case FaultKind::model_soft: offer(soft_); break;
       case FaultKind::payload: weigh(fault.value); break;
       default: break;
     }
@@ -217,6 +219,7 @@ class FaultyFlight {
 
   template <class Faults>
   void note(const Answer& answer, const Faults& faults) {
+    figures_.distrusted += answer.cause == Status::distrusted ? 1 : 0;
     for (std::size_t i = 0; i < faults.size(); ++i) {
       if (time_s_ < faults[i].start_s - 1e-9 || time_s_ >= faults[i].start_s + faults[i].duration_s) continue;
       figures_.worst[i] = std::max(figures_.worst[i], answer.reaction);
@@ -296,7 +299,7 @@ class FaultyFlight {
   }
 
   const Block sound_ = sound_block<Model>(), other_ = other_block<Model>(), narrow_ = narrow_block<Model>(),
-              corrupt_ = corrupt_block<Model>(), wrong_ = wrong_block<Model>();
+              soft_ = soft_block<Model>(), corrupt_ = corrupt_block<Model>(), wrong_ = wrong_block<Model>();
   Stack stack_;
   Vehicle vehicle_;
   pinnquad::FlightController<double> own_;

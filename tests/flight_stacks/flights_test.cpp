@@ -41,6 +41,7 @@ void through_all_faults(const std::string& path, const Target& target, double fa
   CHECK(flown.takeovers == 1);
   CHECK(flown.module_share > 0.96);
   CHECK(flown.refused_samples > 30);
+  CHECK(flown.distrusted == 0);
   using pinnquad::Status;
   const std::vector<Status> offered = {
       Status::block_corrupt,    Status::ok, Status::ok, Status::ok, Status::block_corrupt,
@@ -72,12 +73,56 @@ void calm(const std::string& path, const Target& target, double most_rmse_m, flo
   CHECK_FALSE(flown.crashed);
   CHECK(flown.takeovers == 0);
   CHECK(flown.module_share == 1);
+  CHECK(flown.distrusted == 0);
   CHECK(flown.rmse_m < most_rmse_m);
   CHECK(flown.fallback_share <= most_fallback_share);
   CHECK(formula.fallback_share > 0.97f);
 }
 
+/// A model that is soft in thrust (soft_block) hovers; then the vehicle is 30 % heavier for a while.
+template <class Stack>
+void carries_a_payload() {
+  constexpr double loaded_s = 6, relieved_s = 16, ends_s = 26;
+  const std::array<Fault, 2> faults = {
+      {{0.1, 100, FaultKind::model_soft, 0, "a model of 40 % of the thrust", Reaction::flies},
+       {loaded_s, relieved_s - loaded_s, FaultKind::payload, 1.3, "30 % heavier", Reaction::flies}}};
+  FaultyFlight<Stack> flight;
+  REQUIRE(flight.boot());
+  using flight_stacks::CoreRecord;
+  double handed_over_s = 0, taken_back_s = 0, deepest_m = 0, late_error_m = 0;
+  bool by_formula = false;
+  const FlightFigures flown = flight.fly(hover, ends_s, faults, [&](const CoreRecord& tick) {
+    const double time_s = 1e-6 * static_cast<double>(tick.timestamp) - 5;
+    const bool now = tick.status == static_cast<std::uint8_t>(Status::fell_back) &&
+                     tick.cause == static_cast<std::uint8_t>(Status::distrusted);
+    if (now && !by_formula && handed_over_s <= 0) handed_over_s = time_s;
+    if (!now && by_formula) taken_back_s = time_s;
+    by_formula = now;
+    const double below_m = static_cast<double>(tick.position_m[2]) + 10;
+    deepest_m = std::max(deepest_m, below_m);
+    const bool late = (time_s > loaded_s + 6 && time_s < relieved_s) || time_s > relieved_s + 6;
+    if (late) late_error_m = std::max(late_error_m, std::abs(below_m));
+  });
+  std::printf(
+      "%s, 30 %% heavier under a soft model: the formula flies from %.2f s after to %.2f s after the load is gone; %.2f m "
+      "too low at worst, %.3f m late\n",
+      Stack::name, handed_over_s - loaded_s, taken_back_s - relieved_s, deepest_m, late_error_m);
+  CHECK_FALSE(flown.crashed);
+  CHECK(handed_over_s > loaded_s);
+  CHECK(handed_over_s < loaded_s + 2);
+  CHECK(taken_back_s > relieved_s);
+  CHECK(taken_back_s < relieved_s + 4);
+  CHECK_FALSE(by_formula);
+  CHECK(deepest_m < 1.5);
+  CHECK(late_error_m < 0.1);
+}
+
 }  // namespace
+
+TEST_CASE("a bias at its bound hands over: a model too soft to carry a payload sinks no more than 1.5 m") {
+  carries_a_payload<Px4Stack>();
+  carries_a_payload<CrazyflieStack>();
+}
 
 TEST_CASE("px4_module flies the paper's quadrotor through all faults") {
   through_all_faults<Px4Stack>("hover", hover, 0.5);

@@ -3,8 +3,10 @@
 // PX4 does around a mode: the commander registers, unregisters, checks, changes modes; the allocator has the motors in PX4's own.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "px4/world.hpp"
 #include "px4_module/pinnquad_control.hpp"
@@ -329,6 +331,70 @@ TEST_CASE("a GPS reset of 3 m and a heading reset are no steps") {
   float furthest = 0;
   for (int i = 0; i < 4; ++i) furthest = std::max(furthest, std::abs(world.last.control[i] - before.control[i]));
   CHECK(furthest > 0.02f);
+}
+
+TEST_CASE("each of EKF2's five reset counters alone moves what it says by its own delta, and nothing else") {
+  Px4World world;
+  world.start_and_fly();
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
+  // the deltas of all are there all the while, as in EKF2's messages
+  const float deltas[7] = {3, -1, 0.5f, 0.25f, -0.75f, 0.125f, 0.4f};
+  world.local.delta_xy[0] = deltas[0], world.local.delta_xy[1] = deltas[1], world.local.delta_z = deltas[2];
+  world.local.delta_vxy[0] = deltas[3], world.local.delta_vxy[1] = deltas[4], world.local.delta_vz = deltas[5];
+  world.local.delta_heading = deltas[6];
+  struct Reset {
+    const char* name;
+    uint8_t vehicle_local_position_s::*counter;
+    std::vector<std::size_t> moves;  ///< places in `deltas`
+  };
+  const Reset resets[] = {{"xy", &vehicle_local_position_s::xy_reset_counter, {0, 1}},
+                          {"z", &vehicle_local_position_s::z_reset_counter, {2}},
+                          {"vxy", &vehicle_local_position_s::vxy_reset_counter, {3, 4}},
+                          {"vz", &vehicle_local_position_s::vz_reset_counter, {5}},
+                          {"heading", &vehicle_local_position_s::heading_reset_counter, {6}}};
+  world.run(20);
+  for (const Reset& reset : resets) {
+    CAPTURE(reset.name);
+    ++(world.local.*reset.counter);
+    float moved[7] = {};
+    for (int i = 0; i < 40; ++i) {  // a record each millisecond: the jump is in one of them
+      world.run(1);
+      pinnquad_record_s record{};
+      if (!record_sub.update(&record)) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        moved[axis] += record.jump_position_m[axis];
+        moved[3 + axis] += record.jump_velocity_m_s[axis];
+      }
+      moved[6] += record.jump_yaw_rad;
+    }
+    for (std::size_t i = 0; i < 7; ++i) {
+      CAPTURE(i);
+      const bool is_its = std::find(reset.moves.begin(), reset.moves.end(), i) != reset.moves.end();
+      CHECK(moved[i] == (is_its ? deltas[i] : 0));
+    }
+  }
+}
+
+TEST_CASE("a heading reset alone is no step: attitude and held yaw turn together") {
+  Px4World world;
+  world.sends_set_points = false;  // it holds its place and yaw
+  world.start_and_fly();
+  const actuator_motors_s before = world.last;
+  const auto furthest = [&] {
+    float most = 0;
+    for (int i = 0; i < 4; ++i) most = std::max(most, std::abs(world.last.control[i] - before.control[i]));
+    return most;
+  };
+  const auto turn = [&](uint8_t counted) {  // attitude and position say it within a few milliseconds
+    world.yaw += 0.4f;
+    world.local.delta_heading = 0.4f;
+    world.local.heading_reset_counter = static_cast<uint8_t>(world.local.heading_reset_counter + counted);
+    world.run(40);
+  };
+  turn(1);
+  CHECK(furthest() < 0.02f);
+  turn(0);  // without the counter it is a step of the yaw
+  CHECK(furthest() > 0.02f);
 }
 
 TEST_CASE("without set points it holds the place where it was selected, not where it was started") {

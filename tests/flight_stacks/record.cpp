@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Flies a core through the fault script in the simulator and writes what it received and answered, with the models that flew,
 // for `pinnquad replay`.
-//   flight_stacks_record px4|crazyflie|structured hover|eight|random_places FOLDER
+//   flight_stacks_record px4|crazyflie|structured|payload hover|eight|random_places FOLDER
 // `structured`: PX4's core with a structured model, other effects in the formula and limits of trust, in a flight with a payload.
+// `payload`: a model too soft to carry one, without limits of trust.
 #include <cstdio>
 #include <cstring>
 
@@ -25,6 +26,10 @@ void write(const std::string& path, const Block& block) {
   file.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
 }
 
+constexpr std::array<Fault, 2> payload = {
+    {{0.1, 100, FaultKind::model_soft, 0, "a model of 40 % of the thrust", Reaction::flies},
+     {6, 8, FaultKind::payload, 1.3, "30 % heavier", Reaction::flies}}};
+
 template <class Stack>
 std::vector<Fault> faults_of() {
   std::vector<Fault> faults(fault_script.begin(), fault_script.end());
@@ -38,13 +43,13 @@ std::vector<Fault> faults_of() {
 }
 
 template <class Stack, class Target>
-int record(const std::string& folder, const Target& target) {
+int record(const std::string& folder, const Target& target, const std::vector<Fault>& faults) {
   using Model = typename Stack::Model;
   write(folder + "/sound.block", sound_block<Model>());
   write(folder + "/other.block", other_block<Model>());
   write(folder + "/narrow.block", narrow_block<Model>());
   write(folder + "/bit.block", bit_block<Model>());
-  const std::vector<Fault> faults = faults_of<Stack>();
+  write(folder + "/soft.block", soft_block<Model>());
   FaultyFlight<Stack> flight;
   if (!flight.boot()) return 1;
   std::ofstream settings = record_file<CoreSettings>(folder, "flight");
@@ -60,10 +65,10 @@ int record(const std::string& folder, const Target& target) {
 
 template <class Stack>
 int record(const std::string& path, const std::string& folder, double half_length_m, double period_s,
-           double half_box_m) {
-  if (path == "hover") return record<Stack>(folder, hover);
-  if (path == "eight") return record<Stack>(folder, Eight(half_length_m, period_s));
-  return record<Stack>(folder, RandomPlaces(half_box_m));
+           double half_box_m, const std::vector<Fault>& faults = faults_of<Stack>()) {
+  if (path == "hover") return record<Stack>(folder, hover, faults);
+  if (path == "eight") return record<Stack>(folder, Eight(half_length_m, period_s), faults);
+  return record<Stack>(folder, RandomPlaces(half_box_m), faults);
 }
 
 }  // namespace
@@ -72,6 +77,9 @@ int main(int count, char** arguments) {
   if (count != 4) return std::fprintf(stderr, "flight_stacks_record STACK PATH FOLDER\n"), 2;
   if (std::strcmp(arguments[1], "structured") == 0) {
     return record<TrustingPx4Stack>(arguments[2], arguments[3], 4, 9, 1.5);
+  }
+  if (std::strcmp(arguments[1], "payload") == 0) {
+    return record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5, {payload.begin(), payload.end()});
   }
   return std::strcmp(arguments[1], "px4") == 0 ? record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5)
                                                : record<CrazyflieStack>(arguments[2], arguments[3], 1.5, 6, 1);

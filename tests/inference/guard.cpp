@@ -267,6 +267,49 @@ TEST_CASE("place and time reach the fallback that asks for them, and trouble non
   CHECK(InverseDynamics<SmallModel>{}.predict(far, place, commands) == Status::outside_envelope);
 }
 
+TEST_CASE("a report that is used again says what the last answer came to alone, where place and time are told too") {
+  RandomStates random(190);
+  const auto far = inputs_of(random, 50.0), near = inputs_of(random, 0.9);
+  const PlaceAndTime<double> place;
+  using Inverse = Guarded<Extend<TrainingGuard, Fallback<ClockFallback>>>;
+  using Report = Inverse::Report;
+  const Inverse clock;
+  const Guarded<FallingBack> fixed(FixedFallback{});
+  const auto used_again = [&](const auto& inverse, const auto& ask) {
+    Commands<float> commands{};
+    Report used, fresh;
+    REQUIRE(ask(inverse, far, commands, used) == Status::fell_back);
+    REQUIRE(used.cause == Status::outside_envelope);
+    REQUIRE(used.worst_feature >= 0);
+    REQUIRE(ask(inverse, near, commands, used) == Status::ok);
+    REQUIRE(ask(inverse, near, commands, fresh) == Status::ok);
+    CHECK(used.cause == fresh.cause);
+    CHECK(used.fallback == fresh.fallback);
+    CHECK(used.fallback_asked == fresh.fallback_asked);
+    CHECK(used.worst_feature == fresh.worst_feature);
+    CHECK(used.excess == fresh.excess);
+  };
+  used_again(fixed, [](const auto& inverse, const auto& inputs, auto& commands, auto& report) {
+    return inverse.predict(inputs, commands, report);
+  });
+  used_again(clock, [&](const auto& inverse, const auto& inputs, auto& commands, auto& report) {
+    return inverse.predict(inputs, place, commands, report);
+  });
+  // nobody asks the network: nothing of its features is said
+  Commands<float> commands{};
+  Report used;
+  REQUIRE(clock.predict(far, place, commands, used) == Status::fell_back);
+  REQUIRE(used.worst_feature >= 0);
+  REQUIRE(clock.without_network(Status::distrusted, near, place, commands, used) == Status::fell_back);
+  CHECK(used.cause == Status::distrusted);
+  CHECK(used.worst_feature == -1);
+  CHECK(used.excess == Report{}.excess);
+  REQUIRE(fixed.predict(far, commands, used) == Status::fell_back);
+  REQUIRE(fixed.without_network(Status::distrusted, near, commands, used) == Status::fell_back);
+  CHECK(used.worst_feature == -1);
+  CHECK(used.excess == Report{}.excess);
+}
+
 namespace {
 
 struct Narrowly {

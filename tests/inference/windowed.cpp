@@ -221,6 +221,7 @@ TEST_CASE("bad inputs and a bad time are refused and leave no trace") {
     CHECK(same<double>(history.inputs().others[tap], spared.inputs().others[tap]));
   }
   history.clear();
+  CHECK(Past::check(history.inputs()) == Status::warming_up);  // before the next inputs come, too
   CHECK(history.take(line<double>(5), 0.1) == Status::warming_up);
 }
 

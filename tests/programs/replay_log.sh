@@ -55,6 +55,9 @@ difference = lambda row: max([abs(float(row[f"u{i}"]) - float(row[f"logged_u{i}"
 worst = max(rows, key=difference)
 assert said["largest_difference"]["row"] == int(worst["row"])
 assert abs(said["largest_difference"]["difference"] - difference(worst)) < 1e-12
+answered = [difference(row) for row in rows if row["u1"]]
+assert 0 < len(answered) < len(rows)
+assert abs(said["mean_difference"] - sum(answered) / len(answered)) < 1e-12
 PY
 # a model that answers nothing
 awk -F, -v OFS=, 'NR > 1 { $2 = 9000 } { print }' clean.csv >far.csv
@@ -145,6 +148,21 @@ python3 "$here/planted.py" structured/flight_pinnquad_record_0.csv planted.csv d
 "$pinnquad" replay planted.csv "${structured[@]}" --trust "$trust" --set effects=18 --set drag_n_s_m=1 --set rate_damping_n_m_s=0.025 \
   --set distance_limit=235.03697 --set innovation_limit=0.01800841 >same.txt || fail "gaps: $(tail -2 same.txt)"
 
+# a model too soft for a payload: the reason of the hand-over in words; behind gaps, and of every third tick, it is the same
+mkdir payload thirds
+"$record" payload hover payload >payload.txt
+soft=(--model payload/sound.block --model payload/soft.block)
+"$pinnquad" replay payload "${soft[@]}" --out payload.csv >payload.said || fail "payload: replay differs: $(tail -3 payload.said)"
+grep -qE '^because .*distrusted [0-9]{4,}' payload.said || fail "no word of the hand-over: $(cat payload.said)"
+grep -qE 'flies, formula \(distrusted\).*: the bias stood at its bound, 3 m/s\^2: the model does not make' payload.said ||
+  fail "no word of the bias: $(cat payload.said)"
+cp payload/flight_pinnquad_settings_0.csv thirds/
+log=payload/flight_pinnquad_record_0.csv
+awk 'NR == 1 || NR % 3 == 0' $log >thirds/flight_pinnquad_record_0.csv
+"$pinnquad" replay thirds "${soft[@]}" >same.txt || fail "every third tick: $(tail -2 same.txt)"
+python3 "$here/planted.py" $log thirds/flight_pinnquad_record_0.csv drop 6500 6900 7500 7600 14000 15000
+"$pinnquad" replay thirds "${soft[@]}" >same.txt || fail "gaps: $(tail -2 same.txt)"
+
 f=px4-eight
 models=(--model $f/sound.block --model $f/other.block --model $f/narrow.block)
 log=$f/flight_pinnquad_record_0.csv
@@ -214,6 +232,19 @@ same planted.csv "${models[@]}"
 grep -qE '^note +[0-9]+ ticks not compared: behind gaps' same.txt || fail "no word of gaps: $(cat same.txt)"
 plant drop 2 7000
 same planted.csv "${models[@]}"
+# nothing of a log can be compared: a finding, not the same
+head -16011 $log | sed -e '2,16006d' >planted.csv
+expect_nothing() {
+  local code=0
+  "$pinnquad" replay planted.csv "${models[@]}" "$@" >nothing.txt 2>stderr.txt || code=$?
+  [ "$code" -eq 1 ] || fail "exit code $code where nothing was compared: $(cat nothing.txt)"
+  grep -q 'planted.csv: nothing compared' stderr.txt || fail "said: $(cat stderr.txt)"
+}
+expect_nothing
+tail -1 nothing.txt | grep -q '^NOTHING ' || fail "said: $(cat nothing.txt)"
+! grep -q '^same' nothing.txt || fail "said: $(cat nothing.txt)"
+expect_nothing --json
+grep -q '"compared": 0' nothing.txt || fail "said: $(cat nothing.txt)"
 head -101 $log >short.csv # progress would be a line of its own
 
 # ---- what is refused

@@ -243,6 +243,10 @@ int replay(const ReplayOptions& options) {
     programs::print_summary(replayed, summary);
   }
   if (summary.differing > 0) return programs::exit_failed;
+  if (input.of_core() && replayed.compared == 0) {
+    programs::complain("replay", options.log + ": nothing compared: every tick stands behind a gap");
+    return programs::exit_failed;
+  }
   if (input.of_core() || programs::detail::count_of(summary.answerers, "model") > 0) return 0;
   programs::complain("replay", models.front().path + ": answers no row of this log");
   return programs::exit_failed;
@@ -284,9 +288,8 @@ programs::Command programs::replay_command(CLI::App& program) {
       "  pinnquad replay flight.csv --model my_model/weights.block --out rows.csv\n"
       "  pinnquad replay flight.ulg --model weights.block        the core, tick by tick\n"
       "  pinnquad replay flight.ulg --model weights.block --set attitude_us=30000\n"
-      "Exit codes: 0; 1 the core answers otherwise than was logged, or the model answers no row; 2 bad input or a "
-      "file\n"
-      "that can't be read or written; 130 interrupted.\n"
+      "Exit codes: 0; 1 the core answers otherwise than was logged, nothing of its log can be compared, or the model\n"
+      "answers no row; 2 bad input or a file that can't be read or written; 130 interrupted.\n"
       "docs/replay_log.md says what a core logs. A flight as a page in 3D: pinnquad fly --replay.");
   return {line, [options] { return replay(*options); }};
 }

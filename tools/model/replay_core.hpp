@@ -158,6 +158,7 @@ class CoreReplayOf : public CoreReplay {
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
     window_known_us_ = record.timestamp + 2 * flight_stacks::FlownMotion::window_us;
+    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * flight_stacks::BiasAlarm::clear_s);
     controller_->resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 15));
     for (int i = 0; i < 4; ++i) {  // what was refused hides the good one before it
@@ -260,6 +261,10 @@ class CoreReplayOf : public CoreReplay {
   }
 
   std::string distrust_in_words(const flight_stacks::StepReport& report) const {
+    if (report.cause == pinnquad::Status::distrusted && controller_->trusted()) {
+      return in_words("the bias stood at its bound, %.4g m/s^2: the model does not make the acceleration asked for",
+                      static_cast<double>(options_.settings.most_bias_m_s2));
+    }
     if (report.cause == pinnquad::Status::distrusted) {
       return in_words("innovation %.4g, limit %.4g, cleared at %.4g", static_cast<double>(controller_->innovation()),
                       Trust::innovation_limit, Trust::innovation_cleared);
@@ -287,6 +292,9 @@ class CoreReplayOf : public CoreReplay {
     if (record.asked == 0) return true;
     if (unknown_inputs_ != 0) return false;
     const auto logged = static_cast<Reaction>(record.reaction);
+    const bool distrusts = report.cause == pinnquad::Status::distrusted;
+    const bool distrusted = record.cause == static_cast<std::uint8_t>(pinnquad::Status::distrusted);
+    if (distrusts != distrusted && record.timestamp < alarm_known_us_) return false;
     if (holding_unknown_ && (logged == Reaction::holds_position || report.reaction == Reaction::holds_position))
       return false;
     return !answer_unknown_ || (logged <= Reaction::levels && report.reaction <= Reaction::levels);
@@ -370,6 +378,7 @@ class CoreReplayOf : public CoreReplay {
   std::optional<std::size_t> flown_;
   std::uint32_t last_tick_ = 0;
   std::uint64_t window_known_us_ = 0;  ///< behind a gap: from then on its windows of flown motion are those of the core
+  std::uint64_t alarm_known_us_ = 0;   ///< the same of how long its bias had stood at its bound
   std::uint32_t refused_base_ = 0;
   bool refused_base_known_ = true;
   std::uint8_t unknown_inputs_ = 0;  ///< behind a gap: bits of inputs of which the last good sample is not known

@@ -197,7 +197,9 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
     std::printf("note        %zu ticks not compared: behind gaps, where the core's past is not known\n",
                 rows - replayed.compared);
   }
-  if (summary.differing == 0) {
+  if (replayed.compared == 0) {
+    std::printf("NOTHING     was compared with the log\n");
+  } else if (summary.differing == 0) {
     std::printf("same        as logged, in all %zu ticks compared\n", replayed.compared);
   } else {
     std::printf("DIFFERS     from what was logged in %zu of %zu ticks, first at %s: %s\n", summary.differing,

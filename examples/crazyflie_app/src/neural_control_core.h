@@ -36,8 +36,10 @@ struct CrazyflieSetpoint {
   float yaw;             /* deg, counter-clockwise seen from above */
   float yaw_rate;        /* deg/s */
   bool velocity_body;
-  uint8_t mode[3]; /* CrazyflieMode of x, y, z */
+  float attitude_quaternion[4]; /* x, y, z, w: its yaw counts where mode_yaw does not ask and mode_quat is abs */
+  uint8_t mode[3];              /* CrazyflieMode of x, y, z */
   uint8_t mode_yaw;
+  uint8_t mode_quat;
 };
 
 /* What the controller says of itself: the firmware's log variables. */
@@ -46,6 +48,7 @@ struct CrazyflieReport {
   uint32_t refused_samples;
   float fallback_share;  /* of the predictions */
   float envelope_excess; /* how far the worst feature lay outside, in half-widths of its range */
+  float lift;            /* how much of its thrust it used, 0 to 1: 0 idles on the ground */
   int8_t envelope_feature;
   uint8_t reaction;     /* flight_stacks::Reaction */
   uint8_t status;       /* pinnquad::Status */

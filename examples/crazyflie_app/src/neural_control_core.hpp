@@ -2,6 +2,7 @@
 // The Crazyflie's units, frames and motor order on one side, the shared controller on the other.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "flight_stacks/neural_controller.hpp"
@@ -44,6 +45,7 @@ class NeuralControl {
       controller_.skip(in_us(now_ms));
     }
     controller_.describe(why_, report);
+    report.lift = controller_.lift();
     if (!has_commands) return false;
     for (std::size_t motor = 0; motor < 4; ++motor) forces[motor] = commands_[rotor_of_motor[motor]];
     return true;
@@ -58,6 +60,14 @@ class NeuralControl {
   static bool asks_for_a_place(const CrazyflieSetpoint& s) noexcept {
     return s.mode[0] != crazyflie_mode_disable && s.mode[1] != crazyflie_mode_disable &&
            s.mode[2] != crazyflie_mode_disable;
+  }
+
+  /// From x, counter-clockwise, whatever the norm; NaN for a quaternion of zeros.
+  static float yaw_rad(const float (&xyzw)[4]) noexcept {
+    const pinnquad::Quaternion<float> q{xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
+    if (!(pinnquad::squared_norm(q) > 0)) return std::numeric_limits<float>::quiet_NaN();
+    const pinnquad::Heading<float> heading = pinnquad::heading(q);
+    return std::atan2(heading.sine, heading.cosine);
   }
 
   // what is refused is counted by the controller, and ages
@@ -90,8 +100,10 @@ class NeuralControl {
     wanted.velocity_m_s = ned(velocity);
     wanted.acceleration_m_s2 = ned(s.acceleration);
     // yaw counts from x (east) counter-clockwise there, from north clockwise here
+    const bool by_quaternion = s.mode_yaw == crazyflie_mode_disable && s.mode_quat == crazyflie_mode_abs;
     wanted.yaw_rad = s.mode_yaw == crazyflie_mode_abs ? quarter_turn - s.yaw * rad_per_deg : none;
-    wanted.yaw_rate_rad_s = s.mode_yaw == crazyflie_mode_disable ? none : -s.yaw_rate * rad_per_deg;
+    if (by_quaternion) wanted.yaw_rad = quarter_turn - yaw_rad(s.attitude_quaternion);
+    wanted.yaw_rate_rad_s = s.mode_yaw != crazyflie_mode_disable || by_quaternion ? -s.yaw_rate * rad_per_deg : none;
     static_cast<void>(controller_.set_point(in_us(s.timestamp), wanted));
   }
 

@@ -52,6 +52,7 @@ static uint8_t model_status = 255; /* pinnquad::Status of the model; 255: not lo
 static volatile bool ready;        /* a model was accepted: before, the stabilizer does not touch the core */
 static uint8_t gave_up;            /* until the next set point that is off or by hand */
 static uint8_t pid_flies = 1;      /* no model, given up, off or by hand */
+static uint8_t stands;             /* on the ground, its motors not above their idling since */
 static uint16_t step_us;           /* inference time: outer loop and inverse */
 static float force_scale;          /* greatest thrust of the model's rotor over the platform's THRUST_MAX */
 
@@ -98,7 +99,12 @@ void appMain(void) {
   while (1) vTaskDelay(M2T(2000));
 }
 
-void controllerOutOfTreeInit(void) { controllerPidInit(); }
+/* At each change to this controller: until it has answered, another one flies. */
+void controllerOutOfTreeInit(void) {
+  pid_flies = 1;
+  stands = 0;
+  controllerPidInit();
+}
 
 bool controllerOutOfTreeTest(void) { return controllerPidTest(); }
 
@@ -106,6 +112,23 @@ static void copy(float to[3], float x, float y, float z) {
   to[0] = x;
   to[1] = y;
   to[2] = z;
+}
+
+/* The firmware calls it flying until 2 s after any motor turned above the firmware's idle thrust, 0 on most platforms: also while
+ * the core idles on the ground. So it stands since the firmware said so, until the core uses more than that, or the PID
+ * controller does where it flies. */
+static bool stands_still(bool drives_motors, bool pid_is_asked) {
+  if (!supervisorIsFlying()) {
+    stands = 1;
+  } else if (drives_motors ? report.lift > 0.0f : pid_is_asked && pid_control.thrust > 0.0f) {
+    stands = 0;
+  }
+  return stands;
+}
+
+/* Off, or flown by hand. */
+static bool is_by_hand(const setpoint_t* setpoint) {
+  return setpoint->mode.x == modeDisable || setpoint->mode.y == modeDisable || setpoint->mode.z == modeDisable;
 }
 
 static void copy_state(const sensorData_t* sensors, const state_t* state) {
@@ -125,7 +148,6 @@ static void copy_state(const sensorData_t* sensors, const state_t* state) {
   const float local[6] = {at.position[0], at.position[1], at.position[2],
                           at.velocity[0], at.velocity[1], at.velocity[2]};
   at.position_timestamp = crazyflie_sample_time(&position_clock, state->position.timestamp, now, local, 6);
-  at.landed = !supervisorIsFlying();
   at.drives_motors = !pid_flies && supervisorAreMotorsAllowedToRun();
 }
 
@@ -141,6 +163,11 @@ static void copy_setpoint(const setpoint_t* setpoint) {
   wanted.mode[1] = (uint8_t)setpoint->mode.y;
   wanted.mode[2] = (uint8_t)setpoint->mode.z;
   wanted.mode_yaw = (uint8_t)setpoint->mode.yaw;
+  wanted.attitude_quaternion[0] = setpoint->attitudeQuaternion.x;
+  wanted.attitude_quaternion[1] = setpoint->attitudeQuaternion.y;
+  wanted.attitude_quaternion[2] = setpoint->attitudeQuaternion.z;
+  wanted.attitude_quaternion[3] = setpoint->attitudeQuaternion.w;
+  wanted.mode_quat = (uint8_t)setpoint->mode.quat;
 }
 
 /* After a step. A card that is too slow loses whole events: ticks that were not logged, which replay knows. */
@@ -165,7 +192,9 @@ void controllerOutOfTree(control_t* control, const setpoint_t* setpoint, const s
   /* The PID controller is stepped while the network flies: its filters follow, and taking over is warm. */
   controllerPid(&pid_control, setpoint, sensors, state, stabilizerStep);
   if (ready && RATE_DO_EXECUTE(RATE_500_HZ, stabilizerStep)) {
+    const bool by_hand = is_by_hand(setpoint);
     copy_state(sensors, state);
+    at.landed = stands_still(at.drives_motors, by_hand || gave_up);
     copy_setpoint(setpoint);
     const uint64_t start_us = usecTimestamp();
     const bool has_forces = pinnquad_flight_step(now_ms(), &at, &wanted, forces, &report);
@@ -173,8 +202,6 @@ void controllerOutOfTree(control_t* control, const setpoint_t* setpoint, const s
     write_record();
     /* Off, or flown by hand: the PID controller's, and the module may fly again afterwards. Given up: the PID
      * controller's until then. */
-    const bool by_hand =
-        setpoint->mode.x == modeDisable || setpoint->mode.y == modeDisable || setpoint->mode.z == modeDisable;
     if (by_hand) gave_up = 0;
     if (!by_hand && !has_forces) gave_up = 1;
     pid_flies = by_hand || gave_up;

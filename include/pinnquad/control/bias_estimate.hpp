@@ -26,6 +26,11 @@ class BiasEstimate {
   constexpr const BiasSettings<Scalar>& settings() const noexcept { return settings_; }
   const Vector3<Scalar>& acceleration_m_s2() const noexcept { return bias_; }
   const Vector3<Scalar>& predicted_velocity_m_s() const noexcept { return predicted_; }
+  /// Whether the estimate is at least `share` of its bound; never without a bound.
+  bool reaches(Scalar share) const noexcept {
+    const Scalar length = share * settings_.max_bias_m_s2;
+    return length > Scalar(0) && bias_.squaredNorm() >= length * length;
+  }
 
   /// One step in flight: `expected_m_s2` was asked for through the model, and had, during it. Steps of more than a quarter of
   /// the estimate's time are as frozen.

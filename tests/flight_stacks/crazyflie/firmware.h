@@ -107,6 +107,7 @@ typedef enum { modeDisable, modeAbs, modeVelocity } stab_mode_t;
 typedef struct {
   uint32_t timestamp;
   attitude_t attitude, attitudeRate;
+  quaternion_t attitudeQuaternion;
   float thrust;
   stamped3 position, velocity, acceleration;
   bool velocity_body;

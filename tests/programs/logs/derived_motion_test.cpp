@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Where a log's ground is (logs/derived_motion.hpp): where the vehicle stood before the flight, wherever it lands.
+#include "logs/derived_motion.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace {
+
+/// Stands at `start_m`, flies 10 m above it, lands on `end_m`; a cell without a number among the first. A row each second.
+double ground_of(double start_m, double end_m, bool says_landed) {
+  programs::CommonRows rows;
+  rows.period_s = 1;
+  std::vector<double> height;
+  const auto add = [&](double height_m, double landed, int count) {
+    for (int i = 0; i < count; ++i) {
+      rows.time_s.push_back(static_cast<double>(rows.rows()));
+      height.push_back(height_m);
+      if (says_landed) rows.landed.push_back(landed);
+    }
+  };
+  add(std::numeric_limits<double>::quiet_NaN(), 1, 1);
+  add(start_m, 1, 20);
+  add(start_m + 10, 0, 100);
+  add(end_m, 1, 60);
+  programs::Mapping mapping;
+  mapping.ground_from_log = true;
+  programs::LogRows result;
+  const double ground_m = programs::detail::ground_height(rows, height, mapping, result);
+  CHECK(result.told.size() == 1);
+  return ground_m;
+}
+
+}  // namespace
+
+TEST_CASE("the ground is where it stood before take-off, also where it lands on a roof or in a pit") {
+  for (const double end_m : {488.0, 503.0, 480.0}) {
+    CAPTURE(end_m);
+    CHECK(ground_of(488, end_m, true) == doctest::Approx(488));
+  }
+}
+
+TEST_CASE("without a word of landing the ground is the lowest height; a mapping that says it is believed") {
+  CHECK(ground_of(488, 503, false) == doctest::Approx(488));
+  CHECK(ground_of(488, 480, false) == doctest::Approx(480));
+  programs::CommonRows rows;
+  rows.time_s = {0, 1};
+  programs::Mapping mapping;
+  mapping.ground_m = 12.5;
+  programs::LogRows result;
+  CHECK(programs::detail::ground_height(rows, {20, 30}, mapping, result) == doctest::Approx(12.5));
+}
