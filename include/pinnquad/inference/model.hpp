@@ -8,6 +8,7 @@
 
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/inference/answer.hpp"
+#include "pinnquad/inference/contents_hash.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/model_records.hpp"
 #include "pinnquad/inference/output_schema.hpp"
@@ -24,7 +25,8 @@ namespace pinnquad {
 ///      worse_than_mean, beats_linear_regression (evaluation/verdict.hpp)
 ///      Where the outputs have several units, output_units, one per output, in place of output_unit.
 ///   3  besides, and with output_units always: records, and what they name (inference/model_records.hpp). A Vehicle that is
-///      none of the library's stands before the model, in the same header.
+///      none of the library's stands before the model, in the same header. Optional: contents_hash, over all of it
+///      (inference/contents_hash.hpp).
 inline constexpr int model_format_version = 3;
 
 /// The oldest format that still flies.
@@ -88,10 +90,6 @@ template <class M, class = void>
 struct HasOutputUnit : std::false_type {};
 template <class M>
 struct HasOutputUnit<M, std::void_t<decltype(M::output_unit)>> : std::true_type {};
-template <class M, class = void>
-struct HasOutputUnits : std::false_type {};
-template <class M>
-struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
 
 /// All texts are one.
 template <class Texts>
@@ -185,6 +183,9 @@ constexpr void require_description() noexcept {
     static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
                   "pinnquad: a scaler's spread is not positive");
     static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
+    static_assert(same_contents<M>(),
+                  "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
+                  "a number, a name or a text is another (contents_hash); export it again");
   }
 }
 }  // namespace detail

@@ -176,6 +176,22 @@ struct HasRecords<
                    decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
                    decltype(M::allocation), decltype(M::base)>> : std::true_type {};
 
+template <class M, class = void>
+struct HasTrainingRows : std::false_type {};
+template <class M>
+struct HasTrainingRows<M, std::void_t<decltype(int{M::training_rows})>> : std::true_type {};
+
+template <class M, class = void>
+struct HasOutputUnits : std::false_type {};
+template <class M>
+struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
+
+template <class M, class = void>
+struct HasVerdict : std::false_type {};
+template <class M>
+struct HasVerdict<M, std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>> : std::true_type {
+};
+
 /// Optional constants, for whoever has a use for them:
 ///   slope_signs                        of du_i/d(angular acceleration), rotor by rotor about x, y, z, where proven, else 0
 ///   residual_lower, residual_upper     between which a residual's outputs stay
