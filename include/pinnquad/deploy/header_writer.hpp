@@ -51,7 +51,7 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
   require_finite_model(model);
   std::vector<Commands<typename Model::Scalar>> commands;
   for (const auto& x : golden) {
-    if (!between(model.envelope_lower, x, model.envelope_upper)) {
+    if (!inside_envelope(model.envelope_lower.data(), x.data(), model.envelope_upper.data(), x.size())) {
       throw std::invalid_argument("export: golden vector " + std::to_string(commands.size() + 1) +
                                   " lies outside the envelope");
     }

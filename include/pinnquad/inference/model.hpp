@@ -10,6 +10,7 @@
 #include "pinnquad/inference/answer.hpp"
 #include "pinnquad/inference/contents_hash.hpp"
 #include "pinnquad/inference/features.hpp"
+#include "pinnquad/inference/model_agreement.hpp"
 #include "pinnquad/inference/model_records.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/network.hpp"
@@ -38,23 +39,6 @@ inline constexpr const char* model_frame = "body FRD, world NED";
 /// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
 /// about ten to spare.
 inline constexpr double golden_tolerance = 1e-5;
-
-/// How a rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw): -1, 0 or 1.
-using TorqueSigns = std::array<int, 3>;
-
-/// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe<double>& airframe) noexcept {
-  std::array<TorqueSigns, rotor_count> result{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto signs = allocation_signs(airframe, static_cast<int>(axis));
-    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
-  }
-  return result;
-}
-template <class Vehicle>
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
-  return motor_torque_signs(Vehicle::template value<double>());
-}
 
 namespace detail {
 template <class S, class = void>
@@ -123,19 +107,19 @@ constexpr bool same_signs(const Signs& signs, const std::array<TorqueSigns, roto
   return true;
 }
 
-/// lower[i] <= x[i] <= upper[i] for all i; false for NaN.
-template <class Array>
-constexpr bool between(const Array& lower, const Array& x, const Array& upper) noexcept {
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!(lower[i] <= x[i] && x[i] <= upper[i])) return false;
+/// False for NaN.
+template <class M>
+constexpr bool golden_inside_envelope() noexcept {
+  for (const auto& x : M::golden_features) {
+    if (!inside_envelope(M::envelope_lower.data(), x.data(), M::envelope_upper.data(), x.size())) return false;
   }
   return true;
 }
 
 template <class M>
-constexpr bool golden_inside_envelope() noexcept {
-  for (const auto& x : M::golden_features) {
-    if (!between(M::envelope_lower, x, M::envelope_upper)) return false;
+constexpr bool golden_commands_finite() noexcept {
+  for (const auto& commands : M::golden_commands) {
+    if (!all_finite_constants(commands)) return false;
   }
   return true;
 }
@@ -182,6 +166,11 @@ constexpr void require_description() noexcept {
                   "pinnquad: a border of the model's envelope is NaN or infinite");
     static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
                   "pinnquad: a scaler's spread is not positive");
+    static_assert(is_envelope(M::input.mean.data(), M::input.spread.data(), M::envelope_lower.data(),
+                              M::envelope_upper.data(), M::envelope_lower.size()),
+                  "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
+                  "spread can have been (envelope_lower, envelope_upper, input)");
+    static_assert(golden_commands_finite<M>(), "pinnquad: a golden command is NaN or infinite");
     static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
     static_assert(same_contents<M>(),
                   "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
