@@ -96,7 +96,7 @@ std::string written(const Trained<Header>& model) {
 }
 
 /// From `#pragma once` on (the library's version stands before it), without the golden commands: their last bits depend
-/// on whether the machine that wrote them multiplies and adds in one rounding.
+/// on whether the machine that wrote them multiplies and adds in one rounding. Without the hash over all of it.
 std::string comparable(std::string text) {
   const std::size_t begin = text.find("#pragma once");
   REQUIRE(begin != std::string::npos);
@@ -104,7 +104,20 @@ std::string comparable(std::string text) {
   const std::size_t commands = text.find(" golden_commands = {");
   REQUIRE(commands != std::string::npos);
   text.erase(commands, text.find(';', commands) - commands);
+  const std::size_t hash = text.find("\n  // over all of this:");
+  if (hash != std::string::npos) text.erase(hash, text.find("};", hash) - hash);
   return text;
+}
+
+/// The hash that is written against the one that the compiler works out, with the golden commands as they are computed
+/// here.
+template <class Header, class Written = Header>
+bool says_its_hash(const Trained<Written>& model) {
+  auto commands = Header::golden_commands;
+  const std::uint64_t others = detail::contents_hash_of<Header>() - detail::constant_hash("golden_commands", commands);
+  for (std::size_t i = 0; i < commands.size(); ++i) commands[i] = model.predict(Header::golden_features[i]);
+  const std::string hash = hexadecimal(others + detail::constant_hash("golden_commands", commands));
+  return written<Written>(model).find(" contents_hash = " + hash + ";\n};\n") != std::string::npos;
 }
 
 template <class Header>
@@ -133,6 +146,17 @@ TEST_CASE("so is one in double, with a window, optional records and an airframe 
   const ContextAirframe<GivenAirframe> airframe(OwnRacerV3::vehicle_name, OwnRacerV3Airframe::value<double>());
   CHECK(comparable(written<Given>(trained<Given>({airframe}))) == comparable(text_of("models/v3/own_racer.hpp")));
   CHECK(largest_golden_difference<OwnRacerV3>() <= 1e-12);
+}
+
+TEST_CASE("the hash that is written is the one that the compiler works out") {
+  CHECK(says_its_hash<DemoQuadrotorV3>(trained<DemoQuadrotorV3>()));
+  using Given = WithGivenAirframe<OwnRacerV3>;
+  const ContextAirframe<GivenAirframe> airframe(OwnRacerV3::vehicle_name, OwnRacerV3Airframe::value<double>());
+  CHECK(says_its_hash<OwnRacerV3, Given>(trained<Given>({airframe})));
+  auto other = OwnRacerV3Airframe::value<double>();
+  other.mass_kg += 1e-15;
+  const ContextAirframe<GivenAirframe> heavier(OwnRacerV3::vehicle_name, other);
+  CHECK_FALSE(says_its_hash<OwnRacerV3, Given>(trained<Given>({heavier})));
 }
 
 TEST_CASE("a header of an earlier format, written again, flies as it did") {

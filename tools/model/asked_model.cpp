@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "model/agreement.hpp"
 #include "model/log_schemas.hpp"
 #include "model/run_time_model.hpp"
 #include "pinnquad/data/flight_features.hpp"
@@ -88,7 +89,7 @@ class AskedModelOf : public AskedModel {
 
 }  // namespace
 
-std::unique_ptr<const AskedModel> asked_model(const Block& block, const Identity& identity) {
+std::unique_ptr<const AskedModel> asked_model(const Block& block, const Identity& identity, bool is_to_fly) {
   std::unique_ptr<const AskedModel> model;
   const auto is_it = [&](auto features, auto outputs) {
     using Features = decltype(features);
@@ -100,6 +101,7 @@ std::unique_ptr<const AskedModel> asked_model(const Block& block, const Identity
     using Features = decltype(features);
     using Outputs = decltype(outputs);
     if (!is_it(features, outputs)) return;
+    require_agreement<Features>(block, identity);
     if (block.is_double) {
       model = std::make_unique<AskedModelOf<Features, Outputs, double>>(block, identity);
     } else {
@@ -110,9 +112,11 @@ std::unique_ptr<const AskedModel> asked_model(const Block& block, const Identity
     using Features = decltype(features);
     using Outputs = decltype(outputs);
     if (block.is_double || !is_it(features, outputs)) return;
+    require_agreement<Features>(block, identity);
     model = std::make_unique<AskedModelOf<Features, Outputs, float>>(block, identity);
   });
   if (!model) throw InputError(block.path, 0, 0, "a model of float", "one of double with these features");
+  require_self_test(block, identity, *model, is_to_fly);
   return model;
 }
 

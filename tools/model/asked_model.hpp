@@ -48,8 +48,9 @@ class AskedModel {
                       const std::function<void(std::size_t, const AnsweredRow&)>& take) const = 0;
 };
 
-/// Of a block that was identified.
-std::unique_ptr<const AskedModel> asked_model(const Block& block, const Identity& identity);
+/// Of a block that was identified. Throws InputError where it contradicts itself (model/agreement.hpp). `is_to_fly`: also where
+/// nothing is proven of a model that could be.
+std::unique_ptr<const AskedModel> asked_model(const Block& block, const Identity& identity, bool is_to_fly = false);
 
 /// The largest difference of its golden commands from those that its weights give.
 inline double golden_difference(const Block& block, const AskedModel& model) {

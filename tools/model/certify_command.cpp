@@ -194,8 +194,7 @@ Findings findings_of(const CertifyOptions& options, const programs::Block& block
     throw InputError(block.path, 0, 0, "a model that is asked for an angular acceleration", "one that is not");
   }
   if (model->signed_sums) {
-    findings.certificate = block.is_double ? structure_certificate<double>(block, identity, model->taps)
-                                           : structure_certificate<float>(block, identity, model->taps);
+    findings.certificate = programs::certificate_of_block(block, identity, *model);
     if (findings.certificate && findings.certificate->proven()) {
       findings.argument = sees_angular_acceleration(identity) ? by_path_bound : by_structure;
       if (block.base.empty()) findings.rounding = base_rounding(block, identity, *findings.certificate);
@@ -349,6 +348,13 @@ int certify(const CertifyOptions& options) {
 }
 
 }  // namespace
+
+std::optional<Certificate> programs::certificate_of_block(const Block& block, const Identity& identity,
+                                                          const AskedModel& model) {
+  if (!model.signed_sums || model.taps.empty()) return {};
+  return block.is_double ? structure_certificate<double>(block, identity, model.taps)
+                         : structure_certificate<float>(block, identity, model.taps);
+}
 
 programs::Command programs::certify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(

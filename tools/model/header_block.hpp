@@ -12,6 +12,7 @@
 
 #include "airframe/choice.hpp"
 #include "model/header_file.hpp"
+#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/deploy/block_writer.hpp"
 
 namespace programs {
@@ -71,6 +72,10 @@ inline HeaderTerms stated_terms(const HeaderFile& header) {
   terms.command_upper = header.number("command_upper");
   terms.sample_period_s = header.number("sample_period_s");
   terms.lag_removed_s = header.number("lag_removed_s");
+  for (const char* time : {"sample_period_s", "lag_removed_s"}) {
+    if (pinnquad::detail::is_time(header.number(time))) continue;
+    header.refuse(time, "a time of 0 to 4 s", pinnquad::number_text(header.number(time)));
+  }
   terms.window_taps = static_cast<std::uint32_t>(header.number("window_taps"));
   terms.causal = header.truth("causal");
   terms.column_names = header.texts("column_names");
@@ -124,6 +129,10 @@ inline HeaderTerms terms_of(const HeaderFile& header) {
   if (format < oldest || format > pinnquad::model_format_version) {
     header.refuse("format_version", "format 2 to " + std::to_string(pinnquad::model_format_version),
                   std::to_string(format));
+  }
+  if (header.quoted("frame") != pinnquad::model_frame) {
+    header.refuse("frame", std::string("the frame `") + pinnquad::model_frame + "`",
+                  "`" + pinnquad::printable(header.quoted("frame")) + "`");
   }
   HeaderTerms terms = format == oldest ? implied_terms(header) : stated_terms(header);
   take_optional_terms(header, terms);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pinnquad/data/text_file.hpp"
+#include "pinnquad/inference/contents_hash.hpp"
 
 namespace programs {
 
@@ -109,6 +110,28 @@ class HeaderFile {
     return of.value == "true";
   }
 
+  /// Throws InputError where the header says a hash over all of it that is not that of its constants and this airframe
+  /// (inference/contents_hash.hpp).
+  void require_contents(const pinnquad::Airframe<double>& airframe) const {
+    if (!has("contents_hash")) return;
+    std::uint64_t sum = 0;
+    for (const std::string_view name : pinnquad::hashed_constants) {
+      pinnquad::detail::ConstantHash hash(name);
+      const auto found = entries_.find(std::string(name));
+      if (name == "Vehicle") {
+        hash.add(airframe);
+      } else if (found != entries_.end()) {
+        add(hash, std::string(name), found->second);
+      } else {
+        continue;
+      }
+      sum += hash.value();
+    }
+    if (sum != hexadecimal("contents_hash")) {
+      refuse("contents_hash", "a header as it was exported", "one that was edited since");
+    }
+  }
+
   /// Throws InputError at the line of a constant.
   [[noreturn]] void refuse(const std::string& name, const std::string& expected, const std::string& found) const {
     refuse(entry(name).line, expected, found);
@@ -120,6 +143,35 @@ class HeaderFile {
     std::size_t line = 0;
   };
   static constexpr std::string_view separators = "{}, \n";
+
+  /// As the compiler has the constant.
+  void add(pinnquad::detail::ConstantHash& hash, const std::string& name, const Entry& of) const {
+    constexpr std::string_view meaning = "pinnquad::CommandMeaning::";
+    const std::string_view value = of.value;
+    if (value.find('"') != std::string_view::npos) {
+      for (const std::string& one : texts(name)) hash.add(std::string_view(one));
+    } else if (value.substr(0, meaning.size()) == meaning) {
+      hash.add(value.substr(meaning.size()));
+    } else if (value.substr(0, 2) == "0x") {
+      hash.add(hexadecimal(name));
+    } else if (value == "true" || value == "false") {
+      hash.add(value == "true");
+    } else {
+      for (std::size_t at = value.find_first_not_of(separators); at != std::string_view::npos;) {
+        const std::size_t end = std::min(value.find_first_of(separators, at), value.size());
+        const std::string_view one = value.substr(at, end - at);
+        const double read = number(of, one, name);
+        if (one.back() == 'f') {
+          hash.add(static_cast<float>(read));
+        } else if (one.find_first_of(".en") != std::string_view::npos) {
+          hash.add(read);
+        } else {
+          hash.add(static_cast<int>(read));
+        }
+        at = value.find_first_not_of(separators, end);
+      }
+    }
+  }
 
   /// The semicolon that ends the statement, or the end of the text: not one within a text or a comment.
   static std::size_t statement_end(const std::string& text, std::size_t at) {

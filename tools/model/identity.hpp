@@ -157,10 +157,10 @@ inline std::vector<NamedAirframe> candidate_airframes(const ModelHints& hints) {
 
 }  // namespace detail
 
-/// Finds out which model a block is. `each(function)` calls it with every pair of feature set and output schema to try, as
-/// each_schema() does. Throws std::invalid_argument, one line, where nothing has the block's hash.
+/// Finds out which model a block is; nothing where none has the block's hash. `each(function)` calls it with every pair of
+/// feature set and output schema to try, as each_schema() does.
 template <class Each>
-Identity identify(const Block& block, const ModelHints& hints, const Each& each) {
+std::optional<Identity> find_identity(const Block& block, const ModelHints& hints, const Each& each) {
   const std::vector<NamedAirframe> airframes = detail::candidate_airframes(hints);
   std::vector<std::string> answers = {hints.answer};
   if (hints.answer.empty()) answers = detail::candidate_answers(block);
@@ -187,18 +187,13 @@ Identity identify(const Block& block, const ModelHints& hints, const Each& each)
       }
     }
   });
-  if (!found) {
-    throw std::invalid_argument(block.path + ": a network of " + std::to_string(block.inputs) + " inputs, " +
-                                std::to_string(block.outputs) + " outputs and " +
-                                std::to_string(block.parameter_count) +
-                                " parameters whose shape is unknown here; say --airframe FILE.toml if it is for an "
-                                "airframe of its own, --answer "
-                                "TEXT as its header states it if its layers differ in width");
-  }
-  return *found;
+  return found;
 }
 
 /// Of those that `train` exports: which a row of a flight is enough for, and which it fits to logs.
+std::optional<Identity> find_identity(const Block& block, const ModelHints& hints);
+
+/// The same. Throws std::invalid_argument, one line, where nothing has the block's hash.
 Identity identify(const Block& block, const ModelHints& hints);
 
 }  // namespace programs

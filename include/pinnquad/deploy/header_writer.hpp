@@ -51,7 +51,7 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
   require_finite_model(model);
   std::vector<Commands<typename Model::Scalar>> commands;
   for (const auto& x : golden) {
-    if (!between(model.envelope_lower, x, model.envelope_upper)) {
+    if (!inside_envelope(model.envelope_lower.data(), x.data(), model.envelope_upper.data(), x.size())) {
       throw std::invalid_argument("export: golden vector " + std::to_string(commands.size() + 1) +
                                   " lies outside the envelope");
     }
@@ -112,31 +112,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   out.imbue(std::locale::classic());  // a global locale may group digits
 
   const std::string scalar = type_name<Scalar>();
-  const auto array = [&](const std::string& type, const char* name, const auto& values) {
-    out << "  static constexpr std::array<" << type << ", " << values.size() << "> " << name << " = {";
-    detail::write_braced(out, values, "  ");
-    out << "};\n";
-  };
-  const auto text = [&](const char* name, const std::string& value) {
-    out << "  static constexpr const char* " << name << " = " << detail::quoted(value) << ";\n";
-  };
-  const auto scaler = [&](const char* name, const auto& value) {
-    out << "  static constexpr pinnquad::Scaler<" << scalar << ", " << value.mean.size() << "> " << name << " = {{";
-    detail::write_braced(out, value.mean, "  ");
-    out << "}, {";
-    detail::write_braced(out, value.spread, "  ");
-    out << "}};\n";
-  };
-  const auto table = [&](const std::string& type, const char* name, const auto& rows) {
-    out << "  static constexpr std::array<std::array<" << type << ", " << rows[0].size() << ">, " << rows.size() << "> "
-        << name << " = {{";
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      out << (i == 0 ? "\n    {" : ",\n    {");
-      detail::write_braced(out, rows[i], "    ");
-      out << '}';
-    }
-    out << "}};\n";
-  };
+  detail::ConstantWriter write(out);
 
   out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
       << ". Generated: export again rather than edit.\n"
@@ -159,55 +135,57 @@ void write_model(std::ostream& stream, const std::string& struct_name,
       << "  using Features = " << type_name<typename Model::Features>() << ";\n"
       << "  using Outputs = " << type_name<typename Model::Outputs>() << ";\n"
       << "  using Vehicle = " << vehicle << ";\n"
-      << "  using Inputs = Features::Inputs<Scalar>;\n\n"
-      << "  static constexpr int format_version = " << model_format_version << ";\n";
-  text("name", struct_name);
+      << "  using Inputs = Features::Inputs<Scalar>;\n\n";
+  write.number("format_version", model_format_version);
+  write.text("name", struct_name);
   out << "\n  // provenance\n";
-  text("training_data", provenance.training_data);
-  out << "  static constexpr std::uint64_t training_data_hash = " << hexadecimal(provenance.training_data_hash) << ";\n"
-      << "  static constexpr int training_rows = " << provenance.training_rows << ";\n"
-      << "  static constexpr std::uint64_t seed = " << provenance.seed << "u;\n"
-      << "  static constexpr int epochs = " << provenance.epochs << ";\n";
-  text("loss", provenance.loss);
+  write.text("training_data", provenance.training_data);
+  write.constant("std::uint64_t", "training_data_hash", hexadecimal(provenance.training_data_hash),
+                 provenance.training_data_hash);
+  write.constant("int", "training_rows", std::to_string(provenance.training_rows),
+                 static_cast<int>(provenance.training_rows));
+  out << "  static constexpr std::uint64_t seed = " << provenance.seed << "u;\n";
+  write.number("epochs", provenance.epochs);
+  write.text("loss", provenance.loss);
   if (provenance.verdict) {
     const Verdict& verdict = *provenance.verdict;
     const auto figure = [&](const char* name, double value) {
       constexpr double digits = 1e6;  // as far as sums over the test rows are the same on every machine
       const double rounded = std::abs(value) < digits ? std::round(value * digits) / digits : value;
-      if (is_finite(value)) out << "  static constexpr double " << name << " = " << detail::literal(rounded) << ";\n";
-    };
-    const auto fact = [&](const char* name, bool value) {
-      out << "  static constexpr bool " << name << " = " << (value ? "true" : "false") << ";\n";
+      if (is_finite(value)) write.number(name, rounded);
     };
     out << "\n  // how it was judged, on rows that it was not trained on: R^2, mean over the commands\n";
     figure("test_r_squared", verdict.test_r_squared);
     figure("linear_regression_r_squared", verdict.linear_regression_r_squared);
-    fact("worse_than_mean", verdict.worse_than_mean());
-    fact("beats_linear_regression", verdict.beats_linear_regression());
+    write.truth("worse_than_mean", verdict.worse_than_mean());
+    write.truth("beats_linear_regression", verdict.beats_linear_regression());
   }
   out << "\n  // what it was trained for; require_model() compares with Features, Outputs and Vehicle\n";
-  text("frame", model_frame);
-  array("const char*", "feature_names", Model::Features::names);
-  array("const char*", "feature_units", Model::Features::units);
-  array("const char*", "output_names", OutputMap<typename Model::Outputs>::names);
-  array("const char*", "output_units", OutputMap<typename Model::Outputs>::units);
-  text("vehicle_name", vehicle_name);
+  write.text("frame", model_frame);
+  write.list("const char*", "feature_names", Model::Features::names);
+  write.list("const char*", "feature_units", Model::Features::units);
+  write.list("const char*", "output_names", OutputMap<typename Model::Outputs>::names);
+  write.list("const char*", "output_units", OutputMap<typename Model::Outputs>::units);
+  write.text("vehicle_name", vehicle_name);
   out << "  // rotor by rotor: signs of its torque about x, y, z\n";
-  table("int", "motor_torque_signs", motor_torque_signs(model.template airframe<double>()));
-  detail::write_header_records<NetworkType, typename Model::Features, typename Model::Outputs>(out, terms);
+  write.table("int", "motor_torque_signs", motor_torque_signs(model.template airframe<double>()));
+  detail::write_header_records<NetworkType, typename Model::Features, typename Model::Outputs>(out, write, terms);
   out << "\n  // standardisation: (value - mean) / spread\n";
-  scaler("input", model.input);
-  scaler("output", model.output);
+  write.scaler(scalar, "input", model.input);
+  write.scaler(scalar, "output", model.output);
   out << "\n  // training envelope per feature, margin included\n";
-  array(scalar, "envelope_lower", model.envelope_lower);
-  array(scalar, "envelope_upper", model.envelope_upper);
+  write.list(scalar, "envelope_lower", model.envelope_lower);
+  write.list(scalar, "envelope_upper", model.envelope_upper);
 
   out << "\n  // golden vectors: features in physical units -> commands\n";
-  table(scalar, "golden_features", golden);
-  table(scalar, "golden_commands", golden_commands);
+  write.table(scalar, "golden_features", golden);
+  write.table(scalar, "golden_commands", golden_commands);
 
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
-  array(scalar, "parameters", model.network.parameters);
+  write.list(scalar, "parameters", model.network.parameters);
+  write.count("Vehicle", model.template airframe<double>());
+  out << "\n  // over all of this: what was edited does not compile (inference/contents_hash.hpp)\n"
+      << "  static constexpr std::uint64_t contents_hash = " << hexadecimal(write.contents_hash()) << ";\n";
   out << "};\n\nstatic_assert(pinnquad::require_model<" << struct_name << ">());\n";
   if constexpr (has_certificate<Model>) {
     out << "static_assert(pinnquad::require_certificate<" << struct_name << ">());  // docs/certificate.md\n";

@@ -13,6 +13,7 @@
 #include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/inference/block_records.hpp"
+#include "pinnquad/inference/contents_hash.hpp"
 
 namespace pinnquad::detail {
 
@@ -52,7 +53,6 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
   if (!is_finite(from.command_lower) || !is_finite(from.command_upper) || !(from.command_lower <= from.command_upper)) {
     refuse("the range of the commands is none");
   }
-  const auto is_time = [](double seconds) { return is_finite(seconds) && seconds >= 0 && seconds <= 4; };
   if (!is_time(from.sample_period_s)) refuse("the sample period is not one of 0 to 4 s");
   if (!is_time(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 4 s");
   constexpr double window_s = WindowOf<Features>::period_s;
@@ -67,6 +67,11 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
                    (from.verdict->beats_linear_regression() ? Judged::beats_linear_regression : 0u);
   }
   terms.slope_signs = from.slope_signs;
+  const auto torque_signs = motor_torque_signs(airframe);
+  for (std::size_t i = 0; terms.slope_signs && i < 3 * std::size_t(rotor_count); ++i) {
+    if (true_slope_sign((*terms.slope_signs)[i / 3][i % 3], torque_signs[i / 3][i % 3])) continue;
+    refuse("a slope sign is not that of the torque that its rotor makes");
+  }
   if (from.residual_range) {
     constexpr auto outputs = static_cast<std::size_t>(OutputMap<Outputs>::size);
     const ResidualRange& range = *from.residual_range;
@@ -93,12 +98,6 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
   }
   return terms;
 }
-
-template <class M, class = void>
-struct HasVerdict : std::false_type {};
-template <class M>
-struct HasVerdict<M, std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>> : std::true_type {
-};
 
 template <class Array>
 std::vector<double> as_doubles(const Array& values) {
@@ -144,34 +143,90 @@ std::vector<Scalar> rounded(const std::vector<double>& values) {
   return result;
 }
 
-/// Writes the constants of format 3 into a struct.
+/// The constants of a struct, written one after the other, and the hash over those that count (inference/contents_hash.hpp).
+class ConstantWriter {
+ public:
+  explicit ConstantWriter(std::ostream& out) : out_(out) {}
+
+  std::uint64_t contents_hash() const { return sum_; }
+  /// What counts and is no constant.
+  template <class Value>
+  void count(std::string_view name, const Value& value) {
+    if (!is_hashed(name)) return;
+    ConstantHash hash(name);
+    add(hash, value);
+    sum_ += hash.value();
+  }
+
+  /// `written`: the value as C++ text.
+  template <class Value>
+  void constant(const char* type, const char* name, const std::string& written, const Value& value) {
+    out_ << "  static constexpr " << type << ' ' << name << " = " << written << ";\n";
+    count(name, value);
+  }
+  void truth(const char* name, bool value) { constant("bool", name, value ? "true" : "false", value); }
+  void number(const char* name, int value) { constant("int", name, std::to_string(value), value); }
+  void number(const char* name, double value) { constant("double", name, literal(value), value); }
+  void text(const char* name, const std::string& value) { constant("const char*", name, quoted(value), value); }
+  template <class Values>
+  void list(const std::string& type, const char* name, const Values& values) {
+    out_ << "  static constexpr std::array<" << type << ", " << values.size() << "> " << name << " = ";
+    if (values.size() == 0) {
+      out_ << "{};\n";
+    } else {
+      out_ << '{';
+      write_braced(out_, values, "  ");
+      out_ << "};\n";
+    }
+    count(name, values);
+  }
+  template <class Rows>
+  void table(const std::string& type, const char* name, const Rows& rows) {
+    out_ << "  static constexpr std::array<std::array<" << type << ", " << rows[0].size() << ">, " << rows.size()
+         << "> " << name << " = {{";
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      out_ << (i == 0 ? "\n    {" : ",\n    {");
+      write_braced(out_, rows[i], "    ");
+      out_ << '}';
+    }
+    out_ << "}};\n";
+    count(name, rows);
+  }
+  template <class Scalar, int Size>
+  void scaler(const std::string& type, const char* name, const Scaler<Scalar, Size>& value) {
+    out_ << "  static constexpr pinnquad::Scaler<" << type << ", " << Size << "> " << name << " = {{";
+    write_braced(out_, value.mean, "  ");
+    out_ << "}, {";
+    write_braced(out_, value.spread, "  ");
+    out_ << "}};\n";
+    count(name, value);
+  }
+
+ private:
+  template <class Value>
+  static void add(ConstantHash& hash, const Value& value) {
+    hash.add(value);
+  }
+  static void add(ConstantHash& hash, const char* text) { hash.add(printable(text)); }
+  static void add(ConstantHash& hash, const std::string& text) { hash.add(printable(text)); }
+  template <class Value>
+  static void add(ConstantHash& hash, const std::vector<Value>& values) {
+    for (const Value& value : values) add(hash, value);
+  }
+  template <class Value, std::size_t Size>
+  static void add(ConstantHash& hash, const std::array<Value, Size>& values) {
+    for (const Value& value : values) add(hash, value);
+  }
+
+  std::ostream& out_;
+  std::uint64_t sum_ = 0;
+};
+
+/// Writes the constants of format 3 into a struct, whose texts around them are `out`'s.
 template <class Network, class Features, class Outputs>
-void write_header_records(std::ostream& out, const ExportedTerms& terms) {
+void write_header_records(std::ostream& out, ConstantWriter& write, const ExportedTerms& terms) {
   using Scalar = typename Network::Scalar;
   const std::string scalar = std::is_same_v<Scalar, float> ? "float" : "double";
-  const auto constant = [&](const std::string& type, const char* name, const std::string& value) {
-    out << "  static constexpr " << type << " " << name << " = " << value << ";\n";
-  };
-  const auto list = [&](const std::string& type, const char* name, const auto& values) {
-    out << "  static constexpr std::array<" << type << ", " << values.size() << "> " << name << " = ";
-    if (values.size() == 0) {
-      out << "{};\n";
-      return;
-    }
-    out << '{';
-    write_braced(out, values, "  ");
-    out << "};\n";
-  };
-  const auto table = [&](const std::string& type, const char* name, const auto& rows) {
-    out << "  static constexpr std::array<std::array<" << type << ", " << rows[0].size() << ">, " << rows.size() << "> "
-        << name << " = {{";
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      out << (i == 0 ? "\n    {" : ",\n    {");
-      write_braced(out, rows[i], "    ");
-      out << '}';
-    }
-    out << "}};\n";
-  };
   using Window = WindowOf<Features>;
   out << "\n  // records: a reader that does not know one of them must not fly the model "
          "(inference/model_records.hpp)\n";
@@ -179,29 +234,31 @@ void write_header_records(std::ostream& out, const ExportedTerms& terms) {
   for (const std::string_view record : known_records) names.emplace_back(record);
   std::vector<const char*> records;
   for (const std::string& name : names) records.push_back(name.c_str());
-  list("const char*", "records", records);
-  constant("const char*", "answer", quoted(description_text<Network>()));
-  constant("auto", "command_meaning", std::string("pinnquad::CommandMeaning::") + to_string(terms.command_meaning));
-  constant("double", "command_lower", literal(terms.command_lower));
-  constant("double", "command_upper", literal(terms.command_upper));
-  constant("double", "sample_period_s", literal(terms.sample_period_s));
-  constant("double", "lag_removed_s", literal(terms.lag_removed_s));
-  constant("int", "window_taps", std::to_string(Window::taps));
-  constant("bool", "causal", Window::causal ? "true" : "false");
-  list("const char*", "column_names", extra_column_names<Features>);
-  list("const char*", "column_units", extra_column_units<Features>);
+  write.list("const char*", "records", records);
+  write.text("answer", description_text<Network>());
+  write.constant("auto", "command_meaning",
+                 std::string("pinnquad::CommandMeaning::") + to_string(terms.command_meaning), terms.command_meaning);
+  write.number("command_lower", terms.command_lower);
+  write.number("command_upper", terms.command_upper);
+  write.number("sample_period_s", terms.sample_period_s);
+  write.number("lag_removed_s", terms.lag_removed_s);
+  write.number("window_taps", Window::taps);
+  write.truth("causal", Window::causal);
+  write.list("const char*", "column_names", extra_column_names<Features>);
+  write.list("const char*", "column_units", extra_column_units<Features>);
   out << "  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density\n";
-  table("double", "allocation", terms.allocation);
-  constant("const char*", "base", quoted(description_text<typename BaseOf<Outputs>::type>()));
-  if (terms.slope_signs) table("int", "slope_signs", *terms.slope_signs);
+  write.table("double", "allocation", terms.allocation);
+  write.text("base", description_text<typename BaseOf<Outputs>::type>());
+  if (terms.slope_signs) write.table("int", "slope_signs", *terms.slope_signs);
   if (terms.residual_range) {
-    list(scalar, "residual_lower", rounded<Scalar>(terms.residual_range->lower));
-    list(scalar, "residual_upper", rounded<Scalar>(terms.residual_range->upper));
+    write.list(scalar, "residual_lower", rounded<Scalar>(terms.residual_range->lower));
+    write.list(scalar, "residual_upper", rounded<Scalar>(terms.residual_range->upper));
   }
   if (terms.distance) {
-    list(scalar, "distance_mean", rounded<Scalar>(terms.distance->mean));
-    list(scalar, "distance_inverse_cholesky", rounded<Scalar>(terms.distance->inverse_cholesky));
-    constant(scalar, "distance_limit", literal(static_cast<Scalar>(terms.distance->limit)));
+    write.list(scalar, "distance_mean", rounded<Scalar>(terms.distance->mean));
+    write.list(scalar, "distance_inverse_cholesky", rounded<Scalar>(terms.distance->inverse_cholesky));
+    const auto limit = static_cast<Scalar>(terms.distance->limit);
+    write.constant(scalar.c_str(), "distance_limit", literal(limit), limit);
   }
 }
 

@@ -151,6 +151,8 @@ class BlockRecordReader {
   using Base = typename detail::BaseOf<Outputs>::type;
   static constexpr bool has_base = !std::is_same_v<Base, detail::NoBase>;
   using Window = detail::WindowOf<Features>;
+  static constexpr std::uint32_t window_ns = detail::nanoseconds(Window::period_s);
+  static constexpr std::uint32_t longest_time_ns = detail::nanoseconds(detail::longest_time_s);
 
   static Status take(BlockRecord type, const unsigned char* bytes, std::uint32_t length, Records& to) noexcept {
     const auto scalars = [&](std::size_t offset) {  // records begin at multiples of 8
@@ -174,7 +176,10 @@ class BlockRecordReader {
         if (length != 8) return Status::block_corrupt;
         to.terms.sample_period_ns = detail::read_u32(bytes);
         to.terms.lag_removed_ns = detail::read_u32(bytes + 4);
-        return Status::ok;
+        if (to.terms.sample_period_ns > longest_time_ns || to.terms.lag_removed_ns > longest_time_ns) {
+          return Status::block_corrupt;
+        }
+        return holds(window_ns == 0 || detail::same_period_ns(to.terms.sample_period_ns, window_ns));
       case BlockRecord::window:
         if (length != 8) return Status::block_corrupt;
         return holds(detail::read_u32(bytes) == std::uint32_t(Window::taps) &&
@@ -213,10 +218,12 @@ class BlockRecordReader {
       case BlockRecord::slope_signs: {
         if (length != 3 * rotor_count) return Status::block_corrupt;
         bool signs = true;
+        constexpr auto torque_signs = motor_torque_signs<typename Shape::Vehicle>();
+        const int* own = detail::first_of<int>(torque_signs);
         auto* slope_signs = detail::first_of<std::int8_t>(to.slope_signs);
         for (std::size_t i = 0; i < 3 * std::size_t(rotor_count); ++i) {
-          signs &= bytes[i] <= 1 || bytes[i] == 0xff;
           slope_signs[i] = bytes[i] == 0xff ? std::int8_t(-1) : static_cast<std::int8_t>(bytes[i] & 1);
+          signs &= (bytes[i] <= 1 || bytes[i] == 0xff) && detail::true_slope_sign(slope_signs[i], own[i]);
         }
         to.has_slope_signs = true;
         return signs ? Status::ok : Status::block_corrupt;

@@ -8,7 +8,9 @@
 
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/inference/answer.hpp"
+#include "pinnquad/inference/contents_hash.hpp"
 #include "pinnquad/inference/features.hpp"
+#include "pinnquad/inference/model_agreement.hpp"
 #include "pinnquad/inference/model_records.hpp"
 #include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/network.hpp"
@@ -24,7 +26,8 @@ namespace pinnquad {
 ///      worse_than_mean, beats_linear_regression (evaluation/verdict.hpp)
 ///      Where the outputs have several units, output_units, one per output, in place of output_unit.
 ///   3  besides, and with output_units always: records, and what they name (inference/model_records.hpp). A Vehicle that is
-///      none of the library's stands before the model, in the same header.
+///      none of the library's stands before the model, in the same header. Optional: contents_hash, over all of it
+///      (inference/contents_hash.hpp).
 inline constexpr int model_format_version = 3;
 
 /// The oldest format that still flies.
@@ -36,23 +39,6 @@ inline constexpr const char* model_frame = "body FRD, world NED";
 /// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
 /// about ten to spare.
 inline constexpr double golden_tolerance = 1e-5;
-
-/// How a rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw): -1, 0 or 1.
-using TorqueSigns = std::array<int, 3>;
-
-/// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe<double>& airframe) noexcept {
-  std::array<TorqueSigns, rotor_count> result{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto signs = allocation_signs(airframe, static_cast<int>(axis));
-    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
-  }
-  return result;
-}
-template <class Vehicle>
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
-  return motor_torque_signs(Vehicle::template value<double>());
-}
 
 namespace detail {
 template <class S, class = void>
@@ -88,10 +74,6 @@ template <class M, class = void>
 struct HasOutputUnit : std::false_type {};
 template <class M>
 struct HasOutputUnit<M, std::void_t<decltype(M::output_unit)>> : std::true_type {};
-template <class M, class = void>
-struct HasOutputUnits : std::false_type {};
-template <class M>
-struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
 
 /// All texts are one.
 template <class Texts>
@@ -125,19 +107,19 @@ constexpr bool same_signs(const Signs& signs, const std::array<TorqueSigns, roto
   return true;
 }
 
-/// lower[i] <= x[i] <= upper[i] for all i; false for NaN.
-template <class Array>
-constexpr bool between(const Array& lower, const Array& x, const Array& upper) noexcept {
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!(lower[i] <= x[i] && x[i] <= upper[i])) return false;
+/// False for NaN.
+template <class M>
+constexpr bool golden_inside_envelope() noexcept {
+  for (const auto& x : M::golden_features) {
+    if (!inside_envelope(M::envelope_lower.data(), x.data(), M::envelope_upper.data(), x.size())) return false;
   }
   return true;
 }
 
 template <class M>
-constexpr bool golden_inside_envelope() noexcept {
-  for (const auto& x : M::golden_features) {
-    if (!between(M::envelope_lower, x, M::envelope_upper)) return false;
+constexpr bool golden_commands_finite() noexcept {
+  for (const auto& commands : M::golden_commands) {
+    if (!all_finite_constants(commands)) return false;
   }
   return true;
 }
@@ -184,7 +166,15 @@ constexpr void require_description() noexcept {
                   "pinnquad: a border of the model's envelope is NaN or infinite");
     static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
                   "pinnquad: a scaler's spread is not positive");
+    static_assert(is_envelope(M::input.mean.data(), M::input.spread.data(), M::envelope_lower.data(),
+                              M::envelope_upper.data(), M::envelope_lower.size()),
+                  "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
+                  "spread can have been (envelope_lower, envelope_upper, input)");
+    static_assert(golden_commands_finite<M>(), "pinnquad: a golden command is NaN or infinite");
     static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
+    static_assert(same_contents<M>(),
+                  "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
+                  "a number, a name or a text is another (contents_hash); export it again");
   }
 }
 }  // namespace detail

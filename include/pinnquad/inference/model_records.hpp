@@ -12,6 +12,7 @@
 #include "pinnquad/dynamics/command_meaning.hpp"
 #include "pinnquad/inference/description.hpp"
 #include "pinnquad/inference/extra_columns.hpp"
+#include "pinnquad/inference/model_agreement.hpp"
 
 namespace pinnquad {
 
@@ -24,6 +25,23 @@ inline constexpr std::array<std::string_view, 7> known_records = {
     "columns",     // `column_names`, `column_units`
     "allocation",  // `allocation`: Eq. (2) at the rated density
     "base"};       // `base`: a description of what the outputs add to, "" if to nothing
+
+/// How a rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw): -1, 0 or 1.
+using TorqueSigns = std::array<int, 3>;
+
+/// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe<double>& airframe) noexcept {
+  std::array<TorqueSigns, rotor_count> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto signs = allocation_signs(airframe, static_cast<int>(axis));
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
+  }
+  return result;
+}
+template <class Vehicle>
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+  return motor_torque_signs(Vehicle::template value<double>());
+}
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
@@ -129,8 +147,9 @@ constexpr bool same_period(double a, double b) noexcept {
   return difference <= period_tolerance * b;
 }
 
-/// Entries of two allocations count as one if they differ by no more than this share of the largest of their row.
-inline constexpr double allocation_tolerance = 1e-4;
+/// Entries of two allocations count as one if they differ by no more than this share of the largest of their row: what a
+/// float's rounding makes of their products.
+inline constexpr double allocation_tolerance = 4e-6;
 
 /// Entries `get(row, column)` against those expected.
 template <class Scalar, class Get, class Expected>
@@ -176,6 +195,22 @@ struct HasRecords<
                    decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
                    decltype(M::allocation), decltype(M::base)>> : std::true_type {};
 
+template <class M, class = void>
+struct HasTrainingRows : std::false_type {};
+template <class M>
+struct HasTrainingRows<M, std::void_t<decltype(int{M::training_rows})>> : std::true_type {};
+
+template <class M, class = void>
+struct HasOutputUnits : std::false_type {};
+template <class M>
+struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
+
+template <class M, class = void>
+struct HasVerdict : std::false_type {};
+template <class M>
+struct HasVerdict<M, std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>> : std::true_type {
+};
+
 /// Optional constants, for whoever has a use for them:
 ///   slope_signs                        of du_i/d(angular acceleration), rotor by rotor about x, y, z, where proven, else 0
 ///   residual_lower, residual_upper     between which a residual's outputs stay
@@ -207,25 +242,71 @@ constexpr bool same_header_allocation() noexcept {
 }
 
 template <class M>
+constexpr bool true_slope_signs() noexcept {
+  const auto signs = motor_torque_signs<typename M::Vehicle>();
+  for (std::size_t rotor = 0; rotor < signs.size(); ++rotor) {
+    for (std::size_t axis = 0; axis < signs[rotor].size(); ++axis) {
+      if (!true_slope_sign(M::slope_signs[rotor][axis], signs[rotor][axis])) return false;
+    }
+  }
+  return true;
+}
+
+/// The stated range of a residual is in order, and that of its parameters where their answer has bounds.
+template <class M>
+constexpr bool true_residual_range() noexcept {
+  for (std::size_t i = 0; i < M::residual_lower.size(); ++i) {
+    if (!(M::residual_lower[i] <= M::residual_upper[i])) return false;
+  }
+  using Bounds = ResidualBounds<typename M::Network>;
+  if constexpr (Bounds::known) {
+    const typename M::Scalar* bounds = nullptr;
+    if constexpr (Bounds::at >= 0) bounds = M::parameters.data() + Bounds::at;
+    return same_residual_range(M::residual_lower.data(), M::residual_upper.data(), bounds, M::output.spread.data(),
+                               M::residual_lower.size());
+  } else {
+    return true;
+  }
+}
+
+template <class M>
 constexpr void require_optional_records() noexcept {
   if constexpr (HasSlopeSigns<M>::value) {
-    static_assert(M::slope_signs.size() == std::size_t(rotor_count) && M::slope_signs[0].size() == 3,
-                  "pinnquad: the model's slope signs are not three per rotor (slope_signs)");
+    constexpr bool three = M::slope_signs.size() == std::size_t(rotor_count) && M::slope_signs[0].size() == 3;
+    static_assert(three, "pinnquad: the model's slope signs are not three per rotor (slope_signs)");
+    if constexpr (three) {
+      static_assert(true_slope_signs<M>(),
+                    "pinnquad: a slope sign of the model is not that of the torque that its Vehicle's rotor makes "
+                    "(slope_signs)");
+    }
   }
   if constexpr (HasResidualRange<M>::value) {
-    static_assert(M::residual_lower.size() == std::size_t(M::Network::outputs) &&
-                      M::residual_upper.size() == std::size_t(M::Network::outputs) &&
-                      all_finite_constants(M::residual_lower) && all_finite_constants(M::residual_upper),
+    constexpr bool numbers = M::residual_lower.size() == std::size_t(M::Network::outputs) &&
+                             M::residual_upper.size() == std::size_t(M::Network::outputs) &&
+                             all_finite_constants(M::residual_lower) && all_finite_constants(M::residual_upper);
+    static_assert(numbers,
                   "pinnquad: the model's range of a residual is not one of numbers per output (residual_lower)");
+    if constexpr (numbers) {
+      static_assert(true_residual_range<M>(),
+                    "pinnquad: the model's range of a residual is upside down, or not that of the bounds among its "
+                    "parameters (residual_lower, residual_upper)");
+    }
   }
   if constexpr (HasDistance<M>::value) {
     constexpr auto size = static_cast<std::size_t>(M::Features::size);
-    static_assert(
-        M::distance_mean.size() == size && M::distance_inverse_cholesky.size() == triangle(size) &&
-            all_finite_constants(M::distance_mean) && all_finite_constants(M::distance_inverse_cholesky) &&
-            M::distance_limit > 0 && is_finite_constant(M::distance_limit),
-        "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
-        "is no number (distance_mean)");
+    constexpr bool numbers = M::distance_mean.size() == size && M::distance_inverse_cholesky.size() == triangle(size) &&
+                             all_finite_constants(M::distance_mean) &&
+                             all_finite_constants(M::distance_inverse_cholesky) && M::distance_limit > 0 &&
+                             is_finite_constant(M::distance_limit);
+    static_assert(numbers,
+                  "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
+                  "is no number (distance_mean)");
+    if constexpr (numbers) {
+      static_assert(is_distance(M::distance_mean.data(), M::distance_inverse_cholesky.data(), M::distance_limit,
+                                M::envelope_lower.data(), M::envelope_upper.data(), size),
+                    "pinnquad: the model's statistics of a distance have a mean outside the envelope, or a diagonal that "
+                    "is not above 0 (distance_mean, distance_inverse_cholesky)");
+    }
   }
 }
 
@@ -246,7 +327,7 @@ constexpr void require_records() noexcept {
                       is_finite_constant(M::command_upper),
                   "pinnquad: the range of the model's commands is none (command_lower, command_upper)");
     static_assert(
-        M::sample_period_s >= 0.0 && M::sample_period_s <= 4.0 && M::lag_removed_s >= 0.0 && M::lag_removed_s <= 4.0,
+        is_time(M::sample_period_s) && is_time(M::lag_removed_s),
         "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
     static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
                   "pinnquad: the model has another window than its feature set now has (window_taps, causal)");

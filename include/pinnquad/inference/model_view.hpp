@@ -86,8 +86,10 @@ class ModelView : public ModelScales<ShapeType> {
   /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
   /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
   /// another shape or caller, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
-  /// not fit their place, no golden vector, a value that is NaN or Inf, a spread that is
-  /// not positive, an envelope upside down, a model of proven structure whose certificate its numbers don't fulfil. `view` is untouched unless the Status is ok.
+  /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a spread that is not
+  /// positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
+  /// (inference/model_agreement.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
+  /// untouched unless the Status is ok.
   /// Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
@@ -109,7 +111,7 @@ class ModelView : public ModelScales<ShapeType> {
     if (golden == 0 || Layout::length(golden) != whole - record_bytes) return Status::block_corrupt;
     // aligned, and of this scalar type: the header says so
     const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes + Header::size + record_bytes));
-    if (!sound(scalars, golden)) return Status::block_corrupt;
+    if (!sound(scalars, golden, records)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
     copy(scalars + Layout::input_spread, view.input.spread);
@@ -147,16 +149,38 @@ class ModelView : public ModelScales<ShapeType> {
     std::memcpy(&to, from, sizeof to);
   }
 
-  static bool sound(const Scalar* scalars, std::size_t golden) noexcept {
+  using Records = ModelRecords<Scalar, Features::size, OutputMap<typename Scales::Outputs>::size>;
+
+  static bool sound(const Scalar* scalars, std::size_t golden, const Records& records) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
     const std::size_t count = Layout::parameters(golden) + Layout::parameter_count;
+    const Scalar* lower = scalars + Layout::envelope_lower;
+    const Scalar* upper = scalars + Layout::envelope_upper;
     bool sound = true;
     for (std::size_t i = 0; i < count; ++i) sound &= is_finite(scalars[i]);
-    for (std::size_t i = 0; i < Layout::inputs; ++i) {
-      sound &= scalars[Layout::input_spread + i] > Scalar(0);
-      sound &= scalars[Layout::envelope_lower + i] <= scalars[Layout::envelope_upper + i];
-    }
+    for (std::size_t i = 0; i < Layout::inputs; ++i) sound &= scalars[Layout::input_spread + i] > Scalar(0);
     for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_spread + i] > Scalar(0);
+    sound &= detail::is_envelope(scalars + Layout::input_mean, scalars + Layout::input_spread, lower, upper,
+                                 Layout::inputs);
+    for (std::size_t row = 0; row < golden; ++row) {
+      const Scalar* x = scalars + Layout::golden_features + row * Layout::inputs;
+      sound &= detail::inside_envelope(lower, x, upper, Layout::inputs);
+    }
+    if (records.distance != nullptr) {
+      const Scalar* triangle = records.distance + Layout::inputs;
+      sound &= detail::is_distance(records.distance, triangle, triangle[detail::triangle(Layout::inputs)], lower, upper,
+                                   Layout::inputs);
+    }
+    using Bounds = detail::ResidualBounds<Network>;
+    if constexpr (Bounds::known) {
+      const Scalar* bounds = nullptr;
+      if constexpr (Bounds::at >= 0) bounds = scalars + Layout::parameters(golden) + Bounds::at;
+      if (records.has_residual_range) {
+        sound &= detail::same_residual_range(
+            detail::first_of<Scalar>(records.residual_lower), detail::first_of<Scalar>(records.residual_upper), bounds,
+            scalars + Layout::output_spread, Layout::outputs);
+      }
+    }
     if constexpr (has_certificate<ShapeType>) {
       constexpr auto mix = detail::signed_mix(airframe_value<typename ShapeType::Vehicle, Scalar>());
       const Certificate certificate = certificate_of<ShapeType>(
