@@ -65,10 +65,10 @@ Commands<double> commands_of(const Model& model, const Airframe<double>& airfram
 
 /// (sum, signed sums) of commands.
 std::array<double, 4> sums_of(const Airframe<double>& airframe, const Commands<double>& u) {
-  const auto signs = detail::signed_mix(airframe).signs;
+  const auto mix = detail::signed_mix(airframe);
   std::array<double, 4> sums{};
   for (std::size_t k = 0; k < 4; ++k) {
-    for (std::size_t i = 0; i < rotor_count; ++i) sums[k] += signs[k][i] * u[i];
+    for (std::size_t i = 0; i < rotor_count; ++i) sums[k] += mix.signs[k][i] * u[i];
   }
   return sums;
 }
