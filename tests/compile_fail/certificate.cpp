@@ -2,10 +2,19 @@
 // CASE NO_STRUCTURE: pinnquad: this model has no structure that could be proven
 // CASE SLOPE_BELOW_ZERO: pinnquad: a slope of the model is not above 0
 // CASE SLOPE_ZERO: pinnquad: a slope of the model is not above 0
+// CASE SLOPE_HARDLY_ABOVE_ZERO: pinnquad: a slope of the model is not above 0 by its floor
+// CASE SLOPE_BELOW_ROUNDING: pinnquad: a slope of the model is not above 0 by its floor, or by what its network or rounding
 // CASE BOUNDS_UPSIDE_DOWN: pinnquad: the bounds of the model's residual are none
 // CASE RESIDUAL_SEES_TOO_MUCH: pinnquad: an answer from which features are Withheld takes all the others
 // CASE WITHHELD_TWICE: pinnquad: what is Withheld are features in threes, ascending, that do not overlap
 // CASE BASE_SEES_THE_TURNING: pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration
+// CASE BASE_SAYS_NOTHING: pinnquad: a base says which features it reads, by name
+// CASE RIGID_BODY_OF_INVERSE_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
+// CASE RIGID_BODY_OF_PAPER_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
+// CASE RIGID_BODY_OF_OTHER_UNITS: pinnquad: the outputs' base reads a feature that the feature set has not
+// CASE LINEARIZED_OF_PHYSICS_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
+// CASE FORMULA_OF_PHYSICS_FEATURES: pinnquad: a formula in the model's Network reads a feature that the feature set has not
+// CASE FORMULA_OF_WITHHELD_FEATURES: pinnquad: a formula in the model's Network reads a feature that the feature set has not
 // CASE NO_ANGULAR_ACCELERATION: pinnquad: a model that is monotone in the angular acceleration needs a feature set
 #include "pinnquad/flight.hpp"
 
@@ -18,11 +27,23 @@ constexpr int inputs = Features::size;
 using Residual = Network<float, InputSize<residual_inputs<Features>>, Dense<4>>;
 using Answer = MonotoneAnswer<Features, Residual>;
 
+constexpr auto all_at(float value) {
+  std::array<float, std::size_t(inputs)> values{};
+  for (float& each : values) each = value;
+  return values;
+}
 constexpr Answer::Parameters numbers() {
   Answer::Parameters parameters{};
   for (std::size_t i = 0; i < 3; ++i) parameters[i] = 0.5f;
 #ifdef SLOPE_BELOW_ZERO
   parameters[1] = -0.5f;
+#endif
+#ifdef SLOPE_HARDLY_ABOVE_ZERO
+  parameters[1] = 1e-45f;
+#endif
+#ifdef SLOPE_BELOW_ROUNDING
+  parameters[2] = 1e-4f;
+  for (std::size_t i = 3; i < 20; ++i) parameters[i] = 1e4f;
 #endif
 #ifdef SLOPE_ZERO
   parameters[2] = 0;
@@ -51,9 +72,52 @@ struct Certified {
   static constexpr Answer::Parameters parameters = numbers();
   static constexpr Scaler<float, inputs> input{};
   static constexpr Scaler<float, 4> output{};
+  static constexpr auto envelope_lower = all_at(-10);
+  static constexpr auto envelope_upper = all_at(10);
 };
 static_assert(require_certificate<Certified>());
 static_assert(certificate_of<Certified>().slope[0] > 0.49 && certificate_of<Certified>().command_bound[3] < 0.11);
+
+/// Models on a formula: of what the formula reads, and of what it does not.
+template <class FeatureSet, class Schema, class Answer = MonotoneBase<FeatureSet>>
+struct OnFormula {
+  using Scalar = float;
+  using Network = Answer;
+  using Features = FeatureSet;
+  using Outputs = Schema;
+  using Vehicle = PaperQuadrotor;
+};
+struct OtherUnits : PhysicsFeatures {
+  [[maybe_unused]] static constexpr auto units = [] {
+    auto all = PhysicsFeatures::units;
+    all[2] = "g";
+    return all;
+  }();
+};
+template <class FeatureSet>
+using FourOf = Network<float, InputSize<FeatureSet::size>, Dense<4>>;
+template <class FeatureSet>
+using FormulaAnd =
+    Sum<Ensemble<Analytic<float, FeatureSet::size, LinearizedInverse, PaperQuadrotor>, 2>, FourOf<FeatureSet>>;
+using Behind = Withheld<Analytic<float, 13, LinearizedInverse, PaperQuadrotor>, 16, 3>;
+static_assert(require_shape<OnFormula<PhysicsFeatures, SignedSumsOn<RigidBodyInverse>>>() &&
+              require_shape<OnFormula<WithColumns<PhysicsFeatures, BatteryVoltage>, SignedSumsOn<RigidBodyInverse>>>());
+static_assert(
+    require_shape<OnFormula<PaperFeatures, ResidualOutputs<LinearizedInverse>, FourOf<PaperFeatures>>>() &&
+    require_shape<OnFormula<PaperFeaturesWithAltitude, CommandOutputs, FormulaAnd<PaperFeaturesWithAltitude>>>());
+#if defined(RIGID_BODY_OF_INVERSE_FEATURES)
+static_assert(require_shape<OnFormula<InverseFeatures, SignedSumsOn<RigidBodyInverse>>>());
+#elif defined(RIGID_BODY_OF_PAPER_FEATURES)
+static_assert(require_shape<OnFormula<PaperFeatures, SignedSumsOn<RigidBodyInverse>>>());
+#elif defined(RIGID_BODY_OF_OTHER_UNITS)
+static_assert(require_shape<OnFormula<OtherUnits, SignedSumsOn<RigidBodyInverse>>>());
+#elif defined(LINEARIZED_OF_PHYSICS_FEATURES)
+static_assert(require_shape<OnFormula<PhysicsFeatures, ResidualOutputs<LinearizedInverse>, FourOf<PhysicsFeatures>>>());
+#elif defined(FORMULA_OF_PHYSICS_FEATURES)
+static_assert(require_shape<OnFormula<PhysicsFeatures, CommandOutputs, FormulaAnd<PhysicsFeatures>>>());
+#elif defined(FORMULA_OF_WITHHELD_FEATURES)
+static_assert(require_shape<OnFormula<PaperFeatures, CommandOutputs, Behind>>());
+#endif
 
 #ifdef RESIDUAL_SEES_TOO_MUCH
 constexpr int wrong = Withheld<Network<float, InputSize<inputs>, Dense<4>>, inputs, 3>::outputs;
@@ -61,9 +125,14 @@ constexpr int wrong = Withheld<Network<float, InputSize<inputs>, Dense<4>>, inpu
 constexpr int wrong = Withheld<Residual, inputs, 3, 5>::outputs;
 #elif defined(BASE_SEES_THE_TURNING)
 struct Turning : RigidBodyInverse {
-  static constexpr bool sees_angular_acceleration = true;
+  static constexpr std::array<ReadFeature, 2> reads = {{{2, "s_z", "m/s^2"}, {4, "wdot_y", "rad/s^2"}}};
 };
 constexpr int wrong = SignedSumsOn<Turning>::size;
+#elif defined(BASE_SAYS_NOTHING)
+struct Silent {
+  static constexpr const char* description = "Silent";
+};
+constexpr int wrong = SignedSumsOn<Silent>::size;
 #elif defined(NO_ANGULAR_ACCELERATION)
 constexpr int wrong = MonotoneBase<Joined<SpecificForce, BodyRates>>::outputs;
 #else

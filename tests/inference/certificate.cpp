@@ -10,6 +10,7 @@
 #include <random>
 
 #include "pinnquad/inference/command_jacobian.hpp"
+#include "pinnquad/inference/hover_slopes.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "support/monotone_shapes.hpp"
 
@@ -228,10 +229,7 @@ TEST_CASE("a vehicle whose rotors have no exact mix has no proof") {
   airframe.rotors[0].x_m = 0;  // its sign about pitch is 0
   const auto mix = detail::signed_mix(airframe);
   MonotoneModel<BaseAlone> model(1);
-  const auto of = [&](const Airframe<double>& vehicle) {
-    return certificate_of<BaseAlone>(detail::signed_mix(airframe_in<float>(vehicle)), model.parameters.data(),
-                                     model.input.spread.data(), model.output.spread.data());
-  };
+  const auto of = [&](const Airframe<double>& vehicle) { return model.certificate(airframe_in<float>(vehicle)); };
   CHECK(of(airframe).monotone == detail::exact_mix(mix));
   for (auto& rotor : airframe.rotors) rotor.spin = airframe.rotors[0].spin;  // no sign of yaw is another one
   CHECK(!of(airframe).monotone);
@@ -250,4 +248,93 @@ TEST_CASE("signed sums there and back") {
   for (std::size_t axis = 0; axis < 3; ++axis) CHECK(y[1 + axis] == doctest::Approx(sum_of(u, axis)));
   SignedSumOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), mix, again);
   for (int i = 0; i < 4; ++i) CHECK(again[i] == doctest::Approx(u[i]).epsilon(1e-15));
+}
+
+TEST_CASE("a slope is proven above its floor, a share of the airframe's own, not above 0") {
+  const auto airframe = airframe_in<float>(PaperQuadrotor::value<double>());
+  const AxisSlopes own = hover_slopes(PaperQuadrotor::value<double>());  // of straight curves: the same at full command
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto with_slope = [&](double slope) {
+      MonotoneModel<WithResidual> model(1);
+      const auto place = std::size_t(PhysicsFeatures::angular_acceleration + axis);
+      constexpr auto others = MonotoneModel<WithResidual>::Base::weights;
+      std::fill(model.parameters.begin() + others, model.parameters.end(), 0.0F);  // rounding hides nothing
+      model.input.spread[place] = 1;
+      model.output.spread[std::size_t(1 + axis)] = 1;
+      model.slope(axis) = static_cast<float>(slope);
+      return model.certificate(airframe);
+    };
+    CHECK(!with_slope(std::numeric_limits<float>::denorm_min()).monotone);
+    CHECK(!with_slope(1e-9).monotone);
+    CHECK(!with_slope(0.99 * least_slope_share * own[std::size_t(axis)]).monotone);
+    CHECK(with_slope(1.01 * least_slope_share * own[std::size_t(axis)]).monotone);
+  }
+}
+
+TEST_CASE("a slope that rounding hides over the whole envelope is not proven") {
+  MonotoneModel<BaseAlone> model(1);
+  REQUIRE(model.certificate().monotone);
+  model.parameters[MonotoneModel<BaseAlone>::Base::weights + 5] = 3e9F;
+  const Certificate certificate = model.certificate();
+  CHECK(certificate.slope[0] > 0);
+  CHECK(certificate.rounding > 1);
+  CHECK(!certificate.monotone);
+  // the proof: the envelope crossed, and no command is another one
+  const InverseDynamics<MonotoneModel<BaseAlone>> inverse(model);
+  auto x = model.input.mean;
+  x[8] = model.envelope_upper[8];
+  auto more = x;
+  x[3] = model.envelope_lower[3];
+  more[3] = model.envelope_upper[3];
+  float u[4], u_of_more[4];
+  inverse.evaluate(x.data(), u);
+  inverse.evaluate(more.data(), u_of_more);
+  for (int i = 0; i < 4; ++i) CHECK(u[i] == u_of_more[i]);
+}
+
+TEST_CASE(
+    "of a window with taps of both signs rounding turns the order of small steps, and none from the sure one on") {
+  MonotoneModel<WindowedModel> model(11);
+  for (int axis = 0; axis < 3; ++axis) {
+    model.slope(3 + axis) *= -0.4F;
+    model.slope(6 + axis) *= -0.3F;
+    for (int tap = 0; tap < 3; ++tap) {
+      model.input.spread[std::size_t(angular_acceleration_at<PhysicsWindow>(tap) + axis)] = 2;
+    }
+    model.slope(axis) = 0.7F;
+  }
+  const Certificate certificate = model.certificate();
+  REQUIRE(certificate.proven());
+  const InverseDynamics<MonotoneModel<WindowedModel>> inverse(model);
+  std::mt19937_64 engine(12);
+  const auto turned = [&](double share_of_sure) {
+    int fell = 0;
+    for (int sample = 0; sample < 9000; ++sample) {
+      const int axis = sample % 3;
+      const auto x = inside(model, engine);
+      auto more = x;
+      for (int tap = 0; tap < 3; ++tap) {
+        more[std::size_t(angular_acceleration_at<PhysicsWindow>(tap) + axis)] +=
+            static_cast<float>(share_of_sure * certificate.sure_step[axis]);
+      }
+      float u[4], u_of_more[4];
+      inverse.evaluate(x.data(), u);
+      inverse.evaluate(more.data(), u_of_more);
+      fell += sum_of(u_of_more, std::size_t(axis)) < sum_of(u, std::size_t(axis)) ? 1 : 0;
+    }
+    return fell;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    CHECK(certificate.sure_step[axis] > 0);
+    CHECK(certificate.sure_step[axis] < 0.1);
+  }
+  CHECK(turned(1) == 0);
+  CHECK(turned(0.003) > 0);
+}
+
+TEST_CASE("nobody knows the rounding of a network that is shown the angular acceleration, nor of a formula") {
+  using Seeing = Network<float, InputSize<PhysicsFeatures::size>, Dense<4>, Tanh, Dense<4>>;
+  const MonotoneModel<MonotoneShape<PhysicsFeatures, PathBoundedAnswer<PhysicsFeatures, Seeing>>> model(1);
+  CHECK(std::isinf(model.certificate().rounding));
+  CHECK(std::isinf(model.certificate().sure_step[2]));
 }

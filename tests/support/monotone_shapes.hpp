@@ -83,9 +83,14 @@ struct MonotoneModel {
   /// Lower bounds, then upper ones.
   Scalar& bound(int i) { return parameters[static_cast<std::size_t>(Base::parameter_count + i)]; }
 
+  /// For another vehicle than the shape's.
+  Certificate certificate(const Airframe<Scalar>& airframe) const {
+    return certificate_of<Shape>(certified_vehicle<Outputs>(airframe), parameters.data(),
+                                 {input.mean.data(), input.spread.data(), output.mean.data(), output.spread.data(),
+                                  envelope_lower.data(), envelope_upper.data()});
+  }
   Certificate certificate() const {
-    return certificate_of<Shape>(detail::signed_mix(airframe_value<Vehicle, Scalar>()), parameters.data(),
-                                 input.spread.data(), output.spread.data());
+    return certificate(airframe_value<Vehicle, Scalar>());
   }
 };
 

@@ -67,9 +67,7 @@ Flight flight_of(const Law& law, std::uint64_t seed, std::size_t rows = 900) {
 template <class Features>
 Certificate certificate_of_base(const Setting<Features>& context, const AffineMap& map, const RowSet& rows) {
   const auto model = make_trained_model(monotone_base<Setting<Features>>(map), context, rows);
-  using Model = std::decay_t<decltype(model)>;
-  return certificate_of<Model>(detail::signed_mix(PaperQuadrotor::value<float>()), model.network.parameters.data(),
-                               model.input.spread.data(), model.output.spread.data());
+  return certificate_of_trained(model);
 }
 
 }  // namespace

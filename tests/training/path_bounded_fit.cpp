@@ -75,11 +75,7 @@ Fitted fitted(const Shape& shape) {
   const auto fit = fit_path_bounded<Seeing>(context, training, validation, map, how, engine, on);
   const auto blind = fit_monotone<Blind>(context, training, validation, map, how, again, on);
   const auto model = make_trained_model(fit.answer, context, training);
-  using Model = std::decay_t<decltype(model)>;
-  return {fit,
-          certificate_of<Model>(detail::signed_mix(PaperQuadrotor::value<float>()), model.network.parameters.data(),
-                                model.input.spread.data(), model.output.spread.data()),
-          blind.error};
+  return {fit, certificate_of_trained(model), blind.error};
 }
 
 }  // namespace
@@ -131,9 +127,7 @@ TEST_CASE("without a projection the same rows do turn it; with one a network tha
     std::fill_n(to + 4, 4, 1.0F);
     std::copy(trained.parameters.begin(), trained.parameters.end(), to + 8);
     const auto model = make_trained_model(answer, context, rows);
-    using Model = std::decay_t<decltype(model)>;
-    return certificate_of<Model>(detail::signed_mix(PaperQuadrotor::value<float>()), model.network.parameters.data(),
-                                 model.input.spread.data(), model.output.spread.data());
+    return certificate_of_trained(model);
   };
   Seeing free;
   free.parameters = before;

@@ -45,7 +45,7 @@ class JudgedModelOf : public JudgedModel {
   programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return programs::derivative_figures(rows, programs::derivatives_of(model_));
   }
-  std::optional<pinnquad::Certificate> certificate() const override { return programs::certificate_of_trained(model_); }
+  std::optional<pinnquad::Certificate> certificate() const override { return programs::certificate_of_structure(model_); }
 
  private:
   Model model_;

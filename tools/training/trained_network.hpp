@@ -21,12 +21,8 @@ namespace programs {
 
 /// What is proven of a trained model by its structure; none of one without.
 template <class Model>
-std::optional<pinnquad::Certificate> certificate_of_trained(const Model& model) {
-  if constexpr (pinnquad::has_certificate<Model>) {
-    return pinnquad::certificate_of<Model>(
-        model.template output_setting<pinnquad::SignedSumOutputs, typename Model::Scalar>(),
-        model.network.parameters.data(), model.input.spread.data(), model.output.spread.data());
-  }
+std::optional<pinnquad::Certificate> certificate_of_structure(const Model& model) {
+  if constexpr (pinnquad::has_certificate<Model>) return pinnquad::certificate_of_trained(model);
   return {};
 }
 
@@ -80,7 +76,7 @@ class NetworkOfModel : public TrainedNetwork {
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return derivative_figures(rows, derivatives_of(model_));
   }
-  std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_trained(model_); }
+  std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_structure(model_); }
   void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                     const pinnquad::Provenance& provenance) const override {
     with_exported([&](const auto& model) {

@@ -67,12 +67,10 @@ template <class Model>
 ExportedTerms exported_terms(const Model& model, Provenance provenance) {
   const Airframe<double> airframe = model.template airframe<double>();
   if constexpr (has_certificate<Model>) {
-    const Certificate certificate =
-        certificate_of<Model>(model.template output_setting<SignedSumOutputs, typename Model::Scalar>(),
-                              model.network.parameters.data(), model.input.spread.data(), model.output.spread.data());
+    const Certificate certificate = certificate_of_trained(model);
     if (!certificate.proven()) {
       throw std::invalid_argument("export: " + std::string(certificate.bounded
-                                                               ? "a slope of the model is not above 0"
+                                                               ? "a slope of the model is not above its floor"
                                                                : "the bounds of the residual are none"));
     }
     provenance.slope_signs = motor_torque_signs(airframe);

@@ -46,6 +46,11 @@ struct Bounded : AnswerBase<Bounded<Inner>, typename Inner::Scalar, Inner::input
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 
+namespace detail {
+template <class Inner>
+struct FormulasOf<Bounded<Inner>> : FormulasOf<Inner> {};
+}  // namespace detail
+
 template <class Inner>
 struct Description<Bounded<Inner>> {
   template <class Sink>

@@ -7,6 +7,7 @@
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/inference/answer.hpp"
 #include "pinnquad/inference/description.hpp"
+#include "pinnquad/inference/read_features.hpp"
 #include "pinnquad/nn/jacobian.hpp"
 
 namespace pinnquad {
@@ -200,6 +201,8 @@ struct Scaled : AnswerBase<Scaled<Inner>, typename Inner::Scalar, Inner::inputs,
 template <class ScalarType, int InputCount, class Formula, class Vehicle>
 struct Analytic
     : AnswerBase<Analytic<ScalarType, InputCount, Formula, Vehicle>, ScalarType, InputCount, rotor_count, 1> {
+  static_assert(detail::SaysWhatItReads<Formula>::value,
+                "pinnquad: a base says which features it reads, by name: `reads` (inference/residual_outputs.hpp)");
   using Scalar = ScalarType;
   using Analytic::AnswerBase::forward;
 
@@ -218,6 +221,32 @@ struct Analytic
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
+
+namespace detail {
+
+template <class... Part>
+struct FormulasOfAll {
+  static constexpr bool read(const NamedFeatures& features) noexcept {
+    return (FormulasOf<Part>::read(features) && ...);
+  }
+};
+template <class First, class Second>
+struct FormulasOf<Sum<First, Second>> : FormulasOfAll<First, Second> {};
+template <class Member, int Count>
+struct FormulasOf<Ensemble<Member, Count>> : FormulasOf<Member> {};
+template <class... Part>
+struct FormulasOf<Heads<Part...>> : FormulasOfAll<Part...> {};
+/// The second is asked what the first one said.
+template <class First, class Second>
+struct FormulasOf<Then<First, Second>> : FormulasOf<First> {};
+template <class Inner>
+struct FormulasOf<Scaled<Inner>> : FormulasOf<Inner> {};
+template <class Scalar, int InputCount, class Formula, class Vehicle>
+struct FormulasOf<Analytic<Scalar, InputCount, Formula, Vehicle>> {
+  static constexpr bool read(const NamedFeatures& features) noexcept { return reads_of<Formula>(features); }
+};
+
+}  // namespace detail
 
 template <class First, class Second>
 struct Description<Sum<First, Second>> {

@@ -13,6 +13,7 @@
 #include "pinnquad/inference/model_agreement.hpp"
 #include "pinnquad/inference/model_records.hpp"
 #include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/inference/read_features.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/scaler.hpp"
 
@@ -211,7 +212,14 @@ constexpr bool require_shape() noexcept {
     if constexpr (is_output_schema<typename S::Outputs>) {
       static_assert(S::Network::outputs == OutputMap<typename S::Outputs>::size,
                     "pinnquad: the network's output count differs from the output schema's size");
+      static_assert(base_reads<typename S::Features, typename S::Outputs>(),
+                    "pinnquad: the outputs' base reads a feature that the feature set has not, or not there: "
+                    "LinearizedInverse is of what begins as PaperFeatures, RigidBodyInverse as PhysicsFeatures "
+                    "(inference/read_features.hpp)");
     }
+    static_assert(formulas_read<typename S::Features, typename S::Network>(),
+                  "pinnquad: a formula in the model's Network reads a feature that the feature set has not, or not "
+                  "there (inference/read_features.hpp)");
   }
   return detail::HasShape<S>::value;
 }

@@ -13,6 +13,7 @@
 #include "pinnquad/inference/description.hpp"
 #include "pinnquad/inference/extra_columns.hpp"
 #include "pinnquad/inference/model_agreement.hpp"
+#include "pinnquad/inference/read_features.hpp"
 
 namespace pinnquad {
 
@@ -111,19 +112,6 @@ constexpr bool describes(std::string_view text) noexcept {
   constexpr auto letters = description_letters<T>();
   return same_letters(letters.text, letters.count, text.data(), text.size());
 }
-
-/// What an output schema adds its outputs to: its `Base`, or nothing.
-struct NoBase {
-  static constexpr const char* description = "";
-};
-template <class Outputs, class = void>
-struct BaseOf {
-  using type = NoBase;
-};
-template <class Outputs>
-struct BaseOf<Outputs, std::void_t<typename Outputs::Base>> {
-  using type = typename Outputs::Base;
-};
 
 /// The instants that a feature set sees.
 template <class Features, class = void>

@@ -182,9 +182,12 @@ class ModelView : public ModelScales<ShapeType> {
       }
     }
     if constexpr (has_certificate<ShapeType>) {
-      constexpr auto mix = detail::signed_mix(airframe_value<typename ShapeType::Vehicle, Scalar>());
+      constexpr auto vehicle =
+          certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
       const Certificate certificate = certificate_of<ShapeType>(
-          mix, scalars + Layout::parameters(golden), scalars + Layout::input_spread, scalars + Layout::output_spread);
+          vehicle, scalars + Layout::parameters(golden),
+          {scalars + Layout::input_mean, scalars + Layout::input_spread, scalars + Layout::output_mean,
+           scalars + Layout::output_spread, scalars + Layout::envelope_lower, scalars + Layout::envelope_upper});
       sound &= certificate.proven();
     }
     return sound;

@@ -27,8 +27,8 @@ inline constexpr bool slopes_from_0_to_1<SoftplusLayer<Scalar, Size>> = true;
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Weighs intervals that hold 0: `outputs` sums of `inputs` products, weights row by row. Each end of a sum has terms of
-/// one sign, so that rounding errs by less than (inputs + 1) 2^-53 of it.
+/// Weighs intervals: `outputs` sums of `inputs` products, weights row by row. Where the intervals hold 0 each end of a
+/// sum has terms of one sign, so that rounding errs by less than (inputs + 1) 2^-53 of it.
 template <class Scalar>
 constexpr void weigh_intervals(const Scalar* weights, int inputs, int outputs, const double* lower, const double* upper,
                                double* sum_lower, double* sum_upper) noexcept {
@@ -71,16 +71,12 @@ struct PathBound {
 };
 
 /// Shapes of networks of which a bound is worked out at run time: `widths` of the dense layers' outputs, parameters as a
-/// Network has them. `work`: 4 x the widest.
+/// Network has them. `work`: 4 x the widest, in which the first layer's intervals stand, 0 among each: lower ends, then
+/// from `widest` on upper ones.
 template <class Scalar>
-constexpr void path_bound(const Scalar* parameters, int inputs, const int* widths, int layers, int input, double* work,
-                          int widest, double* lower, double* upper) noexcept {
+constexpr void path_bound_behind_first(const Scalar* parameters, int inputs, const int* widths, int layers,
+                                       double* work, int widest, double* lower, double* upper) noexcept {
   double *from_lower = work, *from_upper = work + widest, *to_lower = work + 2 * widest, *to_upper = work + 3 * widest;
-  for (int row = 0; row < widths[0]; ++row) {
-    const double weight = static_cast<double>(parameters[row * inputs + input]);
-    from_lower[row] = weight < 0 ? weight : 0;
-    from_upper[row] = weight > 0 ? weight : 0;
-  }
   int operations = 4;
   const Scalar* own = parameters + (inputs + 1) * widths[0];
   for (int layer = 1; layer < layers; ++layer) {
@@ -99,6 +95,38 @@ constexpr void path_bound(const Scalar* parameters, int inputs, const int* width
     lower[row] = from_lower[row] * outward;
     upper[row] = from_upper[row] * outward;
   }
+}
+
+/// By one input.
+template <class Scalar>
+constexpr void path_bound(const Scalar* parameters, int inputs, const int* widths, int layers, int input, double* work,
+                          int widest, double* lower, double* upper) noexcept {
+  for (int row = 0; row < widths[0]; ++row) {
+    const double weight = static_cast<double>(parameters[row * inputs + input]);
+    work[row] = weight < 0 ? weight : 0;
+    work[widest + row] = weight > 0 ? weight : 0;
+  }
+  path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
+}
+
+/// Along a direction, each input between two ends: tighter than the sum of the bounds by each.
+template <class Scalar>
+constexpr void path_bound_along(const Scalar* parameters, int inputs, const int* widths, int layers,
+                                const double* least, const double* most, double* work, int widest, double* lower,
+                                double* upper) noexcept {
+  detail::weigh_intervals(parameters, inputs, widths[0], least, most, work, work + widest);
+  for (int row = 0; row < widths[0]; ++row) {
+    double magnitudes = 0;  // of terms that may cancel
+    for (int i = 0; i < inputs; ++i) {
+      const double weight = static_cast<double>(parameters[row * inputs + i]);
+      const double far = -least[i] > most[i] ? -least[i] : most[i];
+      magnitudes += (weight < 0 ? -weight : weight) * far;
+    }
+    const double doubt = (inputs + 1) * std::numeric_limits<double>::epsilon() * magnitudes;
+    work[row] = work[row] - doubt < 0 ? work[row] - doubt : 0;
+    work[widest + row] = work[widest + row] + doubt > 0 ? work[widest + row] + doubt : 0;
+  }
+  path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
 }
 
 /// A network whose sight of the angular acceleration is bounded by its weights, as PathProjection leaves them: an answer

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Outputs that are added to what another inverse says: the network learns what that one leaves.
-// Contract of a Base, static and noexcept, Scalar deduced: `prepare(airframe)`, constexpr; commands(x, prepared, u) of features
-// in physical units; `slopes<FeatureCount>(x, prepared, by_x)` = du/dx, rotor_count x FeatureCount, row-major, into zeros.
+// Contract of a Base, static and noexcept, Scalar deduced: `reads`, which features of X it reads (inference/read_features.hpp);
+// `prepare(airframe)`, constexpr; commands(x, prepared, u) of features in physical units;
+// `slopes<FeatureCount>(x, prepared, by_x)` = du/dx, rotor_count x FeatureCount, row-major, into zeros;
+// optional `least_thrust_slope(airframe)`, which a certificate asks (inference/rigid_body_inverse.hpp).
 #pragma once
 
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/inference/read_features.hpp"
 #include "pinnquad/inference/rotor_map.hpp"
 
 namespace pinnquad {
@@ -14,6 +17,10 @@ namespace pinnquad {
 /// from v_dot_z, torques from omega_dot, nothing else.
 struct LinearizedInverse {
   static constexpr const char* description = "pinnquad::LinearizedInverse";
+  static constexpr std::array<ReadFeature, 4> reads = {{{2, "vdot_bz", "m/s^2"},
+                                                        {3, "wdot_x", "rad/s^2"},
+                                                        {4, "wdot_y", "rad/s^2"},
+                                                        {5, "wdot_z", "rad/s^2"}}};
 
   template <class Scalar>
   static constexpr detail::RotorMap<Scalar> prepare(const Airframe<Scalar>& airframe) noexcept {
@@ -35,6 +42,8 @@ struct LinearizedInverse {
 /// commands = base(x) + outputs.
 template <class BaseInverse>
 struct ResidualOutputs {
+  static_assert(detail::SaysWhatItReads<BaseInverse>::value,
+                "pinnquad: a base says which features it reads, by name: `reads` (inference/residual_outputs.hpp)");
   using Base = BaseInverse;  ///< what the outputs add to; a header and a block name it by its description
   static constexpr int size = rotor_count;
   static constexpr std::array<const char*, size> names = {"du1", "du2", "du3", "du4"};

@@ -4,7 +4,10 @@
 // say.
 #pragma once
 
+#include <limits>
+
 #include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/inference/read_features.hpp"
 #include "pinnquad/inference/rotor_map.hpp"
 
 namespace pinnquad {
@@ -43,9 +46,12 @@ struct RigidBody {
 /// and what begins as they do: specific force, angular acceleration, body rates.
 struct RigidBodyInverse {
   static constexpr const char* description = "pinnquad::RigidBodyInverse";
-  static constexpr bool sees_angular_acceleration = false;
   static constexpr int force_z = 2;  ///< where it stands among the features
   static constexpr int body_rates = 6;
+  static constexpr std::array<ReadFeature, 4> reads = {{{force_z, "s_z", "m/s^2"},
+                                                        {body_rates, "w_x", "rad/s"},
+                                                        {body_rates + 1, "w_y", "rad/s"},
+                                                        {body_rates + 2, "w_z", "rad/s"}}};
 
   template <class Scalar>
   static constexpr detail::RigidBody<Scalar> prepare(const Airframe<Scalar>& airframe) noexcept {
@@ -55,6 +61,20 @@ struct RigidBodyInverse {
       for (std::size_t k = 0; k < 3; ++k) body.inertia_kg_m2[i][k] = mass[1 + i][1 + k];
     }
     return body;
+  }
+  /// Least d(sum of the commands)/d(-s_z), s^2/m, while no command of its own leaves 0 to 1: each rotor's curve is
+  /// steepest at command 1. Asked by a certificate.
+  template <class Scalar>
+  static constexpr double least_thrust_slope(const Airframe<Scalar>& airframe) noexcept {
+    const detail::RotorMap<Scalar> map = detail::wrench_map(airframe);
+    double slope = 0;
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      const auto share = static_cast<double>(airframe.mass_kg * map.by[rotor][0]);
+      const auto curve = static_cast<double>(map.curve[rotor]);
+      if (share < 0 && !(curve < 1)) return -std::numeric_limits<double>::infinity();
+      slope += share / (share < 0 ? 1 - curve : 1 + curve);
+    }
+    return slope;
   }
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void commands(const Scalar* x, const detail::RigidBody<Scalar>& body,

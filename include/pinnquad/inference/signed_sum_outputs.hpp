@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/inference/read_features.hpp"
 
 namespace pinnquad {
 
@@ -76,10 +77,12 @@ struct SignedSumOutputs {
 };
 
 /// u = base(x) + A y: the sums are added to what another inverse says, a Base of inference/residual_outputs.hpp that is
-/// not shown the angular acceleration. `BaseInverse::sees_angular_acceleration` says so.
+/// not shown the angular acceleration: it is not among what the base reads.
 template <class BaseInverse>
 struct SignedSumsOn {
-  static_assert(!BaseInverse::sees_angular_acceleration,
+  static_assert(detail::SaysWhatItReads<BaseInverse>::value,
+                "pinnquad: a base says which features it reads, by name: `reads` (inference/residual_outputs.hpp)");
+  static_assert(!detail::reads_angular_acceleration<BaseInverse>(),
                 "pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration: its slope is "
                 "replaced, not added "
                 "to (inference/rigid_body_inverse.hpp)");

@@ -71,6 +71,9 @@ struct Description<Symmetrised<Inner, Odd...>> {
 
 namespace detail {
 
+template <class Inner, int... Odd>
+struct FormulasOf<Symmetrised<Inner, Odd...>> : FormulasOf<Inner> {};
+
 /// Features that a mirror about the x-z plane turns, and those that it leaves, by name: y of what is a vector, x and z of
 /// what turns, a product of an odd and an even one.
 constexpr int parity_of(std::string_view name) noexcept {

@@ -98,6 +98,22 @@ struct Withheld : AnswerBase<Withheld<Inner, FeatureCount, First...>, typename I
 }  // namespace PINNQUAD_INSTRUCTION_SET
 
 namespace detail {
+
+/// Asked of the features that are left.
+template <class Inner, int FeatureCount, int... First>
+struct FormulasOf<Withheld<Inner, FeatureCount, First...>> {
+  static constexpr bool read(const NamedFeatures& features) noexcept {
+    using Threes = Triples<FeatureCount, First...>;
+    const char* names[Threes::others]{};
+    const char* units[Threes::others]{};
+    for (int n = 0; n < Threes::others; ++n) {
+      names[n] = features.names[Threes::other(n)];
+      units[n] = features.units[Threes::other(n)];
+    }
+    return FormulasOf<Inner>::read({names, units, Threes::others});
+  }
+};
+
 /// ", number, number, ...>": what a description of numbers in a list ends with.
 template <class Sink, class... Number>
 constexpr void describe_numbers(Sink& sink, Number... number) {

@@ -8,6 +8,7 @@
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/inference/features.hpp"
 #include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/inference/read_features.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/schedule/progress.hpp"
 #include "pinnquad/training/context_airframe.hpp"
@@ -20,6 +21,9 @@ struct Context : ContextAirframe<VehicleType> {
                 "pinnquad: Context's first argument is not a feature set (inference/features.hpp)");
   static_assert(is_output_schema<Schema>,
                 "pinnquad: Context's third argument is not an output schema (inference/output_schema.hpp)");
+  static_assert(base_reads<FeatureSet, Schema>(),
+                "pinnquad: the base of Context's outputs reads a feature that the feature set has not, or not there "
+                "(inference/read_features.hpp)");
   using Features = FeatureSet;
   using Vehicle = VehicleType;
   using Outputs = Schema;
