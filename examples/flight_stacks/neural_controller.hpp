@@ -167,7 +167,7 @@ class NeuralController {
     take_checksum(models_.checksum(inverse));
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
     estimate_bias(now_us, reaction);
-    take_off_.update(now_us, situation_, reaction == Reaction::flies && asks_to_climb());
+    take_off_.update(now_us, situation_, vertical_motion(reaction));
     if constexpr (trusts) observe(now_us, reaction, inverse);
     if (reaction <= Reaction::levels) {
       pinnquad::Commands<float> answer{};
@@ -196,7 +196,7 @@ class NeuralController {
   /// A tick in which the stack asks nothing: off, or flown by hand. For who writes down every tick (recorded_controller.hpp).
   void skip(std::uint64_t /*now_us*/) noexcept {
     expected_us_ = 0;
-    take_off_.skip();
+    take_off_.skip(situation_);
     if constexpr (trusts) trust_.motion().interrupt();
   }
 
@@ -296,12 +296,19 @@ class NeuralController {
     if (inverse != nullptr) trust_.tick(now_us, known, state(), last_commands_, *inverse);
   }
 
-  /// By 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
-  bool asks_to_climb() const noexcept {
+  /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise. Without a set point it asks for neither.
+  VerticalMotion vertical_motion(Reaction reaction) const noexcept {
     constexpr float noise = 0.1f;
+    VerticalMotion motion;
+    motion.sink_m_s = local_.value().velocity_m_s[2];
+    motion.expected_fall_m_s2 = expected_m_s2_[2];
+    if (reaction != Reaction::flies) return motion;
     const pinnquad::TrajectoryPoint<float>& wanted = set_point_.value();
-    return local_.value().position_m[2] - wanted.position_m[2] > noise || wanted.velocity_m_s[2] < -noise ||
-           wanted.acceleration_m_s2[2] < -noise;
+    const float below_m = wanted.position_m[2] - local_.value().position_m[2], sink_m_s = wanted.velocity_m_s[2];
+    motion.asks_to_climb = below_m < -noise || sink_m_s < -noise || wanted.acceleration_m_s2[2] < -noise;
+    if (pinnquad::is_finite(below_m)) motion.asked_sink_m_s = outer_loop_.gains().position_1_s * below_m;
+    if (pinnquad::is_finite(sink_m_s)) motion.asked_sink_m_s += sink_m_s;
+    return motion;
   }
 
   /// The point of a trajectory that a reaction flies to; what was not asked for is what the vehicle does already.

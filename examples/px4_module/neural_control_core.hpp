@@ -3,6 +3,9 @@
 // (pinnquad_control.cpp) copies the fields of the uORB messages of the same names.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "flight_stacks/neural_controller.hpp"
 #include "propulsion.hpp"
 
@@ -63,6 +66,35 @@ struct ActuatorMotors {
   float control[4]{};
 };
 
+/// PX4's vehicle_thrust_setpoint and vehicle_torque_setpoint, FRD, normalised.
+struct BodySetpoints {
+  float thrust[3]{};
+  float torque[3]{};
+};
+
+/// What PX4's allocator would have to be asked for to set these motors: the same as they, seen from its land detector and its estimate
+/// of the hover thrust, which read no motors. The thrust is the mean control. The scale of the torques is the allocator's own for a
+/// quadrotor in X; other places of the rotors share it.
+template <class Scalar>
+BodySetpoints body_setpoints(const ActuatorMotors& motors, const pinnquad::Airframe<Scalar>& airframe) noexcept {
+  Scalar x_m(0), y_m(0);
+  for (const auto& rotor : airframe.rotors) {
+    x_m = std::max(x_m, std::abs(rotor.x_m));
+    y_m = std::max(y_m, std::abs(rotor.y_m));
+  }
+  constexpr float share = 0.25f, root_2 = 1.41421356f;
+  BodySetpoints all;
+  for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
+    const auto& rotor = airframe.rotors[i];
+    const float u = share * motors.control[i];
+    all.thrust[2] -= u;
+    if (y_m > Scalar(0)) all.torque[0] -= root_2 * u * static_cast<float>(rotor.y_m / y_m);
+    if (x_m > Scalar(0)) all.torque[1] += root_2 * u * static_cast<float>(rotor.x_m / x_m);
+    all.torque[2] += rotor.spin == pinnquad::Spin::counter_clockwise ? u : -u;
+  }
+  return all;
+}
+
 /// What the module says of itself (msg/PinnquadStatus.msg).
 struct PinnquadStatus {
   std::uint64_t timestamp{0};
@@ -114,9 +146,16 @@ class NeuralControl {
     if (!(m.xy_valid && m.z_valid && m.v_xy_valid && m.v_z_valid)) return pinnquad::Status::out_of_range;
     return controller_.local(m.timestamp_sample, {{m.x, m.y, m.z}, {m.vx, m.vy, m.vz}});
   }
+  /// On the ground a place less than 0.4 m above it does not ask to take off: PX4's estimate wanders by that while it stands. A speed
+  /// does.
   pinnquad::Status take(const TrajectorySetpoint& m) noexcept {
+    constexpr float least_climb_m = 0.4f;
     pinnquad::TrajectoryPoint<float> wanted;
     wanted.position_m = vector(m.position);
+    const bool stands = has_local_ && !(controller_.lift() > 0);
+    if (stands && wanted.position_m[2] < local_.z && wanted.position_m[2] > local_.z - least_climb_m) {
+      wanted.position_m[2] = local_.z;
+    }
     wanted.velocity_m_s = vector(m.velocity);
     wanted.acceleration_m_s2 = vector(m.acceleration);
     wanted.jerk_m_s3 = vector(m.jerk);

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@ constexpr uint32_t fallback_interval_us = 10'000;
 constexpr uint64_t register_again_us = 500'000;
 [[maybe_unused]] constexpr uint64_t configure_again_us = 1'000'000;  // of v1.16 alone
 constexpr uint64_t ask_again_us = 10'000;
+constexpr uint64_t warm_us = 20'000;  // between steps while another mode is selected
 constexpr uint64_t settings_again_us = 1'000'000;
 constexpr uint64_t known_after_us = 2'000'000;  // by then vehicle_status has the mode, or PX4 has dropped it
 
@@ -31,6 +33,20 @@ Value px4_parameter(const char* name, Value otherwise) {
   Value value = otherwise;
   const param_t handle = param_find(name);
   if (handle != PARAM_INVALID) param_get(handle, &value);
+  return value;
+}
+
+/// Of either type.
+float own_parameter(const char* name) {
+  const param_t handle = param_find(name);
+  if (handle == PARAM_INVALID) return NAN;
+  if (param_type(handle) == PARAM_TYPE_INT32) {
+    int32_t value = 0;
+    param_get(handle, &value);
+    return static_cast<float>(value);
+  }
+  float value = NAN;
+  param_get(handle, &value);
   return value;
 }
 
@@ -59,9 +75,13 @@ PinnquadControl::PinnquadControl()
             flight_stacks::SpeedLimits{_param_speed_horizontal.get(), _param_speed_up.get(), _param_speed_down.get(),
                                        _param_take_off.get()},
             pinnquad::BiasSettings<float>{_param_bias_bandwidth.get(), _param_bias_most.get()}),
-      _source(pinnquad_px4::StickSpeeds{_param_stick_horizontal.get(), _param_stick_vertical.get(),
-                                        _param_stick_vertical.get() / 2, _param_stick_yaw.get()}) {
+      _source(stick_speeds()) {
   _core.propulsion(_propulsion);
+}
+
+pinnquad_px4::StickSpeeds PinnquadControl::stick_speeds() const {
+  return {_param_stick_horizontal.get(), _param_stick_vertical.get(), _param_stick_vertical.get() / 2,
+          _param_stick_yaw.get()};
 }
 
 PinnquadControl::Publications* PinnquadControl::publications() {
@@ -72,7 +92,10 @@ PinnquadControl::Publications* PinnquadControl::publications() {
 bool PinnquadControl::flies() { return in_command.load(); }
 
 pinnquad::Status PinnquadControl::load_model(const char* path) {
-  if (!_core.model_settled()) return pinnquad::Status::out_of_range;  // the block to be written may still be read
+  if (!_core.model_settled()) {  // the block to be written may still be read
+    PX4_ERR("%s: the model before is not flown yet: once more in 0.1 s", path);
+    return pinnquad::Status::out_of_range;
+  }
   const int file = open(path, O_RDONLY);
   if (file < 0) {
     PX4_ERR("no model at %s", path);
@@ -107,10 +130,13 @@ void PinnquadControl::Run() {
     leaves();
     return;
   }
-  check_rotors();
+  check_parameters();
   keep_registered();
   if (_mode_id < 0) return;
   answer_arming_check();
+  const uint64_t now_us = hrt_absolute_time();
+  if (!_selected && now_us - _ran_us < warm_us) return;
+  _ran_us = now_us;
   take_samples();
   _core.situation({flies(), _landed});
   pinnquad_px4::ActuatorMotors motors;
@@ -133,7 +159,9 @@ void PinnquadControl::Run() {
 void PinnquadControl::read_vehicle() {
   vehicle_status_s vehicle_status;
   if (_vehicle_status_sub.update(&vehicle_status)) {
-    _selected = _mode_id >= 0 && vehicle_status.nav_state == static_cast<uint8_t>(_mode_id);
+    const bool selected = _mode_id >= 0 && vehicle_status.nav_state == static_cast<uint8_t>(_mode_id);
+    if (selected && !_selected && !_fits) _refusal_to_say = true;
+    _selected = selected;
     _armed = vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED;
     _valid_modes = vehicle_status.valid_nav_states_mask;
     in_command.store(_selected && _armed);
@@ -239,6 +267,18 @@ void PinnquadControl::publish(const pinnquad_px4::ActuatorMotors& motors) {
   for (float& control : message.control) control = NAN;
   for (int i = 0; i < 4; ++i) message.control[i] = motors.control[i];
   _publications.actuator_motors.publish(message);
+  const auto& airframe = _core.controller().vehicle().airframe();
+  const pinnquad_px4::BodySetpoints wanted = pinnquad_px4::body_setpoints(motors, airframe);
+  vehicle_thrust_setpoint_s thrust{};
+  thrust.timestamp = motors.timestamp;
+  thrust.timestamp_sample = motors.timestamp_sample;
+  memcpy(thrust.xyz, wanted.thrust, sizeof thrust.xyz);
+  _publications.thrust.publish(thrust);
+  vehicle_torque_setpoint_s torque{};
+  torque.timestamp = motors.timestamp;
+  torque.timestamp_sample = motors.timestamp_sample;
+  memcpy(torque.xyz, wanted.torque, sizeof torque.xyz);
+  _publications.torque.publish(torque);
 }
 
 void PinnquadControl::publish(const pinnquad_px4::PinnquadStatus& status) {
@@ -343,11 +383,51 @@ void PinnquadControl::keep_configured(uint64_t now_us) {
 #endif
 }
 
-void PinnquadControl::check_rotors() {
+bool PinnquadControl::parameters_fit() {
+  const pinnquad_px4::OutOfRange wrong = pinnquad_px4::out_of_range(own_parameter);
+  if (wrong.range == nullptr) return true;
+  PX4_ERR("%s is %.3f: it must be within %.3f to %.3f", wrong.range->name, static_cast<double>(wrong.value),
+          static_cast<double>(wrong.range->least), static_cast<double>(wrong.range->most));
+  return false;
+}
+
+void PinnquadControl::check_parameters() {
   parameter_update_s update;
-  if (_parameter_update_sub.update(&update)) _rotors_to_check = true;
-  if (_armed || !_rotors_to_check) return;  // in flight it would lose its mode
-  _rotors_to_check = false;
+  if (_parameter_update_sub.update(&update)) {
+    _parameters_to_check = true;
+    if (pinnquad_px4::out_of_range(own_parameter).range == nullptr) {
+      updateParams();  // what is read at start was: the core keeps it
+      _source.speeds(stick_speeds());
+    }
+  }
+  if (_parameters_to_check && !_armed) {  // in flight it would lose its mode
+    _parameters_to_check = false;
+    _fits = true;
+    check_ranges();
+    if (_fits) check_rotors();
+    if (_fits) _refusal[0] = 0;
+  }
+  if (_refusal_to_say) mavlink_log_critical(&_ground_station, "%s", _refusal);
+  _refusal_to_say = false;
+}
+
+void PinnquadControl::check_ranges() {
+  const pinnquad_px4::OutOfRange wrong = pinnquad_px4::out_of_range(own_parameter);
+  if (wrong.range == nullptr) return;
+  refuse("will not arm: %s is %.3f, its range %.3f to %.3f", wrong.range->name, static_cast<double>(wrong.value),
+         static_cast<double>(wrong.range->least), static_cast<double>(wrong.range->most));
+}
+
+template <class... Values>
+void PinnquadControl::refuse(const char* format, Values... values) {
+  char reason[sizeof _refusal];
+  snprintf(reason, sizeof reason, format, values...);
+  if (strcmp(reason, _refusal) != 0) _refusal_to_say = true;
+  memcpy(_refusal, reason, sizeof _refusal);
+  _fits = false;
+}
+
+void PinnquadControl::check_rotors() {
   pinnquad_px4::CaGeometry px4;
   px4.count = px4_parameter("CA_ROTOR_COUNT", int32_t{0});
   for (unsigned i = 0; i < pinnquad::rotor_count; ++i) {
@@ -355,24 +435,20 @@ void PinnquadControl::check_rotors() {
   }
   const auto& airframe = _core.controller().vehicle().airframe();
   const pinnquad_px4::GeometryCheck check = pinnquad_px4::check_geometry(px4, airframe);
-  const bool said = _rotors_refused;
-  _rotors_fit = check.fits();
-  _rotors_refused = !check.fits();
-  if (said) return;
   const unsigned rotor = static_cast<unsigned>(check.rotor);
   const auto& mount = airframe.rotors[check.rotor];
   switch (check.fault) {
     case pinnquad_px4::GeometryFault::count:
-      PX4_ERR("will not arm: the model's airframe has %d rotors, CA_ROTOR_COUNT says %d",
+      refuse("will not arm: the model's airframe has %d rotors, CA_ROTOR_COUNT says %d",
               static_cast<int>(pinnquad::rotor_count), static_cast<int>(px4.count));
       break;
     case pinnquad_px4::GeometryFault::place:
-      PX4_ERR("will not arm: CA_ROTOR%u_PX, _PY are %.3f, %.3f; the model's airframe has it at %.3f, %.3f m", rotor,
+      refuse("will not arm: CA_ROTOR%u_PX, _PY are %.3f, %.3f; the model's airframe has it at %.3f, %.3f m", rotor,
               static_cast<double>(px4.rotors[rotor].x), static_cast<double>(px4.rotors[rotor].y),
               static_cast<double>(mount.x_m), static_cast<double>(mount.y_m));
       break;
     case pinnquad_px4::GeometryFault::spin:
-      PX4_ERR("will not arm: CA_ROTOR%u_KM is %.3f; on the model's airframe the rotor turns %sclockwise", rotor,
+      refuse("will not arm: CA_ROTOR%u_KM is %.3f; on the model's airframe the rotor turns %sclockwise", rotor,
               static_cast<double>(px4.rotors[rotor].moment),
               mount.spin == pinnquad::Spin::counter_clockwise ? "counter-" : "");
       break;
@@ -388,7 +464,7 @@ void PinnquadControl::answer_arming_check() {
   reply.request_id = request.request_id;
   reply.registration_id = static_cast<uint8_t>(_arming_check_id);
   reply.health_component_index = arming_check_reply_s::HEALTH_COMPONENT_INDEX_NONE;
-  reply.can_arm_and_run = _core.ready() && _has_commands && _rotors_fit;
+  reply.can_arm_and_run = _core.ready() && _has_commands && _fits;
   reply.mode_req_angular_velocity = true;
   reply.mode_req_attitude = true;
   reply.mode_req_local_alt = true;
@@ -421,6 +497,7 @@ void PinnquadControl::unregister_mode() {
 }
 
 int PinnquadControl::task_spawn(int /*argc*/, char* /*argv*/[]) {
+  if (!parameters_fit()) return PX4_ERROR;
   auto* module = new PinnquadControl();  // the only allocation, at start
   if (module != nullptr) {
     starts(module);
@@ -441,8 +518,8 @@ int PinnquadControl::custom_command(int argc, char* argv[]) {
 }
 
 int PinnquadControl::print_status() {
-  PX4_INFO("mode %d, %s, %s%s", _mode_id, _selected ? "selected" : "not selected",
-           _has_commands ? "has commands" : "has no commands", _rotors_fit ? "" : ", not the model's rotors");
+  PX4_INFO("mode %d, %s, %s%s%s", _mode_id, _selected ? "selected" : "not selected",
+           _has_commands ? "has commands" : "has no commands", _fits ? "" : "; ", _refusal);
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include <px4_platform_common/log.h>
 #include <px4_platform_common/module_params.h>
 #include <px4_platform_common/px4_work_queue/ScheduledWorkItem.hpp>
+#include <systemlib/mavlink_log.h>
 
 #include <uORB/topics/actuator_motors.h>
 #include <uORB/topics/arming_check_reply.h>
@@ -30,6 +31,8 @@
 #include <uORB/topics/vehicle_land_detected.h>
 #include <uORB/topics/vehicle_local_position.h>
 #include <uORB/topics/vehicle_status.h>
+#include <uORB/topics/vehicle_thrust_setpoint.h>
+#include <uORB/topics/vehicle_torque_setpoint.h>
 #include <uORB/Publication.hpp>
 #include <uORB/Subscription.hpp>
 #include <uORB/SubscriptionCallback.hpp>
@@ -37,20 +40,22 @@
 #include "flight_stacks/recorded_controller.hpp"
 #include "model.hpp"  // the exported header: what pinnquad train wrote
 #include "neural_control_core.hpp"
+#include "parameter_ranges.hpp"
 #include "px4_version.hpp"
 #include "rotor_geometry.hpp"
 #include "set_point_source.hpp"
 #include "takeover.hpp"
 
 // Beside model.hpp there may be one that says which effects the formula knows: using FlownVehicle = pinnquad::Quadrotor<float, ...>.
-#if __has_include("flown_vehicle.hpp")
+// CMakeLists.txt says whether there is: a compiler's cache does not look for files that were not there.
+#if PINNQUAD_FLOWN_VEHICLE
 #include "flown_vehicle.hpp"
 #else
 using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
 #endif
 
 // And one that says when the model is not to be trusted, as pinnquad train writes it.
-#if __has_include("trust.hpp")
+#if PINNQUAD_TRUST
 #include "trust.hpp"
 using FlownLimits = TrainedQuadModelTrust;
 #else
@@ -71,6 +76,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
 
   /// False, and nothing is registered, if the model was refused.
   bool init();
+  /// False, and one line says which, if a parameter is beyond its range.
+  static bool parameters_fit();
 
   /// True while the motors of an armed vehicle are this module's: it must not be stopped then.
   static bool flies();
@@ -86,6 +93,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
                                         pinnquad::ModelBlockLayout<Model>::most_record_bytes();
 
   void Run() override;
+  pinnquad_px4::StickSpeeds stick_speeds() const;
   /// Reads, opens and tests a model; the one that flies stays where it is. Of the shell's thread.
   pinnquad::Status load_model(const char* path);
   /// Who has the motors, whether the vehicle stands, what other modes need.
@@ -95,8 +103,14 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   void read_registration();
   void configure_mode();
   void keep_configured(uint64_t now_us);
-  /// While it may not fly, again after each change of a parameter: whether PX4's rotors are the model's. Says once why not.
+  /// After each change of a parameter: what may change in flight changes, if it is within its range. While it may not fly, whether all
+  /// are, and whether PX4's rotors are the model's.
+  void check_parameters();
+  void check_ranges();
   void check_rotors();
+  /// Why it may not be armed: for the log and the ground station, once, and again when the mode is selected.
+  template <class... Values>
+  void refuse(const char* format, Values... values);
   void answer_arming_check();
   void take_samples();
   /// The set point of whoever asks for one: a trajectory, a place, the sticks.
@@ -131,6 +145,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   /// outputs would freeze, and the commander would not hear that the mode is unregistered.
   struct Publications {
     uORB::Publication<actuator_motors_s> actuator_motors{ORB_ID(actuator_motors)};
+    uORB::Publication<vehicle_thrust_setpoint_s> thrust{ORB_ID(vehicle_thrust_setpoint)};
+    uORB::Publication<vehicle_torque_setpoint_s> torque{ORB_ID(vehicle_torque_setpoint)};
     uORB::Publication<pinnquad_status_s> status{ORB_ID(pinnquad_status)};
     uORB::Publication<pinnquad_record_s> record{ORB_ID(pinnquad_record)};
     uORB::Publication<pinnquad_settings_s> settings{ORB_ID(pinnquad_settings)};
@@ -183,14 +199,17 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   uint64_t _registered_us{0};
   uint64_t _asked_for_takeover_us{0};
   uint64_t _settings_us{0};
+  uint64_t _ran_us{0};
   uint8_t _stale_inputs{0};  ///< of the last step, as bits
   uint32_t _valid_modes{0};  ///< as bits by nav_state
   bool _armed{false};
   bool _landed{false};
   bool _selected{false};
-  bool _rotors_to_check{true};
-  bool _rotors_fit{false};
-  bool _rotors_refused{false};  ///< and why was said
+  bool _parameters_to_check{true};
+  bool _fits{false};           ///< parameters and rotors
+  char _refusal[120]{};        ///< why not
+  bool _refusal_to_say{false};
+  orb_advert_t _ground_station{nullptr};
   bool _configured{false};      ///< PX4 has said so since the mode was selected
   bool _has_commands{true};     ///< what the next arming check is told
   int8_t _arming_check_id{-1};

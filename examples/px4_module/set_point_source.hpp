@@ -47,6 +47,8 @@ class SetPointSource {
 
   explicit SetPointSource(const StickSpeeds& speeds = {}) noexcept : speeds_(speeds) {}
 
+  void speeds(const StickSpeeds& speeds) noexcept { speeds_ = speeds; }
+
   void take(const TrajectorySetpoint& m) noexcept {
     trajectory_ = m;
     trajectory_is_new_ = true;

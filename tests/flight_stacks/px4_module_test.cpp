@@ -215,6 +215,7 @@ TEST_CASE("rotors that are not the model's: it does not arm, and says why in one
   CHECK_FALSE(world.can_arm);
   REQUIRE(px4::complaints().size() == 1);
   CHECK(px4::complaints()[0].find(says) != std::string::npos);
+  CHECK(px4::ground_station() == px4::complaints());
   set_px4_airframe(airframe);
   world.run(1000);
   CHECK_FALSE(world.can_arm);  // nobody has said so
@@ -418,6 +419,282 @@ TEST_CASE("on the ground the motors idle; told to go up, thrust comes over a sec
   CHECK(world.last.control[0] > 0.05f);
   world.run(900);
   CHECK(world.last.control[0] > 0.5f);
+}
+
+TEST_CASE("armed in the mode, hovering, landing: PX4's land detector says what is so, and PX4 disarms") {
+  for (const bool range_finder : {false, true}) {
+    for (const float height : {0.7f, 2.0f, 10.0f}) {
+      CAPTURE(range_finder);
+      CAPTURE(height);
+      Px4World world;
+      world.moves = world.detects = world.landed = true;
+      world.range_finder = range_finder;
+      world.start_and_fly();
+      REQUIRE(world.landed);
+      world.set_point.position[2] = -height;
+      world.run(4000 + 1000 * static_cast<int>(height));
+      float lowest = 100;
+      for (int i = 0; i < 2000; ++i) {
+        world.run(10);
+        lowest = std::min(lowest, world.height_m());
+        REQUIRE_FALSE(world.landed);
+      }
+      CHECK(lowest > 0.75f * height);
+      world.set_point.position[2] = world.set_point.position[0] = NAN;
+      world.set_point.velocity[2] = 0.5f;
+      for (int i = 0; i < 3000 && world.height_m() > 0.01f; ++i) world.run(10);
+      CHECK(world.height_m() <= 0.01f);
+      float highest = 0;
+      int ms = 0;
+      for (; world.armed && ms < 20'000; ms += 10) {
+        world.run(10);
+        highest = std::max(highest, world.height_m());
+      }
+      CHECK_FALSE(world.armed);
+      CHECK(highest < 0.05f);
+      CHECK(ms < 8000);
+    }
+  }
+}
+
+TEST_CASE("a slow climb is no landing, with a range finder and without") {
+  for (const bool range_finder : {false, true}) {
+    Px4World world;
+    world.moves = world.detects = world.landed = true;
+    world.range_finder = range_finder;
+    world.start_and_fly();
+    world.set_point.velocity[2] = -0.2f;
+    for (int i = 0; i < 600; ++i) {
+      world.set_point.position[2] -= 0.02f;
+      world.run(100);
+      if (i > 30) REQUIRE_FALSE(world.landed);
+    }
+    CHECK(world.armed);
+    CHECK(world.height_m() == doctest::Approx(12).epsilon(0.05));
+  }
+}
+
+TEST_CASE("told in the air that it has landed, it flies on") {
+  Px4World world;
+  world.moves = world.landed = true;
+  world.start_and_fly();
+  world.set_point.position[2] = -2;
+  world.run(5000);
+  world.set_point.position[2] = -1.9f;  // a little down
+  world.run(5000);
+  CHECK(world.height_m() == doctest::Approx(1.9).epsilon(0.05));
+  world.landed = false;
+  world.run(1000);
+  world.landed = true;
+  world.set_point.position[2] = -1;
+  world.run(5000);
+  CHECK(world.height_m() == doctest::Approx(1).epsilon(0.05));
+}
+
+TEST_CASE("motors that are stronger than the model's: it sinks as it is told, and no ground is felt in the air") {
+  for (const double stronger : {0.8, 1.3}) {
+    CAPTURE(stronger);
+    Px4World world;
+    world.stronger = stronger;
+    world.moves = world.detects = world.landed = true;
+    world.start_and_fly();
+    world.set_point.position[2] = -10;
+    world.run(15'000);
+    world.set_point.position[2] = NAN;
+    world.set_point.velocity[2] = 0.4f;
+    uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
+    for (int i = 0; i < 1500; ++i) {
+      world.run(10);
+      pinnquad_record_s record{};
+      if (record_sub.update(&record)) REQUIRE(record.lift == 1);
+      REQUIRE(world.local.vz < 0.8f);
+    }
+    CHECK(world.height_m() < 6);
+    CHECK(world.height_m() > 2);
+  }
+}
+
+TEST_CASE("armed at its own place it stays there, however its estimate of the height wanders by 30 cm") {
+  Px4World world;
+  world.moves = world.detects = world.landed = true;
+  world.start_and_fly();
+  for (int i = 0; i < 1000; ++i) {
+    const float drift = 0.3f * std::sin(0.01f * static_cast<float>(i));
+    world.local.z += drift - world.drift_m;
+    world.drift_m = drift;
+    world.run(10);
+    for (int motor = 0; motor < 4; ++motor) REQUIRE(world.last.control[motor] == doctest::Approx(0.02));
+  }
+  world.set_point.position[2] = -0.7f;
+  world.run(3000);
+  CHECK(world.height_m() > 0.3f);
+}
+
+TEST_CASE("thrust and torque set points say what the motors do, as PX4's allocator would") {
+  Px4World world;
+  world.set_point.position[1] = 0.4f;
+  world.set_point.yaw = 0.3f;
+  world.start_and_fly();
+  uORB::Subscription thrust_sub{ORB_ID(vehicle_thrust_setpoint)}, torque_sub{ORB_ID(vehicle_torque_setpoint)};
+  vehicle_thrust_setpoint_s thrust{};
+  vehicle_torque_setpoint_s torque{};
+  REQUIRE(thrust_sub.update(&thrust));
+  REQUIRE(torque_sub.update(&torque));
+  CHECK(thrust.timestamp_sample == world.last.timestamp_sample);
+  CHECK(torque.timestamp_sample == world.last.timestamp_sample);
+  // a quadrotor in X: roll and pitch by 1/sqrt(2) of the torque set point, yaw by all of it, on top of the thrust
+  const float* u = world.last.control;
+  const double half = std::sqrt(0.5);
+  const double signs[4][3] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
+  for (int i = 0; i < 4; ++i) {
+    const double made = -double(thrust.xyz[2]) + half * (signs[i][0] * double(torque.xyz[0]) + signs[i][1] * double(torque.xyz[1])) +
+                        signs[i][2] * double(torque.xyz[2]);
+    CHECK(made == doctest::Approx(double(u[i])).epsilon(1e-4));
+  }
+  CHECK(torque.xyz[0] > 0.01f);
+  CHECK(torque.xyz[2] > 0.01f);
+  world.nav_state = Px4World::hold;
+  world.run(100);
+  while (thrust_sub.update(&thrust)) {
+  }
+  world.run(500);
+  CHECK_FALSE(thrust_sub.updated());  // PX4's own controllers say it then
+}
+
+TEST_CASE("while another mode is selected the inverse is kept warm, 50 times a second") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(1500);
+  uORB::Subscription status_sub{ORB_ID(pinnquad_status)};
+  pinnquad_status_s status{};
+  static_cast<void>(status_sub.update(&status));
+  const auto steps_in_a_second = [&] {
+    int steps = 0;
+    for (int i = 0; i < 1000; ++i) {
+      world.run(1);
+      if (status_sub.update(&status)) ++steps;
+    }
+    return steps;
+  };
+  CHECK(steps_in_a_second() == 50);
+  CHECK(world.can_arm);
+  world.nav_state = static_cast<uint8_t>(world.mode_id);
+  world.run(20);
+  CHECK(steps_in_a_second() == 1000);
+}
+
+TEST_CASE("module.yaml and the module have the same ranges, and the same parameters read at start") {
+  read_parameters();
+  std::size_t known = 0;
+  for (const auto& [name, value] : px4::parameter_values()) {
+    if (name.rfind("PQ_", 0) != 0) continue;
+    CAPTURE(name);
+    ++known;
+    const pinnquad_px4::ParameterRange* found = nullptr;
+    for (const auto& range : pinnquad_px4::parameter_ranges) {
+      if (name == range.name) found = &range;
+    }
+    REQUIRE(found != nullptr);
+    CHECK(found->holds(static_cast<float>(value)));
+    CHECK(found->at_start == (parameter_bounds("reboot_required:").count(name) != 0));
+    if (parameter_bounds("min:").count(name) == 0) {
+      CHECK(found->least == 0);  // a boolean
+      CHECK(found->most == 1);
+      continue;
+    }
+    CHECK(static_cast<double>(found->least) == doctest::Approx(parameter_bounds("min:")[name]));
+    CHECK(static_cast<double>(found->most) == doctest::Approx(parameter_bounds("max:")[name]));
+  }
+  CHECK(known == std::size(pinnquad_px4::parameter_ranges));
+}
+
+TEST_CASE("a parameter beyond its range: it does not start, and one line says which") {
+  for (const auto& [name, value] : {std::pair<const char*, double>{"PQ_OUT_MIN", 1.5},
+                                    {"PQ_V_XY", -3},
+                                    {"PQ_AGE_RATES", -1},
+                                    {"PQ_AGE_ATT", -1},
+                                    {"PQ_AGE_POS", -1},
+                                    {"PQ_AGE_SP", -1},
+                                    {"PQ_G_RATE", -22},
+                                    {"PQ_STK_Z", NAN},
+                                    {"PQ_AIR_RHO", 0}}) {
+    CAPTURE(name);
+    Px4World world;
+    px4::parameter_values()[name] = value;
+    CHECK(shell("start") == PX4_ERROR);
+    CHECK_FALSE(PinnquadControl::runs());
+    REQUIRE(px4::complaints().size() == 1);
+    CHECK(px4::complaints()[0].find(name) == 0);
+  }
+}
+
+TEST_CASE("one that goes beyond its range later: not armed, the ground station hears why; back again, it may") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(1500);
+  REQUIRE(world.can_arm);
+  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
+  px4::parameter_values()["PQ_V_XY"] = -3;
+  update_pub.publish(parameter_update_s{});
+  world.run(500);
+  CHECK_FALSE(world.can_arm);
+  REQUIRE(px4::ground_station().size() == 1);
+  CHECK(px4::ground_station()[0] == "will not arm: PQ_V_XY is -3.000, its range 1.000 to 20.000");
+  world.run(1000);
+  CHECK(px4::ground_station().size() == 1);
+  world.nav_state = static_cast<uint8_t>(world.mode_id);  // a pilot who comes later hears it too
+  world.run(500);
+  CHECK(px4::ground_station().size() == 2);
+  px4::parameter_values()["PQ_V_XY"] = 5;
+  update_pub.publish(parameter_update_s{});
+  world.run(500);
+  CHECK(world.can_arm);
+  CHECK(px4::ground_station().size() == 2);
+}
+
+TEST_CASE("in flight the sticks' speeds change; what is beyond its range changes nothing") {
+  Px4World world;
+  world.sends_set_points = false;
+  world.start_and_fly();
+  uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
+  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
+  pinnquad_record_s record{};
+  const auto forward_m_s = [&] {
+    manual_control_setpoint_s sticks{};
+    sticks.valid = true;
+    sticks.pitch = 1;
+    for (int i = 0; i < 10; ++i) {
+      sticks.timestamp = World::now_us;
+      sticks_pub.publish(sticks);
+      world.run(10);
+      static_cast<void>(record_sub.update(&record));
+    }
+    return record.wanted_velocity_m_s[0];
+  };
+  CHECK(forward_m_s() == doctest::Approx(5));
+  px4::parameter_values()["PQ_STK_XY"] = 3;
+  update_pub.publish(parameter_update_s{});
+  CHECK(forward_m_s() == doctest::Approx(3));
+  px4::parameter_values()["PQ_STK_XY"] = 300;
+  update_pub.publish(parameter_update_s{});
+  CHECK(forward_m_s() == doctest::Approx(3));
+  CHECK(world.can_arm);  // it keeps its mode
+}
+
+TEST_CASE("a second model in the tick of the first is refused, and one line says so") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(1500);
+  char name[] = "pinnquad_control", command[] = "model", file[] = "etc/pinnquad/model.block";
+  char* arguments[] = {name, command, file};
+  CHECK(pinnquad_control_main(3, arguments) == PX4_OK);
+  CHECK(px4::complaints().empty());
+  CHECK(pinnquad_control_main(3, arguments) == PX4_ERROR);
+  REQUIRE(px4::complaints().size() == 1);
+  CHECK(px4::complaints()[0].find("once more") != std::string::npos);
+  world.run(100);
+  CHECK(pinnquad_control_main(3, arguments) == PX4_OK);
 }
 
 TEST_CASE("each step's record is published, and the settings once a second: what replay needs") {

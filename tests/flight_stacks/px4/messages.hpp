@@ -40,6 +40,14 @@ struct manual_control_setpoint_s {
   bool valid;
   float roll, pitch, yaw, throttle;
 };
+struct vehicle_thrust_setpoint_s {
+  uint64_t timestamp, timestamp_sample;
+  float xyz[3];
+};
+struct vehicle_torque_setpoint_s {
+  uint64_t timestamp, timestamp_sample;
+  float xyz[3];
+};
 struct vehicle_land_detected_s {
   uint64_t timestamp;
   bool landed;

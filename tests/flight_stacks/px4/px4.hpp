@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ inline uint64_t hrt_absolute_time() { return World::now_us; }
 
 namespace px4 {
 
-/// What was said by PX4_ERR, line by line.
+/// What was said by PX4_ERR or to the ground station, line by line.
 inline std::vector<std::string>& complaints() {
   static std::vector<std::string> all;
   return all;
@@ -50,6 +51,12 @@ void complain(const char* format, Values... values) {
     std::snprintf(line, sizeof line, format, values...);
     complaints().emplace_back(line);
   }
+}
+
+/// Those of them that reached the ground station.
+inline std::vector<std::string>& ground_station() {
+  static std::vector<std::string> all;
+  return all;
 }
 
 struct wq_config_t {};
@@ -104,6 +111,11 @@ inline std::map<std::string, double>& parameter_values() {
   return all;
 }
 
+inline std::set<std::string>& whole_parameters() {
+  static std::set<std::string> all;
+  return all;
+}
+
 }  // namespace px4
 
 /// PX4's parameters by name, of either type.
@@ -119,16 +131,36 @@ int param_get(param_t name, Value* value) {
   return 0;
 }
 
+constexpr int PARAM_TYPE_INT32 = 1, PARAM_TYPE_FLOAT = 2;
+/// Whole numbers of module.yaml, by their names.
+inline int param_type(param_t name) { return px4::whole_parameters().count(name) != 0 ? PARAM_TYPE_INT32 : PARAM_TYPE_FLOAT; }
+
+/// A text for the ground station, cut off as PX4's message is.
+using orb_advert_t = void*;
+template <class... Values>
+void mavlink_log_critical(orb_advert_t* publication, const char* format, Values... values) {
+  *publication = publication;
+  px4::complain(format, values...);
+  px4::ground_station().push_back(px4::complaints().back().substr(0, 126));
+}
+
+/// Values are read when they are made, and by updateParams().
 class ModuleParams {
  public:
   explicit ModuleParams(ModuleParams*) {}
   virtual ~ModuleParams() = default;
+
+ protected:
+  void updateParams() { updateParamsImpl(); }
+  virtual void updateParamsImpl() {}
 };
 
 template <class Name, class Value>
 struct Parameter {
-  Value value = static_cast<Value>(px4::parameter_values().at(Name::text));
+  Value value = read();
+  static Value read() { return static_cast<Value>(px4::parameter_values().at(Name::text)); }
   Value get() const { return value; }
+  void update() { value = read(); }
 };
 template <class Name>
 using ParamFloat = Parameter<Name, float>;
@@ -144,7 +176,9 @@ using ParamInt = Parameter<Name, int32_t>;
   }                                            \
   }
 #define PINNQUAD_TEST_STRIP(...) __VA_ARGS__
+#define PINNQUAD_TEST_NAME_OF(...)
 #define PINNQUAD_TEST_MEMBER(declaration) PINNQUAD_TEST_STRIP declaration;
+#define PINNQUAD_TEST_UPDATE(declaration) PINNQUAD_TEST_NAME_OF declaration.update();
 #define PINNQUAD_TEST_EACH1(m, x) m(x)
 #define PINNQUAD_TEST_EACH2(m, x, ...) m(x) PINNQUAD_TEST_EACH1(m, __VA_ARGS__)
 #define PINNQUAD_TEST_EACH4(m, a, b, ...) m(a) m(b) PINNQUAD_TEST_EACH2(m, __VA_ARGS__)
@@ -152,7 +186,9 @@ using ParamInt = Parameter<Name, int32_t>;
 #define PINNQUAD_TEST_EACH21(m, a, b, c, d, e, f, g, h, i, j, k, l, n, ...) \
   m(a) m(b) m(c) m(d) m(e) m(f) m(g) m(h) m(i) m(j) m(k) m(l) m(n) PINNQUAD_TEST_EACH8(m, __VA_ARGS__)
 #define PINNQUAD_TEST_EACH24(m, a, b, o, ...) m(a) m(b) m(o) PINNQUAD_TEST_EACH21(m, __VA_ARGS__)
-#define DEFINE_PARAMETERS(...) PINNQUAD_TEST_EACH24(PINNQUAD_TEST_MEMBER, __VA_ARGS__)
+#define DEFINE_PARAMETERS(...)                                                                      \
+  PINNQUAD_TEST_EACH24(PINNQUAD_TEST_MEMBER, __VA_ARGS__)                                           \
+  void updateParamsImpl() final { PINNQUAD_TEST_EACH24(PINNQUAD_TEST_UPDATE, __VA_ARGS__) }
 
 PINNQUAD_TEST_NAME(PQ_OUT_MIN)
 PINNQUAD_TEST_NAME(PQ_AGE_RATES)

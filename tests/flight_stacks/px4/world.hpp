@@ -8,9 +8,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <sstream>
+#include <string>
 #include <vector>
 
+#include "land_detector.hpp"
 #include "model.hpp"
 #include "model_blocks.hpp"
 #include "px4.hpp"
@@ -20,7 +23,13 @@ extern "C" int pinnquad_control_main(int argc, char* argv[]);
 
 namespace flight_stacks::test {
 
-/// Name and default of each parameter of module.yaml.
+/// By name, as module.yaml has them.
+inline std::map<std::string, double>& parameter_bounds(const char* which) {
+  static std::map<std::string, std::map<std::string, double>> all;
+  return all[which];
+}
+
+/// Name, type, default and range of each parameter of module.yaml.
 inline void read_parameters() {
   std::ifstream file(std::string(PINNQUAD_PX4_MODULE) + "/module.yaml");
   REQUIRE(file.good());
@@ -32,7 +41,11 @@ inline void read_parameters() {
     words >> key;
     if (key.rfind("PQ_", 0) == 0 && key.back() == ':') name = key.substr(0, key.size() - 1);
     double value = 0;
+    std::string type;
+    if (key == "type:" && words >> type && type != "float") px4::whole_parameters().insert(name);
     if (key == "default:" && words >> value) px4::parameter_values()[name] = value;
+    if (key == "reboot_required:") parameter_bounds(key.c_str())[name] = 1;
+    if ((key == "min:" || key == "max:") && words >> value) parameter_bounds(key.c_str())[name] = value;
   }
 }
 
@@ -70,6 +83,7 @@ class Px4World {
     read_parameters();
     set_px4_airframe(pinnquad::airframe_value<TrainedQuadModel::Vehicle, double>());
     px4::complaints().clear();
+    px4::ground_station().clear();
     const Block block = sound_block<TrainedQuadModel>();
     REQUIRE(std::system("mkdir -p etc/pinnquad") == 0);
     std::ofstream("etc/pinnquad/model.block", std::ios::binary)
@@ -88,6 +102,9 @@ class Px4World {
     static_cast<void>(shell("stop"));
     World::sleep_ms = nullptr;
   }
+
+  float height_m() const { return -local.z + drift_m; }
+  static constexpr uint64_t disarm_after_us = 2'000'000;  ///< COM_DISARM_LAND
 
   /// Registered, selected, armed, in the air.
   void fly() {
@@ -108,6 +125,7 @@ class Px4World {
     for (int i = 0; i < ms; ++i) {
       World::now_us += 1000;
       const uint64_t now = World::now_us;
+      if (moves) move();
       if (!attitude_stops && now % 4000 == 0) {
         vehicle_attitude_s m{};
         m.timestamp = m.timestamp_sample = now - 1000;
@@ -117,6 +135,12 @@ class Px4World {
       if (!local_stops && now % 10'000 == 0) {
         local.timestamp = local.timestamp_sample = now - 1000;
         local_pub.publish(local);
+      }
+      if (detects) {
+        landed = detector_.update(now, armed, local, range_finder ? height_m() : -1);
+        disarm_us_ = armed && landed && was_up_ ? disarm_us_ : now;
+        if (now - disarm_us_ >= disarm_after_us) armed = false;
+        was_up_ = armed && (was_up_ || !landed);
       }
       if (now % 20'000 == 0) {
         set_point.timestamp = now;
@@ -144,6 +168,7 @@ class Px4World {
         } else {
           last = motors, ++by_module;
         }
+        lasting_ = motors;
       }
     }
   }
@@ -156,6 +181,11 @@ class Px4World {
   vehicle_local_position_s local{};
   trajectory_setpoint_s set_point{};
   failsafe_flags_s flags{};
+  bool moves = false;         ///< up and down, as the motors say, over a ground
+  bool detects = false;       ///< PX4's land detector says what is landed, its commander disarms after
+  bool range_finder = false;  ///< that sees the height
+  double stronger = 1;        ///< the motors' thrust over what the model's airframe says
+  float drift_m = 0;          ///< height above what the estimate says
   // what came of it
   int mode_id = -1, registrations = 0, unregistrations = 0, by_module = 0;
   int by_others = 0;  ///< motor commands of PX4 while the module's mode is selected
@@ -166,6 +196,29 @@ class Px4World {
   bool configured = false;  ///< the mode, so that nothing of PX4 writes to the motors while it is selected
 
  private:
+  /// One millisecond of a point mass over its four rotors, which lag by 50 ms.
+  void move() {
+    const auto airframe = pinnquad::airframe_value<TrainedQuadModel::Vehicle, double>();
+    constexpr double step_s = 1e-3, lag_s = 0.05, gravity = 9.80665;
+    double thrust = 0;
+    for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
+      const double wanted = armed && lasting_.timestamp != 0 ? static_cast<double>(lasting_.control[i]) : 0;
+      turning_[i] += step_s / lag_s * (wanted - turning_[i]);
+      thrust += stronger * turning_[i] * airframe.rotors[i].thrust_scale * airframe.max_rotor_thrust_N();
+    }
+    double fall = gravity - thrust / airframe.mass_kg;
+    if (height_m() <= 0 && fall > 0) fall = 0, sink_m_s_ = sink_m_s_ > 0 ? 0 : sink_m_s_;
+    sink_m_s_ += step_s * fall;
+    local.z += static_cast<float>(step_s * sink_m_s_);
+    local.vz = static_cast<float>(sink_m_s_);
+  }
+
+  LandDetector detector_;
+  bool was_up_ = false;
+  uint64_t disarm_us_ = 0;
+  actuator_motors_s lasting_{};
+  double turning_[4]{}, sink_m_s_ = 0;
+
 #if PINNQUAD_PX4_SETPOINT_CONFIG
   /// Holds for the mode that is selected, and is gone with it.
   void take_configuration() {
