@@ -157,23 +157,24 @@ inline std::vector<NamedAirframe> candidate_airframes(const ModelHints& hints) {
 
 }  // namespace detail
 
-/// Finds out which model a block is. `each(function)` calls it with every pair of feature set and output schema to try, as
-/// each_schema() does. Throws std::invalid_argument, one line, where nothing has the block's hash.
+namespace detail {
+
+/// The model that has the block's hash, if one does.
 template <class Each>
-Identity identify(const Block& block, const ModelHints& hints, const Each& each) {
-  const std::vector<NamedAirframe> airframes = detail::candidate_airframes(hints);
+std::optional<Identity> find_identity(const Block& block, const ModelHints& hints, const Each& each) {
+  const std::vector<NamedAirframe> airframes = candidate_airframes(hints);
   std::vector<std::string> answers = {hints.answer};
-  if (hints.answer.empty()) answers = detail::candidate_answers(block);
+  if (hints.answer.empty()) answers = candidate_answers(block);
   std::optional<Identity> found;
   each([&](auto features, auto outputs) {
     using Features = decltype(features);
     using Outputs = decltype(outputs);
     using Map = pinnquad::OutputMap<Outputs>;
     if (found || Features::size != block.inputs || Map::size != block.outputs) return;
-    if (detail::base_of<Outputs>() != block.base) return;
+    if (base_of<Outputs>() != block.base) return;
     for (const std::string& text : answers) {
       for (const NamedAirframe& candidate : airframes) {
-        if (detail::shape_hash_of<Features, Outputs>(text, candidate) != block.shape_hash) continue;
+        if (shape_hash_of<Features, Outputs>(text, candidate) != block.shape_hash) continue;
         const std::optional<std::vector<NetworkSpec>> networks = parse_answer(text);
         if (!networks || static_cast<std::size_t>(parameter_count(*networks)) != block.parameter_count ||
             networks->front().inputs != block.inputs || networks->front().outputs() != block.outputs ||
@@ -187,6 +188,25 @@ Identity identify(const Block& block, const ModelHints& hints, const Each& each)
       }
     }
   });
+  return found;
+}
+
+}  // namespace detail
+
+/// Finds out which model a block is. `each(function)` calls it with every pair of feature set and output schema to try, as
+/// each_schema() does. Throws std::invalid_argument, one line, where nothing has the block's hash.
+template <class Each>
+Identity identify(const Block& block, const ModelHints& hints, const Each& each) {
+  const std::optional<Identity> found = detail::find_identity(block, hints, each);
+  if (!found && !hints.airframe.empty()) {
+    ModelHints any = hints;
+    any.airframe.clear();
+    if (const std::optional<Identity> other = detail::find_identity(block, any, each)) {
+      throw std::invalid_argument(block.path + ": a model for the airframe " +
+                                  pinnquad::printable(other->airframe.name) + ", not for --airframe " +
+                                  pinnquad::printable(hints.airframe));
+    }
+  }
   if (!found) {
     throw std::invalid_argument(block.path + ": a network of " + std::to_string(block.inputs) + " inputs, " +
                                 std::to_string(block.outputs) + " outputs and " +

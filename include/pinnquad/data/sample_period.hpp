@@ -10,6 +10,10 @@
 
 namespace pinnquad {
 
+/// Times that an exported model can state of its clock: a sample period, a lag that was removed.
+inline constexpr double longest_clock_s = 4;
+inline bool is_clock_time(double seconds) noexcept { return seconds >= 0 && seconds <= longest_clock_s; }
+
 /// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of two
 /// pieces differ by more than `tolerance` of the first: then there is no one period. To the nanosecond, as a block holds it:
 /// times are sums of steps.
