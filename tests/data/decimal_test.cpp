@@ -53,10 +53,22 @@ TEST_CASE("numbers are read and written alike under any locale") {
   check("4.9e-324", "5e-324");
   check("2.2250738585072011e-308", "2.225073858507201e-308");
   check("1.7976931348623157e308", "1.7976931348623157e+308");
-  // nearer to 0 than to the smallest number, or beyond the largest
-  check("1e-400", "refused");
+  // nearer to 0 than to the smallest number, as strtod reads them; beyond the largest
+  check("1e-400", "0");
+  check("-1e-330", "-0");
   check("0e-400", "0");
+  check("3e-324", "5e-324");
+  check("4e-320", "4e-320");
+  check("1e-99999999999999999999", "0");
+  check("0." + std::string(400, '0') + "1", "0");
+  check("0." + std::string(400, '0') + "1e300", "1e-101");
+  check("0." + std::string(400, '0') + "1e800", "refused");
+  check(std::string(400, '9') + "e-900", "0");
+  check(std::string(400, '9') + "e-300", "1e+100");
+  check(std::string(400, '9'), "refused");
   check("1e999", "refused");
+  check("1e99999999999999999999", "refused");
+  check("1e-400x", "refused");
   // forty digits decide between two neighbours: 2^53 + 1 lies half way
   check("9007199254740993.00000000000000000000000000000", "9007199254740992");
   check("9007199254740993.00000000000000000000000000001", "9007199254740994");

@@ -131,6 +131,10 @@ awk -F, -v OFS=, 'NR == 77 { $5 = 0.9 } { print }' enu.csv >table.csv
 refused 'table.csv:77:[2-5]: expected a unit quaternion in the table, found one of length 1' table.csv --mapping "$here/enu.toml"
 table '{ for (i = 5; i <= 7; ++i) if (NR > 1) $i *= 57.3 } { print }'
 refused 'table.csv: expected radians per second in columns w_x, w_y, w_z, found degrees per second' table.csv $ned --lag 0.04
+# the same flight twice, by whatever name: one would be judged on what it was trained on
+cp ned.csv copy.csv
+refused '^import: the flights ned and ned \(2\) are the same' ned.csv ned.csv $ned
+refused '^import: the flights ned and copy are the same' ned.csv copy.csv $ned
 refused '--lag: expected auto, or seconds' ned.csv $ned --lag soon
 refused '--rate: expected a number from 1 to 2000' ned.csv $ned --rate 0
 printf 'ULog\001\022\065\001 and no more' >cut.ulg

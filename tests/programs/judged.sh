@@ -46,6 +46,15 @@ edit 'NR > 2500 { $20 = 0.25 } { print }'
 edit 'NR > 2401 { $20 = 0.25 } { print }'
 refused '^train: bad\.csv:2402:20: expected commands that change in column u3, found 0\.25 in all 600 test rows$'
 
+# found before there is a folder
+for program in 'NR > 1 { $19 = 0.5 } { print }' 'NR > 1 { $1 *= 1000 } { print }'; do
+  edit "$program"
+  expect_line 2 '^train: bad\.csv:' "$pinnquad" train --flight bad.csv --out made --epochs 1 --seeds 1
+  [ ! -e made ] || fail "a refused training made a folder"
+done
+expect_line 2 '^train: cannot write absent/m.block' "$pinnquad" train --flight good.csv --out made --epochs 1 --seeds 1 --block absent/m.block
+[ ! -e made ] || fail "a refused training left its folder"
+
 # names that no struct may have
 cp good.csv bad.csv
 for name in class NULL _Model my__model errno 3rd 'a b'; do refused '--name' --name "$name"; done
@@ -84,6 +93,17 @@ grep -q 'bool beats_linear_regression = false;' linear/model.hpp || fail "the he
 grep -q 'linear_regression_r_squared = 1.0;\|linear_regression_r_squared = 0.99999' linear/model.hpp ||
   fail "linear regression does not find a linear map: $(grep r_squared linear/model.hpp)"
 grep -q '"beats_linear_regression": false' linear/report.json || fail "report.json does not say it"
+
+# slopes pinned to the airframe's on a noisy flight: the model is worse than the mean, and no network that is refuted takes its place
+"$pinnquad" fly --seed 3 --samples 2400 --gyro-noise 0.1 --out noisy.csv >/dev/null
+code=0
+"$pinnquad" train --flight noisy.csv --slopes pinned --out pinned --epochs 20 --seeds 2 >/dev/null 2>stderr.txt || code=$?
+[ "$code" -eq 1 ] || fail "exit code $code for pinned slopes on a noisy flight; said: $(cat stderr.txt)"
+[ ! -e pinned/model.hpp ] || fail "a model was exported: $(cat stderr.txt)"
+grep -q '^train: not exported: on the test rows the best structured model is worse .*; --slopes learned, ' stderr.txt || fail "said: $(cat stderr.txt)"
+"$pinnquad" train --flight noisy.csv --out learned --epochs 20 --seeds 2 >/dev/null 2>stderr.txt
+grep -q 'where the angular acceleration is not noisy, train --slopes pinned' stderr.txt || fail "recommends pinned slopes: $(cat stderr.txt)"
+"$pinnquad" certify learned/model.hpp >/dev/null || fail "a refuted model was exported of a noisy flight"
 
 # the same of a structured model, whose slopes are those of no vehicle: proven, and a warning each
 "$pinnquad" train --flight linear.csv --out sloped --epochs 3 --seeds 1 --allow-poor >/dev/null 2>stderr.txt

@@ -33,6 +33,7 @@ inline void complete(CLI::App& command, const std::string& version) {
   command.set_version_flag("--version", version, "Print the version and exit");
   command.get_help_ptr()->description("Print this help and exit");
   command.formatter(std::make_shared<HelpFormatter>());
+  refuse_empty_values(command);
   command.require_subcommand(0, 1);  // `study paper ablation` is a word too many
   for (CLI::App* part : command.get_subcommands({})) {
     part->group("Commands");

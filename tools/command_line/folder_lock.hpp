@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cerrno>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -18,7 +20,9 @@ namespace programs {
 class FolderLock {
  public:
   /// Makes the folder if it is not there. Throws OutputError, one line: it cannot be, or another program has it.
-  explicit FolderLock(const std::string& path) {
+  explicit FolderLock(const std::string& path) : path_(path) {
+    std::error_code ignored;
+    made_ = !std::filesystem::exists(path, ignored);
     make_folders(path);
     lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0) throw pinnquad::OutputError(path, pinnquad::system_reason(errno, "it does not open"));
@@ -30,9 +34,15 @@ class FolderLock {
   }
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock() { ::close(lock_); }
+  /// A folder that it made and that nothing came into goes again.
+  ~FolderLock() {
+    if (made_) ::rmdir(path_.c_str());
+    ::close(lock_);
+  }
 
  private:
+  std::string path_;
+  bool made_ = false;
   int lock_;
 };
 

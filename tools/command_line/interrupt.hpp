@@ -19,20 +19,21 @@ extern "C" inline void on_interrupt(int signal) {
   std::signal(signal, SIG_DFL);
 }
 extern "C" inline void end_interrupted(int /*signal*/) { ::_exit(exit_interrupted); }
+
+/// Ctrl-C, kill, and the end of the terminal; the last is ignored under nohup, and stays so.
+inline void at_interrupt(void (*handler)(int)) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, handler) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);
+  }
+}
 }  // namespace detail
 
-/// From here on Ctrl-C (or SIGTERM) ends the program with exit_interrupted, at once: for what writes nothing that could be half
-/// there.
-inline void end_at_interrupt() {
-  std::signal(SIGINT, detail::end_interrupted);
-  std::signal(SIGTERM, detail::end_interrupted);
-}
+/// From here on Ctrl-C (SIGTERM, SIGHUP) ends the program with exit_interrupted, at once: for what writes nothing that could be
+/// half there.
+inline void end_at_interrupt() { detail::at_interrupt(detail::end_interrupted); }
 
-/// From here on the first Ctrl-C (or SIGTERM) only sets a flag.
-inline void catch_interrupt() {
-  std::signal(SIGINT, detail::on_interrupt);
-  std::signal(SIGTERM, detail::on_interrupt);
-}
+/// From here on the first Ctrl-C (SIGTERM, SIGHUP) only sets a flag.
+inline void catch_interrupt() { detail::at_interrupt(detail::on_interrupt); }
 
 inline bool interrupted() { return detail::interrupt_wanted.load(); }
 

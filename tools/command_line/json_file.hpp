@@ -8,23 +8,22 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pinnquad/data/file_error.hpp"
+#include "command_line/nesting.hpp"
 #include "pinnquad/data/text_file.hpp"
 
 namespace programs {
 
-/// Throws InputError: the file can't be read, or is no JSON.
+/// Throws InputError: the file can't be read, is no JSON, or is nested too deep.
 inline nlohmann::json read_json_file(const std::string& path) {
   const std::string text = pinnquad::file_text(path);
+  detail::require_shallow(text, path, "JSON");
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
-    const auto before = text.begin() + static_cast<std::ptrdiff_t>(at);
-    const std::size_t line = 1 + static_cast<std::size_t>(std::count(text.begin(), before, '\n'));
-    const std::size_t start = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
-    const std::size_t column = start == std::string::npos ? at + 1 : at - start;
-    throw pinnquad::InputError(path, line, column, "JSON", at < text.size() ? "something else" : "its end");
+    throw detail::error_at(text, at, path, "JSON", at < text.size() ? "something else" : "its end");
+  } catch (const nlohmann::json::out_of_range&) {
+    throw pinnquad::InputError(path, 0, 0, "JSON of numbers that a double holds", "a larger one");
   }
 }
 

@@ -60,31 +60,40 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Value& value, Nu
   return option;
 }
 
-/// An option that takes a path. An empty one is refused: it would be the root folder, or nothing.
+/// An option that takes a path.
 inline CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path, const std::string& kind,
                              const std::string& description) {
-  const auto take = [&path, name, kind](const std::string& text) {
-    if (text.empty()) throw CLI::ValidationError(name, "expected " + kind + ", found ''");
-    path = text;
-  };
-  return app.add_option_function<std::string>(name, take, description)->type_name(kind);
+  return app
+      .add_option_function<std::string>(
+          name, [&path](const std::string& text) { path = text; }, description)
+      ->type_name(kind);
 }
 
-/// An option that takes one path or more; an empty one is refused, as by add_path.
+/// An option that takes one path or more.
 inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vector<std::string>& paths,
                               const std::string& kind, const std::string& description) {
-  const auto take = [&paths, name, kind](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      if (text.empty()) throw CLI::ValidationError(name, "expected " + kind + ", found ''");
-    }
-    paths = texts;
-  };
-  return app.add_option_function<std::vector<std::string>>(name, take, description)->type_name(kind);
+  return app
+      .add_option_function<std::vector<std::string>>(
+          name, [&paths](const std::vector<std::string>& texts) { paths = texts; }, description)
+      ->type_name(kind);
+}
+
+/// Refuses an empty text wherever an option takes a value: it would be the root folder, every model, or nothing.
+inline void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_expected_min() == 0) continue;  // a flag
+    option->check(CLI::Validator(
+        [kind = option->get_type_name()](const std::string& text) {
+          return text.empty() ? "expected " + kind + ", found ''" : std::string();
+        },
+        ""));
+  }
 }
 
 /// Adds --version and parses. Empty to go on; else the exit code: --help and --version have been printed, or one line
 /// says what is wrong.
 inline std::optional<int> parse_command_line(CLI::App& app, int argument_count, char** arguments) {
+  refuse_empty_values(app);
   app.set_version_flag("--version", app.get_name() + " (pinnquad) " + PINNQUAD_VERSION);
   try {
     app.parse(argument_count, arguments);

@@ -20,7 +20,7 @@ namespace detail {
 
 /// A value as it would stand on the command line. Throws InputError: a table, a date, a list in a list.
 inline std::string as_argument(const std::string& path, const toml::node& node) {
-  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* text = node.as_string()) return text_of_toml(path, *text);
   if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
   if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
   if (node.is_floating_point()) return pinnquad::number_text(toml_number(node));

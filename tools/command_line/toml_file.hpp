@@ -13,6 +13,7 @@
 #include <string>
 #include <system_error>
 
+#include "command_line/nesting.hpp"
 #include "pinnquad/data/decimal.hpp"
 #include "pinnquad/data/file_error.hpp"
 #include "pinnquad/data/text_file.hpp"
@@ -25,34 +26,12 @@ inline std::size_t behind_byte_order_mark(const std::string& content) {
   return content.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0;
 }
 
-/// Where the text or the comment that begins at `at` ends; `at` itself where none does.
-inline std::size_t behind_toml_text(const std::string& content, std::size_t at) {
-  const char mark = content[at];
-  if (mark == '#') return std::min(content.find('\n', at), content.size());
-  if (mark != '"' && mark != '\'') return at;
-  const std::string three(3, mark);
-  const bool long_text = content.compare(at, 3, three) == 0;
-  for (std::size_t i = at + (long_text ? 3 : 1); i < content.size(); ++i) {
-    if (content[i] == '\\' && mark == '"') {
-      ++i;
-    } else if (!long_text && (content[i] == mark || content[i] == '\n')) {
-      return i + 1;
-    } else if (long_text && content.compare(i, 3, three) == 0) {
-      return std::min(content.find_first_not_of(mark, i), i + 5);  // a long text may end in two marks of its own
-    }
-  }
-  return content.size();
-}
-
 /// TOML has characters beyond ASCII in texts and comments alone.
 inline void require_ascii_toml(const std::string& content, const std::string& path) {
   for (std::size_t i = behind_byte_order_mark(content); i < content.size();) {
-    const std::size_t behind = behind_toml_text(content, i);
+    const std::size_t behind = behind_text(content, i);
     if (behind == i && static_cast<unsigned char>(content[i]) >= 0x80) {
-      const std::size_t line_begin = i == 0 ? 0 : content.rfind('\n', i - 1) + 1;  // npos + 1 is 0
-      const auto line = std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(i), '\n') + 1;
-      throw pinnquad::InputError(path, static_cast<std::size_t>(line), i - line_begin + 1, "TOML",
-                                 "a character beyond ASCII outside texts and comments");
+      throw error_at(content, i, path, "TOML", "a character beyond ASCII outside texts and comments");
     }
     i = std::max(behind, i + 1);
   }
@@ -68,8 +47,9 @@ inline std::string in_ascii(std::string content) {
 
 }  // namespace detail
 
-/// The tables of a text; `path` names it. Throws InputError if it is no TOML.
+/// The tables of a text; `path` names it. Throws InputError if it is no TOML, or nested too deep.
 inline toml::table parse_toml(const std::string& content, const std::string& path) {
+  detail::require_shallow(content, path, "TOML");
   try {
     // toml++ 3.3 does not survive letters beyond ASCII where something is wrong: the tables are looked at without them first
     const std::string plain = detail::in_ascii(content);
@@ -112,6 +92,12 @@ inline std::string described(const toml::node& node) {
   if (node.is_number()) return pinnquad::number_text(toml_number(node));
   if (node.is_array()) return "an array of " + std::to_string(node.as_array()->size());
   return node.is_table() ? "a table" : node.is_boolean() ? "a truth value" : "a date or time";
+}
+
+/// A text of the file. One with a NUL inside would be cut there where it names a file.
+inline std::string text_of_toml(const std::string& path, const toml::value<std::string>& text) {
+  if (text.get().find('\0') != std::string::npos) refuse_toml(path, text.source(), "a text without NUL", described(text));
+  return text.get();
 }
 
 }  // namespace programs

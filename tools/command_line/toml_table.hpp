@@ -87,7 +87,7 @@ class TomlTable {
   }
   std::string as_text(const toml::node& node, const std::string& expected) const {
     if (!node.is_string()) refuse(node, expected, described(node));
-    return node.as_string()->get();
+    return text_of_toml(path_, *node.as_string());
   }
   double as_number(const toml::node& node, const NumberRange& range) const {
     if (!node.is_number()) refuse(node, "a number", described(node));

@@ -185,7 +185,8 @@ inline ImportedDataset read_dataset_folder(const std::string& path) {
   for (const nlohmann::json& entry : flights) {
     progress.update(static_cast<double>(dataset.flights.size()) / static_cast<double>(flights.size()));
     const std::string file = text(entry, "file");
-    if (fs::path(file).filename() != fs::path(file) || file.empty() || file.front() == '.') {
+    if (fs::path(file).filename() != fs::path(file) || file.empty() || file.front() == '.' ||
+        file.find('\0') != std::string::npos) {
       refuse("the name of a file in this folder", pinnquad::quoted_cell(file));
     }
     const std::string place = (fs::path(path) / file).string();

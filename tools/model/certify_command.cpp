@@ -362,11 +362,9 @@ programs::Command programs::certify_command(CLI::App& program) {
   const auto options = std::make_shared<CertifyOptions>();
   add_model(*line, options->model);
   add_model_hints(*line, options->hints);
-  line->add_option("--seconds", options->seconds,
-                   "how long, in seconds of the processor, to search a counterexample where nothing is proven")
-      ->capture_default_str()
-      ->check(CLI::Range(0.01, 3600.0));
-  line->add_option("--seed", options->seed, "of the search")->capture_default_str();
+  add_number(*line, "--seconds", options->seconds, 0.01, 3600.0,
+             "how long, in seconds of the processor, to search a counterexample where nothing is proven");
+  add_number(*line, "--seed", options->seed, std::uint64_t{0}, most_seed, "of the search")->type_name("N");
   line->add_flag("--json", options->json, "what was found as JSON");
   line->footer(
       "Examples:\n"

@@ -73,7 +73,7 @@ inline HeaderTerms stated_terms(const HeaderFile& header) {
   terms.sample_period_s = header.number("sample_period_s");
   terms.lag_removed_s = header.number("lag_removed_s");
   for (const char* time : {"sample_period_s", "lag_removed_s"}) {
-    if (pinnquad::detail::is_time(header.number(time))) continue;
+    if (pinnquad::is_clock_time(header.number(time))) continue;
     header.refuse(time, "a time of 0 to 4 s", pinnquad::number_text(header.number(time)));
   }
   terms.window_taps = static_cast<std::uint32_t>(header.number("window_taps"));

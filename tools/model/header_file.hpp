@@ -17,12 +17,23 @@
 
 namespace programs {
 
+/// A header's text with LF at the ends of its lines: a checkout may have made them CRLF.
+inline std::string header_text(const std::string& path) {
+  const std::string text = pinnquad::file_text(path);
+  std::string lines;
+  lines.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.compare(i, 2, "\r\n") != 0) lines += text[i];
+  }
+  return lines;
+}
+
 /// `static constexpr TYPE NAME = VALUE;` and `using NAME = VALUE;` of the model's struct.
 class HeaderFile {
  public:
   /// Throws InputError: not readable, no exported header.
   explicit HeaderFile(const std::string& path) : path_(path) {
-    const std::string text = pinnquad::file_text(path);
+    const std::string text = header_text(path);
     // an airframe of its own is a struct before the model's
     const std::size_t model = text.find("\n  using Scalar = ");
     if (text.find("exported by pinnquad") == std::string::npos || model == std::string::npos) {
@@ -32,7 +43,7 @@ class HeaderFile {
   }
   /// Of the struct that stands beside a model's: `first` is the name of its first constant, `expected` what the file is.
   HeaderFile(const std::string& path, const std::string& first, const std::string& expected) : path_(path) {
-    const std::string text = pinnquad::file_text(path);
+    const std::string text = header_text(path);
     const std::size_t name = text.find(" " + first + " = ");
     const std::size_t begin = name == std::string::npos ? name : text.rfind('\n', name);
     if (begin == std::string::npos) refuse(0, expected, "something else");

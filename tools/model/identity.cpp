@@ -14,7 +14,16 @@ std::optional<Identity> find_identity(const Block& block, const ModelHints& hint
 }
 
 Identity identify(const Block& block, const ModelHints& hints) {
-  std::optional<Identity> found = find_identity(block, hints);
+  const std::optional<Identity> found = find_identity(block, hints);
+  if (!found && !hints.airframe.empty()) {
+    ModelHints any = hints;
+    any.airframe.clear();
+    if (const std::optional<Identity> other = find_identity(block, any)) {
+      throw std::invalid_argument(block.path + ": a model for the airframe " +
+                                  pinnquad::printable(other->airframe.name) + ", not for --airframe " +
+                                  pinnquad::printable(hints.airframe));
+    }
+  }
   if (!found) {
     throw std::invalid_argument(block.path + ": a network of " + std::to_string(block.inputs) + " inputs, " +
                                 std::to_string(block.outputs) + " outputs and " +

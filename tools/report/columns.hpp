@@ -11,6 +11,8 @@
 
 namespace programs {
 
+constexpr int study_models = 14;  ///< of Table 2
+
 /// One recorded flight: what kind it is of (D1, D2, D3), and the seed it was flown from.
 struct StudyFlight {
   std::string name;

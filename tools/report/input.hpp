@@ -33,7 +33,7 @@ inline ReportInput read_report_input(const std::string& folder) {
   input.folder = folder;
   input.settings = read_study_settings(folder + "/study.json");
   std::size_t cut_rows = 0;
-  std::vector<StudyRow> rows = read_study_rows(folder + "/rows.csv", cut_rows);
+  std::vector<StudyRow> rows = read_study_rows(folder + "/rows.csv", input.settings, cut_rows);
   input.study = make_study(std::move(rows), input.settings.flights, input.settings.weights);
   input.study.cut_rows = cut_rows;
   for (const int model : {2, 4}) {

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,11 +18,10 @@
 
 #include "pinnquad/data/csv_table.hpp"
 #include "report/columns.hpp"
+#include "report/settings.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {
-
-constexpr int study_models = 14;  ///< of Table 2
 
 /// One training, judged on its test block. A figure that is not finite (a training that diverged, a share of nothing)
 /// is NaN: it is shown and left out of means and comparisons.
@@ -35,6 +37,24 @@ struct StudyRow {
 };
 
 namespace detail {
+
+/// What figures of a kind can be, by how their columns' names begin; those that are not named can be anything.
+struct FigureRange {
+  const char* begin;
+  double least, most;
+  const char* words;
+};
+inline constexpr double no_limit = std::numeric_limits<double>::infinity();
+inline constexpr std::array<FigureRange, 10> figure_ranges = {{{"mae", 0, no_limit, "an error of 0 or more"},
+                                                               {"rmse", 0, no_limit, "an error of 0 or more"},
+                                                               {"validation_mae", 0, no_limit, "an error of 0 or more"},
+                                                               {"r2", -no_limit, 1, "at most 1"},
+                                                               {"angle_difference", 0, 180, "degrees from 0 to 180"},
+                                                               {"raw_angle_difference", 0, 180, "degrees from 0 to 180"},
+                                                               {"correlation", -1, 1, "a value from -1 to 1"},
+                                                               {"target_correlation", -1, 1, "a value from -1 to 1"},
+                                                               {"sign_violation_share", 0, 1, "a share from 0 to 1"},
+                                                               {"training_s", 0, no_limit, "0 seconds or more"}}};
 
 /// The cells of one line of rows.csv, each with its place for the message.
 struct RowCells {
@@ -60,6 +80,7 @@ struct RowCells {
     return value;
   }
 
+  /// A figure: NaN where it is not finite, else within what its kind can be.
   double number(std::size_t column) const {
     const std::string_view cell = text(column);
     for (const std::string_view undefined : {"nan", "-nan", "inf", "-inf"}) {
@@ -67,16 +88,38 @@ struct RowCells {
     }
     double value = 0;
     if (!pinnquad::parse_number(cell, value)) refuse(column, "a number");
+    constexpr double spare = 1e-9;  // of a quotient's rounding
+    for (const FigureRange& range : figure_ranges) {
+      if (columns[column].rfind(range.begin, 0) != 0) continue;
+      if (!(value >= range.least - spare && value <= range.most + spare)) refuse(column, range.words);
+      break;
+    }
     return value;
   }
 };
 
+/// Of commands that are not finite neither error is; of others both are.
+inline void require_whole_errors(const RowCells& at, const StudyRow& row) {
+  for (std::size_t column = 0; column < at.columns.size(); ++column) {
+    const std::string& name = at.columns[column];
+    if (name.rfind("mae", 0) != 0) continue;
+    const std::string other = "rmse" + name.substr(3);
+    const bool finite = std::isfinite(row.figure(name)), other_is = std::isfinite(row.figure(other));
+    if (finite == other_is) continue;
+    const auto wrong = finite ? std::find(at.columns.begin(), at.columns.end(), other) - at.columns.begin()
+                              : static_cast<std::ptrdiff_t>(column);
+    at.refuse(static_cast<std::size_t>(wrong), "a finite error beside a finite " + (finite ? name : other));
+  }
+}
+
 }  // namespace detail
 
 /// Reads rows.csv; columns by name, in any order, others ignored. Throws InputError with file, line and column: no
-/// readable file, a missing column, a row of other length, a cell that is not what its column holds, a training twice.
+/// readable file, a missing column, a row of other length, a cell that is not what its column holds, a training twice or one
+/// that the study has not.
 /// A last line without an end (a run was killed while it wrote) is left out and counted in `cut_rows` if it is not whole.
-inline std::vector<StudyRow> read_study_rows(const std::string& path, std::size_t& cut_rows) {
+inline std::vector<StudyRow> read_study_rows(const std::string& path, const StudySettings& settings,
+                                             std::size_t& cut_rows) {
   cut_rows = 0;
   constexpr std::uint64_t most = ~std::uint64_t{0}, most_epochs = 1000000;
   const std::string text = pinnquad::file_text(path);
@@ -111,14 +154,21 @@ inline std::vector<StudyRow> read_study_rows(const std::string& path, std::size_
     const detail::RowCells at{path, line_number, columns, fields, cells};
     StudyRow row;
     row.model = static_cast<int>(at.count(0, 1, study_models, "a model of Table 2, 1 to 14,"));
+    if (!settings.plans(row.model)) at.refuse(0, "a model of study.json");
     row.flight.name = std::string(at.text(1));
     if (row.flight.name.empty()) at.refuse(1, "a flight's name");
     row.flight.seed = at.count(2, 0, most, "a seed");
+    if (!settings.plans(row.flight)) at.refuse(2, "the seed of a flight " + row.flight.name + " of study.json");
     row.seed = at.count(3, 0, most, "a seed");
     row.epochs = at.count(4, 0, most_epochs, "a number of epochs");
+    const bool trained = row.model > 1;
+    if (settings.epochs > 0 && row.epochs != settings.epochs && (trained || row.epochs > 0)) {
+      at.refuse(4, "the epochs of study.json, " + std::to_string(settings.epochs) + ",");
+    }
     row.weights = std::string(at.text(5));
     if (row.weights != "final" && row.weights != "best") at.refuse(5, "final or best");
     for (std::size_t column = 6; column < columns.size(); ++column) row.figures[columns[column]] = at.number(column);
+    detail::require_whole_errors(at, row);
     const auto [first, fresh] = lines.try_emplace({row.model, row.flight, row.seed, row.weights}, line_number);
     if (!fresh) {
       throw pinnquad::InputError(path, line_number, 0, "one row per training",

@@ -16,24 +16,29 @@
 #include "command_line/listed.hpp"
 #include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
-#include "report/rows.hpp"
+#include "report/columns.hpp"
 
 namespace programs {
 
 /// Keys that a report reads, all optional: `flights` (list of {name, seed}: the first of each name is Table 2's),
 /// `flight_seed` (that of Table 2's flights), `seeds` (how many, or which), `models` (numbers, or objects with `id` and
-/// rows of the split), `weights` ("final" or "best": which are judged), `recipe` (lambda_max, cycles, hold), `kind`.
+/// rows of the split), `weights` ("final" or "best": which are judged), `epochs` (of every network), `recipe` (lambda_max, cycles, hold),
+/// `kind`.
 struct StudySettings {
   nlohmann::json all;
   std::vector<StudyFlight> flights;
   std::string weights = "final";
   std::size_t seeds = 0;              ///< each network should have; 0 if not said
+  std::uint64_t epochs = 0;           ///< of every network's training; 0 if not said
   std::vector<int> models;            ///< that should be there; empty if not said: all
   std::map<int, std::string> splits;  ///< rows to train, validate, test
   pinnquad::CyclicalAnnealing annealing;
 
   bool plans(int model) const {
     return models.empty() || std::find(models.begin(), models.end(), model) != models.end();
+  }
+  bool plans(const StudyFlight& flight) const {
+    return flights.empty() || std::find(flights.begin(), flights.end(), flight) != flights.end();
   }
 };
 
@@ -80,6 +85,7 @@ inline StudySettings read_study_settings(const std::string& path) {
   const nlohmann::json seeds = find("seeds");
   if (seeds.is_array()) settings.seeds = seeds.size();
   if (seeds.is_number_unsigned()) settings.seeds = seeds.get<std::size_t>();
+  if (find("epochs").is_number_unsigned()) settings.epochs = find("epochs").get<std::uint64_t>();
   for (const nlohmann::json& model : find("models")) detail::read_planned_model(model, settings);
   if (find("flight_seed").is_number_unsigned()) {
     const auto seed = find("flight_seed").get<std::uint64_t>();

@@ -24,8 +24,8 @@ inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes,
     doubts.push_back(
         std::string("the ") + axis_names[axis] +
         " slope is not the airframe's: trained on quiet or noisy flights, on a log with rotor lag or latency "
-        "in it, or for another airframe; train --slopes pinned takes the airframe's slope in hover instead "
-        "of learning one");
+        "in it, or for another airframe; where the angular acceleration is not noisy, train --slopes pinned "
+        "takes the airframe's slope in hover instead of learning one");
   }
   return doubts;
 }

@@ -24,8 +24,6 @@ struct Chosen {
   LossName loss;
   std::optional<std::size_t> best;  ///< of the results; none: nothing is there to be exported
   pinnquad::Verdict verdict{};      ///< where there is one
-  /// Why the kinds that would have gone first did not.
-  std::vector<std::string> passed_over{};
 
   /// "best structured model".
   std::string name() const { return "best " + with_kind(loss); }
@@ -42,28 +40,13 @@ inline std::string reason_of_none(const LossName& loss, const std::vector<Result
   return "no " + with_kind(loss) + (none ? " was finished" : " predicts finite commands on the validation rows");
 }
 
-/// The first kind in the order of export whose best model may be exported; else the first that has a best model; else
-/// the first. `regression_r_squared`: see Verdict.
+/// The best model, by the validation rows, of the kind that is exported. `regression_r_squared`: see Verdict.
 inline Chosen chosen_export(const std::vector<LossName>& losses, const std::vector<Result>& results,
                             double regression_r_squared) {
-  const std::vector<LossName> order = export_order(losses);
-  std::optional<Chosen> poor;
-  std::vector<std::string> passed_over;
-  for (const LossName& loss : order) {
-    Chosen chosen{loss, best_of(results, loss.title)};
-    if (!chosen.best) {
-      passed_over.push_back(reason_of_none(loss, results));
-      continue;
-    }
-    chosen.verdict = pinnquad::verdict_on(results[*chosen.best].test.errors, regression_r_squared);
-    if (!chosen.verdict.worse_than_mean()) {
-      chosen.passed_over = passed_over;
-      return chosen;
-    }
-    passed_over.push_back(chosen.poor());
-    if (!poor) poor = chosen;
-  }
-  return poor ? *poor : Chosen{order.front(), {}};
+  const LossName kind = exported_kind(losses);
+  Chosen chosen{kind, best_of(results, kind.title)};
+  if (chosen.best) chosen.verdict = pinnquad::verdict_on(results[*chosen.best].test.errors, regression_r_squared);
+  return chosen;
 }
 
 }  // namespace programs

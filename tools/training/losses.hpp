@@ -71,17 +71,18 @@ inline const LossName* compared_with(const std::vector<LossName>& losses, const 
   return baseline;
 }
 
-/// Whose best model is exported, and whose where that one must not be: the structured ones', then the physics-informed
-/// ones' or, where those were not asked for, the first's.
-inline std::vector<LossName> export_order(const std::vector<LossName>& losses) {
-  std::vector<LossName> order, networks;
-  for (const LossName& loss : losses) (is_structured(loss) ? order : networks).push_back(loss);
-  if (networks.empty()) return order;
-  const auto informed = std::find_if(networks.begin(), networks.end(), [](const LossName& loss) {
+/// Of the networks those whose best may be exported: the physics-informed ones or, where those were not asked for, the first's.
+/// The structured ones' where there are no networks.
+inline LossName exported_network(const std::vector<LossName>& losses) {
+  const auto informed = std::find_if(losses.begin(), losses.end(), [](const LossName& loss) {
     return loss.key == std::string(physics_informed.key);
   });
-  order.push_back(informed == networks.end() ? networks.front() : *informed);
-  return order;
+  return informed == losses.end() ? losses.front() : *informed;
+}
+
+/// Whose best model is exported: the structured ones', whose signs are proven; a network only where none of those was asked for.
+inline LossName exported_kind(const std::vector<LossName>& losses) {
+  return std::any_of(losses.begin(), losses.end(), is_structured) ? structured : exported_network(losses);
 }
 
 }  // namespace programs

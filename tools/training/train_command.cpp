@@ -124,9 +124,6 @@ std::string reason_against_export(const TrainOptions& options, const programs::C
       chosen.name().c_str(), verdict.test_r_squared, verdict.worst_motor_r_squared,
       verdict.linear_regression_r_squared);
   std::fflush(stdout);
-  for (const std::string& reason : chosen.passed_over) {
-    report.warn(reason + "; the " + chosen.name() + " is exported instead");
-  }
   if (verdict.worse_than_mean()) {
     if (!options.allow_poor) return chosen.poor();
     report.warn("NOT FOR FLIGHT: the " + chosen.name() + " is worse than the mean of the commands");
@@ -143,10 +140,17 @@ std::string reason_against_export(const TrainOptions& options, const programs::C
   return {};
 }
 
+/// What may help where the best model is worse than the mean.
+std::string instead_of_poor(const TrainOptions& options, const programs::LossName& loss) {
+  if (!programs::is_structured(loss)) return "more epochs or a better flight, or --allow-poor";
+  const std::string learned = options.slopes == "pinned" ? "--slopes learned, " : "";
+  return learned + "a better flight, --allow-poor, or --recipe paper, of whose networks nothing is proven";
+}
+
 /// A model that is proven may err more than the network that is not.
 void warn_of_better_network(const std::vector<programs::LossName>& losses, const std::vector<programs::Result>& results,
                             const programs::Chosen& chosen, programs::TrainingReport& report) {
-  const programs::LossName network = programs::export_order(losses).back();
+  const programs::LossName network = programs::exported_network(losses);
   const std::optional<std::size_t> other = programs::best_of(results, network.title);
   const double error = results[*chosen.best].validation_error;
   if (!programs::is_structured(chosen.loss) || !other || !(results[*other].validation_error < error)) return;
@@ -229,11 +233,7 @@ void print_training_time(const std::vector<programs::LossName>& losses, const st
 
 int train_judge_export(const TrainOptions& options, const programs::Recipe& recipe,
                        const std::vector<programs::LossName>& losses, const programs::NamedAirframe& given,
-                       const Dataset& dataset) {
-  const RowSplit split = dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
-  programs::require_varied_commands(options.flights, dataset, split.train, "training");
-  programs::require_varied_commands(options.flights, dataset, split.validation, "validation");
-  programs::require_varied_commands(options.flights, dataset, split.test, "test");
+                       const Dataset& dataset, const RowSplit& split) {
   programs::TrainingPlan plan{
       {given.name, given.value},
       !programs::is_airframe_file(options.airframe),
@@ -308,7 +308,7 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
     say_certificate(options, *exported.network, plan.airframe, report);
     report.write_exported(folder + "model.hpp", options.block);
   } else {
-    programs::complain("train", "not exported: " + reason + "; more epochs or a better flight, or --allow-poor" +
+    programs::complain("train", "not exported: " + reason + "; " + instead_of_poor(options, chosen.loss) +
                                     earlier_export(options));
   }
   // last: a picture that cannot be drawn costs nothing else
@@ -373,11 +373,15 @@ int train_chosen(const TrainOptions& options) {
   require_separate_files(options);
   programs::end_at_interrupt();  // while nothing is worth keeping
   const Dataset dataset = programs::read_flights(options.flights, minimum_rows);
+  const RowSplit split = dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
+  programs::require_varied_commands(options.flights, dataset, split.train, "training");
+  programs::require_varied_commands(options.flights, dataset, split.validation, "validation");
+  programs::require_varied_commands(options.flights, dataset, split.test, "test");
   const programs::FolderLock folder(options.out);
   // what cannot be written is found before the training
   for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
   if (!options.block.empty()) AtomicFile probe(options.block);
-  return train_judge_export(options, recipe, losses, airframe, dataset);
+  return train_judge_export(options, recipe, losses, airframe, dataset, split);
 }
 
 void add_options(CLI::App& app, TrainOptions& options) {
@@ -428,8 +432,8 @@ void add_options(CLI::App& app, TrainOptions& options) {
   app.add_option(
          "--slopes", options.slopes,
          "how much the command sums of the recipe structured's model rise with the angular acceleration: learned "
-         "of the flights, or pinned to the airframe's in hover, where quiet or noisy flights, rotor lag or latency "
-         "hide them")
+         "of the flights, or pinned to the airframe's in hover, where quiet flights, rotor lag or latency hide them; "
+         "the noise of an angular acceleration then goes into the commands")
       ->check(CLI::IsMember({"learned", "pinned"}))
       ->type_name("learned|pinned")
       ->capture_default_str();

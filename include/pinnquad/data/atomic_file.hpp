@@ -10,6 +10,8 @@
 #include <string>
 #include <system_error>
 
+#include <unistd.h>
+
 #include "pinnquad/data/file_error.hpp"
 #include "pinnquad/data/partial_file.hpp"
 
@@ -19,7 +21,7 @@ namespace pinnquad {
 /// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file; one that
 /// a killed program left is taken up again by the next writer of that path, one of a living writer is left alone.
 /// A link is followed: its target is replaced. Whole after a crash of the program, not after a loss of power (no sync).
-/// Throws OutputError, one line: folder missing or not writable, path is a folder or a device, disk full.
+/// Throws OutputError, one line: folder missing or not writable, path is a folder, a device or write-protected, disk full.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path) : path_(path), target_(resolve(path)) {
@@ -88,6 +90,7 @@ class AtomicFile {
     if (fs::exists(status) && !fs::is_regular_file(status)) {
       throw OutputError(path, "it is not a regular file");
     }
+    if (fs::exists(status)) require_writable(path, status);
     if (!fs::is_symlink(fs::symlink_status(path, error))) {
       return path;
     }
@@ -96,6 +99,15 @@ class AtomicFile {
       throw OutputError(path, "it is a link to nowhere");
     }
     return target;
+  }
+
+  /// A file that nobody may write is kept as it is, though its folder would let it be replaced; that of root is no exception.
+  static void require_writable(const std::string& path, const std::filesystem::file_status& status) {
+    using std::filesystem::perms;
+    constexpr perms to_write = perms::owner_write | perms::group_write | perms::others_write;
+    if ((status.permissions() & to_write) == perms::none || ::access(path.c_str(), W_OK) != 0) {
+      throw OutputError(path, "it is write-protected");
+    }
   }
 
   /// Removes the partial file, if there still is one.

@@ -25,7 +25,7 @@ struct CsvTable {
 };
 
 /// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column that is
-/// missing or there twice.
+/// missing or there twice, and for cells between semicolons or tabs.
 inline std::vector<std::size_t> locate_columns(const std::string& path, const std::vector<std::string_view>& header,
                                                const std::vector<std::string>& columns) {
   std::vector<std::size_t> fields;
@@ -41,6 +41,12 @@ inline std::vector<std::size_t> locate_columns(const std::string& path, const st
       found = i;
     }
     if (found == missing) {
+      const bool semicolons = header.size() == 1 && header[0].find(';') != std::string_view::npos;
+      const bool tabs = header.size() == 1 && header[0].find('\t') != std::string_view::npos;
+      if (semicolons || tabs) {
+        throw InputError(path, 1, 0, "commas between the cells (export the table with them)",
+                         semicolons ? "semicolons" : "tabs");
+      }
       throw InputError(path, 1, 0, "a column named " + name,
                        "none of that name among " + std::to_string(header.size()) + " columns");
     }

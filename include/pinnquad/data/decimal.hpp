@@ -51,37 +51,34 @@ class PlainLocale {
 
 /// The digits of [first, last) as from_chars takes them: sign, digits with a point, exponent. strtod would also take blanks,
 /// a plus sign and hexadecimal.
-inline bool is_decimal(const char* first, const char* last, bool& is_zero) noexcept {
-  const auto digits = [&](bool& zero) {
+inline bool is_decimal(const char* first, const char* last) noexcept {
+  const auto digits = [&] {
     const char* begin = first;
-    for (; first != last && *first >= '0' && *first <= '9'; ++first) zero = zero && *first == '0';
+    while (first != last && *first >= '0' && *first <= '9') ++first;
     return first - begin;
   };
-  is_zero = true;
-  bool ignored = true;
   if (first != last && *first == '-') ++first;
-  auto count = digits(is_zero);
+  auto count = digits();
   if (first != last && *first == '.') {
     ++first;
-    count += digits(is_zero);
+    count += digits();
   }
   if (count == 0) return false;
   if (first != last && (*first == 'e' || *first == 'E')) {
     ++first;
     if (first != last && (*first == '+' || *first == '-')) ++first;
-    if (digits(ignored) == 0) return false;
+    if (digits() == 0) return false;
   }
   return first == last;
 }
 
-/// The whole of [first, last) as a number; false for text, and for what only 0 or infinity is nearest to.
+/// The whole of [first, last) as the nearest number; false for text, and for what only infinity is nearest to.
 inline bool read_number(const char* first, const char* last, double& value) {
-  bool is_zero = false;
-  if (!is_decimal(first, last, is_zero)) return false;
+  if (!is_decimal(first, last)) return false;
   const std::string text(first, last);  // ends with the zero that strtod wants
   const PlainLocale plain;
   value = std::strtod(text.c_str(), nullptr);
-  return is_finite(value) && (value != 0.0 || is_zero);
+  return is_finite(value);
 }
 
 /// Writes the number and returns its end; the buffer holds `longest_number`.
@@ -105,10 +102,32 @@ inline char* print_number(char* buffer, double value) {
 
 #else
 
-/// The whole of [first, last) as a number; false for text, and for what only 0 or infinity is nearest to.
+/// Of a decimal number that from_chars finds out of range: whether it is too small for a double, not too large.
+inline bool is_tiny(const char* first, const char* last) noexcept {
+  long long magnitude = 0;  // of the first digit that is not 0: its place before the point, or less 0 behind it
+  bool behind_point = false, found = false;
+  for (; first != last && *first != 'e' && *first != 'E'; ++first) {
+    found = found || (*first >= '1' && *first <= '9');
+    if (*first == '.') behind_point = true;
+    if (*first >= '0' && *first <= '9' && found != behind_point) magnitude += behind_point ? -1 : 1;
+  }
+  if (first == last || ++first == last) return magnitude <= 0;
+  if (*first == '+') ++first;
+  long long exponent = 0;
+  const bool minus = first != last && *first == '-';
+  if (std::from_chars(first, last, exponent).ec != std::errc()) return minus;
+  return magnitude + exponent <= 0;
+}
+
+/// The whole of [first, last) as the nearest number; false for text, and for what only infinity is nearest to.
 inline bool read_number(const char* first, const char* last, double& value) {
   const std::from_chars_result result = std::from_chars(first, last, value);
-  return result.ec == std::errc() && result.ptr == last && is_finite(value);
+  if (result.ptr != last) return false;
+  if (result.ec == std::errc::result_out_of_range && is_tiny(first, last)) {
+    value = *first == '-' ? -0.0 : 0.0;
+    return true;
+  }
+  return result.ec == std::errc() && is_finite(value);
 }
 
 /// Writes the number and returns its end; the buffer holds `longest_number`.

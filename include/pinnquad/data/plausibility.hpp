@@ -18,7 +18,9 @@
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/degrees.hpp"
 #include "pinnquad/data/file_error.hpp"
+#include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/data/split.hpp"
+#include "pinnquad/inference/model_agreement.hpp"
 
 namespace pinnquad {
 
@@ -153,11 +155,33 @@ inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t
   return worst;
 }
 
+/// Rows further apart than those of any flight: a clock of another unit.
+inline std::optional<Implausible> find_other_clock(const Flight& flight) {
+  RowSet all;
+  all.add(flight, {0, flight.size()});
+  const double period_s = sample_period_s(all);
+  if (is_clock_time(period_s)) return std::nullopt;
+  return Implausible{1, 0, "rows at most " + number_text(longest_clock_s) + " s apart " + column_text(0),
+                     number_text(period_s) + " (milliseconds? Then write t / 1000)"};
+}
+
+/// True where all three body rates stand still: a sensor that has stopped fits no attitude, whatever its unit.
+inline bool has_frozen_rates(const Flight& flight) {
+  return std::all_of(flight.begin(), flight.end(), [&flight](const Sample& sample) {
+    return sample.body_rates_rad_s == flight.front().body_rates_rad_s;
+  });
+}
+
 /// Angles or rates that fit each other only in degrees.
 inline std::optional<Implausible> find_degrees(const Flight& flight) {
   constexpr std::array<std::size_t, 3> angle_fields = {13, 14, 15};
   constexpr std::size_t first_rate_field = 10;
   const DegreesFound found = find_degrees_by_motion(flight);
+  const bool any = found.body_rates || found.angle[0] || found.angle[1] || found.angle[2];
+  if (any && has_frozen_rates(flight)) {
+    return Implausible{0, first_rate_field, "body rates that change, as the attitude does, in columns w_x, w_y, w_z",
+                       "the same in all " + std::to_string(flight.size()) + " rows"};
+  }
   for (std::size_t angle = 0; angle < angle_fields.size(); ++angle) {
     if (!found.angle[angle]) continue;
     return Implausible{0, angle_fields[angle], "radians " + column_text(angle_fields[angle]),
@@ -188,10 +212,11 @@ inline InputError implausible_in_file(const std::string& path, const Implausible
 
 }  // namespace detail
 
-/// The first reason, in this order, why these rows are no flight that a network may learn from: commands outside 0..1, angles
-/// or rates in degrees, a cell outside its column's range, a cell like none of its neighbours. None for a flight.
+/// The first reason, in this order, why these rows are no flight that a network may learn from: commands outside 0..1, a clock
+/// of another unit, body rates that stand still while the attitude turns, angles or rates in degrees, a cell outside its column's range, a cell like none of its neighbours. None for a flight.
 inline std::optional<Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
+  if (auto found = detail::find_other_clock(flight)) return found;
   if (auto found = detail::find_degrees(flight)) return found;
   if (auto found = detail::find_out_of_range(flight)) return found;
   for (std::size_t field = 0; field < sample_value_count; ++field) {

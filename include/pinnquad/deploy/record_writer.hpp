@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/inference/block_records.hpp"
@@ -53,8 +54,8 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
   if (!is_finite(from.command_lower) || !is_finite(from.command_upper) || !(from.command_lower <= from.command_upper)) {
     refuse("the range of the commands is none");
   }
-  if (!is_time(from.sample_period_s)) refuse("the sample period is not one of 0 to 4 s");
-  if (!is_time(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 4 s");
+  if (!is_clock_time(from.sample_period_s)) refuse("the sample period is not one of 0 to 4 s");
+  if (!is_clock_time(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 4 s");
   constexpr double window_s = WindowOf<Features>::period_s;
   if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
     refuse("the sample period is not that of the features' window");

@@ -152,7 +152,7 @@ class BlockRecordReader {
   static constexpr bool has_base = !std::is_same_v<Base, detail::NoBase>;
   using Window = detail::WindowOf<Features>;
   static constexpr std::uint32_t window_ns = detail::nanoseconds(Window::period_s);
-  static constexpr std::uint32_t longest_time_ns = detail::nanoseconds(detail::longest_time_s);
+  static constexpr std::uint32_t longest_time_ns = detail::nanoseconds(longest_clock_s);
 
   static Status take(BlockRecord type, const unsigned char* bytes, std::uint32_t length, Records& to) noexcept {
     const auto scalars = [&](std::size_t offset) {  // records begin at multiples of 8

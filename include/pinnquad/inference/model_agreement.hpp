@@ -11,14 +11,13 @@
 #include "pinnquad/inference/axis_aligned.hpp"
 
 namespace pinnquad {
+
+/// Times that an exported model can state of its clock: a sample period, a lag that was removed. False for NaN.
+inline constexpr double longest_clock_s = 4.0;
+constexpr bool is_clock_time(double seconds) noexcept { return seconds >= 0.0 && seconds <= longest_clock_s; }
+
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// Longest sample period and longest lag that is removed, s.
-inline constexpr double longest_time_s = 4.0;
-
-/// False for NaN.
-constexpr bool is_time(double seconds) noexcept { return seconds >= 0.0 && seconds <= longest_time_s; }
 
 /// No row of a training lies further from the mean than this many spreads: sqrt(n - 1) at most of n rows (Samuelson), and a
 /// block counts them in 32 bits. Twice that, for the margin.

@@ -315,7 +315,7 @@ constexpr void require_records() noexcept {
                       is_finite_constant(M::command_upper),
                   "pinnquad: the range of the model's commands is none (command_lower, command_upper)");
     static_assert(
-        is_time(M::sample_period_s) && is_time(M::lag_removed_s),
+        is_clock_time(M::sample_period_s) && is_clock_time(M::lag_removed_s),
         "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
     static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
                   "pinnquad: the model has another window than its feature set now has (window_taps, causal)");

@@ -115,6 +115,8 @@ inline void write_study(const std::string& folder, std::uint64_t seeds) {
   "recipe": {"batch": 64, "lambda_max": 0.1, "cycles": 5, "hold": 0.5, "learning_rate": 0.001},
   "flights": [{"name": "d1", "seed": 1, "rows": 15000, "content_hash": "00000000000000a1"},
               {"name": "d1", "seed": 2, "rows": 15000, "content_hash": "00000000000000a2"},
+              {"name": "d1", "seed": 3, "rows": 15000, "content_hash": "00000000000000a3"},
+              {"name": "d1", "seed": 4, "rows": 15000, "content_hash": "00000000000000a4"},
               {"name": "d2", "seed": 1, "rows": 6000, "content_hash": "00000000000000b1"},
               {"name": "d3", "seed": 1, "rows": 5000, "content_hash": "00000000000000c1"}],
   "threads": 2, "wall_s": 251.3
