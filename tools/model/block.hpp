@@ -186,7 +186,7 @@ inline void require_sound(const BlockBytes& bytes, const Block& block) {
     bytes.refuse("golden vectors inside the envelope", "golden vector " + std::to_string(row + 1) + " outside of it");
   }
   if (!(block.command_lower <= block.command_upper)) bytes.refuse("a range of commands", "one that is upside down");
-  if (!is_clock_time(block.sample_period_s) || !is_clock_time(block.lag_removed_s)) {
+  if (!pinnquad::is_clock_time(block.sample_period_s) || !pinnquad::is_clock_time(block.lag_removed_s)) {
     bytes.refuse("a sample period and a removed lag of 0 to 4 s",
                  pinnquad::number_text(block.sample_period_s) + " and " + pinnquad::number_text(block.lag_removed_s));
   }

@@ -170,10 +170,10 @@ std::optional<Identity> find_identity(const Block& block, const ModelHints& hint
     using Outputs = decltype(outputs);
     using Map = pinnquad::OutputMap<Outputs>;
     if (found || Features::size != block.inputs || Map::size != block.outputs) return;
-    if (base_of<Outputs>() != block.base) return;
+    if (detail::base_of<Outputs>() != block.base) return;
     for (const std::string& text : answers) {
       for (const NamedAirframe& candidate : airframes) {
-        if (shape_hash_of<Features, Outputs>(text, candidate) != block.shape_hash) continue;
+        if (detail::shape_hash_of<Features, Outputs>(text, candidate) != block.shape_hash) continue;
         const std::optional<std::vector<NetworkSpec>> networks = parse_answer(text);
         if (!networks || static_cast<std::size_t>(parameter_count(*networks)) != block.parameter_count ||
             networks->front().inputs != block.inputs || networks->front().outputs() != block.outputs ||
