@@ -6,6 +6,9 @@
 
 #include <array>
 #include <cmath>
+#include <thread>
+#include <type_traits>
+#include <utility>
 
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
@@ -233,4 +236,42 @@ TEST_CASE("a monitored inverse: the model while it was right, then the fallback,
   Commands<float> commands = marked();
   CHECK(none.predict(inputs, commands) == Status::distrusted);
   CHECK(same_bits(commands, marked()));
+}
+
+namespace {
+
+template <class T, class = void>
+struct Observes : std::false_type {};
+template <class T>
+struct Observes<T, std::void_t<decltype(std::declval<T&>().observe(MotionInputs<float>{}, Commands<float>{}))>>
+    : std::true_type {};
+template <class T, class = void>
+struct Resets : std::false_type {};
+template <class T>
+struct Resets<T, std::void_t<decltype(std::declval<T&>().reset())>> : std::true_type {};
+
+}  // namespace
+
+TEST_CASE("a monitored inverse: what writes needs one that is not const, what is const may run at once") {
+  using Backed = Guarded<Extend<TrainingGuard, Fallback<FixedFallback>>>;
+  using Monitored = MonitoredInverse<Backed, Trust>;
+  CHECK(Observes<Monitored>::value);
+  CHECK(Resets<Monitored>::value);
+  CHECK_FALSE(Observes<const Monitored>::value);
+  CHECK_FALSE(Resets<const Monitored>::value);
+
+  const Monitored inverse{Backed(Extend<TrainingGuard, Fallback<FixedFallback>>(FixedFallback{}))};
+  RandomStates random(406);
+  std::array<MotionInputs<float>, 200> inputs;
+  for (auto& one : inputs) one = inputs_of(random, 1.2);
+  std::array<std::array<Commands<float>, 200>, 2> commands{};
+  const auto ask = [&](std::size_t which) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      static_cast<void>(inverse.predict(inputs[i], commands[which][i]));
+    }
+  };
+  std::thread other([&] { ask(1); });
+  ask(0);
+  other.join();
+  for (std::size_t i = 0; i < inputs.size(); ++i) CHECK(same_bits(commands[0][i], commands[1][i]));
 }

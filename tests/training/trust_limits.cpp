@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
@@ -62,6 +64,7 @@ struct Limits {
 struct Stub {
   using Features = ::Features;
   using Scalar = float;
+  std::array<float, 6> envelope_lower{-5, -5, -5, -5, -5, -5}, envelope_upper{5, 5, 5, 5, 5, 5};
   Commands<float> predict(const std::array<float, 6>&) const noexcept { return {0.5F, 0.5F, 0.5F, 0.5F}; }
 };
 
@@ -126,4 +129,69 @@ TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as a
   }
   CHECK(alarms(other)[0] == 10);
   CHECK(alarms(other)[1] == 10);
+}
+
+namespace {
+
+/// The text of what fit_trust() throws; empty if it does not.
+std::string refusal(const Flight& training, const RowSet& validation) {
+  try {
+    static_cast<void>(fit_trust(Stub{}, RowSet(training, {0, training.size()}), validation));
+    return {};
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+bool says(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("a limit of the innovation that no command can exceed is refused: the tail of a short validation") {
+  const Flight training = noisy(2000, 31);
+  Flight calm = noisy(8 * 200, 32), spread = calm;
+  CHECK(refusal(training, RowSet(calm, {0, calm.size()})).empty());
+  // blocks whose errors differ by orders of magnitude: the power law that is laid through four of them ends beyond 1
+  for (std::size_t row = 0; row < spread.size(); ++row) {
+    const double share = std::pow(0.3, 8.0 - static_cast<double>(row / 200));
+    for (double& u : spread[row].commands) u = 0.5 + share;
+  }
+  const std::string said = refusal(training, RowSet(spread, {0, spread.size()}));
+  CAPTURE(said);
+  CHECK(says(said, "innovation"));
+  CHECK(says(said, "80 s"));
+}
+
+TEST_CASE("a limit of the distance that no features within the envelope exceed is refused") {
+  const Flight training = noisy(2000, 33);
+  Flight spread = noisy(8 * 200, 34);
+  for (std::size_t block = 0; block < 8; ++block) {
+    for (std::size_t row = 200 * block; row < 200 * (block + 1); ++row) {
+      for (int i = 0; i < 3; ++i) spread[row].body_rates_rad_s[i] = 1e-3 * std::pow(10.0, static_cast<double>(block));
+      spread[row].angular_acceleration_rad_s2.setZero();
+    }
+  }
+  CHECK(says(refusal(training, RowSet(spread, {0, spread.size()})), "distance"));
+}
+
+TEST_CASE("validation rows that are too few: how long they last, and how long is needed") {
+  const Flight training = noisy(2000, 35), validation = noisy(1200, 36);
+  const std::string said = refusal(training, RowSet(validation, {0, validation.size()}));
+  CAPTURE(said);
+  CHECK(says(said, "80 s"));
+  CHECK(says(said, "60 s"));
+}
+
+TEST_CASE("the period of the innovation's updates is that of the rows, whatever short piece comes last or first") {
+  const Flight training = noisy(2000, 37), validation = noisy(20000, 38);
+  Flight late = noisy(2, 39);
+  late[1].time_s = late[0].time_s + 0.09;
+  RowSet last(validation, {0, validation.size()}), first(late, {0, 2}), single(validation, {0, validation.size()});
+  last.add(late, {0, 2});
+  first.add(validation, {0, validation.size()});
+  single.add(late, {0, 1});  // one row has no period
+  for (const RowSet& rows : {last, first, single}) {
+    const auto trust = fit_trust(Stub{}, RowSet(training, {0, training.size()}), rows);
+    CHECK(trust.update_period_s == doctest::Approx(0.05).epsilon(1e-4));
+  }
 }

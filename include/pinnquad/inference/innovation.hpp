@@ -28,6 +28,9 @@ constexpr bool require_innovation() noexcept {
                   "pinnquad: the factor of an innovation's mean lies in (0, 1]");
     static_assert(is_finite_constant(double(Trust::innovation_limit)) && Trust::innovation_limit > 0,
                   "pinnquad: the limit of an innovation must be a positive number");
+    static_assert(Trust::innovation_limit < 1,
+                  "pinnquad: the limit of an innovation lies below 1: commands are 0 to 1, and no mean error of theirs "
+                  "would exceed it (docs/trust.md)");
     static_assert(Trust::innovation_cleared > 0 && Trust::innovation_cleared <= Trust::innovation_limit,
                   "pinnquad: an innovation is cleared above 0 and not above its limit");
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "pinnquad/inference/caller.hpp"
+#include "pinnquad/inference/fallback.hpp"
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/model.hpp"
 #include "pinnquad/inference/model_numbers.hpp"
@@ -223,8 +224,11 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
         for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
         return status;
       }
-      if constexpr (extends) {
-        if (status == Status::outside_envelope && extend(inputs, commands, report, place...)) return Status::fell_back;
+      if constexpr (detail::answers_beyond_envelope<InverseDynamics>) {
+        if (status == Status::outside_envelope &&
+            detail::answer_beyond_envelope(*this, inputs, commands, report, place...)) {
+          return Status::fell_back;
+        }
       }
       return declined(status, inputs, commands, report, place...);
     }
@@ -276,52 +280,6 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     const bool inside = inside_distribution(x, squared);
     if constexpr (reports<ReportType>) report.squared_distance = squared;
     return inside;
-  }
-
-  /// True where a motion that leaves the envelope by its angular acceleration alone is answered by both (Fallback).
-  static constexpr bool extends = Guard::falls_back && Guard::refuses_outside_envelope &&
-                                  Features::angular_acceleration >= 0 &&
-                                  std::is_base_of_v<MotionInputs<Scalar>, Inputs>;
-
-  /// The network at the angular acceleration clamped to the envelope, and what the fallback adds for the rest of it; true if
-  /// that was written. False where other features lie outside too, where JointDistance refuses or the fallback declines.
-  ///   commands(w) = network(c) + fallback(w - c) - fallback(0),  c = w clamped
-  /// The fallback is not asked for c: its share depends on the rest alone, and each part rises by itself.
-  template <class ReportType, class... Place>
-  PINNQUAD_NOINLINE bool extend(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
-                                const Place&... place) const noexcept {
-    constexpr int first = Features::angular_acceleration;
-    const Scalar* lower = Numbers::lower(model()) + first;
-    const Scalar* upper = Numbers::upper(model()) + first;
-    Inputs nearest = inputs;
-    Vector3<Scalar> rest;
-    for (int i = 0; i < 3; ++i) {
-      const Scalar wanted = inputs.angular_acceleration_rad_s2[i];
-      const Scalar clamped = wanted < lower[i] ? lower[i] : (upper[i] < wanted ? upper[i] : wanted);
-      nearest.angular_acceleration_rad_s2[i] = clamped;
-      rest[i] = wanted - clamped;
-    }
-    Scalar x[Features::size];
-    Features::extract(nearest, x);
-    Scalar squared(0);
-    if (!inside_envelope(x) || !inside_distribution(x, squared)) return false;
-    Commands<Scalar> made{}, with{}, without{};
-    evaluate_over(x, made.data());
-    nearest.angular_acceleration_rad_s2 = rest;
-    if (!has_output(ask_fallback(nearest, with, place...))) return false;
-    nearest.angular_acceleration_rad_s2 = Vector3<Scalar>::Zero();
-    if (!has_output(ask_fallback(nearest, without, place...))) return false;
-    for (std::size_t i = 0; i < rotor_count; ++i) made[i] += with[i] - without[i];
-    const Status checked = Guard::check_commands(made.data());
-    if (!has_output(checked)) return false;
-    if constexpr (reports<ReportType>) {
-      report.fallback_asked = true;
-      report.fallback = checked;
-      report.squared_distance = squared;
-      report.commands_clipped = checked == Status::limited;
-    }
-    commands = made;
-    return true;
   }
 
   /// The fallback's commands, or `cause`.
@@ -387,34 +345,13 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   template <class ReportType, class... Place>
   Status ask_and_check(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
                        const Place&... place) const noexcept {
-    Status status = ask_fallback(inputs, commands, place...);
+    Status status = detail::ask_fallback(guard().fallback(), inputs, commands, place...);
     if (has_output(status)) status = Guard::check_commands(commands.data());
     if constexpr (reports<ReportType>) {
       report.fallback_asked = true;
       report.fallback = status;
     }
     return status;
-  }
-
-  /// With place and time if they are known and it takes them.
-  template <class... Place>
-  Status ask_fallback(const Inputs& inputs, Commands<Scalar>& commands, const Place&... place) const noexcept {
-    using Inverse = typename Guard::FallbackInverse;
-    constexpr bool with_place =
-        std::is_invocable_r_v<Status, const Inverse&, const Inputs&, const Place&..., Commands<Scalar>&>;
-    static_assert(with_place
-                      ? std::is_nothrow_invocable_v<const Inverse&, const Inputs&, const Place&..., Commands<Scalar>&>
-                      : std::is_nothrow_invocable_v<const Inverse&, const Inputs&, Commands<Scalar>&> ||
-                            !std::is_invocable_v<const Inverse&, const Inputs&, Commands<Scalar>&>,
-                  "pinnquad: a fallback's or reference's call must be noexcept (Fallback in inference/guard.hpp)");
-    if constexpr (with_place) {
-      return guard().fallback()(inputs, place..., commands);
-    } else {
-      static_assert(std::is_invocable_r_v<Status, const Inverse&, const Inputs&, Commands<Scalar>&>,
-                    "pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time: "
-                    "predict(inputs, place, commands) (Fallback in inference/guard.hpp)");
-      return guard().fallback()(inputs, commands);
-    }
   }
 
   void measure(const Scalar* x, Report& report) const noexcept {

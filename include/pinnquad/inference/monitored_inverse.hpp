@@ -12,6 +12,10 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// `Inverse`: an InverseDynamics, with or without JointDistance and Fallback. `Trust`: InnovationMonitor's. The monitor
 /// goes on while the fallback flies, so that a model which is right again flies again.
+/// Threads: the const calls (predict(), inverse(), monitor(), trusted()) change nothing and may run at once, if the
+/// fallback's may. observe(), observe_features() and reset() write the monitor: while one of them runs, no other call on the same
+/// object may. A loop that observes and predicts in two threads needs a lock around both, or observes in the one that
+/// predicts.
 template <class Inverse, class Trust>
 class MonitoredInverse : private detail::Held<Inverse> {
  public:

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -45,6 +47,9 @@ inline std::vector<double> block_maxima(const std::vector<double>& values, std::
   return maxima;
 }
 
+/// Fewer say nothing of a tail.
+inline constexpr std::size_t least_alarm_blocks = 8;
+
 /// A limit that one block in `blocks_per_alarm` exceeds, judged by the maxima of n blocks of the same kind. If a new
 /// block is as likely as each of the n to hold any rank among them, it exceeds the k-th greatest with the probability k
 /// / (n + 1), whatever the distribution: k = floor((n + 1) / blocks_per_alarm). Where n is too small for k = 1 the tail
@@ -52,9 +57,9 @@ inline std::vector<double> block_maxima(const std::vector<double>& values, std::
 /// guess, on the side of few alarms where the tail is exponential. Throws std::invalid_argument for fewer than 8 blocks
 /// and for maxima that are not above 0.
 inline double alarm_limit(std::vector<double> maxima, double blocks_per_alarm) {
-  constexpr std::size_t least_blocks = 8, least_tail = 4;
-  if (maxima.size() < least_blocks) {
-    throw std::invalid_argument("alarm limit: expected at least " + std::to_string(least_blocks) +
+  constexpr std::size_t least_tail = 4;
+  if (maxima.size() < least_alarm_blocks) {
+    throw std::invalid_argument("alarm limit: expected at least " + std::to_string(least_alarm_blocks) +
                                 " blocks of rows, found " + std::to_string(maxima.size()));
   }
   std::sort(maxima.begin(), maxima.end(), std::greater<>());
@@ -101,22 +106,63 @@ TrustSeries trust_series(const Model& model, const JointDistribution<Model::Feat
   return series;
 }
 
+/// Seconds from row to row, over all pieces: all time over all steps, so that no short piece counts for more. 0 where no
+/// piece has two rows.
+inline double mean_period_s(const RowSet& rows) {
+  double lasts_s = 0, steps = 0;
+  for (const FlightRows& piece : rows.pieces()) {
+    lasts_s += (*piece.flight)[piece.rows.end - 1].time_s - (*piece.flight)[piece.rows.begin].time_s;
+    steps += static_cast<double>(piece.rows.size() - 1);
+  }
+  return steps > 0 ? lasts_s / steps : 0;
+}
+
+/// The innovation of a model that is as wrong as commands of 0 to 1 let it be, mean over the rows. A limit above it never
+/// triggers.
+inline double greatest_innovation(const RowSet& rows) {
+  double sum = 0;
+  for (const FlightRows& piece : rows.pieces()) {
+    for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+      for (const double u : (*piece.flight)[row].commands) sum += std::max(u, 1 - u) / rotor_count;
+    }
+  }
+  return sum / static_cast<double>(rows.size());
+}
+
+/// No features within the envelope have a greater squared distance: each row of |W| times the envelope's half-widths about
+/// the mean. A limit above it never triggers beside TrainingEnvelope.
+template <int Size, class Bounds>
+double greatest_squared_distance(const JointDistribution<Size>& distribution, const Bounds& lower,
+                                 const Bounds& upper) {
+  std::array<double, std::size_t(Size)> white{};
+  std::size_t at = 0;
+  for (std::size_t j = 0; j < white.size(); ++j) {
+    const double away = std::max(static_cast<double>(upper[j]) - distribution.mean[j],
+                                 distribution.mean[j] - static_cast<double>(lower[j]));
+    for (std::size_t i = j; i < white.size(); ++i) white[i] += std::abs(distribution.whitening[at++]) * away;
+  }
+  double squared = 0;
+  for (const double w : white) squared += w * w;
+  return squared;
+}
+
 /// The distribution of the training rows, and limits by validation rows that the model was not trained on; each piece
-/// of a flight is a flight of its own to the innovation. Throws std::invalid_argument for rows that are too few.
+/// of a flight is a flight of its own to the innovation. Throws std::invalid_argument for rows that are too few, and for
+/// a limit that could never trigger: the tail of few blocks, continued too far.
 template <class Model>
 FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
                                              const TrustSettings& settings = {}) {
   FittedTrust<Model::Features::size> trust;
   trust.distribution = fit_joint_distribution<typename Model::Features>(training, settings.shrinkage);
   trust.innovation_factor = settings.innovation_factor;
+  trust.update_period_s = mean_period_s(validation);
+  const auto rows = trust.update_period_s > 0
+                        ? static_cast<std::size_t>(std::max(1.0, std::round(settings.block_s / trust.update_period_s)))
+                        : std::size_t(1);
   std::vector<double> distances, innovations, usual;
   for (const FlightRows& piece : validation.pieces()) {
     if (piece.rows.size() < 2) continue;
-    const Flight& flight = *piece.flight;
-    const double lasts_s = flight[piece.rows.end - 1].time_s - flight[piece.rows.begin].time_s;
-    trust.update_period_s = lasts_s / static_cast<double>(piece.rows.size() - 1);
-    const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(settings.block_s / trust.update_period_s)));
-    const TrustSeries series = trust_series(model, trust.distribution, RowSet(flight, piece.rows));
+    const TrustSeries series = trust_series(model, trust.distribution, RowSet(*piece.flight, piece.rows));
     const std::vector<double> means = innovation_means(series.errors, settings.innovation_factor);
     const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
       to.insert(to.end(), from.begin(), from.end());
@@ -125,9 +171,32 @@ FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& t
     append(innovations, block_maxima(means, rows));
     append(usual, means);
   }
+  const auto text = [](double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3g", value);
+    return std::string(digits);
+  };
+  const std::string found = text(static_cast<double>(validation.size()) * trust.update_period_s) + " s (" +
+                            std::to_string(innovations.size()) + " whole blocks of " + text(settings.block_s) + " s)";
+  if (innovations.size() < least_alarm_blocks) {
+    throw std::invalid_argument("limits of trust: expected at least " +
+                                text(static_cast<double>(least_alarm_blocks) * settings.block_s) +
+                                " s of validation rows, found " + found + ": more or longer flights make more");
+  }
   const double blocks_per_alarm = settings.seconds_per_alarm / settings.block_s;
   trust.distance_limit = alarm_limit(distances, blocks_per_alarm);
   trust.innovation_limit = alarm_limit(innovations, blocks_per_alarm);
+  const auto require_below = [&](const char* what, double limit, double greatest, const char* of) {
+    if (limit < greatest) return;
+    throw std::invalid_argument(std::string("limits of trust: expected a limit of the ") + what + " below " +
+                                text(greatest) + ", " + of + ", found " + text(limit) + " by validation rows of " +
+                                found + ": it could never trigger; more or longer flights make a better one");
+  };
+  require_below("innovation", trust.innovation_limit, greatest_innovation(validation),
+                "the most that commands of 0 to 1 can be wrong by");
+  require_below("squared distance", trust.distance_limit,
+                greatest_squared_distance(trust.distribution, model.envelope_lower, model.envelope_upper),
+                "the most within the envelope");
   double sum = 0;
   for (const double mean : usual) sum += mean;
   trust.innovation_cleared = (sum / static_cast<double>(usual.size()) + trust.innovation_limit) / 2;
