@@ -283,7 +283,7 @@ class NeuralController {
     if (reaction <= Reaction::holds_position && situation_.in_flight() && expected_us_ != 0) {
       const float step_s = 1e-6f * static_cast<float>(now_us - expected_us_);
       bias_.update(local_.value().velocity_m_s, expected_m_s2_, step_s);
-      bias_alarm_.update(bias_, step_s);
+      bias_alarm_.update(bias_, pinnquad::body_down_axis(attitude_.value()), step_s);
     } else {
       bias_.freeze(local_.value().velocity_m_s);
     }
