@@ -276,13 +276,14 @@ class NeuralController {
     return at_end;
   }
 
-  /// Compares what the last answer was to do with what the vehicle did. Only in flight, off the actuators' ends, with a velocity.
-  void estimate_bias(std::uint64_t now_us, Reaction reaction) noexcept {
+  /// Compares what the last answer was to do with what the vehicle did. Only in flight, off the actuators' ends, with a
+  /// velocity. Out of line, as target() is.
+  PINNQUAD_NOINLINE void estimate_bias(std::uint64_t now_us, Reaction reaction) noexcept {
     if (!situation_.in_flight()) bias_alarm_.reset();
     if (reaction <= Reaction::holds_position && situation_.in_flight() && expected_us_ != 0) {
       const float step_s = 1e-6f * static_cast<float>(now_us - expected_us_);
       bias_.update(local_.value().velocity_m_s, expected_m_s2_, step_s);
-      bias_alarm_.update(bias_, step_s);
+      bias_alarm_.update(bias_, pinnquad::body_down_axis(attitude_.value()), step_s);
     } else {
       bias_.freeze(local_.value().velocity_m_s);
     }

@@ -200,6 +200,49 @@ TEST_CASE("the bias is estimated in flight alone, and never beyond its bound") {
   CHECK(standing.controller.bias().acceleration_m_s2() == before);
 }
 
+TEST_CASE("a bias at its bound along the thrust raises the alarm, one across it or short of it none; a quarter clears it") {
+  constexpr float step_s = 0.002f;
+  const Vector3<float> upright(0, 0, 1);
+  flight_stacks::BiasAlarm alarm;
+  // how long it takes to change its mind, at most 5 s
+  const auto changes_after_s = [&](const Vector3<float>& bias_m_s2, const Vector3<float>& down) {
+    pinnquad::BiasEstimate<float> bias;
+    bias.resume(bias_m_s2, {0, 0, 0});
+    const bool before = alarm.raised();
+    for (int i = 0; i < 2500; ++i) {
+      alarm.update(bias, down, step_s);
+      if (alarm.raised() != before) return static_cast<double>(step_s) * (i + 1);
+    }
+    return 0.0;
+  };
+  CHECK(changes_after_s({0, 0, 2.9f}, upright) == 0);   // carried, if barely
+  CHECK(changes_after_s({3, 0, 0}, upright) == 0);      // drag of more than a bias may be
+  CHECK(changes_after_s({0, -2.7f, 1.3f}, upright) == 0);
+  pinnquad::BiasEstimate<float> at_bound;
+  at_bound.resume({0, 0, 3}, {0, 0, 0});
+  alarm.update(at_bound, upright, 100);  // a gap
+  CHECK_FALSE(alarm.raised());
+  for (int i = 0; i < 200; ++i) alarm.update(at_bound, upright, step_s);
+  alarm.reset();  // forgets these 0.4 s
+  CHECK(changes_after_s({0, 0, 3}, upright) == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(changes_after_s({0, 0, 3}, upright) == 0);
+  CHECK(changes_after_s({0, 0, 0.8f}, upright) == 0);
+  CHECK(changes_after_s({2.9f, 0, 0.7f}, upright) == doctest::Approx(2).epsilon(0.01));
+  // the thrust of a vehicle that lies on its side points along x; it makes too much as well as too little
+  CHECK(changes_after_s({-3, 0, 0}, {1, 0, 0}) == doctest::Approx(0.5).epsilon(0.01));
+  alarm.reset();
+  CHECK_FALSE(alarm.raised());
+  for (int i = 0; i < 1000; ++i) {  // touches its bound one step of two
+    pinnquad::BiasEstimate<float> bias;
+    bias.resume({0, 0, i % 2 == 0 ? 3.0f : 2.0f}, {0, 0, 0});
+    alarm.update(bias, upright, step_s);
+  }
+  CHECK_FALSE(alarm.raised());
+  pinnquad::BiasEstimate<float> unbounded(pinnquad::BiasSettings<float>{0, 0});
+  for (int i = 0; i < 1000; ++i) alarm.update(unbounded, upright, step_s);
+  CHECK_FALSE(alarm.raised());
+}
+
 TEST_CASE("at the motors' ends the bias stays") {
   constexpr flight_stacks::OutputLimits little{0.02f, 0.8f};
   Standing standing(ages, little);

@@ -26,9 +26,9 @@ class BiasEstimate {
   constexpr const BiasSettings<Scalar>& settings() const noexcept { return settings_; }
   const Vector3<Scalar>& acceleration_m_s2() const noexcept { return bias_; }
   const Vector3<Scalar>& predicted_velocity_m_s() const noexcept { return predicted_; }
-  /// Whether the estimate is at least `share` of its bound; never without a bound.
-  bool reaches(Scalar share) const noexcept {
-    const Scalar length = share * settings_.max_bias_m_s2;
+  /// Whether more was found than an estimate may be, but for rounding and the noise of a step; never without a bound.
+  bool at_bound() const noexcept {
+    const Scalar length = Scalar(0.99) * settings_.max_bias_m_s2;
     return length > Scalar(0) && bias_.squaredNorm() >= length * length;
   }
 
