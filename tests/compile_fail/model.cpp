@@ -65,6 +65,12 @@ constexpr Array with_last(Array values, float last) {
   values[values.size() - 1] = last;
   return values;
 }
+template <std::size_t Size>
+constexpr std::array<float, Size> all_ones() {
+  std::array<float, Size> values{};
+  for (std::size_t i = 0; i < Size; ++i) values[i] = 1;
+  return values;
+}
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
@@ -207,7 +213,7 @@ struct Recorded : RecordedModel {
 #if defined(DISTANCE_LENGTH)
   static constexpr std::array<float, 16> distance_inverse_cholesky{};
 #else
-  static constexpr std::array<float, 136> distance_inverse_cholesky{};
+  static constexpr auto distance_inverse_cholesky = all_ones<136>();
 #endif
   static constexpr float distance_limit = 3;
 };

@@ -69,7 +69,7 @@ template <class Answer>
 void check_export(const Fitted& fitted, const Answer& answer, const std::string& expected_network) {
   const auto model = make_trained_model(answer, fitted.context, fitted.rows);
   using Model = std::decay_t<decltype(model)>;
-  const auto golden = golden_features<Model>(fitted.rows);
+  const auto golden = golden_features(model, fitted.rows);
   std::ostringstream header;
   write_model(header, "Ridge", model, golden, Provenance{});
   CHECK(header.str().find("using Network = " + expected_network + ";") != std::string::npos);

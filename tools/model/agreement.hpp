@@ -21,7 +21,12 @@ namespace detail {
   throw pinnquad::InputError(block.path, 0, 0, expected, found);
 }
 
-/// Of a base in closed form, or one with a residual between bounds.
+/// As pinnquad::detail::StatedStructure: a base in closed form, or one with a residual between bounds.
+inline bool has_stated_structure(const Identity& identity) {
+  const std::vector<NetworkSpec>& parts = identity.networks;
+  return parts.front().axis_aligned && (parts.size() == 1 || (parts.size() == 2 && parts[1].bounded));
+}
+
 template <class Scalar>
 bool true_residual_range(const Block& block, const Identity& identity) {
   const auto in_scalar = [](const std::vector<double>& values) {
@@ -30,8 +35,7 @@ bool true_residual_range(const Block& block, const Identity& identity) {
     return result;
   };
   const std::vector<NetworkSpec>& parts = identity.networks;
-  const bool known = parts.front().axis_aligned && (parts.size() == 1 || (parts.size() == 2 && parts[1].bounded));
-  if (!known || block.residual_range.empty()) return true;
+  if (!has_stated_structure(identity) || block.residual_range.empty()) return true;
   const auto range = in_scalar(block.residual_range), parameters = in_scalar(block.parameters),
              spread = in_scalar(block.output_spread);
   const Scalar* bounds = parts.size() == 1 ? nullptr : parameters.data() + parts.front().parameter_count();
@@ -39,8 +43,9 @@ bool true_residual_range(const Block& block, const Identity& identity) {
                                                spread.size());
 }
 
-/// Against what an airframe is.
-inline void require_airframe(const Block& block, const pinnquad::Airframe<double>& airframe) {
+/// Against what its airframe is.
+inline void require_airframe(const Block& block, const Identity& identity) {
+  const pinnquad::Airframe<double>& airframe = identity.airframe.value;
   const auto own = pinnquad::allocation(airframe);
   const auto entry = [&block](std::size_t row, std::size_t column) { return block.allocation[4 * row + column]; };
   const auto expected = [&own](std::size_t row, std::size_t column) { return own[row][column]; };
@@ -48,7 +53,7 @@ inline void require_airframe(const Block& block, const pinnquad::Airframe<double
     refuse(block, "the allocation of its airframe", "another");
   }
   const auto torque_signs = pinnquad::motor_torque_signs(airframe);
-  for (std::size_t i = 0; i < block.slope_signs.size(); ++i) {
+  for (std::size_t i = 0; has_stated_structure(identity) && i < block.slope_signs.size(); ++i) {
     if (pinnquad::detail::true_slope_sign(block.slope_signs[i], torque_signs[i / 3][i % 3])) continue;
     refuse(block, "slope signs of the torques that its rotors make", "another of rotor " + std::to_string(i / 3 + 1));
   }
@@ -74,7 +79,7 @@ void require_agreement(const Block& block, const Identity& identity) {
     }
     if (block.columns != columns) detail::refuse(block, "the extra columns of its features", "others");
   }
-  detail::require_airframe(block, identity.airframe.value);
+  detail::require_airframe(block, identity);
   const bool same = block.is_double ? detail::true_residual_range<double>(block, identity)
                                     : detail::true_residual_range<float>(block, identity);
   if (!same) detail::refuse(block, "a range of the residual as its parameters bound it", "another");

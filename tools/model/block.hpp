@@ -24,18 +24,18 @@ struct Block {
   std::size_t parameter_count = 0, golden_count = 0;
   std::uint32_t training_rows = 0;
   std::uint64_t shape_hash = 0, training_data_hash = 0;
-  bool has_records = false;    ///< those of version 2, which follow; of version 1 they are as made
+  bool has_records = false;  ///< those of version 2, which follow; of version 1 they are as made
   double command_lower = 0, command_upper = 1, sample_period_s = 0, lag_removed_s = 0;
   std::uint32_t window_taps = 1;
   bool causal = true;
-  std::vector<std::string> columns;  ///< name and unit of each
-  std::vector<double> allocation;    ///< row-major
-  std::string base;                  ///< description of what its outputs are added to; empty: nothing
-  std::vector<int> slope_signs;      ///< rotor by rotor about x, y, z; none: it says none
+  std::vector<std::string> columns;    ///< name and unit of each
+  std::vector<double> allocation;      ///< row-major
+  std::string base;                    ///< description of what its outputs are added to; empty: nothing
+  std::vector<int> slope_signs;        ///< rotor by rotor about x, y, z; none: it says none
   std::vector<double> residual_range;  ///< lower bounds, then upper ones; none: it says none
   std::vector<double> distance;        ///< means, triangle, limit; none: it says none
-  bool has_judgement = false;  ///< it says how it was judged before it was exported
-  std::uint32_t judged = 0;    ///< bits of pinnquad::Judged
+  bool has_judgement = false;          ///< it says how it was judged before it was exported
+  std::uint32_t judged = 0;            ///< bits of pinnquad::Judged
   std::vector<double> input_mean, input_spread, output_mean, output_spread, envelope_lower, envelope_upper;
   std::vector<double> golden_features, golden_commands;  ///< vector by vector
   std::vector<double> parameters;

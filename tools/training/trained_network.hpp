@@ -80,14 +80,14 @@ class NetworkOfModel : public TrainedNetwork {
   void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
                     const pinnquad::Provenance& provenance) const override {
     with_exported([&](const auto& model) {
-      pinnquad::write_model_header(path, name, model, pinnquad::golden_features<Model>(training), clocked(provenance));
+      pinnquad::write_model_header(path, name, model, pinnquad::golden_features(model_, training), clocked(provenance));
     });
   }
   std::vector<unsigned char> block(const pinnquad::RowSet& training,
                                    const pinnquad::Provenance& provenance) const override {
     std::vector<unsigned char> bytes;
     with_exported([&](const auto& model) {
-      bytes = pinnquad::model_block(model, pinnquad::golden_features<Model>(training), clocked(provenance));
+      bytes = pinnquad::model_block(model, pinnquad::golden_features(model_, training), clocked(provenance));
     });
     return bytes;
   }

@@ -68,11 +68,6 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
                    (from.verdict->beats_linear_regression() ? Judged::beats_linear_regression : 0u);
   }
   terms.slope_signs = from.slope_signs;
-  const auto torque_signs = motor_torque_signs(airframe);
-  for (std::size_t i = 0; terms.slope_signs && i < 3 * std::size_t(rotor_count); ++i) {
-    if (true_slope_sign((*terms.slope_signs)[i / 3][i % 3], torque_signs[i / 3][i % 3])) continue;
-    refuse("a slope sign is not that of the torque that its rotor makes");
-  }
   if (from.residual_range) {
     constexpr auto outputs = static_cast<std::size_t>(OutputMap<Outputs>::size);
     const ResidualRange& range = *from.residual_range;

@@ -223,7 +223,10 @@ class BlockRecordReader {
         auto* slope_signs = detail::first_of<std::int8_t>(to.slope_signs);
         for (std::size_t i = 0; i < 3 * std::size_t(rotor_count); ++i) {
           slope_signs[i] = bytes[i] == 0xff ? std::int8_t(-1) : static_cast<std::int8_t>(bytes[i] & 1);
-          signs &= (bytes[i] <= 1 || bytes[i] == 0xff) && detail::true_slope_sign(slope_signs[i], own[i]);
+          signs &= bytes[i] <= 1 || bytes[i] == 0xff;
+          if (detail::StatedStructure<typename Shape::Network>::known) {
+            signs &= detail::true_slope_sign(slope_signs[i], own[i]);
+          }
         }
         to.has_slope_signs = true;
         return signs ? Status::ok : Status::block_corrupt;

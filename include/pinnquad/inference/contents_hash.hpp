@@ -18,13 +18,46 @@ namespace pinnquad {
 
 /// The constants that count, where a header has them; `Vehicle` is its airframe's value. The model's name, and where it
 /// comes from in words, may be edited.
-inline constexpr std::array<std::string_view, 40> hashed_constants = {
-    "format_version", "training_data_hash", "training_rows", "worse_than_mean", "beats_linear_regression", "frame",
-    "feature_names", "feature_units", "output_names", "output_unit", "output_units", "vehicle_name",
-    "motor_torque_signs", "Vehicle", "records", "answer", "command_meaning", "command_lower", "command_upper",
-    "sample_period_s", "lag_removed_s", "window_taps", "causal", "column_names", "column_units", "allocation", "base",
-    "slope_signs", "residual_lower", "residual_upper", "distance_mean", "distance_inverse_cholesky", "distance_limit",
-    "input", "output", "envelope_lower", "envelope_upper", "golden_features", "golden_commands", "parameters"};
+inline constexpr std::array<std::string_view, 40> hashed_constants = {"format_version",
+                                                                      "training_data_hash",
+                                                                      "training_rows",
+                                                                      "worse_than_mean",
+                                                                      "beats_linear_regression",
+                                                                      "frame",
+                                                                      "feature_names",
+                                                                      "feature_units",
+                                                                      "output_names",
+                                                                      "output_unit",
+                                                                      "output_units",
+                                                                      "vehicle_name",
+                                                                      "motor_torque_signs",
+                                                                      "Vehicle",
+                                                                      "records",
+                                                                      "answer",
+                                                                      "command_meaning",
+                                                                      "command_lower",
+                                                                      "command_upper",
+                                                                      "sample_period_s",
+                                                                      "lag_removed_s",
+                                                                      "window_taps",
+                                                                      "causal",
+                                                                      "column_names",
+                                                                      "column_units",
+                                                                      "allocation",
+                                                                      "base",
+                                                                      "slope_signs",
+                                                                      "residual_lower",
+                                                                      "residual_upper",
+                                                                      "distance_mean",
+                                                                      "distance_inverse_cholesky",
+                                                                      "distance_limit",
+                                                                      "input",
+                                                                      "output",
+                                                                      "envelope_lower",
+                                                                      "envelope_upper",
+                                                                      "golden_features",
+                                                                      "golden_commands",
+                                                                      "parameters"};
 
 namespace detail {
 

@@ -167,10 +167,11 @@ constexpr void require_description() noexcept {
                   "pinnquad: a border of the model's envelope is NaN or infinite");
     static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
                   "pinnquad: a scaler's spread is not positive");
-    static_assert(is_envelope(M::input.mean.data(), M::input.spread.data(), M::envelope_lower.data(),
-                              M::envelope_upper.data(), M::envelope_lower.size()),
-                  "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
-                  "spread can have been (envelope_lower, envelope_upper, input)");
+    static_assert(
+        is_envelope(M::input.mean.data(), M::input.spread.data(), M::envelope_lower.data(), M::envelope_upper.data(),
+                    M::envelope_lower.size()),
+        "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
+        "spread can have been (envelope_lower, envelope_upper, input)");
     static_assert(golden_commands_finite<M>(), "pinnquad: a golden command is NaN or infinite");
     static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
     static_assert(same_contents<M>(),

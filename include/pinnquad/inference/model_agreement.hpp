@@ -47,22 +47,29 @@ constexpr bool inside_envelope(const Scalar* lower, const Scalar* x, const Scala
   return inside;
 }
 
-/// Between which bounds an answer says that its residual stays: `at` among its parameters, lower ones, then upper ones.
-/// `known`: false where the answer has no such structure; `at` is -1 for a base without a residual.
+/// Of an answer whose slopes have the signs of its rotors' torques, and whose residual stays between bounds among its
+/// parameters: `at` is where they are, lower ones, then upper ones, -1 for a base without a residual. `known`: false where the
+/// answer has no such structure, so that a header's word is all there is.
 template <class Answer>
-struct ResidualBounds {
+struct StatedStructure {
   static constexpr bool known = false;
 };
 template <class Scalar, int FeatureCount, int... First>
-struct ResidualBounds<AxisAligned<Scalar, FeatureCount, First...>> {
+struct StatedStructure<AxisAligned<Scalar, FeatureCount, First...>> {
   static constexpr bool known = true;
   static constexpr int at = -1;
 };
 template <class Scalar, int FeatureCount, int... First, class Residual>
-struct ResidualBounds<Sum<AxisAligned<Scalar, FeatureCount, First...>, Bounded<Residual>>> {
+struct StatedStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Bounded<Residual>>> {
   static constexpr bool known = true;
   static constexpr int at = AxisAligned<Scalar, FeatureCount, First...>::parameter_count;
+  using Inner = Residual;  ///< its parameters follow the bounds
 };
+
+template <class Answer, class = void>
+inline constexpr bool has_bounded_residual = false;
+template <class Answer>
+inline constexpr bool has_bounded_residual<Answer, std::void_t<typename StatedStructure<Answer>::Inner>> = true;
 
 /// A stated bound of a residual against the standardised one among the parameters. The writer rounds outward to a Scalar.
 template <class Scalar>
@@ -74,7 +81,7 @@ constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar spread) noe
   return (difference < 0 ? -difference : difference) <= rounding + 2 * static_cast<double>(Limits::denorm_min());
 }
 
-/// A stated range of a residual against `bounds` among the parameters, as ResidualBounds; null: there is no residual.
+/// A stated range of a residual against `bounds` among the parameters, as StatedStructure; null: there is no residual.
 template <class Scalar>
 constexpr bool same_residual_range(const Scalar* lower, const Scalar* upper, const Scalar* bounds,
                                    const Scalar* output_spread, std::size_t outputs) noexcept {

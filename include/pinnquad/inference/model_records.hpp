@@ -229,8 +229,10 @@ constexpr bool same_header_allocation() noexcept {
                                  [&](std::size_t row, std::size_t column) { return expected[row][column]; });
 }
 
+/// Of an answer whose structure says them.
 template <class M>
 constexpr bool true_slope_signs() noexcept {
+  if constexpr (!StatedStructure<typename M::Network>::known) return true;
   const auto signs = motor_torque_signs<typename M::Vehicle>();
   for (std::size_t rotor = 0; rotor < signs.size(); ++rotor) {
     for (std::size_t axis = 0; axis < signs[rotor].size(); ++axis) {
@@ -246,10 +248,10 @@ constexpr bool true_residual_range() noexcept {
   for (std::size_t i = 0; i < M::residual_lower.size(); ++i) {
     if (!(M::residual_lower[i] <= M::residual_upper[i])) return false;
   }
-  using Bounds = ResidualBounds<typename M::Network>;
-  if constexpr (Bounds::known) {
+  using Structure = StatedStructure<typename M::Network>;
+  if constexpr (Structure::known) {
     const typename M::Scalar* bounds = nullptr;
-    if constexpr (Bounds::at >= 0) bounds = M::parameters.data() + Bounds::at;
+    if constexpr (Structure::at >= 0) bounds = M::parameters.data() + Structure::at;
     return same_residual_range(M::residual_lower.data(), M::residual_upper.data(), bounds, M::output.spread.data(),
                                M::residual_lower.size());
   } else {
@@ -286,14 +288,16 @@ constexpr void require_optional_records() noexcept {
                              all_finite_constants(M::distance_mean) &&
                              all_finite_constants(M::distance_inverse_cholesky) && M::distance_limit > 0 &&
                              is_finite_constant(M::distance_limit);
-    static_assert(numbers,
-                  "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
-                  "is no number (distance_mean)");
+    static_assert(
+        numbers,
+        "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
+        "is no number (distance_mean)");
     if constexpr (numbers) {
-      static_assert(is_distance(M::distance_mean.data(), M::distance_inverse_cholesky.data(), M::distance_limit,
-                                M::envelope_lower.data(), M::envelope_upper.data(), size),
-                    "pinnquad: the model's statistics of a distance have a mean outside the envelope, or a diagonal that "
-                    "is not above 0 (distance_mean, distance_inverse_cholesky)");
+      static_assert(
+          is_distance(M::distance_mean.data(), M::distance_inverse_cholesky.data(), M::distance_limit,
+                      M::envelope_lower.data(), M::envelope_upper.data(), size),
+          "pinnquad: the model's statistics of a distance have a mean outside the envelope, or a diagonal that "
+          "is not above 0 (distance_mean, distance_inverse_cholesky)");
     }
   }
 }
@@ -314,9 +318,8 @@ constexpr void require_records() noexcept {
     static_assert(M::command_lower <= M::command_upper && is_finite_constant(M::command_lower) &&
                       is_finite_constant(M::command_upper),
                   "pinnquad: the range of the model's commands is none (command_lower, command_upper)");
-    static_assert(
-        is_clock_time(M::sample_period_s) && is_clock_time(M::lag_removed_s),
-        "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
+    static_assert(is_clock_time(M::sample_period_s) && is_clock_time(M::lag_removed_s),
+                  "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
     static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
                   "pinnquad: the model has another window than its feature set now has (window_taps, causal)");
     static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),

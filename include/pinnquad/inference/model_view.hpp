@@ -160,8 +160,8 @@ class ModelView : public ModelScales<ShapeType> {
     for (std::size_t i = 0; i < count; ++i) sound &= is_finite(scalars[i]);
     for (std::size_t i = 0; i < Layout::inputs; ++i) sound &= scalars[Layout::input_spread + i] > Scalar(0);
     for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_spread + i] > Scalar(0);
-    sound &= detail::is_envelope(scalars + Layout::input_mean, scalars + Layout::input_spread, lower, upper,
-                                 Layout::inputs);
+    sound &=
+        detail::is_envelope(scalars + Layout::input_mean, scalars + Layout::input_spread, lower, upper, Layout::inputs);
     for (std::size_t row = 0; row < golden; ++row) {
       const Scalar* x = scalars + Layout::golden_features + row * Layout::inputs;
       sound &= detail::inside_envelope(lower, x, upper, Layout::inputs);
@@ -171,14 +171,14 @@ class ModelView : public ModelScales<ShapeType> {
       sound &= detail::is_distance(records.distance, triangle, triangle[detail::triangle(Layout::inputs)], lower, upper,
                                    Layout::inputs);
     }
-    using Bounds = detail::ResidualBounds<Network>;
-    if constexpr (Bounds::known) {
+    using Structure = detail::StatedStructure<Network>;
+    if constexpr (Structure::known) {
       const Scalar* bounds = nullptr;
-      if constexpr (Bounds::at >= 0) bounds = scalars + Layout::parameters(golden) + Bounds::at;
+      if constexpr (Structure::at >= 0) bounds = scalars + Layout::parameters(golden) + Structure::at;
       if (records.has_residual_range) {
-        sound &= detail::same_residual_range(
-            detail::first_of<Scalar>(records.residual_lower), detail::first_of<Scalar>(records.residual_upper), bounds,
-            scalars + Layout::output_spread, Layout::outputs);
+        sound &= detail::same_residual_range(detail::first_of<Scalar>(records.residual_lower),
+                                             detail::first_of<Scalar>(records.residual_upper), bounds,
+                                             scalars + Layout::output_spread, Layout::outputs);
       }
     }
     if constexpr (has_certificate<ShapeType>) {
