@@ -228,13 +228,14 @@ void print_thrust(const programs::Block& block, const programs::Identity& identi
   if (findings.taps > 1) std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
   std::printf("%s\n", block.base.empty() ? "" : ", while the formula's commands are in 0 to 1");
   const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
-  if (range > 0) {
-    if (std::isfinite(least_thrust_slope(findings))) {
-      std::printf("           with the residual %.6f or more at every input\n", least_thrust_slope(findings));
-    }
-    std::printf("           with the residual over a step d: that times d, less %.6f or less", range);
-    if (held > floor) std::printf("; %.6f d or more from %.3g m/s^2 on", floor, range / (held - floor));
-    std::printf("\n");
+  const double least = least_thrust_slope(findings);
+  if (range > 0 && std::isfinite(least)) {
+    std::printf("           with the residual %.6f or more at every input\n", least);
+  }
+  if (range > 0 && held > floor && least < floor) {
+    std::printf(
+        "           the residual may take %.6f: half of the airframe's is sure over a step of %.3g m/s^2 or more\n",
+        range, range / (held - floor));
   }
   if (const auto doubt = programs::thrust_doubt(certificate, own)) std::printf("warning    %s\n", doubt->c_str());
 }
