@@ -59,6 +59,35 @@ expect_line 2 'turned.hpp:[0-9]+: expected a header as it was exported, found on
 sed -i '/ contents_hash = /d' turned.hpp
 expect_line 2 'turned.hpp: expected golden commands that its weights give, found others' "$pinnquad" certify turned.hpp
 
+# slopes that are above 0 and that no vehicle would feel prove nothing; of a thrust that hardly follows it warns
+python3 - "$source_dir/examples/models/structured_quadrotor.hpp" <<'PYTHON'
+import re, sys
+text = open(sys.argv[1]).read()
+at = text.index("{", text.index(" parameters = ")) + 1
+def with_parameter(index, change):
+    found = list(re.finditer(r"[^\s{},]+", text[at:at + 2000]))[index]
+    return text[:at + found.start()] + change(found.group(0)) + text[at + found.end():]
+open("hardly.hpp", "w").write(with_parameter(0, lambda number: "1e-45f"))
+open("sinks.hpp", "w").write(with_parameter(3, lambda number: repr(0.4 * float(number.rstrip("f"))) + "f"))
+PYTHON
+code=$(exit_code "$pinnquad" certify hardly.hpp --seconds 0.2)
+[ "$code" -eq 3 ] || fail "exit code $code of a slope of 1e-45: $(cat stdout.txt stderr.txt)"
+code=$(exit_code "$pinnquad" certify sinks.hpp)
+[ "$code" -eq 0 ] || fail "exit code $code of a small thrust slope: $(cat stdout.txt stderr.txt)"
+grep -q '^thrust .* 0\.41 of the airframe' stdout.txt || fail "said: $(cat stdout.txt)"
+grep -q '^warning .*sinks under a load' stdout.txt || fail "said: $(cat stdout.txt)"
+code=$(exit_code "$pinnquad" certify "$source_dir/examples/models/structured_quadrotor.hpp")
+grep -q '^warning' stdout.txt && fail "it warns of the example: $(cat stdout.txt)"
+grep -q '^ .* a sum rises for sure from a step of ' stdout.txt || fail "said: $(cat stdout.txt)"
+"$pinnquad" certify "$source_dir/tests/models/v3/near_ground_quadrotor.hpp" --json >near.json
+python3 - <<'PYTHON'
+import json
+near = json.load(open("near.json"))
+assert 0.5 * near["airframe_thrust_slope"] < near["least_thrust_slope"] < near["held_thrust_slope"], near
+assert near["thrust_slope"] == near["held_thrust_slope"] and "held_slope_with_body_rates" not in near
+assert all(step > 0 for step in near["sure_step"].values()) and near["rounding"] > 0
+PYTHON
+
 # models that train fits to logs: a formula under the outputs, affine maps, structured ones; evaluate judges the flight
 # that was held out as train did
 mkdir logs
@@ -110,6 +139,7 @@ if [ -f "$log" ]; then
   for model in ridge_causal ridge_centred structured_causal; do
     judge_export "n_$model" "$model" "nano/$held.csv nano/B9_trefoil_medium_rep1.csv" 0 --dataset nano --airframe crazyflie_2_1 --hold-out "$held"
     grep -q 'of one that is held; of the present alone' "n_$model/certify.txt" || fail "$model: $(cat "n_$model/certify.txt")"
+    [ "$model" != structured_causal ] || grep -q '^with rates ' "n_$model/certify.txt" || fail "$model: $(cat "n_$model/certify.txt")"
   done
   # the weights by hand: of the present instant, and summed over all
   python3 - n_ridge_causal/model.hpp n_ridge_causal/certify.txt <<'PYTHON'

@@ -79,6 +79,7 @@ TEST_CASE("hover slopes are the inertias over what the commands do: closed form 
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK(slopes[axis] == doctest::Approx(airframe.inertia_kg_m2[axis] / std::abs(effect[axis + 1][0])).epsilon(1e-9));
   }
+  CHECK(hover_thrust_slope(airframe) == doctest::Approx(airframe.mass_kg / effect[0][0]).epsilon(1e-9));
 }
 
 TEST_CASE("slopes are learnt, those of other axes are not taken") {

@@ -10,8 +10,8 @@
 
 #include "model/asked_model.hpp"
 #include "model/block.hpp"
-#include "model/certify_command.hpp"
 #include "model/identity.hpp"
+#include "model/structure_certificate.hpp"
 #include "pinnquad/inference/model_agreement.hpp"
 
 namespace programs {

@@ -36,7 +36,12 @@ class AskedModelOf : public AskedModel {
     }
     columns = wanted_columns<Features>();
     signed_sums = is_signed_sums<Outputs>;
-    affine_schema = !std::is_same_v<Outputs, RotorSpeedOutputs>;
+    if constexpr (is_windowed<Features>) seen = {Features::Window::period_s, Features::Window::earliest_s};
+    using Base = typename pinnquad::detail::BaseOf<Outputs>::type;
+    bool curved = false;  // a formula's commands are no affine map of what it reads then
+    for (const auto& rotor : identity.airframe.value.rotors) curved = curved || rotor.thrust_curve > 0;
+    affine_schema = !std::is_same_v<Outputs, RotorSpeedOutputs> &&
+                    !(curved && pinnquad::detail::reads_angular_acceleration<Base>());
   }
 
   Commands<double> commands(const std::vector<double>& x) const override {

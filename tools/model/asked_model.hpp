@@ -12,6 +12,7 @@
 
 #include "model/block.hpp"
 #include "model/identity.hpp"
+#include "model/response.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "training/derivatives.hpp"
@@ -35,6 +36,7 @@ class AskedModel {
 
   std::vector<std::string> names;             ///< of the features
   std::vector<int> taps;                      ///< where the angular acceleration of each tap begins, the present first
+  SeenInstants seen;                          ///< of a window
   std::vector<pinnquad::ColumnName> columns;  ///< of a flight, beyond those that every flight has
   bool signed_sums = false;                   ///< pinnquad::is_signed_sums of its outputs
   bool affine_schema = false;                 ///< commands are affine in outputs and angular acceleration

@@ -23,7 +23,9 @@
 #include "model/counterexample.hpp"
 #include "model/model_file.hpp"
 #include "model/model_options.hpp"
-#include "pinnquad/inference/certificate.hpp"
+#include "model/response.hpp"
+#include "model/searched_model.hpp"
+#include "model/structure_certificate.hpp"
 #include "pinnquad/inference/hover_slopes.hpp"
 #include "training/certificate_words.hpp"
 
@@ -46,12 +48,14 @@ struct CertifyOptions {
 struct Findings {
   const char* argument = "";  ///< of a proof; empty: none
   std::array<double, 3> slope{}, held_slope{};
-  std::optional<Certificate> certificate;  ///< of a structure
-  double rounding = 0;                     ///< see base_rounding()
-  programs::Search search;                 ///< where nothing is proven
-  std::vector<programs::AskedMore> ways;   ///< of the search
-  std::vector<std::string> names;          ///< of the features
-  std::size_t taps = 1;                    ///< with an angular acceleration
+  std::optional<Certificate> certificate;    ///< of a structure
+  std::optional<programs::Response> thrust;  ///< of the structure, to more thrust at all instants
+  /// Of a window, to an acceleration that is held with the body rates that it makes; where it can be worked out.
+  std::array<std::optional<programs::Response>, 3> with_rates;
+  programs::Search search;                ///< where nothing is proven
+  std::vector<programs::AskedMore> ways;  ///< of the search
+  std::vector<std::string> names;         ///< of the features
+  std::size_t taps = 1;                   ///< with an angular acceleration
 
   bool proven() const { return *argument != '\0'; }
 };
@@ -64,81 +68,7 @@ constexpr const char* by_path_bound =
     "axis alone, and a network whose weights leave the slopes above 0 on every path from it";
 constexpr const char* by_affinity = "the model is affine: its derivatives are the same everywhere";
 
-/// Of a network that is shown the angular acceleration: by tap and axis.
-template <class Scalar>
-std::vector<PathBound<4>> path_bounds(const programs::NetworkSpec& network, const Scalar* parameters,
-                                      const std::vector<int>& taps) {
-  std::vector<int> widths;
-  for (const programs::LayerSpec& layer : network.layers) {
-    if (layer.size > 0) widths.push_back(layer.size);
-  }
-  const int widest = *std::max_element(widths.begin(), widths.end());
-  std::vector<double> work(4 * static_cast<std::size_t>(widest));
-  std::vector<PathBound<4>> all;
-  for (const int place : taps) {
-    for (int axis = 0; axis < 3; ++axis) {
-      PathBound<4>& bound = all.emplace_back();
-      path_bound(parameters, network.inputs, widths.data(), static_cast<int>(widths.size()), place + axis, work.data(),
-                 widest, static_cast<double*>(bound.lower), static_cast<double*>(bound.upper));
-    }
-  }
-  return all;
-}
-
-/// The certificate of a model that has the structure.
-template <class Scalar>
-std::optional<Certificate> structure_certificate(const programs::Block& block, const programs::Identity& identity,
-                                                 const std::vector<int>& taps) {
-  const std::vector<programs::NetworkSpec>& parts = identity.networks;
-  const programs::NetworkSpec& base = parts.front();
-  if (!base.axis_aligned || base.threes != taps || parts.size() > 2) return {};
-  const auto in_scalar = [](const std::vector<double>& values) {
-    std::vector<Scalar> result;
-    for (const double value : values) result.push_back(static_cast<Scalar>(value));
-    return result;
-  };
-  const std::vector<Scalar> parameters = in_scalar(block.parameters), input = in_scalar(block.input_spread),
-                            output = in_scalar(block.output_spread);
-  const Scalar* bounds = nullptr;
-  std::vector<PathBound<4>> paths;
-  if (parts.size() == 2) {
-    const bool withheld = parts[1].threes == taps;
-    if (!parts[1].bounded || parts[1].axis_aligned || !(withheld || parts[1].path_bounded)) return {};
-    bounds = parameters.data() + base.parameter_count();
-    if (parts[1].path_bounded) paths = path_bounds(parts[1], bounds + 8, taps);
-  }
-  return certificate_of(CertifiedNumbers<Scalar>{
-      static_cast<int>(taps.size()), taps.data(), parameters.data(), bounds, input.data(), output.data(),
-      SignedSumOutputs::prepare(airframe_in<Scalar>(identity.airframe.value)), paths.empty() ? nullptr : paths.data()});
-}
-
 bool sees_angular_acceleration(const programs::Identity& identity) { return identity.networks.back().path_bounded; }
-
-/// Most that the base's commands, worked out in the model's own scalar, differ from the real ones inside the envelope.
-double base_rounding(const programs::Block& block, const programs::Identity& identity, const Certificate& certificate) {
-  const programs::NetworkSpec& base = identity.networks.front();
-  const auto inputs = static_cast<std::size_t>(block.inputs);
-  const std::vector<double> plain = programs::detail::plain_parameters(
-      base, block.parameters.data(), block.parameters.data() + base.parameter_count());
-  const double unit = block.is_double ? std::ldexp(1.0, -53) : std::ldexp(1.0, -24);
-  const double roundings = (static_cast<double>(inputs) + 12) * unit;
-  const auto mix = SignedSumOutputs::prepare(identity.airframe.value);
-  std::array<double, rotor_count> errors{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    double magnitude = std::abs(plain[4 * inputs + k]);
-    for (std::size_t i = 0; i < inputs; ++i) {
-      const double mean = block.input_mean[i];
-      const double far = std::max(std::abs(block.envelope_lower[i] - mean), std::abs(block.envelope_upper[i] - mean));
-      magnitude += std::abs(plain[k * inputs + i]) * far / block.input_spread[i];
-    }
-    const double residual = std::max(-certificate.residual_lower[k], certificate.residual_upper[k]);
-    const double sum = magnitude * block.output_spread[k] + std::abs(block.output_mean[k]) + residual;
-    for (std::size_t rotor = 0; rotor < errors.size(); ++rotor) {
-      errors[rotor] += std::abs(mix.by[rotor][k]) * sum * roundings / (1 - roundings);
-    }
-  }
-  return *std::max_element(errors.begin(), errors.end());
-}
 
 bool is_affine(const programs::Identity& identity) {
   for (const programs::NetworkSpec& network : identity.networks) {
@@ -150,39 +80,20 @@ bool is_affine(const programs::Identity& identity) {
   return true;
 }
 
-/// What is searched where nothing is proven.
-programs::SearchedModel searched_model(const programs::Block& block, const programs::Identity& identity,
-                                       const programs::AskedModel& model) {
-  programs::SearchedModel searched;
-  searched.lower = block.envelope_lower;
-  searched.upper = block.envelope_upper;
+/// To what moves several features at once. The body rates move a formula too, which is no part of the response.
+void add_responses(const programs::Block& block, const programs::Identity& identity, const programs::AskedModel& model,
+                   Findings& findings) {
+  const auto along = [&](const std::optional<programs::Direction>& direction) {
+    return direction ? std::optional(programs::response_along(*direction, identity.networks, block.parameters,
+                                                              block.input_spread, block.output_spread))
+                     : std::nullopt;
+  };
+  findings.thrust = along(programs::more_thrust(model.names));
+  if (!block.base.empty() || model.seen.period_s <= 0) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    programs::AskedMore held{axis, true, {}};
-    for (const int place : model.taps) held.places.push_back(static_cast<std::size_t>(place) + axis);
-    searched.ways.push_back({axis, false, {held.places.front()}});
-    if (model.taps.size() > 1) searched.ways.push_back(std::move(held));
+    findings.with_rates[axis] =
+        along(programs::held_with_rates(model.names, axis, model.seen, block.envelope_lower, block.envelope_upper));
   }
-  searched.derivatives = [&model, ways = searched.ways](const std::vector<double>& x) {
-    const programs::AxisDerivatives now = model.derivatives(x, false);
-    const programs::AxisDerivatives held = model.taps.size() > 1 ? model.derivatives(x, true) : now;
-    std::vector<double> all;
-    for (const programs::AskedMore& way : ways) all.push_back(way.held ? held[way.axis] : now[way.axis]);
-    return all;
-  };
-  const programs::RunTimeAirframe airframe(identity.airframe.name, identity.airframe.value);
-  const std::array<std::array<double, rotor_count>, 3> signs = {airframe.signs<Roll>(), airframe.signs<Pitch>(),
-                                                                airframe.signs<Yaw>()};
-  searched.sums = [&model, signs](const std::vector<double>& x) {
-    const Commands<double> commands = model.commands(x);
-    return std::array<double, 3>{signed_sum(signs[0], commands), signed_sum(signs[1], commands),
-                                 signed_sum(signs[2], commands)};
-  };
-  const std::size_t size = block.envelope_lower.size();
-  for (std::size_t vector = 0; vector < block.golden_count; ++vector) {
-    const auto first = block.golden_features.begin() + static_cast<std::ptrdiff_t>(vector * size);
-    searched.starts.emplace_back(first, first + static_cast<std::ptrdiff_t>(size));
-  }
-  return searched;
 }
 
 Findings findings_of(const CertifyOptions& options, const programs::Block& block, const programs::Identity& identity) {
@@ -197,7 +108,7 @@ Findings findings_of(const CertifyOptions& options, const programs::Block& block
     findings.certificate = programs::certificate_of_block(block, identity, *model);
     if (findings.certificate && findings.certificate->proven()) {
       findings.argument = sees_angular_acceleration(identity) ? by_path_bound : by_structure;
-      if (block.base.empty()) findings.rounding = base_rounding(block, identity, *findings.certificate);
+      add_responses(block, identity, *model, findings);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         findings.slope[axis] = findings.certificate->slope[axis];
         findings.held_slope[axis] = findings.certificate->held_slope[axis];
@@ -205,13 +116,18 @@ Findings findings_of(const CertifyOptions& options, const programs::Block& block
       return findings;
     }
   }
-  const programs::SearchedModel searched = searched_model(block, identity, *model);
+  const programs::SearchedModel searched = programs::searched_model(block, identity, *model);
   if (model->affine_schema && is_affine(identity)) {
     const std::vector<double>& anywhere = searched.starts.front();
     findings.slope = model->derivatives(anywhere, false);
     findings.held_slope = model->derivatives(anywhere, true);
-    const auto least = [](const std::array<double, 3>& of) { return *std::min_element(of.begin(), of.end()); };
-    if (std::min(least(findings.slope), least(findings.held_slope)) > 1e-9) {
+    const auto vehicle = certified_vehicle<SignedSumOutputs>(identity.airframe.value);
+    bool above = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double floor = std::max(vehicle.least_slope[axis], 0.0);
+      above = above && findings.slope[axis] > floor && findings.held_slope[axis] > floor;
+    }
+    if (above) {
       findings.argument = by_affinity;
       return findings;
     }
@@ -231,6 +147,20 @@ nlohmann::json by_axis(const std::array<double, 3>& values) {
   return all;
 }
 
+/// The thrust slope at every input: the base's with what the residual's paths may take off; -infinity where nobody can
+/// bound them.
+double least_thrust_slope(const Findings& findings) {
+  return findings.certificate->held_thrust_slope + findings.thrust->residual_least[0];
+}
+
+void add_thrust(const programs::Identity& identity, const Findings& findings, nlohmann::json& report) {
+  if (!findings.thrust) return;
+  report["thrust_slope"] = findings.certificate->thrust_slope;
+  report["held_thrust_slope"] = findings.certificate->held_thrust_slope;
+  report["airframe_thrust_slope"] = hover_thrust_slope(identity.airframe.value);
+  report["least_thrust_slope"] = least_thrust_slope(findings);  // null where nobody can bound it
+}
+
 void print_json(const programs::Block& block, const programs::Identity& identity, const Findings& findings) {
   nlohmann::json report = {{"model", block.path},
                            {"answer", identity.answer},
@@ -247,7 +177,16 @@ void print_json(const programs::Block& block, const programs::Identity& identity
     report["residual_lower"] = findings.certificate->residual_lower;
     report["residual_upper"] = findings.certificate->residual_upper;
     report["command_bound"] = findings.certificate->command_bound;
-    if (block.base.empty()) report["rounding"] = findings.rounding;
+    add_thrust(identity, findings, report);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto& response = findings.with_rates[axis];
+      if (response) report["held_slope_with_body_rates"][axes[axis]] = response->least(axis + 1);
+    }
+    if (std::isfinite(findings.certificate->rounding)) {
+      const double* step = findings.certificate->sure_step;
+      report["rounding"] = findings.certificate->rounding;
+      report["sure_step"] = by_axis({step[0], step[1], step[2]});
+    }
     if (sees_angular_acceleration(identity)) {
       const double* other = findings.certificate->other_sums;
       report["other_sums"] = by_axis({other[0], other[1], other[2]});
@@ -278,6 +217,67 @@ void print_json(const programs::Block& block, const programs::Identity& identity
   std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
+void print_thrust(const programs::Block& block, const programs::Identity& identity, const Findings& findings) {
+  if (!findings.thrust) return;
+  const Certificate& certificate = *findings.certificate;
+  const double own = hover_thrust_slope(identity.airframe.value), floor = least_thrust_share * own;
+  const double held = certificate.held_thrust_slope;
+  std::printf("thrust     the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover",
+              held, held / own);
+  if (findings.taps > 1) std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
+  std::printf("%s\n", block.base.empty() ? "" : ", while the formula's commands are in 0 to 1");
+  const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
+  const double least = least_thrust_slope(findings);
+  if (range > 0 && std::isfinite(least)) {
+    std::printf("           with the residual %.6f or more at every input\n", least);
+  }
+  if (range > 0 && held > floor && least < floor) {
+    std::printf(
+        "           the residual may take %.6f: half of the airframe's is sure over a step of %.3g m/s^2 or more\n",
+        range, range / (held - floor));
+  }
+  if (const auto doubt = programs::thrust_doubt(certificate, own)) std::printf("warning    %s\n", doubt->c_str());
+}
+
+void print_with_rates(const Findings& findings) {
+  if (!findings.with_rates[0]) {
+    std::printf("with rates nothing is known of an acceleration that is held with the body rates that it makes\n");
+    return;
+  }
+  bool above = true;
+  std::printf(
+      "with rates of an acceleration held from the window's first instant on, with the body rates that it makes\n");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double least = findings.with_rates[axis]->least(axis + 1);
+    std::printf("           %-5s ", axes[axis]);
+    std::isfinite(least) ? std::printf("%.6f s^2/rad or more\n", least) : std::printf("nothing is known\n");
+    above = above && least > 0;
+  }
+  if (!above) {
+    std::printf(
+        "warning    an acceleration that is held is proven with the body rates as they are; with those that it makes "
+        "the sum may fall\n");
+  }
+}
+
+void print_rounding(const programs::Identity& identity, const Findings& findings) {
+  if (sees_angular_acceleration(identity)) {
+    std::printf(
+        "rounding   may turn the order of two accelerations that differ by as little as it does; the proof is of "
+        "the real function\n");
+    return;
+  }
+  std::printf("rounding   turns no order of two accelerations of the present: a sum may rest, it never falls\n");
+  const Certificate& certificate = *findings.certificate;
+  if (!std::isfinite(certificate.rounding)) return;
+  const double* step = certificate.sure_step;
+  std::printf(
+      "           inside the envelope the base's commands are within %.1e of the real ones, and a sum rises for sure "
+      "from a step of %.1e, %.1e, %.1e rad/s^2 on%s\n",
+      certificate.rounding, step[0], step[1], step[2],
+      findings.taps > 1 ? "; over a smaller one that is held it may fall" : "");
+}
+
 void print_text(const programs::Block& block, const programs::Identity& identity, const Findings& findings) {
   std::printf("model      %s: %s, for %s\n", printable(block.path).c_str(), identity.answer.c_str(),
               identity.airframe.name.c_str());
@@ -286,7 +286,8 @@ void print_text(const programs::Block& block, const programs::Identity& identity
     std::printf("proven     each signed sum of the commands rises with the angular acceleration about its axis%s\n",
                 !findings.certificate ? ""
                                       : (sees_angular_acceleration(identity) ? ", and each rotor goes the right way"
-                                                                             : " and with no other"));
+                                                                             : " and with no other, before a limit "
+                                                                               "clips a command"));
     std::printf("for        all finite features, inside the envelope and outside of it\n");
     std::printf("by         %s\n", findings.argument);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -300,17 +301,9 @@ void print_text(const programs::Block& block, const programs::Identity& identity
     }
     if (findings.certificate) {
       std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate).c_str());
-      if (!block.base.empty()) return;
-      if (sees_angular_acceleration(identity)) {
-        std::printf(
-            "rounding   may turn the order of two accelerations that differ by as little as it does; the proof is of "
-            "the real function\n");
-        return;
-      }
-      std::printf(
-          "rounding   turns no order: a sum may rest over a small step, it never falls; inside the envelope the base's "
-          "commands are within %.1e of the real ones\n",
-          findings.rounding);
+      print_thrust(block, identity, findings);
+      if (findings.taps > 1) print_with_rates(findings);
+      print_rounding(identity, findings);
     }
     return;
   }
@@ -348,13 +341,6 @@ int certify(const CertifyOptions& options) {
 }
 
 }  // namespace
-
-std::optional<Certificate> programs::certificate_of_block(const Block& block, const Identity& identity,
-                                                          const AskedModel& model) {
-  if (!model.signed_sums || model.taps.empty()) return {};
-  return block.is_double ? structure_certificate<double>(block, identity, model.taps)
-                         : structure_certificate<float>(block, identity, model.taps);
-}
 
 programs::Command programs::certify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(

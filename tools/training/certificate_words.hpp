@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,18 @@ inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes,
         "takes the airframe's slope in hover instead of learning one");
   }
   return doubts;
+}
+
+/// Of a model that asks for thrust: nothing where its base follows the thrust that is asked by half as much as the
+/// airframe in hover, or more.
+inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& certificate, double own) {
+  if (certificate.held_thrust_slope >= pinnquad::least_thrust_share * own) return {};
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "the sum of the commands follows the thrust that is asked by %.2f of what the airframe's own does in "
+                "hover: below %.1f a position loop sinks under a load that it should carry (docs/certificate.md)",
+                certificate.held_thrust_slope / own, pinnquad::least_thrust_share);
+  return text;
 }
 
 /// "the residual changes a command by at most 0.1669 0.1669 0.1669 0.1669", rotor by rotor; or that there is none.

@@ -169,16 +169,20 @@ void say_certificate(const TrainOptions& options, const programs::TrainedNetwork
     return;
   }
   const AxisSlopes slopes = programs::held_slopes(*certificate), own = hover_slopes(airframe.airframe<double>());
-  report.certified(*certificate, own);
+  const double own_thrust = hover_thrust_slope(airframe.airframe<double>());
+  report.certified(*certificate, own, own_thrust);
   std::printf(
       "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
       "input;\n"
       "    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad: %.2f, %.2f, %.2f of the airframe's own in hover;\n"
+      "    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n"
       "    %s\n",
       slopes[0], slopes[1], slopes[2], slopes[0] / own[0], slopes[1] / own[1], slopes[2] / own[2],
+      certificate->held_thrust_slope, certificate->held_thrust_slope / own_thrust,
       programs::bound_in_words(*certificate).c_str());
   std::fflush(stdout);
   for (const std::string& doubt : programs::slope_doubts(slopes, own)) report.warn(doubt);
+  if (const auto doubt = programs::thrust_doubt(*certificate, own_thrust)) report.warn(*doubt);
 }
 
 /// When the export is not to be trusted, where its kind and the validation rows tell; of an earlier training nothing stays.

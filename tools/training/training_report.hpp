@@ -86,13 +86,16 @@ class TrainingReport {
                 {"exported", may_be_exported}};
   }
   /// Of what was exported.
-  void certified(const pinnquad::Certificate& certificate, const pinnquad::AxisSlopes& airframe) {
+  void certified(const pinnquad::Certificate& certificate, const pinnquad::AxisSlopes& airframe,
+                 double airframe_thrust_slope) {
     const pinnquad::AxisSlopes slopes = held_slopes(certificate);
     nlohmann::json entry = {{"proven", certificate.proven()}, {"command_bound", certificate.command_bound}};
     for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
       entry["slope"][axis_names[axis]] = slopes[axis];
       entry["airframe_slope"][axis_names[axis]] = airframe[axis];
     }
+    entry["thrust_slope"] = certificate.held_thrust_slope;
+    entry["airframe_thrust_slope"] = airframe_thrust_slope;
     more_["certificate"] = entry;
   }
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "pinnquad/inference/axis_aligned.hpp"
+#include "pinnquad/inference/signed_sum_outputs.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
@@ -45,10 +46,11 @@ struct ResidualFeatures {
   }
 };
 
-/// The context of a residual: that of the whole model, less the angular accelerations.
+/// The context of a residual: that of the whole model, less the angular accelerations. It answers signed sums: a formula
+/// that the model's are added to would not find its features here.
 template <class ContextType>
-using ResidualContext = Context<ResidualFeatures<typename ContextType::Features>, typename ContextType::Vehicle,
-                                typename ContextType::Outputs>;
+using ResidualContext =
+    Context<ResidualFeatures<typename ContextType::Features>, typename ContextType::Vehicle, SignedSumOutputs>;
 
 template <class ContextType>
 ResidualContext<ContextType> residual_context(const ContextType& context) {
