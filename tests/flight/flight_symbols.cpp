@@ -22,7 +22,8 @@ using pinnquad::test::SmallModel;
 template <class Scalar>
 using Everything =
     pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
-                        pinnquad::QuadraticDrag, pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
+                        pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::CheesemanBennettRotorGroundEffect,
+                        pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
 
 /// What no rotor can do, but a network may ask for.
 struct WideCommands {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Are the accelerations of a flight the derivatives of its body rates and of its velocity? Asked of the motion: from row to
-// row w and v change by the integral of wdot and vdot. A column that is negated, or that of another axis, integrates to
-// something else.
+// Are the accelerations of a flight the derivatives of its body rates and of its velocity? Asked of the motion: from row
+// to row w and v change by the integral of wdot and vdot. A column that is negated, or that of another axis, integrates
+// to something else.
 #pragma once
 
 #include <array>
@@ -108,12 +108,12 @@ inline std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const 
 }  // namespace detail
 
 /// Correlates, over steps of 0.04 s or of a row, the change of each body rate and velocity with the integral of each
-/// acceleration. A mistake where a column follows another axis, or its own negated, by 0.25 better than its own; where it
-/// follows its own in another unit; where vdot leaves 0.3 or more of the change of v unexplained, and another meaning of it
-/// less than a quarter of that.
-/// Measured, correlation of a column with its own axis, and most with another: the paper's flights above 0.88 and 0.17, the
-/// independent simulator's above 0.97 and 0.12, real logs above 0.73 and 0.45 (or 1.00 and 0.8); under gyro noise that drowns
-/// the motion 0 and 0.03.
+/// acceleration. A mistake where a column follows another axis, or its own negated, by 0.25 better than its own; where
+/// it follows its own in another unit; where vdot leaves 0.3 or more of the change of v unexplained, and another meaning
+/// of it less than a quarter of that.
+/// Measured, correlation of a column with its own axis, and most with another: the paper's flights above 0.88 and 0.17,
+/// the independent simulator's above 0.97 and 0.12, real logs above 0.73 and 0.45 (or 1.00 and 0.8); under gyro noise
+/// that drowns the motion 0 and 0.03.
 /// Limits: a column that noise drowns, an axis that hardly moves and a flight of few rows decide nothing.
 inline std::optional<AccelerationMistake> find_acceleration_mistake(const Flight& flight) {
   constexpr std::size_t linear_field = 1, angular_field = 4, velocity_field = 7, rates_field = 10;
