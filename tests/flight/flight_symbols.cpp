@@ -34,7 +34,7 @@ struct WideCommands {
 template <class Scalar>
 Everything<Scalar> everything() noexcept {
   return Everything<Scalar>(pinnquad::airframe_value<pinnquad::PaperQuadrotor, Scalar>(),
-                            pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {}, {});
+                            pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {}, {}, {}, {});
 }
 
 template <class Scalar>
