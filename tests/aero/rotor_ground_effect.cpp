@@ -122,11 +122,11 @@ TEST_CASE("bound to an airframe it gives the same wrench, bit by bit, and tells 
   static_assert(pinnquad::has_thrust_branches<pinnquad::ConyersGroundEffect>);
 }
 
-TEST_CASE_TEMPLATE("tilted on the ground: hubs at, next to and under it make a finite lift, and none below Z/R 0.25",
-                   Scalar, float, double) {
+TEST_CASE_TEMPLATE("tilted on the ground: hubs at, next to and under it make at most a third more lift", Scalar, float,
+                   double) {
   const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
   const double radius_m = static_cast<double>(airframe.propeller_diameter_m) / 2;
-  const double most_N = 4 * pinnquad::CheesemanBennett::most_ratio * 3.7;
+  const double most_N = 4 * 3.7 / 3 * 1.00001;
   for (int tilt = 0; tilt <= 90; ++tilt) {
     for (int i = -200; i <= 400; ++i) {
       auto c = hovering<Scalar>(Scalar(i * 1e-3 + 0.25 * radius_m), Scalar(3.7));
@@ -137,9 +137,7 @@ TEST_CASE_TEMPLATE("tilted on the ground: hubs at, next to and under it make a f
       if (!finite || force_N < 0 || force_N > most_N) FAIL_CHECK("tilt " << tilt << " height " << i << " mm");
     }
   }
-  auto under = hovering<Scalar>(Scalar(0.24 * radius_m), Scalar(3.7));
-  CHECK(CheesemanBennettRotorGroundEffect{}.wrench(under, airframe).force_N[2] == Scalar(0));
-  // one number above the pole at all four hubs
-  under.height_above_ground_m = std::nextafter(Scalar(0.25 * radius_m), Scalar(1));
-  CHECK(static_cast<double>(-CheesemanBennettRotorGroundEffect{}.wrench(under, airframe).force_N[2]) <= most_N);
+  const auto under = hovering<Scalar>(Scalar(0.24 * radius_m), Scalar(3.7));
+  const Scalar lift = -CheesemanBennettRotorGroundEffect{}.wrench(under, airframe).force_N[2];
+  CHECK(static_cast<double>(lift) == doctest::Approx(4 * 3.7 / 3).epsilon(1e-5));
 }

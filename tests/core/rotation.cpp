@@ -162,6 +162,25 @@ TEST_CASE_TEMPLATE("heading is the sine and cosine of yaw", Scalar, float, doubl
   }
 }
 
+TEST_CASE_TEMPLATE("roll, pitch and yaw are those of the attitude, whatever the quaternion's norm", Scalar, float,
+                   double) {
+  RandomStates random(16);
+  for (int draw = 0; draw < draws; ++draw) {
+    const Quaternion<Scalar> q = random.attitude<Scalar>();
+    const EulerAngles<Scalar> angles = pinnquad::to_euler(q);
+    const pinnquad::Heading<Scalar> yaw = pinnquad::heading(q);
+    for (const Scalar scale : {Scalar(0.5), Scalar(2)}) {  // powers of two: no rounding
+      const Quaternion<Scalar> longer{q.w * scale, q.x * scale, q.y * scale, q.z * scale};
+      const EulerAngles<Scalar> again = pinnquad::to_euler(longer);
+      CHECK(again.roll_rad == angles.roll_rad);
+      CHECK(again.pitch_rad == angles.pitch_rad);
+      CHECK(again.yaw_rad == angles.yaw_rad);
+      CHECK(pinnquad::heading(longer).sine == yaw.sine);
+      CHECK(pinnquad::heading(longer).cosine == yaw.cosine);
+    }
+  }
+}
+
 TEST_CASE("heading straight up is defined") {
   const double h = 0.5;  // (h, h, -h, h): pitch of exactly -90 degrees in binary arithmetic
   const pinnquad::Heading<double> yaw = pinnquad::heading(Quaternion<double>{h, h, -h, h});

@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "recorded_flight.hpp"
 
@@ -31,4 +33,21 @@ TEST_CASE("rows that a flight does not have are refused") {
   CHECK_NOTHROW(RowSet(flight, {0, 7}));
   CHECK_THROWS_AS(RowSet(flight, {0, 8}), std::invalid_argument);
   CHECK_THROWS_AS(RowSet(flight, {5, 4}), std::invalid_argument);
+}
+
+TEST_CASE("a set of a dataset's rows reads the same rows after more flights were added") {
+  pinnquad::Dataset dataset;
+  dataset.add(random_flight(7, 1));
+  const RowSet rows(dataset[0], {0, 7});
+  const Flight first = dataset[0];
+  for (unsigned seed = 2; seed < 40; ++seed) {
+    Flight other = random_flight(7, seed);
+    other.name = std::to_string(seed);
+    dataset.add(std::move(other));
+  }
+  CHECK(rows.pieces().front().flight == &dataset[0]);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    CHECK(&rows[row] == &dataset[0][row]);
+    CHECK(pinnquad::to_values(rows[row]) == pinnquad::to_values(first[row]));
+  }
 }

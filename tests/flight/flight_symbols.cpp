@@ -22,7 +22,8 @@ using pinnquad::test::SmallModel;
 template <class Scalar>
 using Everything =
     pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
-                        pinnquad::QuadraticDrag, pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
+                        pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::CheesemanBennettRotorGroundEffect,
+                        pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
 
 /// What no rotor can do, but a network may ask for.
 struct WideCommands {
@@ -33,7 +34,7 @@ struct WideCommands {
 template <class Scalar>
 Everything<Scalar> everything() noexcept {
   return Everything<Scalar>(pinnquad::airframe_value<pinnquad::PaperQuadrotor, Scalar>(),
-                            pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {}, {});
+                            pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {}, {}, {}, {});
 }
 
 template <class Scalar>

@@ -117,3 +117,12 @@ TEST_CASE("the sums of one output are those of a fit to it alone") {
     CHECK(one.intercept[0] == doctest::Approx(both.intercept[std::size_t(k)]));
   }
 }
+
+TEST_CASE("a bound of a feature that is left out, or of none, is refused") {
+  const RegressionSums sums = rows(1);
+  const std::vector<bool> taken = {true, false, true, true, true};
+  for (const int feature : {-1, 1, inputs}) {
+    CHECK_THROWS_AS(fit_bounded_ridge(sums, 0, taken, {{{{0, 1.0}, {feature, 1.0}}, 0.1, false}}),
+                    std::invalid_argument);
+  }
+}

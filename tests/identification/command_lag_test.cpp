@@ -17,7 +17,7 @@ using pinnquad::test::synthetic_flight;
 using pinnquad::test::SyntheticVehicle;
 
 TEST_CASE("a pure delay is found to a fifth of a row, on each motion") {
-  for (const double delay_s : {0.0, 0.02, 0.05, 0.12}) {
+  for (const double delay_s : {0.0, 0.02, 0.05, 0.12, 0.014, 0.037}) {  // of 10 ms rows; two between rows
     CAPTURE(delay_s);
     SyntheticVehicle vehicle;
     vehicle.motor_time_constant_s = 0;

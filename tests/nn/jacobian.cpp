@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cfenv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <random>
@@ -216,4 +218,38 @@ TEST_CASE_TEMPLATE("nothing is read behind parameters and inputs, nothing writte
   check_within_memory<Network<float, InputSize<16>, Dense<9>, Relu, Dense<4>>, Pack>();
   check_within_memory<Network<float, InputSize<3>, Sine, Dense<5>, Relu, DenseWithoutBias<2>>, Pack>();
   check_within_memory<Network<float, InputSize<1>, Relu, DenseWithoutBias<9>>, Pack>();
+}
+
+namespace {
+
+/// Leaves signalling NaNs where the next call has its stack: arithmetic with one raises FE_INVALID.
+PINNQUAD_NOINLINE void poison_stack() {
+  volatile std::uint32_t stack[16384];
+  for (volatile std::uint32_t& word : stack) word = 0x7fa00000u;
+}
+
+template <class Net, class Pack>
+PINNQUAD_NOINLINE bool reads_what_none_wrote(const PackedNetwork<Net, Pack>& packed, const Net& net) {
+  std::vector<float> x(std::size_t(Net::inputs), 0.1f), y(std::size_t(Net::outputs)), jacobian(x.size() * y.size());
+  poison_stack();
+  std::feclearexcept(FE_ALL_EXCEPT);
+  JacobianPass<Net, Pack>::run(packed, net.parameters.data(), x.data(), y.data(), jacobian.data());
+  return std::fetestexcept(FE_INVALID) != 0;
+}
+
+template <class Net, class Pack>
+void check_all_written() {
+  std::mt19937_64 engine(8);
+  const auto net = std::make_unique<Net>(random_network<Net>(engine));
+  const auto packed = std::make_unique<PackedNetwork<Net, Pack>>();
+  packed->assign(net->parameters.data());
+  CHECK(!reads_what_none_wrote<Net, Pack>(*packed, *net));
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("nothing is computed with what was not written", Pack, PINNQUAD_TEST_REGISTER_PACKS,
+                   GenericPack<float, 4>) {
+  check_all_written<Network<float, InputSize<3>, Tanh, Dense<9>, Tanh, Dense<7>, Tanh>, Pack>();
+  check_all_written<Network<float, InputSize<2>, Dense<9>, Tanh, Dense<20>, Tanh, Dense<4>>, Pack>();
 }

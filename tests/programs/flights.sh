@@ -104,6 +104,10 @@ interrupted d1 --statistics 10000 --out out/table.csv
 # on a terminal each part of the work shows how far it is
 if command -v script >/dev/null && command -v gnuplot >/dev/null; then
   mkdir progress
+  if ! script -qec true /dev/null >/dev/null 2>&1; then
+    echo "skipped: no pseudo-terminal here; what a terminal sees was not looked at" >&2
+    exit 77
+  fi
   script -qec "'$pinnquad' fly --samples 400 --out progress/f.csv --pictures progress" terminal.txt >/dev/null
   for part in 'flying:' 'writing progress/f.csv:' 'drawing 2 pictures:'; do
     grep -qE "$part +[0-9]+ %, [0-9]+ s left" terminal.txt || fail "a terminal sees no progress of $part $(cat -v terminal.txt)"

@@ -10,6 +10,7 @@
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/vehicle/inverse.hpp"
 #include "support/plain_dynamics.hpp"
+#include "support/simulator_ground_effect.hpp"
 #include "support/tolerances.hpp"
 
 namespace pinnquad::test {
@@ -67,8 +68,7 @@ plain::Result evaluate_with(const Airframe<Scalar>& airframe, const plain::Point
 template <class Scalar>
 plain::Result evaluate(const Airframe<Scalar>& airframe, const plain::Point& p) {
   switch (p.ground_effect) {
-    case plain::GroundEffect::cheeseman_bennett:
-      return evaluate_with<Scalar, CheesemanBennettGroundEffect>(airframe, p);
+    case plain::GroundEffect::cheeseman_bennett: return evaluate_with<Scalar, SimulatorGroundEffect>(airframe, p);
     case plain::GroundEffect::conyers: return evaluate_with<Scalar, ConyersGroundEffect>(airframe, p);
     case plain::GroundEffect::none: break;
   }

@@ -14,6 +14,7 @@
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "support/random_states.hpp"
+#include "support/simulator_ground_effect.hpp"
 #include "support/tolerances.hpp"
 
 using pinnquad::Accelerations;
@@ -262,13 +263,14 @@ namespace {
 /// Sinking fast right above the pole: drag holds more than the rotors, so both branches can be flown.
 struct BesideThePole {
   State<double> state;
-  NearGroundCheesemanBennett<double> vehicle;
+  Quadrotor<double, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::test::SimulatorGroundEffect>
+      vehicle;
   double ratio;
 
   BesideThePole()
       : vehicle(pinnquad::PaperQuadrotor::value<double>(), pinnquad::paper_site<double>(),
-                pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{}, pinnquad::CheesemanBennettGroundEffect{}),
-        ratio(pinnquad::CheesemanBennett{}.thrust_ratio(0.30, vehicle.airframe())) {
+                pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{}, pinnquad::test::SimulatorGroundEffect{}),
+        ratio(pinnquad::test::SimulatorCheesemanBennett{}.thrust_ratio(0.30, vehicle.airframe())) {
     state.position_m[2] = 0.877 - 0.30 * 0.1143;
     state.velocity_m_s[2] = -9.0;  // climbing: drag pushes down
   }

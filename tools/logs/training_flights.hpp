@@ -70,7 +70,8 @@ inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std
 inline void require_varied_commands(const std::vector<std::string>& paths, const pinnquad::Dataset& dataset,
                                     const pinnquad::RowSet& block, const std::string& block_name) {
   for (const pinnquad::FlightRows& piece : block.pieces()) {
-    const auto index = static_cast<std::size_t>(piece.flight - dataset.flights().data());
+    std::size_t index = 0;
+    while (&dataset[index] != piece.flight) ++index;
     pinnquad::require_varied_commands(paths[index], *piece.flight, piece.rows, block_name);
   }
 }

@@ -82,7 +82,7 @@ inline pinnquad::Flight read_flight_with_gaps(const std::string& path) {
 inline ReplayInput read_dataset(const std::string& path) {
   const ImportedDataset dataset = read_dataset_folder(path);
   ReplayInput input;
-  input.flights = dataset.flights.flights();
+  input.flights.assign(dataset.flights.flights().begin(), dataset.flights.flights().end());
   for (const std::string& quantity : dataset.absent) {
     input.notes.push_back(quantity + " is not in these logs: it is 0 here, and a model that asks for it is told so");
   }

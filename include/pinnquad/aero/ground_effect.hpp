@@ -10,20 +10,19 @@
 
 namespace pinnquad {
 
-/// Cheeseman and Bennett (1955): r = 1 / (1 - (R / 4Z)^2) for Z/R > 0.25, else 1: also below the ground, where the low side
-/// of a tilted vehicle may reach. The pole at Z/R = 0.25 is cut at `most_ratio`, which the formula passes at Z/R =
-/// 0.250125; NaN stays NaN.
-/// Near its pole the formula is wrong, which is a known fault of this model: a vehicle that hovers at Z/R = 0.2501 is thrown
-/// up at 500 g. Trust it above Z/R of about 0.35, where the ratio is 2; to fly near the ground, take Conyers.
+/// Cheeseman and Bennett (1955): r = 1 / (1 - (R / 4Z)^2) from Z/R = `least_height` up; below, 4/3, which the formula has
+/// there: also below the ground, where the low side of a tilted vehicle may reach. NaN stays NaN.
+/// The formula puts a mirrored source under the ground and holds from Z/R of about 0.5; at Z/R = 0.25 it has a pole.
+/// The paper's simulator computes it down to the pole and 1 below; rows of it between 0.25 and 0.5 differ from this.
 struct CheesemanBennett {
-  static constexpr double most_ratio = 1000;
+  static constexpr double least_height = 0.5;
+  static constexpr double most_ratio = 4.0 / 3.0;
 
   template <class Scalar>
   Scalar thrust_ratio(Scalar height_over_radius, const Airframe<Scalar>&) const noexcept {
-    if (height_over_radius <= Scalar(0.25)) return Scalar(1);
+    if (height_over_radius < Scalar(least_height)) return Scalar(most_ratio);
     const Scalar q = Scalar(0.25) / height_over_radius;
-    const Scalar ratio = Scalar(1) / (Scalar(1) - q * q);
-    return ratio > Scalar(most_ratio) ? Scalar(most_ratio) : ratio;
+    return Scalar(1) / (Scalar(1) - q * q);
   }
 };
 

@@ -25,7 +25,7 @@ struct RotorDrag {
     for (std::size_t i = 0; i < rotor_count; ++i) {
       const RotorMount<Scalar>& hub = airframe.rotors[i];
       const Scalar thrust = condition.rotor_thrust_N[i];
-      if (!is_upright(hub) || hub.z_m != Scalar(0)) {
+      if (!is_upright(hub) || !detail::equal(hub.z_m, Scalar(0))) {
         add_anywhere(hub, v, rates, k * thrust, result);
         continue;
       }

@@ -9,8 +9,7 @@ namespace pinnquad {
 /// dT_i = (r(Z_i / R) - 1) |R_zz| T_i along the axis of rotor i (body -z unless tilted), at its hub, with Z_i the height of the
 /// hub above ground and |R_zz| the vertical share of its thrust: an alternative to GroundEffect, which applies one ratio at
 /// the vehicle's centre and makes no torque. Level and without drag both give the same force. `ThrustRatio` as in
-/// GroundEffect: a hub below its range, as one that a tilt brings under the ground, has ratio 1, and next to a pole the ratio
-/// is finite.
+/// GroundEffect: a hub below its range, as one that a tilt brings under the ground, has the ratio that it states there.
 template <class ThrustRatio>
 struct RotorGroundEffect {
   static constexpr VariesWith varies_with = VariesWith::height;
@@ -25,7 +24,7 @@ struct RotorGroundEffect {
     Wrench<Scalar> result;
     for (std::size_t i = 0; i < rotor_count; ++i) {
       const RotorMount<Scalar>& hub = airframe.rotors[i];
-      if (!is_upright(hub) || hub.z_m != Scalar(0)) {
+      if (!is_upright(hub) || !detail::equal(hub.z_m, Scalar(0))) {
         add_anywhere(hub, condition, airframe, condition.rotor_thrust_N[i], result);
         continue;
       }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <initializer_list>
 #include <limits>
 #include <stdexcept>
@@ -105,6 +106,7 @@ class Flight {
 };
 
 /// Flights, each on a clock of its own: nothing is ever interpolated or windowed across a border between two.
+/// A flight stays where it is in memory when others are added, so that a RowSet of it keeps its rows.
 class Dataset {
  public:
   Dataset() = default;
@@ -133,14 +135,14 @@ class Dataset {
     flights_.push_back(std::move(flight));
   }
 
-  const std::vector<Flight>& flights() const noexcept { return flights_; }
+  const std::deque<Flight>& flights() const noexcept { return flights_; }
   std::size_t size() const noexcept { return flights_.size(); }
   const Flight& operator[](std::size_t flight) const { return flights_[flight]; }
   /// Of all flights.
   std::size_t rows() const noexcept { return rows_; }
 
  private:
-  std::vector<Flight> flights_;
+  std::deque<Flight> flights_;
   std::size_t rows_ = 0;
 };
 

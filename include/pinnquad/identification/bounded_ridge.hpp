@@ -22,10 +22,10 @@ struct WeightBound {
   bool pinned = false;
 };
 
-/// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Bounds are of features that are
-/// taken. Each choice of bounds that hold with equality is solved; of those that keep all bounds the one of least cost
+/// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Each choice of bounds that hold with equality is solved; of those that keep all bounds the one of least cost
 /// is taken, which is the minimum: the cost is convex. Throws std::invalid_argument for no rows, several outputs, a
-/// penalty that is no number from 0, more than 8 bounds, and where no choice keeps all.
+/// penalty that is no number from 0, more than 8 bounds, a bound of a feature that is not taken, and where no choice
+/// keeps all.
 inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken,
                                    const std::vector<WeightBound>& bounds) {
   constexpr std::size_t most_bounds = 8;
@@ -53,7 +53,10 @@ inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, c
   }
   for (Eigen::Index k = 0; k < count; ++k) {
     for (const auto& [feature, factor] : bounds[std::size_t(k)].terms) {
-      right(place[std::size_t(feature)], 1 + k) = factor;
+      const bool has = feature >= 0 && feature < sums.inputs();
+      const int row = has ? place[std::size_t(feature)] : -1;
+      if (row < 0) throw std::invalid_argument("ridge: a bound of feature " + std::to_string(feature) + ", not taken");
+      right(row, 1 + k) = factor;
     }
   }
   const DynamicMatrix solution = solve_symmetric(a, right);

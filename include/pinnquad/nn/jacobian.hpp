@@ -3,6 +3,8 @@
 // gave, then back from the outputs, all rows of the Jacobian at once. Weights are read where they are, row-major.
 #pragma once
 
+#include <utility>
+
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
 #include "pinnquad/nn/packed_network.hpp"
@@ -164,6 +166,7 @@ class JacobianPass {
   static void run(const PackedNetwork<NetworkType, Pack>& packed, const Scalar* parameters, const Scalar* x, Scalar* y,
                   Scalar* jacobian) noexcept {
     Scalar kept[static_cast<std::size_t>(all_kept)];
+    clear_fused(kept, std::make_integer_sequence<int, layer_count>{});
     packed.forward_keeping(x, y, kept + kept_inputs);
     back(parameters, x, kept, jacobian);
   }
@@ -173,6 +176,19 @@ class JacobianPass {
   static PINNQUAD_ALWAYS_INLINE Pointer outputs_of(Pointer kept) noexcept {
     constexpr int offset = kept_inputs + NetworkType::Sizes::outputs_before(Index);
     return kept + offset;
+  }
+  /// A layer whose activation is fused into it may leave its outputs unwritten; whole packs of the layer before reach
+  /// into them.
+  template <int... Index>
+  static PINNQUAD_ALWAYS_INLINE void clear_fused(Scalar* kept, std::integer_sequence<int, Index...>) noexcept {
+    (clear_begin<Index>(kept), ...);
+  }
+  template <int Index>
+  static PINNQUAD_ALWAYS_INLINE void clear_begin(Scalar* kept) noexcept {
+    if constexpr (Index > 0 && !is_elementwise<Layer<Index>>) {
+      Scalar* const begin = outputs_of<Index>(kept);
+      for (int i = 0; i < Pack::width; ++i) begin[i] = Scalar(0);
+    }
   }
   template <int Index>
   static PINNQUAD_ALWAYS_INLINE const Scalar* inputs_of(const Scalar* x, const Scalar* kept) noexcept {

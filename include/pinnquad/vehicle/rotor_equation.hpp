@@ -98,7 +98,7 @@ class RotorEquation {
 /// Without effects that use the rotors' wrench: s = A^-1 (required - effects). With them the equation is affine in s on each
 /// ThrustBranch: its matrix is read off at s = 0 and at the four unit fractions and inverted, so that one round is exact.
 /// Ground effect by |F_z|: with k = (r - 1) |R_zz|, more thrust always lifts more while k < 1 and there is one solution.
-/// Beyond (Cheeseman-Bennett below Z/R = 0.354, next to its pole) a wanted force has two solutions, of which the upper
+/// Beyond (an effect of one's own with a ratio above 2) a wanted force has two solutions, of which the upper
 /// branch's, with the greater thrust, is returned, or none (`no_solution`).
 /// An effect that is only nearly affine is iterated, at most 40 rounds; `no_solution` if they don't settle.
 /// The air's own status, `out_of_range` where there is none (density 0 or less) or no power (thrust scale 0 or less).
