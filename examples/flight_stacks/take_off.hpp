@@ -18,8 +18,9 @@ struct VerticalMotion {
 
 class TakeOff {
  public:
-  /// Asked to sink by this, expected to fall by that, and not sinking for so long: the ground bears it.
-  static constexpr float least_sink_m_s = 0.3f, least_fall_m_s2 = 1.0f, rests_m_s = 0.25f;
+  /// Asked to sink by this, expected to fall by that, and at rest for so long: the ground bears it. Where it sinks all the same
+  /// while its thrust goes, nothing does. An estimate wanders by less.
+  static constexpr float least_sink_m_s = 0.3f, least_fall_m_s2 = 1.0f, rests_m_s = 0.25f, falls_m_s = 0.5f;
   static constexpr std::uint64_t rests_us = 500'000;
 
   explicit TakeOff(float duration_s) noexcept : duration_s_(duration_s) {}
@@ -68,10 +69,9 @@ class TakeOff {
   }
 
   void choose_phase(std::uint64_t now_us, const Situation& situation, const VerticalMotion& motion) noexcept {
-    const bool sinks = !(motion.sink_m_s < rests_m_s);
     if (phase_ == Phase::air) {
       const bool rests = motion.asked_sink_m_s >= least_sink_m_s && motion.expected_fall_m_s2 >= least_fall_m_s2 &&
-                         !sinks && motion.sink_m_s > -rests_m_s;
+                         motion.sink_m_s < rests_m_s && motion.sink_m_s > -rests_m_s;
       if (!rests) {
         rests_since_us_ = 0;
       } else if (rests_since_us_ == 0) {
@@ -85,7 +85,7 @@ class TakeOff {
     if (motion.asks_to_climb) {
       phase_ = Phase::air;
     } else if (phase_ == Phase::touches_down) {
-      if (sinks) {  // nothing bore it
+      if (motion.sink_m_s > falls_m_s) {
         phase_ = Phase::air;
         lift_ = 1;
       } else if (situation.landed && !(lift_ > 0)) {

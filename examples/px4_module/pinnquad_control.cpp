@@ -144,6 +144,8 @@ void PinnquadControl::Run() {
   _has_commands = _core.run(motors, status);  // selected or not: the status says whether it could fly
   _stale_inputs = status.stale_inputs;
   if (_selected && _has_commands) publish(motors);
+  if (_has_commands) _said_no_commands = false;
+  if (_selected && !_has_commands && !_armed) say_no_commands();
   if (_selected && (!_has_commands || should_exit() || _takeover.asking())) {
     ask_for_takeover();
   } else {
@@ -409,6 +411,15 @@ void PinnquadControl::check_parameters() {
   }
   if (_refusal_to_say) mavlink_log_critical(&_ground_station, "%s", _refusal);
   _refusal_to_say = false;
+}
+
+void PinnquadControl::say_no_commands() {
+  if (_said_no_commands) return;
+  _said_no_commands = true;
+  const auto stale = [this](uint8_t bit, const char* what) { return (_stale_inputs & bit) != 0 ? what : ""; };
+  mavlink_log_critical(&_ground_station, "will not arm: no answer to fly by; too old:%s%s%s",
+                       stale(flight_stacks::body_rates_bit, " body rates"),
+                       stale(flight_stacks::attitude_bit, " attitude"), stale(flight_stacks::local_bit, " position"));
 }
 
 void PinnquadControl::check_ranges() {

@@ -111,6 +111,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   /// Why it may not be armed: for the log and the ground station, once, and again when the mode is selected.
   template <class... Values>
   void refuse(const char* format, Values... values);
+  void say_no_commands();
   void answer_arming_check();
   void take_samples();
   /// The set point of whoever asks for one: a trajectory, a place, the sticks.
@@ -209,6 +210,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   bool _fits{false};           ///< parameters and rotors
   char _refusal[120]{};        ///< why not
   bool _refusal_to_say{false};
+  bool _said_no_commands{false};
   orb_advert_t _ground_station{nullptr};
   bool _configured{false};      ///< PX4 has said so since the mode was selected
   bool _has_commands{true};     ///< what the next arming check is told

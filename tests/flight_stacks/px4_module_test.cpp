@@ -652,6 +652,26 @@ TEST_CASE("one that goes beyond its range later: not armed, the ground station h
   CHECK(px4::ground_station().size() == 2);
 }
 
+TEST_CASE("without an attitude it is not armed in the mode, and the ground station hears why, once") {
+  Px4World world;
+  REQUIRE(shell("start") == PX4_OK);
+  world.run(1500);
+  world.attitude_stops = true;
+  world.run(1000);
+  CHECK_FALSE(world.can_arm);
+  CHECK(px4::ground_station().empty());  // nobody asked to fly
+  world.nav_state = static_cast<uint8_t>(world.mode_id);
+  world.run(1000);
+  REQUIRE(px4::ground_station().size() == 1);
+  CHECK(px4::ground_station()[0] == "will not arm: no answer to fly by; too old: attitude");
+}
+
+TEST_CASE("the motors' idling is below what PX4's land detector takes for standing") {
+  for (const auto& range : pinnquad_px4::parameter_ranges) {
+    if (std::string("PQ_OUT_MIN") == range.name) CHECK(range.most <= LandDetector::least_manual_thrust + 0.01f);
+  }
+}
+
 TEST_CASE("in flight the sticks' speeds change; what is beyond its range changes nothing") {
   Px4World world;
   world.sends_set_points = false;
