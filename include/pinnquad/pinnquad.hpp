@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/data/acceleration_columns.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/flight_features.hpp"

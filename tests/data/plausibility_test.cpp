@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "data/temporary_folder.hpp"
 #include "pinnquad/data/csv.hpp"
@@ -215,6 +216,124 @@ TEST_CASE("the motion is looked at over a fifth of a second: a sway that comes b
     time_s += step_s;
   }
   CHECK(refusal(flight).find(":2:14: expected radians in column roll, found degrees") != std::string::npos);
+}
+
+namespace {
+
+/// A flight with every row's accelerations changed by a matrix each.
+Flight with_accelerations(const Flight& flown, const Matrix<double, 3, 3>& angular,
+                          const Matrix<double, 3, 3>& linear) {
+  Flight flight = flown;
+  for (Sample& s : flight) {
+    s.angular_acceleration_rad_s2 = angular * s.angular_acceleration_rad_s2;
+    s.linear_acceleration_m_s2 = linear * s.linear_acceleration_m_s2;
+  }
+  return flight;
+}
+
+/// Rows of 50 ms whose rates and velocities are sums of sines, their accelerations by differentiation on paper.
+Flight closed_form_flight(std::size_t rows) {
+  Flight flight(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    Sample& s = flight[row];
+    const double t = s.time_s = 0.05 * static_cast<double>(row);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double slow = 1.1 + axis, fast = 4.3 - 0.7 * axis;
+      s.body_rates_rad_s[axis] = 0.3 * std::sin(slow * t) + 0.1 * std::sin(fast * t);
+      s.angular_acceleration_rad_s2[axis] = 0.3 * slow * std::cos(slow * t) + 0.1 * fast * std::cos(fast * t);
+      s.velocity_m_s[axis] = 2 * std::sin((0.4 + 0.3 * axis) * t);
+      s.linear_acceleration_m_s2[axis] = 2 * (0.4 + 0.3 * axis) * std::cos((0.4 + 0.3 * axis) * t);
+    }
+    s.commands = {0.5, 0.5, 0.5, 0.5};
+  }
+  return flight;
+}
+
+/// Every turn of the axes with every choice of signs: 48 matrices, the unit matrix first.
+std::vector<Matrix<double, 3, 3>> signed_permutations() {
+  std::vector<Matrix<double, 3, 3>> all;
+  std::array<Eigen::Index, 3> order = {0, 1, 2};
+  do {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      Matrix<double, 3, 3> turned = Matrix<double, 3, 3>::Zero();
+      for (Eigen::Index row = 0; row < 3; ++row) {
+        turned(row, order[static_cast<std::size_t>(row)]) = (signs >> row & 1u) != 0 ? -1 : 1;
+      }
+      all.push_back(turned);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return all;
+}
+
+const Matrix<double, 3, 3> unchanged = Matrix<double, 3, 3>::Identity();
+
+}  // namespace
+
+TEST_CASE("accelerations that are negated or of another axis are refused, whichever; those of the motion pass") {
+  for (const Flight& flight : {closed_form_flight(400), some_flight()}) {
+    for (const Matrix<double, 3, 3>& turned : signed_permutations()) {
+      const bool same = turned == unchanged;
+      CAPTURE(turned);
+      CHECK(find_acceleration_mistake(with_accelerations(flight, turned, unchanged)).has_value() != same);
+      CHECK(find_acceleration_mistake(with_accelerations(flight, unchanged, turned)).has_value() != same);
+    }
+  }
+}
+
+TEST_CASE("a wrong acceleration is named with what its column holds") {
+  const auto said = [](const Matrix<double, 3, 3>& angular, const Matrix<double, 3, 3>& linear) {
+    return refusal(with_accelerations(some_flight(), angular, linear));
+  };
+  Matrix<double, 3, 3> swapped = Matrix<double, 3, 3>::Zero();
+  swapped(0, 1) = swapped(1, 0) = swapped(2, 2) = 1;
+  const Matrix<double, 3, 3> flu = Vector3<double>(1, -1, -1).asDiagonal();
+  CHECK(said(-unchanged, unchanged) ==
+        "no/such/flight.csv:2:5: expected the derivative of w_x in column wdot_x, found that of w_x negated, by how "
+        "rates and velocity change from row to row");
+  CHECK(said(swapped, unchanged).find("column wdot_x, found that of w_y,") != std::string::npos);
+  CHECK(said(unchanged, swapped).find("column vdot_bx, found that of v_by,") != std::string::npos);
+  CHECK(said(unchanged, flu)
+            .find(":2:3: expected the derivative of v_by in column vdot_by, found that of v_by negated") !=
+        std::string::npos);
+  CHECK(said(degrees * unchanged, unchanged).find("column wdot_x, found about 5") != std::string::npos);
+}
+
+TEST_CASE("what an accelerometer reads, and the world's acceleration in any axes, are no derivative of v in the body") {
+  const auto said = [](const std::function<Vector3<double>(const Sample&, const Quaternion<double>&)>& logged) {
+    return refusal(changed([&](Sample& s) {
+      const auto q = from_euler(EulerAngles<double>{s.roll_rad, s.pitch_rad, s.yaw_rad});
+      s.linear_acceleration_m_s2 = logged(s, q);
+    }));
+  };
+  const auto world_in_body = [](const Sample& s) -> Vector3<double> {
+    return s.linear_acceleration_m_s2 + cross(s.body_rates_rad_s, s.velocity_m_s);
+  };
+  CHECK(said([&](const Sample& s, const auto&) { return world_in_body(s); }).find("(subtract w x v)") !=
+        std::string::npos);
+  CHECK(said([&](const Sample& s, const auto& q) {
+          return body_to_world(q, world_in_body(s));
+        }).find("in axes north, east, down") != std::string::npos);
+  CHECK(said([&](const Sample& s, const auto& q) -> Vector3<double> {
+          return world_in_body(s) - world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>));
+        }).find("what an accelerometer reads") != std::string::npos);
+}
+
+TEST_CASE("gyro noise that drowns the motion decides nothing; where some is left, a negated column is found") {
+  FlightPlan plan = AgileFlight::plan();
+  plan.samples = 3000;
+  const auto vehicle = flight_vehicle<AgileFlight>(airframe_value<PaperQuadrotor, double>());
+  for (const double noise_rad_s : {0.05, 0.3}) {
+    RecorderErrors errors = noisy_gyro_errors();
+    errors.gyro_noise_rad_s = noise_rad_s;
+    const NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(5), errors);
+    const Flight flight =
+        fly(
+            vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(2)), plan, [](const FlightRow&) {}, recorder)
+            .flight;
+    CHECK(!find_acceleration_mistake(flight));
+    CHECK(find_acceleration_mistake(with_accelerations(flight, -unchanged, unchanged)).has_value() ==
+          (noise_rad_s < 0.1));
+  }
 }
 
 TEST_CASE("line and column are those of the file, whatever its columns' order") {

@@ -30,6 +30,12 @@ TEST_CASE("the independent simulator's flights are flights") {
         pinnquad::read_flight_csv(pinnquad::test::reference_folder() + "/airlib/flights/" + name + ".csv");
     CHECK(flight.size() > 4000);
     CHECK(complaint(flight) == "");
+    Flight wrong = flight;
+    for (auto& sample : wrong) sample.angular_acceleration_rad_s2 *= -1;
+    CHECK(complaint(wrong).find("in column wdot_x, found that of w_x negated") != std::string::npos);
+    wrong = flight;
+    for (auto& sample : wrong) sample.linear_acceleration_m_s2 *= -1;
+    CHECK(complaint(wrong).find("in column vdot_bx, found that of v_bx negated") != std::string::npos);
   }
 }
 
@@ -66,6 +72,13 @@ TEST_CASE("real logs are flights, one by one and end to end; in degrees they are
   for (const Flight& flight : flights) CHECK(complaint(flight) == "");
   CHECK(complaint(joined) == "");
 
+  for (const Flight& flight : flights) {
+    Flight wrong = flight;
+    for (auto& sample : wrong) {
+      sample.angular_acceleration_rad_s2 = pinnquad::swap_flu_frd(sample.angular_acceleration_rad_s2);
+    }
+    CHECK(complaint(wrong).find("in column wdot_y, found that of w_y negated") != std::string::npos);
+  }
   Flight wrong = joined;
   for (auto& sample : wrong) sample.body_rates_rad_s *= 57.29577951;
   CHECK(complaint(wrong).find("expected radians per second") != std::string::npos);

@@ -34,35 +34,45 @@ inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const st
   return v * (turn / dt_s);
 }
 
-/// Steps of 0.2 s, without gaps, one after the other: visit(first sample, last sample, mean body rates over it, its length in s).
-/// A measured attitude jitters from row to row; over a step it turns.
+/// Steps of at least `step_s`, without gaps, one after the other: visit(first row, last row).
 template <class Visit>
-void for_each_turning_step(const Flight& flight, Visit&& visit) {
-  constexpr double step_s = 0.2, longest_step_s = 0.5,
-                   largest = 1e4;  // beyond is no angle and no rate, whatever the unit
+void for_each_step(const Flight& flight, double step_s, Visit&& visit) {
+  constexpr double longest_step_s = 0.5;
   for (std::size_t first = 0, last = 0; first < flight.size(); first = last) {
-    // rates by the trapezium rule from row to row, the attitude by its ends
-    Vector3<double> turned = Vector3<double>::Zero();
     bool usable = true;
     const double begin_s = flight[first].time_s;
     for (last = first; usable && last + 1 < flight.size() && flight[last].time_s - begin_s < step_s; ++last) {
-      const Sample& a = flight[last];
-      const Sample& b = flight[last + 1];
-      const double dt_s = b.time_s - a.time_s;
-      turned += (a.body_rates_rad_s + b.body_rates_rad_s) * (dt_s / 2);
-      usable = dt_s > 0 && b.time_s - begin_s <= longest_step_s;
+      const Sample& next = flight[last + 1];
+      usable = next.time_s - flight[last].time_s > 0 && next.time_s - begin_s <= longest_step_s;
     }
     if (last == first) break;
-    const double dt_s = flight[last].time_s - begin_s;
+    if (usable) visit(first, last);
+  }
+}
+
+/// Steps of 0.2 s: visit(first sample, last sample, mean body rates over it, its length in s).
+/// A measured attitude jitters from row to row; over a step it turns.
+template <class Visit>
+void for_each_turning_step(const Flight& flight, Visit&& visit) {
+  constexpr double step_s = 0.2, largest = 1e4;  // beyond is no angle and no rate, whatever the unit
+  for_each_step(flight, step_s, [&](std::size_t first, std::size_t last) {
+    // rates by the trapezium rule from row to row, the attitude by its ends
+    Vector3<double> turned = Vector3<double>::Zero();
+    for (std::size_t row = first; row < last; ++row) {
+      const Sample& a = flight[row];
+      const Sample& b = flight[row + 1];
+      turned += (a.body_rates_rad_s + b.body_rates_rad_s) * ((b.time_s - a.time_s) / 2);
+    }
+    const double dt_s = flight[last].time_s - flight[first].time_s;
     const Vector3<double> rate = turned / dt_s;
-    usable = usable && rate.norm() <= largest;
+    bool usable = rate.norm() <= largest;
     for (const Sample* end : {&flight[first], &flight[last]}) {
       for (const double angle : {end->roll_rad, end->pitch_rad, end->yaw_rad}) {
         usable = usable && std::abs(angle) <= largest;
       }
     }
     if (usable) visit(flight[first], flight[last], rate, dt_s);
-  }
+  });
 }
 
 }  // namespace detail

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "pinnquad/data/acceleration_columns.hpp"
 #include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/degrees.hpp"
@@ -212,7 +213,8 @@ inline InputError implausible_in_file(const std::string& path, const Implausible
 }  // namespace detail
 
 /// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of another
-/// unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its neighbours. None: a flight.
+/// unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its neighbours,
+/// accelerations that are not the derivatives of rates and velocity. None for a flight.
 inline std::optional<Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
@@ -220,6 +222,10 @@ inline std::optional<Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_out_of_range(flight)) return found;
   for (std::size_t field = 0; field < sample_value_count; ++field) {
     if (auto found = detail::find_outlier(flight, field)) return found;
+  }
+  if (const auto mistake = find_acceleration_mistake(flight)) {
+    return Implausible{0, mistake->field, mistake->expected + " " + detail::column_text(mistake->field),
+                       mistake->found + ", by how rates and velocity change from row to row"};
   }
   return std::nullopt;
 }
