@@ -166,8 +166,9 @@ TEST_CASE("degrees are found by the motion, whichever column has them") {
 }
 
 TEST_CASE("a clock of another unit is told from the steps, and so are body rates that have stopped") {
-  CHECK(refusal(changed([](Sample& s) { s.time_s *= 1000; })).find(":3:1: expected rows at most 4 s apart in column t") !=
-        std::string::npos);
+  CHECK(refusal(changed([](Sample& s) {
+          s.time_s *= 1000;
+        })).find(":3:1: expected rows at most 4 s apart in column t") != std::string::npos);
   // the attitude turns slowly about yaw; of a gyro that stands still 57.3 times the rate is no unit
   const auto turning = [](double rate, double jitter) {
     Flight flight = some_flight();

@@ -105,11 +105,14 @@ inline std::vector<LogTopic> dealt(LogTopic topic, const std::vector<std::vector
     part.file = topic.file;
     part.places_are_lines = topic.places_are_lines;
   }
-  deal(topic.time_s, [](LogTopic& part) -> auto& { return part.time_s; });
-  deal(topic.place, [](LogTopic& part) -> auto& { return part.place; });
+  deal(
+      topic.time_s, [](LogTopic & part) -> auto& { return part.time_s; });
+  deal(
+      topic.place, [](LogTopic & part) -> auto& { return part.place; });
   for (LogColumn& column : topic.columns) {
     for (LogTopic& part : parts) part.columns.push_back({column.name, {}});
-    deal(column.values, [](LogTopic& part) -> auto& { return part.columns.back().values; });
+    deal(
+        column.values, [](LogTopic & part) -> auto& { return part.columns.back().values; });
   }
   for (LogText& text : topic.texts) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -118,7 +121,8 @@ inline std::vector<LogTopic> dealt(LogTopic topic, const std::vector<std::vector
       const auto index = static_cast<std::size_t>(first - rows[i].begin());
       parts[i].texts.push_back({text.name, {}, first == rows[i].end() ? 0 : index});
     }
-    deal(text.values, [](LogTopic& part) -> auto& { return part.texts.back().values; });
+    deal(
+        text.values, [](LogTopic & part) -> auto& { return part.texts.back().values; });
   }
   return parts;
 }

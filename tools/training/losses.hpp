@@ -74,9 +74,8 @@ inline const LossName* compared_with(const std::vector<LossName>& losses, const 
 /// Of the networks those whose best may be exported: the physics-informed ones or, where those were not asked for, the
 /// first. The structured ones where there are no networks.
 inline LossName exported_network(const std::vector<LossName>& losses) {
-  const auto informed = std::find_if(losses.begin(), losses.end(), [](const LossName& loss) {
-    return loss.key == std::string(physics_informed.key);
-  });
+  const auto informed = std::find_if(
+      losses.begin(), losses.end(), [](const LossName& loss) { return loss.key == std::string(physics_informed.key); });
   return informed == losses.end() ? losses.front() : *informed;
 }
 
