@@ -193,6 +193,12 @@ TEST_CASE("what cannot be written is said before the work, in one line") {
   refused("missing/out.txt", "No such file or directory");
   refused("file/out.txt", "Not a directory");
   refused(".", "it is a folder");
+  // whoever asks, and through a link
+  std::filesystem::permissions(folder.path("file"), std::filesystem::perms::owner_read);
+  refused("file", "it is write-protected");
+  std::filesystem::create_symlink("file", folder.path("link"));
+  refused("link", "it is write-protected");
+  std::filesystem::remove(folder.path("link"));
   CHECK(folder.listing() == Names{"file"});
   CHECK_THROWS_WITH_AS(AtomicFile{"/dev/null"}, "cannot write /dev/null: it is not a regular file", OutputError);
 }

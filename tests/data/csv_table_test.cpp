@@ -164,6 +164,8 @@ TEST_CASE("every bad input is one line with file, line, column, what was expecte
   check("a,b\n1, \t\n", "in.csv:2:2: expected a finite number in column b, found an empty cell");
   check("a,b\n+,1\n", "in.csv:2:1: expected a finite number in column a, found \"+\"");
   check("a,b\n+-1,1\n", "in.csv:2:1: expected a finite number in column a, found \"+-1\"");
+  check("a;b\n1;2\n", "in.csv:1: expected commas between the cells (export the table with them), found semicolons");
+  check("a\tb\n1\t2\n", "in.csv:1: expected commas between the cells (export the table with them), found tabs");
   check("a,b\n1;2\n", "in.csv:2:2: expected 2 fields as in the header, found 1");
   check("a,b\n1,2\n3\n", "in.csv:3:2: expected 2 fields as in the header, found 1");
   check("a,b\n1,2,3,4\n", "in.csv:2:3: expected 2 fields as in the header, found 4");

@@ -100,6 +100,23 @@ TEST_CASE("extra columns: one number per row, names of their own, and they are c
   CHECK(flight.column("battery_voltage")->values.back() == 15.6);
 }
 
+TEST_CASE("the rows that are kept are those of a flight made of them alone") {
+  Flight flight = random_flight(9, 3);
+  flight.add_column({{"battery", "V"}, {0, 1, 2, 3, 4, 5, 6, 7, 8}});
+  for (const unsigned wanted : {0u, 0x1ffu, 0x155u, 0x0feu, 0x101u}) {
+    Flight expected;
+    expected.add_column({{"battery", "V"}, {}});
+    for (std::size_t row = 0; row < flight.size(); ++row) {
+      const double extra = static_cast<double>(row);
+      if ((wanted >> row & 1u) != 0) expected.push_back(flight[row], &extra, 1);
+    }
+    Flight kept = flight;
+    kept.keep_rows([wanted](std::size_t row) { return (wanted >> row & 1u) != 0; });
+    CHECK(kept.size() == expected.size());
+    CHECK(content_hash(kept) == content_hash(expected));
+  }
+}
+
 TEST_CASE("a dataset: one flight is that flight; of several, names and clocks are looked at") {
   const Flight flight = random_flight(30, 12);
   CHECK(content_hash(pinnquad::Dataset(flight)) == content_hash(flight));

@@ -165,6 +165,27 @@ TEST_CASE("degrees are found by the motion, whichever column has them") {
   CHECK(in_degrees(true, true, true, degrees).find(":2:14: expected radians in column roll") != std::string::npos);
 }
 
+TEST_CASE("a clock of another unit is told from the steps, and so are body rates that have stopped") {
+  CHECK(refusal(changed([](Sample& s) {
+          s.time_s *= 1000;
+        })).find(":3:1: expected rows at most 4 s apart in column t") != std::string::npos);
+  // the attitude turns slowly about yaw; of a gyro that stands still 57.3 times the rate is no unit
+  const auto turning = [](double rate, double jitter) {
+    Flight flight = some_flight();
+    double sign = 1;
+    for (Sample& s : flight) {
+      s.roll_rad = s.pitch_rad = 0;
+      s.yaw_rad = 0.01 * s.time_s;
+      s.body_rates_rad_s = Vector3<double>(0, 0, rate + sign * jitter);
+      sign = -sign;
+    }
+    return refusal(flight);
+  };
+  CHECK(turning(0.01, 0) == "");
+  CHECK(turning(0.01 * degrees, 1e-6).find(":2:11: expected radians per second") != std::string::npos);
+  CHECK(turning(0.01 * degrees, 0).find(":2:11: expected body rates that change") != std::string::npos);
+}
+
 TEST_CASE("angles of less than a degree are found too: the range has no say") {
   // a slow sway of 0.01 rad, at 20 Hz
   const auto sway = [](double angle_factor, double rate_factor) {

@@ -56,8 +56,8 @@ const programs::FlightLog& log() {
 }
 
 void use(const programs::Mapping& mapping) {
-  for (const programs::LogPart& part : programs::parts_of(log(), "log", mapping)) {
-    const programs::BoundLog bound = programs::bind_log(part.log, mapping, std::nullopt);
+  for (programs::LogPart& part : programs::parts_of(log(), "log", mapping)) {
+    programs::BoundLog bound = programs::bind_log(part.log, mapping, std::nullopt);
     programs::CommonRows rows = programs::common_rows(bound, std::nullopt, mapping.file.empty());
     const double period_s = rows.period_s;
     const std::size_t all = rows.rows();

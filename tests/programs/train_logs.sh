@@ -37,6 +37,16 @@ refused '^train: --recipe goes with --flight, not with --dataset' --dataset logs
 refused '^train: --hold-out goes with --dataset or --log' --flight logs/flight1.csv --hold-out flight1
 refused '^train: --log and --mapping go together' --log logs --hold-out flight1
 refused 'hold-out-each' --dataset logs --hold-out-each row
+# a lag or a clock that no header can state, a command that stands still: found before the folder and the training
+dataset late flight1 flight2 flight3
+sed -i 's/"lag_removed_s": 0/"lag_removed_s": -0.02/' late/dataset.json
+refused 'late/dataset.json: expected a lag removed of 0 to 4 s, .* found -0.02 s' --dataset late --hold-out flight3
+dataset slow flight1 flight2 flight3
+awk -F, -v OFS=, 'NR > 1 { $1 *= 1000 } { print }' logs/flight2.csv >slow/flight2.csv
+refused 'slow/flight2.csv:3:1: expected rows at most 4 s apart in column t, found 50 .milliseconds' --dataset slow --hold-out flight3
+dataset still flight1 flight2 flight3
+awk -F, -v OFS=, 'NR > 1 { $19 = 0.5 } { print }' logs/flight2.csv >still/flight2.csv
+refused 'still/flight2.csv:2:19: expected commands that change in column u2' --dataset still --hold-out flight3
 # the same flight under another name: it would train and judge
 dataset leak flight1 flight2 flight3
 cp leak/flight1.csv leak/copy.csv

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How deep a TOML or JSON text is nested, found before a parser sees it: parsers, and what walks the trees that they make,
-// descend once per level and end with the stack.
+// How deep a TOML or JSON text is nested, found before a parser sees it: parsers, and what walks the trees that they
+// make, descend once per level and end with the stack.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ inline pinnquad::InputError error_at(const std::string& content, std::size_t at,
   return pinnquad::InputError(path, line, at - line_begin + 1, expected, found);
 }
 
-/// Throws InputError where brackets, or the dots of a key, make more levels than `deepest_nesting`. `what` is TOML or JSON.
+/// Throws InputError where brackets, or a key's dots, make more levels than `deepest_nesting`. `what` is TOML or JSON.
 inline void require_shallow(const std::string& content, const std::string& path, const std::string& what) {
   std::size_t brackets = 0, dots = 0;  // those open; those of this key or number
   for (std::size_t i = 0; i < content.size();) {

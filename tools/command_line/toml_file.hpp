@@ -96,7 +96,7 @@ inline std::string described(const toml::node& node) {
 
 /// A text of the file. One with a NUL inside would be cut there where it names a file.
 inline std::string text_of_toml(const std::string& path, const toml::value<std::string>& text) {
-  if (text.get().find('\0') != std::string::npos) refuse_toml(path, text.source(), "a text without NUL", described(text));
+  if (text->find('\0') != std::string::npos) refuse_toml(path, text.source(), "a text without NUL", described(text));
   return text.get();
 }
 

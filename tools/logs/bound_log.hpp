@@ -219,7 +219,7 @@ inline Signal bind_source(const FlightLog& log, const Mapping& mapping, const So
   for (std::vector<double>& column : signal.values) {
     for (double& value : column) value *= source.in_si;
   }
-  signal.clock = pinnquad::clean_clock(time_s);
+  signal.clock = std::make_shared<const pinnquad::CleanClock>(pinnquad::clean_clock(time_s));
   if (source.quantity == Quantity::attitude && !source.euler) detail::require_unit(signal);
   to_our_frames(source, signal.values);
   if (source.quantity == Quantity::motors) {
@@ -246,7 +246,7 @@ inline Signal best_signal(const FlightLog& log, const Mapping& mapping, const st
   Signal best;
   for (const Source* source : sources) {
     Signal signal = bind_source(log, mapping, *source, airframe, false);
-    if (!signal.present() || signal.clock.size() == 0) continue;
+    if (!signal.present() || signal.clock->size() == 0) continue;
     const auto rate = [](const Signal& of) { return of.period_s() > 0 ? 1 / of.period_s() : 0.0; };
     if (best.present() && !(rate(signal) > rate(best) * 1.2)) continue;
     best = std::move(signal);
@@ -257,9 +257,48 @@ inline Signal best_signal(const FlightLog& log, const Mapping& mapping, const st
 
 }  // namespace detail
 
+namespace detail {
+
+/// How many sources of a mapping read a column of a topic.
+inline std::size_t readers(const Mapping& mapping, const std::string& topic, const std::string& column) {
+  std::size_t count = column == mapping.time_column.name ? 1 : 0;
+  const auto add = [&](const Source& source) {
+    if (source.topic != topic && source.thrust_topic != topic) return;
+    for (const NamedColumn& one : source.columns) count += one.name == column ? 1 : 0;
+    count += source.time_column == column ? 1 : 0;
+  };
+  for (const Source& source : mapping.sources) add(source);
+  for (const ExtraSource& extra : mapping.extras) add(extra.source);
+  return count;
+}
+
+/// Lets go of a log's columns that nobody reads but this source, which has copies: a long log is not held twice.
+inline void let_go(FlightLog& log, const Mapping& mapping, const Source& source) {
+  for (LogTopic& topic : log.topics) {
+    const std::string name = log.topics.size() == 1 && source.topic.empty() ? "" : topic.name;
+    if (name != source.topic) continue;
+    for (LogColumn& column : topic.columns) {
+      const bool its = std::any_of(source.columns.begin(), source.columns.end(),
+                                   [&column](const NamedColumn& one) { return one.name == column.name; });
+      if (its && readers(mapping, name, column.name) == 1) column.values = std::vector<double>();
+    }
+  }
+}
+
+/// Gives a signal the clock of an earlier one of the same topic and clock column.
+inline void share_clock(Signal& signal, const BoundLog& bound) {
+  for (const Signal& other : bound.signals) {
+    if (!other.present() || &other == &signal) continue;
+    const bool same = other.topic == signal.topic && other.source->time_column == signal.source->time_column;
+    if (same && other.source->time_in_s == signal.source->time_in_s) signal.clock = other.clock;
+  }
+}
+
+}  // namespace detail
+
 /// Throws InputError, one line: a source that is not optional and not there, cells that are no numbers, quaternions that are no
-/// unit, another number of motors.
-inline BoundLog bind_log(const FlightLog& log, const Mapping& mapping, const std::optional<NamedAirframe>& airframe) {
+/// unit, another number of motors. Columns of the log that one source alone reads are empty afterwards.
+inline BoundLog bind_log(FlightLog& log, const Mapping& mapping, const std::optional<NamedAirframe>& airframe) {
   BoundLog bound;
   const auto sources_of = [&mapping](std::initializer_list<Quantity> any) {
     std::vector<const Source*> found;
@@ -273,7 +312,11 @@ inline BoundLog bind_log(const FlightLog& log, const Mapping& mapping, const std
   const auto bind = [&](Signal& signal, const std::vector<const Source*>& sources, bool needed) {
     if (sources.empty()) return;
     signal = detail::best_signal(log, mapping, sources, airframe);
-    if (signal.present()) return;
+    if (signal.present()) {
+      detail::share_clock(signal, bound);
+      detail::let_go(log, mapping, *signal.source);
+      return;
+    }
     const bool optional =
         std::any_of(sources.begin(), sources.end(), [](const Source* source) { return source->optional; });
     if (optional && !needed) return;

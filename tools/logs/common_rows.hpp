@@ -55,9 +55,9 @@ namespace detail {
 inline std::vector<double> latest(const Signal& signal, const std::vector<double>& time_s) {
   std::vector<double> values(time_s.size(), std::nan(""));
   std::size_t at = 0;
-  for (std::size_t row = 0; row < time_s.size() && signal.clock.size() > 0; ++row) {
-    while (at + 1 < signal.clock.size() && signal.clock.time_s[at + 1] <= time_s[row]) ++at;
-    values[row] = signal.values[0][signal.clock.row[at]];
+  for (std::size_t row = 0; row < time_s.size() && signal.clock->size() > 0; ++row) {
+    while (at + 1 < signal.clock->size() && signal.clock->time_s[at + 1] <= time_s[row]) ++at;
+    values[row] = signal.values[0][signal.clock->row[at]];
   }
   return values;
 }
@@ -111,27 +111,29 @@ class CommonClock {
     for (std::size_t row = 0; row < time_s.size(); ++row) time_s[row] = uniform_.at(row);
     return time_s;
   }
-  std::vector<double> values(const Signal& signal, std::size_t component) const {
-    const std::vector<double>& all = signal.values[component];
+  /// The signal's values are gone afterwards.
+  std::vector<double> values(Signal& signal, std::size_t component) const {
+    const std::vector<double> all = std::move(signal.values[component]);
     if (own_) {
       std::vector<double> values;
+      values.reserve(own_->size());
       for (const std::size_t row : own_->row) values.push_back(all[row]);
       return values;
     }
     const Quantity quantity = signal.source->quantity;
     const bool command = quantity == Quantity::motors || quantity == Quantity::torque_and_thrust;
     const bool held = signal.source->held || (command && hold_commands_);
-    return pinnquad::resample(signal.clock, all, uniform_, pinnquad::resampling_of(signal.period_s(), period_s_, held),
-                              pinnquad::bridged_gap_s(signal.clock));
+    return pinnquad::resample(*signal.clock, all, uniform_, pinnquad::resampling_of(signal.period_s(), period_s_, held),
+                              pinnquad::bridged_gap_s(*signal.clock));
   }
   template <std::size_t Count>
-  void take(const Signal& signal, std::array<std::vector<double>, Count>& to) const {
+  void take(Signal& signal, std::array<std::vector<double>, Count>& to) const {
     if (!signal.present()) return;
     if (!own_ && signal.source->quantity == Quantity::attitude) {
       if constexpr (Count == 4) {
         const auto& v = signal.values;
-        to = pinnquad::resample_attitude(signal.clock, {&v[0], &v[1], &v[2], &v[3]}, uniform_,
-                                         pinnquad::bridged_gap_s(signal.clock));
+        to = pinnquad::resample_attitude(*signal.clock, {&v[0], &v[1], &v[2], &v[3]}, uniform_,
+                                         pinnquad::bridged_gap_s(*signal.clock));
       }
       return;
     }
@@ -172,10 +174,11 @@ inline double usual_period_s(const BoundLog& log) {
 
 }  // namespace detail
 
-inline CommonRows common_rows(const BoundLog& log, const std::optional<double>& period_s, bool hold_commands) {
+/// The values of the log's signals are gone afterwards.
+inline CommonRows common_rows(BoundLog& log, const std::optional<double>& period_s, bool hold_commands) {
   CommonRows rows;
   detail::CommonClock clock(hold_commands);
-  const pinnquad::CleanClock& own = log.of(Quantity::body_rates).clock;
+  const pinnquad::CleanClock& own = *log.of(Quantity::body_rates).clock;
   const double own_period_s = own.report.nominal_period_s;
   rows.own_rows = detail::on_one_clock(log) && detail::has_even_steps(own) &&
                   (!period_s || std::abs(*period_s - own_period_s) < 1e-3 * own_period_s);
@@ -185,7 +188,7 @@ inline CommonRows common_rows(const BoundLog& log, const std::optional<double>& 
   } else {
     rows.period_s = period_s ? *period_s : detail::usual_period_s(log);
     std::vector<const pinnquad::CleanClock*> clocks;
-    for (const Signal* signal : detail::needed_signals(log)) clocks.push_back(&signal->clock);
+    for (const Signal* signal : detail::needed_signals(log)) clocks.push_back(signal->clock.get());
     clock.uniform(pinnquad::common_clock(clocks, rows.period_s));
   }
   rows.time_s = clock.times();
@@ -199,7 +202,7 @@ inline CommonRows common_rows(const BoundLog& log, const std::optional<double>& 
   clock.take(log.of(Quantity::position), rows.position);
   if (log.of(Quantity::altitude).present()) rows.altitude = clock.values(log.of(Quantity::altitude), 0);
   if (log.of(Quantity::landed).present()) rows.landed = detail::latest(log.of(Quantity::landed), rows.time_s);
-  for (const BoundExtra& extra : log.extras) {
+  for (BoundExtra& extra : log.extras) {
     std::vector<double> values = clock.values(extra.signal, 0);
     if (!rows.own_rows) detail::extend_ends(values);
     rows.extras.push_back(std::move(values));

@@ -64,6 +64,7 @@ class Table {
     std::error_code ignored;
     bytes_ = std::filesystem::file_size(path, ignored);
     read_header();
+    most_rows_ = pinnquad::detail::most_records(path, names_.size());
     first_text_.assign(names_.size(), no_text);
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const auto& labels = selection.label_columns;
@@ -85,6 +86,7 @@ class Table {
     std::vector<std::vector<std::string>> texts(size);
     LogTopic topic;
     topic.file = path_;
+    topic.place.reserve(most_rows_);
     for (; records_.next(record_); topic.place.push_back(records_.line())) {
       if (topic.place.size() % rows_per_report == 0) report();
       if (is_blank(record_)) {
@@ -103,6 +105,7 @@ class Table {
         if (first_text_[i] != no_text) {
           texts[i].emplace_back(cells_[i]);
         } else {
+          if (numbers[i].empty()) numbers[i].reserve(most_rows_);  // growing would hold a column twice
           numbers[i].push_back(value);
         }
       }
@@ -206,6 +209,7 @@ class Table {
   const LogSelection& selection_;
   pinnquad::detail::CsvRecords records_;
   std::uintmax_t bytes_ = 0;
+  std::size_t most_rows_ = 0;
   std::string_view record_;
   std::string unquoted_;
   std::vector<std::string_view> cells_;

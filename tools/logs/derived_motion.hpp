@@ -168,6 +168,8 @@ inline LogRows rows_of_log(CommonRows rows, const BoundLog& log, const Mapping& 
     for (const double z : rows.position[2]) height.push_back(-z);
   }
   result.has_altitude = !height.empty();
+  velocity_world = {};  // of a long log nothing is held longer than it is read
+  rows.position = {};
   const double ground_m = result.has_altitude ? ground_height(rows, height, mapping, result) : 0;
 
   std::vector<pinnquad::ExtraColumn> extras;
@@ -178,6 +180,7 @@ inline LogRows rows_of_log(CommonRows rows, const BoundLog& log, const Mapping& 
     extras.push_back(column);
   }
   for (pinnquad::ExtraColumn& column : extras) result.flight.add_column(std::move(column));
+  result.flight.reserve(rows.rows());
   std::vector<double> extra_values(rows.extras.size());
   for (std::size_t row = 0; row < rows.rows(); ++row) {
     bool whole = std::isfinite(rows.time_s[row]);

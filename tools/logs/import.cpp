@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -97,7 +98,10 @@ class Import {
       };
       FlightLog log = read_log(places[i].path, selection);
       for (const std::string& warning : log.warnings) dataset_.warnings.push_back(warning);
-      for (LogPart& part : parts_of(std::move(log), places[i].name, mapping_)) take(part, places[i]);
+      for (LogPart& part : parts_of(std::move(log), places[i].name, mapping_)) {
+        take(part, places[i]);
+        part.log = {};
+      }
     }
     settle_absent();
     remove_lag();
@@ -121,7 +125,7 @@ class Import {
     const auto count = [&](const Signal& signal) {
       if (!signal.present() || std::find(counted.begin(), counted.end(), signal.topic) != counted.end()) return;
       counted.push_back(signal.topic);
-      const pinnquad::ClockReport& report = signal.clock.report;
+      const pinnquad::ClockReport& report = signal.clock->report;
       steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
                  "one time a row: no time, a second row of one time and stale first rows are left out");
       const std::string topic = name + ", " + topic_words(signal.topic->name, signal.topic->instance);
@@ -152,16 +156,19 @@ class Import {
     }
   }
 
-  void take(const LogPart& part, const LogPlace& place) {
-    const BoundLog bound = bind_log(part.log, mapping_, request_.airframe);
+  /// The part's columns are gone afterwards.
+  void take(LogPart& part, const LogPlace& place) {
+    BoundLog bound = bind_log(part.log, mapping_, request_.airframe);
     count_topics(bound, part.name);
+    const std::size_t base = bound.of(Quantity::body_rates).clock->size();
     CommonRows rows = common_rows(bound, period_s_, request_.hold_commands);
     if (!period_s_) period_s_ = rows.period_s;
     check_signals(bound, rows, part.name);
-    const std::size_t base = bound.of(Quantity::body_rates).clock.size(), all = rows.rows();
+    const std::size_t all = rows.rows();
     steps_.add("one clock", base, all,
                rows.own_rows ? "the table's own rows, every " + pinnquad::number_text(rows.period_s) + " s"
                              : "all topics at " + pinnquad::number_text(std::round(1e3 / rows.period_s) / 1e3) + " Hz");
+    let_go(part.log, bound);
     LogRows log_rows = rows_of_log(std::move(rows), bound, mapping_, part.log.source);
     for (const std::string& told : log_rows.told) tell(told);
     const std::size_t whole = all - log_rows.incomplete;
@@ -170,18 +177,49 @@ class Import {
     steps_.add("ends of derivatives", whole, log_rows.flight.size(),
                "Savitzky-Golay windows that reach beyond the rows");
     const RowMask out = on_the_ground(log_rows, mapping_, *period_s_);
+    const std::size_t before = log_rows.flight.size();
     Passage passage;
     passage.name = part.name;
     passage.trajectory = part.trajectory;
     passage.source = place.path;
-    const pinnquad::Flight airborne = without(log_rows.flight, out);
-    steps_.add("on the ground", log_rows.flight.size(), airborne.size(),
+    pinnquad::Flight airborne = without(std::move(log_rows.flight), out);
+    steps_.add("on the ground", before, airborne.size(),
                "landed by the log, lower than the mapping's [ground] says, borne by something");
-    passage.segments = split_at_gaps(airborne, 1.5 * *period_s_);
+    passage.segments = split_at_gaps(std::move(airborne), 1.5 * *period_s_);
     has_velocity_.push_back(log_rows.has_velocity);
     has_altitude_.push_back(log_rows.has_altitude);
     check_motion(passage);
     passages_.push_back(std::move(passage));
+  }
+
+  /// What is in the common rows: of a long log nothing is held twice.
+  static void let_go(FlightLog& log, BoundLog& bound) {
+    for (LogTopic& topic : log.topics) {
+      topic.time_s = std::vector<double>();
+      topic.place = std::vector<std::uint64_t>();
+      for (LogColumn& column : topic.columns) column.values = std::vector<double>();
+      for (LogText& text : topic.texts) text.values = std::vector<std::string>();
+    }
+    const auto forget = [](Signal& signal) {
+      signal.values = std::vector<std::vector<double>>();
+      signal.clock.reset();
+    };
+    for (Signal& signal : bound.signals) forget(signal);
+    for (BoundExtra& extra : bound.extras) forget(extra.signal);
+  }
+
+  /// Calls `use` with the segments of all flights in one list.
+  template <class Use>
+  void with_all_segments(const Use& use) {
+    std::vector<pinnquad::Flight> segments;
+    for (Passage& passage : passages_) {
+      std::move(passage.segments.begin(), passage.segments.end(), std::back_inserter(segments));
+    }
+    use(std::as_const(segments));
+    auto segment = segments.begin();
+    for (Passage& passage : passages_) {
+      for (pinnquad::Flight& own : passage.segments) own = std::move(*segment++);
+    }
   }
 
   void check_signals(const BoundLog& bound, const CommonRows& rows, const std::string& name) {
@@ -203,26 +241,30 @@ class Import {
   /// Of what is in the air, before the commands are moved.
   void check_motion(const Passage& passage) {
     warn(passage.name, pinnquad::check_rate_frame(passage.segments));
-    const pinnquad::Flight whole = joined(passage.segments);
     constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
-    std::vector<double> time_s;
-    for (const pinnquad::Sample& sample : whole) time_s.push_back(sample.time_s);
+    const auto series = [&passage](const auto& value_of) {
+      std::vector<double> values;
+      values.reserve(passage.rows());
+      for (const pinnquad::Flight& segment : passage.segments) {
+        for (const pinnquad::Sample& sample : segment) values.push_back(value_of(sample));
+      }
+      return values;
+    };
+    const std::vector<double> time_s = series([](const pinnquad::Sample& sample) { return sample.time_s; });
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      std::vector<double> rate;
-      for (const pinnquad::Sample& sample : whole) rate.push_back(sample.body_rates_rad_s[axis]);
+      const std::vector<double> rate =
+          series([axis](const pinnquad::Sample& sample) { return sample.body_rates_rad_s[axis]; });
       warn(passage.name,
            pinnquad::check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
     }
   }
 
   void check_motors() {
-    std::vector<pinnquad::Flight> segments;
-    for (const Passage& passage : passages_) {
-      segments.insert(segments.end(), passage.segments.begin(), passage.segments.end());
-    }
     const pinnquad::Airframe<double> airframe =
         request_.airframe ? request_.airframe->value : pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>();
-    warn("motors", pinnquad::check_motor_order(segments, airframe).finding);
+    with_all_segments([&](const std::vector<pinnquad::Flight>& segments) {
+      warn("motors", pinnquad::check_motor_order(segments, airframe).finding);
+    });
   }
 
   void tell(const std::string& what) {
@@ -253,11 +295,10 @@ class Import {
     const std::size_t before = rows_in(passages_);
     if (!lag_s) {
       request_.on_progress("estimating the lag", 0);
-      std::vector<pinnquad::Flight> segments;
-      for (const Passage& passage : passages_) {
-        segments.insert(segments.end(), passage.segments.begin(), passage.segments.end());
-      }
-      const pinnquad::CommandLag lag = pinnquad::estimate_command_lag(segments, *period_s_);
+      pinnquad::CommandLag lag;
+      with_all_segments([&](const std::vector<pinnquad::Flight>& segments) {
+        lag = pinnquad::estimate_command_lag(segments, *period_s_);
+      });
       if (!lag.warning.empty()) dataset_.warnings.push_back("lag: " + lag.warning);
       lag_s = lag.found ? lag.lag_s : 0;
       told = lag.found ? "estimated, confidence " + pinnquad::number_text(std::round(lag.confidence * 100) / 100)
@@ -266,7 +307,7 @@ class Import {
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
     for (Passage& passage : passages_) {
       for (pinnquad::Flight& segment : passage.segments) {
-        segment = pinnquad::remove_lag(segment, *period_s_, dataset_.lag_removed_s);
+        segment = pinnquad::remove_lag(std::move(segment), *period_s_, dataset_.lag_removed_s);
       }
     }
     steps_.add("lag", before, rows_in(passages_),
@@ -279,8 +320,10 @@ class Import {
   void drop(const std::string& name, const std::string& told, const Mask& mask) {
     const std::size_t before = rows_in(passages_);
     for (Passage& passage : passages_) {
-      const pinnquad::Flight whole = joined(passage.segments);
-      passage.segments = {without(whole, mask(whole))};
+      pinnquad::Flight whole = joined(std::move(passage.segments));
+      const RowMask out = mask(whole);
+      passage.segments.clear();
+      passage.segments.push_back(without(std::move(whole), out));
     }
     steps_.add(name, before, rows_in(passages_), told);
   }
@@ -305,9 +348,9 @@ class Import {
   void make_flights() {
     const std::size_t before = rows_in(passages_);
     std::size_t longest = 0;
-    for (const Passage& passage : passages_) {
+    for (Passage& passage : passages_) {
       int part = 0;
-      for (pinnquad::Flight& flight : split_at_gaps(joined(passage.segments), mapping_.split_gap_s)) {
+      for (pinnquad::Flight& flight : split_at_gaps(joined(std::move(passage.segments)), mapping_.split_gap_s)) {
         longest = std::max(longest, flight.size());
         if (flight.size() < minimum_rows) continue;
         flight.trajectory = passage.trajectory;
@@ -322,6 +365,7 @@ class Import {
     dataset_.sample_period_s = *period_s_;
     for (const std::string& told : told_) dataset_.notes.push_back(told);
     if (dataset_.flights.size() == 0) refuse_without_flight(longest);
+    require_different_flights(dataset_.flights);
   }
 
   /// The step of the rows on one clock that cost most; fewer rows for a slower clock are no loss.

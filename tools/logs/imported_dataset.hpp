@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -39,5 +42,17 @@ struct ImportedDataset {
     return false;
   }
 };
+
+/// Throws std::invalid_argument, one line, where two flights hold the same rows.
+inline void require_different_flights(const pinnquad::Dataset& dataset) {
+  std::map<std::uint64_t, std::string> names;
+  for (const pinnquad::Flight& flight : dataset.flights()) {
+    const auto [first, fresh] = names.try_emplace(pinnquad::content_hash(flight), flight.name);
+    if (fresh) continue;
+    throw std::invalid_argument("the flights " + pinnquad::printable(first->second) + " and " +
+                                pinnquad::printable(flight.name) +
+                                " are the same: one would be judged on what it was trained on");
+  }
+}
 
 }  // namespace programs

@@ -84,27 +84,47 @@ inline const LogText& labels_of(const LogTopic& topic, const NamedColumn& wanted
       "`" + pinnquad::printable(wanted.name) + "`, which it has not; " + nearest_names(wanted.name, known));
 }
 
-inline LogTopic rows_of(const LogTopic& topic, const std::vector<std::size_t>& rows) {
-  const auto picked = [&rows](const auto& values) {
-    std::decay_t<decltype(values)> result;
-    result.reserve(rows.size());
-    for (const std::size_t row : rows) result.push_back(values[row]);
-    return result;
+/// The topic's rows dealt to a topic each, column by column, which is let go then: the table is never there twice.
+inline std::vector<LogTopic> dealt(LogTopic topic, const std::vector<std::vector<std::size_t>>& rows) {
+  std::vector<LogTopic> parts(rows.size());
+  const auto deal = [&](auto& values, const auto& to) {
+    auto all = std::move(values);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      auto& part = to(parts[i]);
+      if (rows.size() == 1) {  // every row is its
+        part = std::move(all);
+        return;
+      }
+      part.reserve(rows[i].size());
+      for (const std::size_t row : rows[i]) part.push_back(std::move(all[row]));
+    }
   };
-  LogTopic part;
-  part.name = topic.name;
-  part.instance = topic.instance;
-  part.file = topic.file;
-  part.places_are_lines = topic.places_are_lines;
-  part.time_s = picked(topic.time_s);
-  part.place = picked(topic.place);
-  for (const LogColumn& column : topic.columns) part.columns.push_back({column.name, picked(column.values)});
-  for (const LogText& text : topic.texts) {
-    const auto first = std::find_if(rows.begin(), rows.end(), [&](std::size_t row) { return row >= text.first_text; });
-    const auto index = static_cast<std::size_t>(first - rows.begin());
-    part.texts.push_back({text.name, picked(text.values), first == rows.end() ? 0 : index});
+  for (LogTopic& part : parts) {
+    part.name = topic.name;
+    part.instance = topic.instance;
+    part.file = topic.file;
+    part.places_are_lines = topic.places_are_lines;
   }
-  return part;
+  deal(
+      topic.time_s, [](LogTopic & part) -> auto& { return part.time_s; });
+  deal(
+      topic.place, [](LogTopic & part) -> auto& { return part.place; });
+  for (LogColumn& column : topic.columns) {
+    for (LogTopic& part : parts) part.columns.push_back({column.name, {}});
+    deal(
+        column.values, [](LogTopic & part) -> auto& { return part.columns.back().values; });
+  }
+  for (LogText& text : topic.texts) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto first =
+          std::find_if(rows[i].begin(), rows[i].end(), [&](std::size_t row) { return row >= text.first_text; });
+      const auto index = static_cast<std::size_t>(first - rows[i].begin());
+      parts[i].texts.push_back({text.name, {}, first == rows[i].end() ? 0 : index});
+    }
+    deal(
+        text.values, [](LogTopic & part) -> auto& { return part.texts.back().values; });
+  }
+  return parts;
 }
 
 }  // namespace detail
@@ -140,12 +160,13 @@ inline std::vector<LogPart> parts_of(FlightLog log, const std::string& name, con
       }
       rows[entry->second].push_back(row);
     }
+    std::vector<LogTopic> topics = detail::dealt(std::move(log.topics[0]), rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       LogPart part;
       part.name = names[i];
       part.log.source = log.source;
       part.log.parameters = log.parameters;
-      part.log.topics.push_back(detail::rows_of(topic, rows[i]));
+      part.log.topics.push_back(std::move(topics[i]));
       parts.push_back(std::move(part));
     }
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "logs/derived_motion.hpp"
@@ -53,29 +54,42 @@ inline void append(pinnquad::Flight& to, const pinnquad::Flight& from, std::size
 }
 
 /// The rows that stay.
-inline pinnquad::Flight without(const pinnquad::Flight& flight, const RowMask& out) {
-  pinnquad::Flight kept = emptied(flight);
-  for (std::size_t row = 0; row < flight.size(); ++row) {
-    if (!out[row]) append(kept, flight, row);
-  }
-  return kept;
+inline pinnquad::Flight without(pinnquad::Flight flight, const RowMask& out) {
+  flight.keep_rows([&out](std::size_t row) { return !out[row]; });
+  return flight;
 }
 
 /// Parts at steps in time longer than `gap_s`.
-inline std::vector<pinnquad::Flight> split_at_gaps(const pinnquad::Flight& flight, double gap_s) {
-  std::vector<pinnquad::Flight> parts;
+inline std::vector<pinnquad::Flight> split_at_gaps(pinnquad::Flight flight, double gap_s) {
+  std::vector<std::size_t> begins;
   for (std::size_t row = 0; row < flight.size(); ++row) {
-    if (row == 0 || flight[row].time_s - flight[row - 1].time_s > gap_s) parts.push_back(emptied(flight));
-    append(parts.back(), flight, row);
+    if (row == 0 || flight[row].time_s - flight[row - 1].time_s > gap_s) begins.push_back(row);
+  }
+  std::vector<pinnquad::Flight> parts;
+  if (begins.size() == 1) {
+    parts.push_back(std::move(flight));
+    return parts;
+  }
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    const std::size_t end = i + 1 < begins.size() ? begins[i + 1] : flight.size();
+    parts.push_back(emptied(flight));
+    parts.back().reserve(end - begins[i]);
+    for (std::size_t row = begins[i]; row < end; ++row) append(parts.back(), flight, row);
   }
   return parts;
 }
 
 /// One after the other, which is in time's order.
-inline pinnquad::Flight joined(const std::vector<pinnquad::Flight>& parts) {
-  pinnquad::Flight whole = parts.empty() ? pinnquad::Flight() : emptied(parts.front());
-  for (const pinnquad::Flight& part : parts) {
+inline pinnquad::Flight joined(std::vector<pinnquad::Flight> parts) {
+  if (parts.empty()) return {};
+  if (parts.size() == 1) return std::move(parts.front());
+  std::size_t rows = 0;
+  for (const pinnquad::Flight& part : parts) rows += part.size();
+  pinnquad::Flight whole = emptied(parts.front());
+  whole.reserve(rows);
+  for (pinnquad::Flight& part : parts) {
     for (std::size_t row = 0; row < part.size(); ++row) append(whole, part, row);
+    part = {};
   }
   return whole;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,12 @@ namespace programs {
 struct Signal {
   const Source* source = nullptr;  ///< null: the log has none
   const LogTopic* topic = nullptr;
-  pinnquad::CleanClock clock;
-  std::vector<std::vector<double>> values;  ///< by component, by the topic's row; NaN where it has none
-  std::string told;                         ///< where it is from: "actuator_motors"
+  std::shared_ptr<const pinnquad::CleanClock> clock;  ///< signals of one topic and clock column share it
+  std::vector<std::vector<double>> values;            ///< by component, by the topic's row; NaN where it has none
+  std::string told;                                   ///< where it is from: "actuator_motors"
 
   bool present() const noexcept { return source != nullptr; }
-  double period_s() const noexcept { return clock.report.nominal_period_s; }
+  double period_s() const noexcept { return clock->report.nominal_period_s; }
 };
 
 /// "vehicle_attitude", or "the table" of a log that is one.

@@ -45,16 +45,17 @@ struct FigureRange {
   const char* words;
 };
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
-inline constexpr std::array<FigureRange, 10> figure_ranges = {{{"mae", 0, no_limit, "an error of 0 or more"},
-                                                               {"rmse", 0, no_limit, "an error of 0 or more"},
-                                                               {"validation_mae", 0, no_limit, "an error of 0 or more"},
-                                                               {"r2", -no_limit, 1, "at most 1"},
-                                                               {"angle_difference", 0, 180, "degrees from 0 to 180"},
-                                                               {"raw_angle_difference", 0, 180, "degrees from 0 to 180"},
-                                                               {"correlation", -1, 1, "a value from -1 to 1"},
-                                                               {"target_correlation", -1, 1, "a value from -1 to 1"},
-                                                               {"sign_violation_share", 0, 1, "a share from 0 to 1"},
-                                                               {"training_s", 0, no_limit, "0 seconds or more"}}};
+inline constexpr std::array<FigureRange, 10> figure_ranges = {
+    {{"mae", 0, no_limit, "an error of 0 or more"},
+     {"rmse", 0, no_limit, "an error of 0 or more"},
+     {"validation_mae", 0, no_limit, "an error of 0 or more"},
+     {"r2", -no_limit, 1, "at most 1"},
+     {"angle_difference", 0, 180, "degrees from 0 to 180"},
+     {"raw_angle_difference", 0, 180, "degrees from 0 to 180"},
+     {"correlation", -1, 1, "a value from -1 to 1"},
+     {"target_correlation", -1, 1, "a value from -1 to 1"},
+     {"sign_violation_share", 0, 1, "a share from 0 to 1"},
+     {"training_s", 0, no_limit, "0 seconds or more"}}};
 
 /// The cells of one line of rows.csv, each with its place for the message.
 struct RowCells {
@@ -115,8 +116,8 @@ inline void require_whole_errors(const RowCells& at, const StudyRow& row) {
 }  // namespace detail
 
 /// Reads rows.csv; columns by name, in any order, others ignored. Throws InputError with file, line and column: no
-/// readable file, a missing column, a row of other length, a cell that is not what its column holds, a training twice or one
-/// that the study has not.
+/// readable file, a missing column, a row of other length, a cell that is not what its column holds, a training twice
+/// or one that the study has not.
 /// A last line without an end (a run was killed while it wrote) is left out and counted in `cut_rows` if it is not whole.
 inline std::vector<StudyRow> read_study_rows(const std::string& path, const StudySettings& settings,
                                              std::size_t& cut_rows) {

@@ -22,8 +22,8 @@ namespace programs {
 
 /// Keys that a report reads, all optional: `flights` (list of {name, seed}: the first of each name is Table 2's),
 /// `flight_seed` (that of Table 2's flights), `seeds` (how many, or which), `models` (numbers, or objects with `id` and
-/// rows of the split), `weights` ("final" or "best": which are judged), `epochs` (of every network), `recipe` (lambda_max, cycles, hold),
-/// `kind`.
+/// rows of the split), `weights` ("final" or "best": which are judged), `epochs` (of every network), `recipe`
+/// (lambda_max, cycles, hold), `kind`.
 struct StudySettings {
   nlohmann::json all;
   std::vector<StudyFlight> flights;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -67,19 +66,20 @@ inline ImportedDataset dataset_of(const LogTrainingOptions& options, const std::
 
 /// Throws InputError and std::invalid_argument for flights that no model should be fitted to, or judged on.
 inline void require_sound(const std::string& folder, const ImportedDataset& dataset, const std::vector<Fold>& folds) {
-  std::vector<std::uint64_t> hashes;
+  if (!pinnquad::is_clock_time(dataset.lag_removed_s)) {
+    throw pinnquad::InputError(folder + "/" + dataset_file_name, 0, 0,
+                               "a lag removed of 0 to " + pinnquad::number_text(pinnquad::longest_clock_s) +
+                                   " s, as a model's header states it",
+                               pinnquad::number_text(dataset.lag_removed_s) + " s");
+  }
   const std::vector<std::string> files = flight_files(dataset);
-  for (const pinnquad::Flight& flight : dataset.flights.flights()) {
-    const std::string place = folder + "/" + files[hashes.size()];
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const pinnquad::Flight& flight = dataset.flights[i];
+    const std::string place = folder + "/" + files[i];
     pinnquad::require_plausible(place, flight);
     pinnquad::require_varied_commands(place, flight, {0, flight.size()}, "flight's");
-    hashes.push_back(pinnquad::content_hash(flight));
-    const auto same = std::find(hashes.begin(), hashes.end() - 1, hashes.back());
-    if (same == hashes.end() - 1) continue;
-    throw std::invalid_argument(
-        "the flights " + pinnquad::printable(dataset.flights[static_cast<std::size_t>(same - hashes.begin())].name) +
-        " and " + pinnquad::printable(flight.name) + " are the same: one would be judged on what it was trained on");
   }
+  require_different_flights(dataset.flights);
   for (const Fold& fold : folds) {
     const auto require = [&](const pinnquad::RowSet& rows, std::size_t fewest, const char* what) {
       if (rows.size() >= fewest) return;

@@ -71,16 +71,15 @@ inline const LossName* compared_with(const std::vector<LossName>& losses, const 
   return baseline;
 }
 
-/// Of the networks those whose best may be exported: the physics-informed ones or, where those were not asked for, the first's.
-/// The structured ones' where there are no networks.
+/// Of the networks those whose best may be exported: the physics-informed ones or, where those were not asked for, the
+/// first. The structured ones where there are no networks.
 inline LossName exported_network(const std::vector<LossName>& losses) {
-  const auto informed = std::find_if(losses.begin(), losses.end(), [](const LossName& loss) {
-    return loss.key == std::string(physics_informed.key);
-  });
+  const auto informed = std::find_if(
+      losses.begin(), losses.end(), [](const LossName& loss) { return loss.key == std::string(physics_informed.key); });
   return informed == losses.end() ? losses.front() : *informed;
 }
 
-/// Whose best model is exported: the structured ones', whose signs are proven; a network only where none of those was asked for.
+/// Whose best model is exported: the structured ones', whose signs are proven; a network's only where there are none.
 inline LossName exported_kind(const std::vector<LossName>& losses) {
   return std::any_of(losses.begin(), losses.end(), is_structured) ? structured : exported_network(losses);
 }

@@ -312,8 +312,8 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
     say_certificate(options, *exported.network, plan.airframe, report);
     report.write_exported(folder + "model.hpp", options.block);
   } else {
-    programs::complain("train", "not exported: " + reason + "; " + instead_of_poor(options, chosen.loss) +
-                                    earlier_export(options));
+    programs::complain(
+        "train", "not exported: " + reason + "; " + instead_of_poor(options, chosen.loss) + earlier_export(options));
   }
   // last: a picture that cannot be drawn costs nothing else
   std::vector<std::size_t> shown;

@@ -21,7 +21,7 @@ namespace pinnquad {
 /// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file; one that
 /// a killed program left is taken up again by the next writer of that path, one of a living writer is left alone.
 /// A link is followed: its target is replaced. Whole after a crash of the program, not after a loss of power (no sync).
-/// Throws OutputError, one line: folder missing or not writable, path is a folder, a device or write-protected, disk full.
+/// Throws OutputError, one line: folder missing or not writable, a folder, a device, a write-protected file, disk full.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path) : path_(path), target_(resolve(path)) {
@@ -101,7 +101,7 @@ class AtomicFile {
     return target;
   }
 
-  /// A file that nobody may write is kept as it is, though its folder would let it be replaced; that of root is no exception.
+  /// A file that nobody may write stays as it is, though its folder would let it be replaced, and root may do anything.
   static void require_writable(const std::string& path, const std::filesystem::file_status& status) {
     using std::filesystem::perms;
     constexpr perms to_write = perms::owner_write | perms::group_write | perms::others_write;

@@ -75,6 +75,20 @@ class Flight {
     for (std::size_t i = 0; i < extra_count; ++i) columns_[i].values.push_back(extra[i]);
   }
 
+  /// Leaves the rows, in their order, of which `wanted(row)` is true; asked once of each, first to last.
+  template <class Wanted>
+  void keep_rows(const Wanted& wanted) {
+    std::size_t kept = 0;
+    for (std::size_t row = 0; row < size(); ++row) {
+      if (!wanted(row)) continue;
+      samples_[kept] = samples_[row];
+      for (ExtraColumn& column : columns_) column.values[kept] = column.values[row];
+      ++kept;
+    }
+    samples_.resize(kept);
+    for (ExtraColumn& column : columns_) column.values.resize(kept);
+  }
+
   const std::vector<ExtraColumn>& columns() const noexcept { return columns_; }
   /// Null if there is none of that name.
   const ExtraColumn* column(std::string_view wanted) const noexcept {

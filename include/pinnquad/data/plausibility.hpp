@@ -213,9 +213,9 @@ inline InputError implausible_in_file(const std::string& path, const Implausible
 
 }  // namespace detail
 
-/// The first reason, in this order, why these rows are no flight that a network may learn from: commands outside 0..1, a
-/// clock of another unit, angles or rates in degrees, a cell outside its column's range, a cell like none of its
-/// neighbours, accelerations that are not the derivatives of rates and velocity. None for a flight.
+/// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of another
+/// unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its neighbours,
+/// accelerations that are not the derivatives of rates and velocity. None for a flight.
 inline std::optional<Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;

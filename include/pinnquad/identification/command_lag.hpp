@@ -179,31 +179,15 @@ inline std::vector<double> remove_lag(const std::vector<double>& series, double 
 }
 
 /// The commands of each row replaced by those of `lag_s` earlier; rows that have none are gone. Extra columns stay as they are.
-inline Flight remove_lag(const Flight& segment, double period_s, double lag_s) {
-  std::array<std::vector<double>, rotor_count> commands;
+inline Flight remove_lag(Flight segment, double period_s, double lag_s) {
+  std::vector<double> commands(segment.size());
   for (std::size_t k = 0; k < rotor_count; ++k) {
-    for (const Sample& sample : segment) commands[k].push_back(sample.commands[k]);
-    commands[k] = remove_lag(commands[k], period_s, lag_s);
+    for (std::size_t row = 0; row < segment.size(); ++row) commands[row] = segment[row].commands[k];
+    const std::vector<double> earlier = remove_lag(commands, period_s, lag_s);
+    for (std::size_t row = 0; row < segment.size(); ++row) segment[row].commands[k] = earlier[row];
   }
-  Flight result;
-  result.name = segment.name;
-  result.trajectory = segment.trajectory;
-  result.weight = segment.weight;
-  for (const ExtraColumn& column : segment.columns()) {
-    ExtraColumn empty;
-    empty.name = column.name;
-    empty.unit = column.unit;
-    result.add_column(std::move(empty));
-  }
-  std::vector<double> extra(segment.columns().size());
-  for (std::size_t row = 0; row < segment.size(); ++row) {
-    if (std::isnan(commands[0][row])) continue;
-    Sample sample = segment[row];
-    for (std::size_t k = 0; k < rotor_count; ++k) sample.commands[k] = commands[k][row];
-    for (std::size_t k = 0; k < extra.size(); ++k) extra[k] = segment.columns()[k].values[row];
-    result.push_back(sample, extra.data(), extra.size());
-  }
-  return result;
+  segment.keep_rows([&segment](std::size_t row) { return !std::isnan(segment[row].commands[0]); });
+  return segment;
 }
 
 }  // namespace pinnquad
