@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include "flight_stacks/recorded_controller.hpp"
@@ -241,6 +242,35 @@ TEST_CASE("a bias at its bound along the thrust raises the alarm, one across it 
   pinnquad::BiasEstimate<float> unbounded(pinnquad::BiasSettings<float>{0, 0});
   for (int i = 0; i < 1000; ++i) alarm.update(unbounded, upright, step_s);
   CHECK_FALSE(alarm.raised());
+}
+
+TEST_CASE("the alarm of a bias at its bound begins anew on the ground, in other hands and with another model") {
+  Standing standing;
+  const Block other = other_block<DemoQuadModel>();
+  const auto falls_until_alarm = [&] {  // as under a model that makes nothing of what is asked, and told to fall as it does
+    standing.local.velocity_m_s.setZero();
+    standing.wanted.position_m.setConstant(std::numeric_limits<float>::quiet_NaN());
+    for (int i = 0; i < 1500 && !standing.controller.bias_alarm(); ++i) {
+      if (i >= 600) standing.local.velocity_m_s[2] += 5 * 0.002f;  // all of its thrust is there
+      standing.wanted.velocity_m_s = standing.local.velocity_m_s;
+      REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+      standing.step();
+    }
+    CHECK(standing.controller.bias_alarm());
+    CHECK(static_cast<pinnquad::Status>(standing.controller.record().cause) == pinnquad::Status::distrusted);
+    CHECK(standing.controller.record().trusted == 1);
+  };
+  standing.controller.situation({true, false});
+  falls_until_alarm();
+  SUBCASE("on the ground") { standing.controller.situation({true, true}); }
+  SUBCASE("in other hands") { standing.controller.situation({false, false}); }
+  SUBCASE("another model") {
+    REQUIRE(standing.controller.offer_model(other.data(), other.size()) == pinnquad::Status::ok);
+  }
+  standing.step();
+  CHECK_FALSE(standing.controller.bias_alarm());
+  standing.controller.situation({true, false});
+  falls_until_alarm();
 }
 
 TEST_CASE("at the motors' ends the bias stays") {
