@@ -11,6 +11,7 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/inference/certificate.hpp"
 #include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/inference/rigid_body_inverse.hpp"
 #include "pinnquad/nn/relu.hpp"
 
 using namespace pinnquad;
@@ -71,6 +72,9 @@ Certificate certificate_of_base(const Setting<Features>& context, const AffineMa
 }
 
 }  // namespace
+
+// a residual of a model on a formula is not shown what the formula reads, and does not ask for it
+static_assert(sizeof(ResidualContext<Context<PhysicsFeatures, PaperQuadrotor, SignedSumsOn<RigidBodyInverse>>>) > 0);
 
 TEST_CASE("hover slopes are the inertias over what the commands do: closed form of an X") {
   const auto airframe = PaperQuadrotor::value<double>();
