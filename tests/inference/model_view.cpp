@@ -302,7 +302,14 @@ TEST_CASE("a spread that is not positive and an envelope upside down are corrupt
           }) == Status::block_corrupt);
     CHECK(changed([&](BlockBytes& block) {
             const auto upper = block.scalar<float>(Layout::envelope_upper + i);
+            block.set_scalar(Layout::envelope_lower + i, upper);
+          }) == Status::block_corrupt);  // its golden vectors lie outside
+    CHECK(changed([&](BlockBytes& block) {
+            const auto upper = block.scalar<float>(Layout::envelope_upper + i);
             block.set_scalar(Layout::envelope_lower + i, upper);  // a feature that never moved
+            for (std::size_t row = 0; row < DescribedModel::golden_features.size(); ++row) {
+              block.set_scalar(Layout::golden_features + row * Layout::inputs + i, upper);
+            }
           }) == Status::ok);
   }
 }

@@ -79,6 +79,9 @@ TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") 
   BlockBytes block(model_block<DescribedModel>());
   using Layout = ModelBlockLayout<DescribedModel>;
   block.set_scalar(Layout::envelope_upper, 0.5f);  // narrower than the header's
+  for (std::size_t row = 0; row < DescribedModel::golden_features.size(); ++row) {
+    block.set_scalar(Layout::golden_features + row * Layout::inputs, 0.25f);  // inside it
+  }
   block.seal();
   const InverseDynamics<ModelView<DescribedModel>> viewed(view_of<DescribedModel>(block));
   const InverseDynamics<LoadedModel<DescribedModel>> loaded(loaded_from<DescribedModel>(block));

@@ -3,6 +3,8 @@
 #include "model/identity.hpp"
 
 #include "model/log_schemas.hpp"
+#include "model/model_file.hpp"
+#include "pinnquad/deploy/type_name.hpp"
 
 namespace programs {
 
@@ -11,6 +13,28 @@ std::optional<Identity> find_identity(const Block& block, const ModelHints& hint
     each_schema(function);
     each_log_schema(function);
   });
+}
+
+void require_names(const HeaderFile& header) {
+  const auto same = [&header](const std::string& entry, const auto& texts) {
+    const std::vector<std::string> said = header.texts(entry);
+    return said == std::vector<std::string>(texts.begin(), texts.end());
+  };
+  const auto require = [&](auto features, auto outputs) {
+    using Features = decltype(features);
+    using Outputs = decltype(outputs);
+    using Map = pinnquad::OutputMap<Outputs>;
+    const std::string &features_text = header.text("Features"), &outputs_text = header.text("Outputs");
+    if (features_text == pinnquad::type_name<Features>() &&
+        !(same("feature_names", Features::names) && same("feature_units", Features::units))) {
+      header.refuse("feature_names", "the names and units of " + features_text, "others");
+    }
+    if (outputs_text == pinnquad::type_name<Outputs>() && !same("output_names", Map::names)) {
+      header.refuse("output_names", "the names of " + outputs_text, "others");
+    }
+  };
+  each_schema(require);
+  each_log_schema(require);
 }
 
 Identity identify(const Block& block, const ModelHints& hints) {

@@ -13,6 +13,10 @@
 
 namespace programs {
 
+/// Throws InputError where the header says other names than its Features and its Outputs have, as far as they are of the kinds
+/// that find_identity() tries.
+void require_names(const HeaderFile& header);
+
 /// An exported header as a block. The hints become what the header states where they were empty. Throws InputError for one
 /// that was edited since its export, and for one that says another frame, vehicle or motor order than its airframe's.
 inline std::vector<unsigned char> header_block(const HeaderFile& header, ModelHints& hints) {
@@ -21,6 +25,7 @@ inline std::vector<unsigned char> header_block(const HeaderFile& header, ModelHi
   const pinnquad::Airframe<double> airframe =
       hints.own ? hints.own->value : chosen_airframe(header.quoted("vehicle_name")).value;
   header.require_contents(airframe);
+  require_names(header);
   if (detail::signs_of(header, "motor_torque_signs") != pinnquad::motor_torque_signs(airframe)) {
     header.refuse("motor_torque_signs", "the signs of its airframe's rotors", "others");
   }
