@@ -122,7 +122,8 @@ Order along_rays() {
     InputsOf<Model> less = inputs_of<Model>(sample);
     const auto anywhere = [&](int axis, double share) {
       const auto at = static_cast<std::size_t>(Model::Features::angular_acceleration + axis);
-      const double lower = Model::envelope_lower[at], upper = Model::envelope_upper[at];
+      const auto lower = static_cast<double>(Model::envelope_lower[at]),
+                 upper = static_cast<double>(Model::envelope_upper[at]);
       return static_cast<Scalar>((lower + upper) / 2 + share * (upper - lower));
     };
     for (int axis = 0; axis < 3; ++axis) {
