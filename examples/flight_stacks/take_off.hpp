@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How much of its thrust a controller uses while it leaves the ground and when it is back. On the ground the rotors idle until a
-// set point asks to go up; then thrust comes over a while, in the air too until all of it is there. In the air it goes only where
-// the ground bears the vehicle: whatever a stack says of having landed. Who takes over a vehicle in the air has it all.
+// How much of its thrust a controller uses while it leaves the ground and when it is back. On the ground the rotors
+// idle until a set point asks to go up; then thrust comes over a while, in the air too until all of it is there. It
+// goes again only where the ground bears the vehicle, whatever a stack says of having landed. A vehicle that is taken
+// over in the air has it all.
 #pragma once
 
 #include "flight_stacks/situation.hpp"
@@ -18,8 +19,8 @@ struct VerticalMotion {
 
 class TakeOff {
  public:
-  /// Asked to sink by this, expected to fall by that, and at rest for so long: the ground bears it. Where it sinks all the same
-  /// while its thrust goes, nothing does. An estimate wanders by less.
+  /// Asked to sink by this, expected to fall by that, and at rest for so long: the ground bears it. Where it sinks all
+  /// the same while its thrust goes, nothing does. An estimate wanders by less.
   static constexpr float least_sink_m_s = 0.3f, least_fall_m_s2 = 1.0f, rests_m_s = 0.25f, falls_m_s = 0.5f;
   static constexpr std::uint64_t rests_us = 500'000;
 

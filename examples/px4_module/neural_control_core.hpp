@@ -72,9 +72,9 @@ struct BodySetpoints {
   float torque[3]{};
 };
 
-/// What PX4's allocator would have to be asked for to set these motors: the same as they, seen from its land detector and its estimate
-/// of the hover thrust, which read no motors. The thrust is the mean control. The scale of the torques is the allocator's own for a
-/// quadrotor in X; other places of the rotors share it.
+/// The set points by which PX4's allocator would set these motors. PX4's land detector and its estimate of the hover
+/// thrust read them, and no motors. The thrust is the mean control. The scale of the torques is the allocator's own for
+/// a quadrotor in X; other places of the rotors share it.
 template <class Scalar>
 BodySetpoints body_setpoints(const ActuatorMotors& motors, const pinnquad::Airframe<Scalar>& airframe) noexcept {
   Scalar x_m(0), y_m(0);
@@ -146,8 +146,8 @@ class NeuralControl {
     if (!(m.xy_valid && m.z_valid && m.v_xy_valid && m.v_z_valid)) return pinnquad::Status::out_of_range;
     return controller_.local(m.timestamp_sample, {{m.x, m.y, m.z}, {m.vx, m.vy, m.vz}});
   }
-  /// On the ground a place less than 0.4 m above it does not ask to take off: PX4's estimate wanders by that while it stands. A speed
-  /// does.
+  /// On the ground a place less than 0.4 m above it does not ask to take off: PX4's estimate wanders by that while it
+  /// stands. A speed does.
   pinnquad::Status take(const TrajectorySetpoint& m) noexcept {
     constexpr float least_climb_m = 0.4f;
     pinnquad::TrajectoryPoint<float> wanted;

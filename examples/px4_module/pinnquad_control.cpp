@@ -451,17 +451,17 @@ void PinnquadControl::check_rotors() {
   switch (check.fault) {
     case pinnquad_px4::GeometryFault::count:
       refuse("will not arm: the model's airframe has %d rotors, CA_ROTOR_COUNT says %d",
-              static_cast<int>(pinnquad::rotor_count), static_cast<int>(px4.count));
+             static_cast<int>(pinnquad::rotor_count), static_cast<int>(px4.count));
       break;
     case pinnquad_px4::GeometryFault::place:
       refuse("will not arm: CA_ROTOR%u_PX, _PY are %.3f, %.3f; the model's airframe has it at %.3f, %.3f m", rotor,
-              static_cast<double>(px4.rotors[rotor].x), static_cast<double>(px4.rotors[rotor].y),
-              static_cast<double>(mount.x_m), static_cast<double>(mount.y_m));
+             static_cast<double>(px4.rotors[rotor].x), static_cast<double>(px4.rotors[rotor].y),
+             static_cast<double>(mount.x_m), static_cast<double>(mount.y_m));
       break;
     case pinnquad_px4::GeometryFault::spin:
       refuse("will not arm: CA_ROTOR%u_KM is %.3f; on the model's airframe the rotor turns %sclockwise", rotor,
-              static_cast<double>(px4.rotors[rotor].moment),
-              mount.spin == pinnquad::Spin::counter_clockwise ? "counter-" : "");
+             static_cast<double>(px4.rotors[rotor].moment),
+             mount.spin == pinnquad::Spin::counter_clockwise ? "counter-" : "");
       break;
     case pinnquad_px4::GeometryFault::none: break;
   }

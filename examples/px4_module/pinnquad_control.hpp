@@ -7,8 +7,8 @@
 #include <parameters/param.h>
 #include <px4_platform_common/log.h>
 #include <px4_platform_common/module_params.h>
-#include <px4_platform_common/px4_work_queue/ScheduledWorkItem.hpp>
 #include <systemlib/mavlink_log.h>
+#include <px4_platform_common/px4_work_queue/ScheduledWorkItem.hpp>
 
 #include <uORB/topics/actuator_motors.h>
 #include <uORB/topics/arming_check_reply.h>
@@ -46,8 +46,9 @@
 #include "set_point_source.hpp"
 #include "takeover.hpp"
 
-// Beside model.hpp there may be one that says which effects the formula knows: using FlownVehicle = pinnquad::Quadrotor<float, ...>.
-// CMakeLists.txt says whether there is: a compiler's cache does not look for files that were not there.
+// Beside model.hpp there may be one that says which effects the formula knows: using FlownVehicle =
+// pinnquad::Quadrotor<float, ...>. CMakeLists.txt says whether there is: a compiler's cache does not look for files that
+// were not there.
 #if PINNQUAD_FLOWN_VEHICLE
 #include "flown_vehicle.hpp"
 #else
@@ -103,8 +104,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   void read_registration();
   void configure_mode();
   void keep_configured(uint64_t now_us);
-  /// After each change of a parameter: what may change in flight changes, if it is within its range. While it may not fly, whether all
-  /// are, and whether PX4's rotors are the model's.
+  /// After each change of a parameter: what may change in flight changes, if all are within their ranges. While it may
+  /// not fly, whether they are, and whether PX4's rotors are the model's.
   void check_parameters();
   void check_ranges();
   void check_rotors();
@@ -207,13 +208,13 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   bool _landed{false};
   bool _selected{false};
   bool _parameters_to_check{true};
-  bool _fits{false};           ///< parameters and rotors
-  char _refusal[120]{};        ///< why not
+  bool _fits{false};     ///< parameters and rotors
+  char _refusal[120]{};  ///< why not
   bool _refusal_to_say{false};
   bool _said_no_commands{false};
   orb_advert_t _ground_station{nullptr};
-  bool _configured{false};      ///< PX4 has said so since the mode was selected
-  bool _has_commands{true};     ///< what the next arming check is told
+  bool _configured{false};   ///< PX4 has said so since the mode was selected
+  bool _has_commands{true};  ///< what the next arming check is told
   int8_t _arming_check_id{-1};
   int8_t _mode_id{-1};
 };

@@ -547,7 +547,8 @@ TEST_CASE("thrust and torque set points say what the motors do, as PX4's allocat
   const double half = std::sqrt(0.5);
   const double signs[4][3] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
   for (int i = 0; i < 4; ++i) {
-    const double made = -double(thrust.xyz[2]) + half * (signs[i][0] * double(torque.xyz[0]) + signs[i][1] * double(torque.xyz[1])) +
+    const double made = -double(thrust.xyz[2]) +
+                        half * (signs[i][0] * double(torque.xyz[0]) + signs[i][1] * double(torque.xyz[1])) +
                         signs[i][2] * double(torque.xyz[2]);
     CHECK(made == doctest::Approx(double(u[i])).epsilon(1e-4));
   }

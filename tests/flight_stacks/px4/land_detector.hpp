@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PX4's land detector for multicopters by its rules of v1.16, in our own words: three states, each after a while of its conditions.
-// It reads the thrust set point that came last, however old, and never the motors.
+// PX4's land detector for multicopters by its rules of v1.16, in our own words: three states, each after a while of its
+// conditions. It reads the thrust set point that came last, however old, and never the motors.
 #pragma once
 
 #include <cmath>
@@ -26,12 +26,12 @@ class Lasting {
 
 class LandDetector {
  public:
-  // MPC_THR_MIN, MPC_MANTHR_MIN, MPC_THR_HOVER, LNDMC_Z_VEL_MAX, LNDMC_XY_VEL_MAX; LNDMC_TRIG_TIME over its three states
+  // MPC_THR_MIN, MPC_MANTHR_MIN, MPC_THR_HOVER, LNDMC_Z_VEL_MAX, LNDMC_XY_VEL_MAX; LNDMC_TRIG_TIME over three states
   static constexpr float least_thrust = 0.12f, least_manual_thrust = 0.08f, hover_thrust = 0.5f, rests_m_s = 0.25f,
                          stands_m_s = 1.5f, near_m = 1;
   static constexpr uint64_t state_us = 333'333;
 
-  /// In a mode without PX4's climb-rate control, such as this module's. `range_m`: of a range finder, below 0: there is none.
+  /// In a mode without PX4's climb-rate control, such as this module's. `range_m`: of a range finder, below 0: none.
   bool update(uint64_t now_us, bool armed, const vehicle_local_position_s& local, float range_m) {
     vehicle_thrust_setpoint_s wanted;
     if (thrust_sub_.update(&wanted)) thrust_ = -wanted.xyz[2];

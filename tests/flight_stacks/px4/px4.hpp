@@ -133,7 +133,9 @@ int param_get(param_t name, Value* value) {
 
 constexpr int PARAM_TYPE_INT32 = 1, PARAM_TYPE_FLOAT = 2;
 /// Whole numbers of module.yaml, by their names.
-inline int param_type(param_t name) { return px4::whole_parameters().count(name) != 0 ? PARAM_TYPE_INT32 : PARAM_TYPE_FLOAT; }
+inline int param_type(param_t name) {
+  return px4::whole_parameters().count(name) != 0 ? PARAM_TYPE_INT32 : PARAM_TYPE_FLOAT;
+}
 
 /// A text for the ground station, cut off as PX4's message is.
 using orb_advert_t = void*;
@@ -186,8 +188,8 @@ using ParamInt = Parameter<Name, int32_t>;
 #define PINNQUAD_TEST_EACH21(m, a, b, c, d, e, f, g, h, i, j, k, l, n, ...) \
   m(a) m(b) m(c) m(d) m(e) m(f) m(g) m(h) m(i) m(j) m(k) m(l) m(n) PINNQUAD_TEST_EACH8(m, __VA_ARGS__)
 #define PINNQUAD_TEST_EACH24(m, a, b, o, ...) m(a) m(b) m(o) PINNQUAD_TEST_EACH21(m, __VA_ARGS__)
-#define DEFINE_PARAMETERS(...)                                                                      \
-  PINNQUAD_TEST_EACH24(PINNQUAD_TEST_MEMBER, __VA_ARGS__)                                           \
+#define DEFINE_PARAMETERS(...)                            \
+  PINNQUAD_TEST_EACH24(PINNQUAD_TEST_MEMBER, __VA_ARGS__) \
   void updateParamsImpl() final { PINNQUAD_TEST_EACH24(PINNQUAD_TEST_UPDATE, __VA_ARGS__) }
 
 PINNQUAD_TEST_NAME(PQ_OUT_MIN)
