@@ -393,12 +393,15 @@ class Import {
     }
   }
 
-  static void require_plausible_flight(const pinnquad::Flight& flight, const std::string& source) {
+  /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no velocity.
+  void require_plausible_flight(const pinnquad::Flight& flight, const std::string& source) const {
     const auto found = pinnquad::find_implausible(flight);
     if (!found) return;
+    std::string causes;
+    for (const std::string& warning : dataset_.warnings) causes += "; " + warning;
     throw pinnquad::InputError(
         source, 0, 0, found->expected,
-        found->found + " at " + pinnquad::number_text(flight[found->row].time_s) + " s of flight " + flight.name);
+        found->found + " at " + pinnquad::number_text(flight[found->row].time_s) + " s of flight " + flight.name + causes);
   }
 
   const ImportRequest& request_;
