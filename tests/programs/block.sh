@@ -40,3 +40,8 @@ refused 'changed.hpp:[0-9]+: expected records that are known, found `moon`' 's/"
 refused 'changed.hpp:49: expected numbers in `command_lower`, found `low`' 's/command_lower = 0.0/command_lower = low/'
 refused 'changed.hpp: expected `answer` in an exported header, found none' '/ answer = /d'
 refused 'changed.hpp:[0-9]+: expected 16 numbers in `allocation`, found 12' '/7.378601163836665/d'
+# a checkout that made the ends of its lines CRLF: the same block
+sed 's/$/\r/' model.hpp >changed.hpp
+"$pinnquad" block model.hpp --out given.block >/dev/null
+"$pinnquad" block changed.hpp --out changed.block >/dev/null
+cmp given.block changed.block || fail "a header with CRLF is another block"
