@@ -42,3 +42,8 @@ refused 'changed.hpp: expected `answer` in an exported header, found none' '/ an
 refused 'changed.hpp:[0-9]+: expected the frame `body FRD, world NED`, found `body FLU, world ENU`' 's/body FRD, world NED/body FLU, world ENU/'
 refused 'changed.hpp:[0-9]+: expected a time of 0 to 4 s, found -3' 's/lag_removed_s = .*;/lag_removed_s = -3.0;/'
 refused 'changed.hpp:[0-9]+: expected 16 numbers in `allocation`, found 12' '/7.378601163836665/d'
+# a checkout that made the ends of its lines CRLF: the same block
+sed 's/$/\r/' model.hpp >changed.hpp
+"$pinnquad" block model.hpp --out given.block >/dev/null
+"$pinnquad" block changed.hpp --out changed.block >/dev/null
+cmp given.block changed.block || fail "a header with CRLF is another block"

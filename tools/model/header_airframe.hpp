@@ -23,7 +23,7 @@ namespace programs {
 inline std::string airframe_struct(const HeaderFile& header) {
   const std::string& type = header.text("Vehicle");
   if (type.compare(0, 10, "pinnquad::") == 0) return "";
-  const std::string text = pinnquad::file_text(header.path()), head = "\nstruct " + type + " {\n", tail = "\n};\n";
+  const std::string text = header_text(header.path()), head = "\nstruct " + type + " {\n", tail = "\n};\n";
   const std::size_t begin = text.find(head), end = text.find(tail, std::min(begin, text.size()));
   if (!pinnquad::is_identifier(type) || begin == std::string::npos || end == std::string::npos) {
     header.refuse("Vehicle", "an airframe of the library or of the header", "`" + pinnquad::printable(type) + "`");
