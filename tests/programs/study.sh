@@ -193,7 +193,7 @@ expect_line 2 'a_file/out' "$pinnquad" study paper "${options[@]}" --out a_file/
 rm -rf garbage
 cp -r whole garbage
 echo garbage >garbage/study.json
-expect_line 2 'garbage/study.json: expected the settings of a study' "$pinnquad" study paper "${options[@]}" --out garbage
+expect_line 2 'garbage/study.json:1:1: expected JSON' "$pinnquad" study paper "${options[@]}" --out garbage
 echo '{}' >garbage/study.json
 expect_line 2 'garbage/study.json: expected the settings of a study' "$pinnquad" study merge garbage --out no
 rm garbage/study.json
