@@ -82,7 +82,8 @@ expect_line 2 'b/model.block: a network of 16 inputs, 4 outputs and 6379 paramet
 "$pinnquad" evaluate b/model.hpp --flight flight.csv >own.txt || [ $? -eq 1 ]
 sed 1d mine.txt | diff - <(sed 1d own.txt) || fail "the header brings its airframe with it: another judgement"
 grep -q 'for mine' mine.txt || fail "said: $(cat mine.txt)"
-expect_line 2 'whose shape is unknown' "$pinnquad" evaluate a/model.block --flight flight.csv --airframe mine.toml
+expect_line 2 'a/model.block: a model for the airframe paper_quadrotor, not for --airframe mine.toml' \
+  "$pinnquad" evaluate a/model.block --flight flight.csv --airframe mine.toml
 answer=$(sed -n 's/.*answer = "\(.*\)";/\1/p' a/model.hpp)
 "$pinnquad" evaluate a/model.block --flight flight.csv --answer "$answer" >answer.txt || [ $? -eq 1 ]
 expect_line 2 'whose shape is unknown' "$pinnquad" evaluate a/model.block --flight flight.csv --answer "${answer/Relu/Tanh}"

@@ -38,9 +38,9 @@ bool true_residual_range(const Block& block, const Identity& identity) {
   if (!has_stated_structure(identity) || block.residual_range.empty()) return true;
   const auto range = in_scalar(block.residual_range), parameters = in_scalar(block.parameters),
              spread = in_scalar(block.output_spread);
-  const Scalar* bounds = parts.size() == 1 ? nullptr : parameters.data() + parts.front().parameter_count();
-  return pinnquad::detail::same_residual_range(range.data(), range.data() + spread.size(), bounds, spread.data(),
-                                               spread.size());
+  const Scalar* bounds = parameters.data() + parts.front().parameter_count();
+  return pinnquad::detail::same_residual_range(range.data(), range.data() + spread.size(), parts.size() > 1, bounds,
+                                               spread.data(), spread.size());
 }
 
 /// Against what its airframe is.

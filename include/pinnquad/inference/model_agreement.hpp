@@ -81,14 +81,15 @@ constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar spread) noe
   return (difference < 0 ? -difference : difference) <= rounding + 2 * static_cast<double>(Limits::denorm_min());
 }
 
-/// A stated range of a residual against `bounds` among the parameters, as StatedStructure; null: there is no residual.
+/// A stated range of a residual against `bounds` among the parameters, as StatedStructure; read where there is a residual.
+/// A pointer into an array that is compared with null is no constant to g++ -fsanitize=undefined.
 template <class Scalar>
-constexpr bool same_residual_range(const Scalar* lower, const Scalar* upper, const Scalar* bounds,
+constexpr bool same_residual_range(const Scalar* lower, const Scalar* upper, bool has_residual, const Scalar* bounds,
                                    const Scalar* output_spread, std::size_t outputs) noexcept {
   bool same = true;
   for (std::size_t i = 0; i < outputs; ++i) {
-    const Scalar least = bounds == nullptr ? Scalar(0) : bounds[i];
-    const Scalar most = bounds == nullptr ? Scalar(0) : bounds[outputs + i];
+    const Scalar least = has_residual ? bounds[i] : Scalar(0);
+    const Scalar most = has_residual ? bounds[outputs + i] : Scalar(0);
     same = same && same_bound(lower[i], least, output_spread[i]) && same_bound(upper[i], most, output_spread[i]);
   }
   return same;

@@ -252,8 +252,8 @@ constexpr bool true_residual_range() noexcept {
   if constexpr (Structure::known) {
     const typename M::Scalar* bounds = nullptr;
     if constexpr (Structure::at >= 0) bounds = M::parameters.data() + Structure::at;
-    return same_residual_range(M::residual_lower.data(), M::residual_upper.data(), bounds, M::output.spread.data(),
-                               M::residual_lower.size());
+    return same_residual_range(M::residual_lower.data(), M::residual_upper.data(), Structure::at >= 0, bounds,
+                               M::output.spread.data(), M::residual_lower.size());
   } else {
     return true;
   }

@@ -177,8 +177,8 @@ class ModelView : public ModelScales<ShapeType> {
       if constexpr (Structure::at >= 0) bounds = scalars + Layout::parameters(golden) + Structure::at;
       if (records.has_residual_range) {
         sound &= detail::same_residual_range(detail::first_of<Scalar>(records.residual_lower),
-                                             detail::first_of<Scalar>(records.residual_upper), bounds,
-                                             scalars + Layout::output_spread, Layout::outputs);
+                                             detail::first_of<Scalar>(records.residual_upper),
+                                             Structure::at >= 0, bounds, scalars + Layout::output_spread, Layout::outputs);
       }
     }
     if constexpr (has_certificate<ShapeType>) {
