@@ -587,7 +587,9 @@ TEST_CASE("while another mode is selected the inverse is kept warm, 50 times a s
 TEST_CASE("module.yaml and the module have the same ranges, and the same parameters read at start") {
   read_parameters();
   std::size_t known = 0;
-  for (const auto& [name, value] : px4::parameter_values()) {
+  for (const auto& parameter : px4::parameter_values()) {
+    const std::string& name = parameter.first;
+    const auto value = parameter.second;
     if (name.rfind("PQ_", 0) != 0) continue;
     CAPTURE(name);
     ++known;
@@ -610,18 +612,19 @@ TEST_CASE("module.yaml and the module have the same ranges, and the same paramet
 }
 
 TEST_CASE("a parameter beyond its range: it does not start, and one line says which") {
-  for (const auto& [name, value] : {std::pair<const char*, double>{"PQ_OUT_MIN", 1.5},
-                                    {"PQ_V_XY", -3},
-                                    {"PQ_AGE_RATES", -1},
-                                    {"PQ_AGE_ATT", -1},
-                                    {"PQ_AGE_POS", -1},
-                                    {"PQ_AGE_SP", -1},
-                                    {"PQ_G_RATE", -22},
-                                    {"PQ_STK_Z", NAN},
-                                    {"PQ_AIR_RHO", 0}}) {
+  for (const auto& beyond : {std::pair<const char*, double>{"PQ_OUT_MIN", 1.5},
+                             {"PQ_V_XY", -3},
+                             {"PQ_AGE_RATES", -1},
+                             {"PQ_AGE_ATT", -1},
+                             {"PQ_AGE_POS", -1},
+                             {"PQ_AGE_SP", -1},
+                             {"PQ_G_RATE", -22},
+                             {"PQ_STK_Z", NAN},
+                             {"PQ_AIR_RHO", 0}}) {
+    const char* const name = beyond.first;
     CAPTURE(name);
     Px4World world;
-    px4::parameter_values()[name] = value;
+    px4::parameter_values()[name] = beyond.second;
     CHECK(shell("start") == PX4_ERROR);
     CHECK_FALSE(PinnquadControl::runs());
     REQUIRE(px4::complaints().size() == 1);

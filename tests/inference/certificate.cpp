@@ -264,7 +264,7 @@ TEST_CASE("a slope is proven above its floor, a share of the airframe's own, not
       model.slope(axis) = static_cast<float>(slope);
       return model.certificate(airframe);
     };
-    CHECK(!with_slope(std::numeric_limits<float>::denorm_min()).monotone);
+    CHECK(!with_slope(double(std::numeric_limits<float>::denorm_min())).monotone);
     CHECK(!with_slope(1e-9).monotone);
     CHECK(!with_slope(0.99 * least_slope_share * own[std::size_t(axis)]).monotone);
     CHECK(with_slope(1.01 * least_slope_share * own[std::size_t(axis)]).monotone);
@@ -333,8 +333,8 @@ TEST_CASE(
 }
 
 TEST_CASE("nobody knows the rounding of a network that is shown the angular acceleration, nor of a formula") {
-  using Seeing = Network<float, InputSize<PhysicsFeatures::size>, Dense<4>, Tanh, Dense<4>>;
-  const MonotoneModel<MonotoneShape<PhysicsFeatures, PathBoundedAnswer<PhysicsFeatures, Seeing>>> model(1);
+  using Shown = Network<float, InputSize<PhysicsFeatures::size>, Dense<4>, Tanh, Dense<4>>;
+  const MonotoneModel<MonotoneShape<PhysicsFeatures, PathBoundedAnswer<PhysicsFeatures, Shown>>> model(1);
   CHECK(std::isinf(model.certificate().rounding));
   CHECK(std::isinf(model.certificate().sure_step[2]));
 }

@@ -230,7 +230,8 @@ PINNQUAD_NOINLINE void poison_stack() {
 
 template <class Net, class Pack>
 PINNQUAD_NOINLINE bool reads_what_none_wrote(const PackedNetwork<Net, Pack>& packed, const Net& net) {
-  std::vector<float> x(std::size_t(Net::inputs), 0.1f), y(std::size_t(Net::outputs)), jacobian(x.size() * y.size());
+  constexpr auto inputs = static_cast<std::size_t>(Net::inputs), outputs = static_cast<std::size_t>(Net::outputs);
+  std::vector<float> x(inputs, 0.1f), y(outputs), jacobian(inputs * outputs);
   poison_stack();
   std::feclearexcept(FE_ALL_EXCEPT);
   JacobianPass<Net, Pack>::run(packed, net.parameters.data(), x.data(), y.data(), jacobian.data());
