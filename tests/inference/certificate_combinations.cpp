@@ -82,11 +82,11 @@ struct Change {
 template <class Model>
 Change change_of(const Model& model, const Airframe<double>& airframe, const std::vector<int>& places, float step,
                  std::mt19937_64& engine) {
-  std::vector<float> x, more;
+  std::vector<float> x;
   for (std::size_t i = 0; i < Model::inputs; ++i) {
     x.push_back(static_cast<float>(uniform(engine, double(model.envelope_lower[i]), double(model.envelope_upper[i]))));
   }
-  more = x;
+  std::vector<float> more(x);
   double moved = 0;
   for (const int place : places) {
     more[std::size_t(place)] += step;
