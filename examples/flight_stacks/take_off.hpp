@@ -9,7 +9,7 @@
 
 namespace flight_stacks {
 
-/// What a tick asks for and what the vehicle does, along the vertical.
+/// A tick's demand along the vertical, and the motion that the vehicle has.
 struct VerticalMotion {
   bool asks_to_climb{false};
   float asked_sink_m_s{0};      ///< by the set point; positive down, as all here

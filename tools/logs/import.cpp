@@ -192,7 +192,7 @@ class Import {
     passages_.push_back(std::move(passage));
   }
 
-  /// What is in the common rows: of a long log nothing is held twice.
+  /// The contents of the common rows: of a long log nothing is held twice.
   static void let_go(FlightLog& log, BoundLog& bound) {
     for (LogTopic& topic : log.topics) {
       topic.time_s = std::vector<double>();

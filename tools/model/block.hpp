@@ -168,7 +168,7 @@ inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, 
   return Layout::counts + whole;
 }
 
-/// What no reader takes, whatever the shape (inference/model_agreement.hpp).
+/// Refuses what no reader takes, whatever the shape (inference/model_agreement.hpp).
 inline void require_sound(const BlockBytes& bytes, const Block& block) {
   using namespace pinnquad::detail;
   const auto inputs = static_cast<std::size_t>(block.inputs), outputs = static_cast<std::size_t>(block.outputs);

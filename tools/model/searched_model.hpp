@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a search of a counterexample (model/counterexample.hpp) asks of a model from a block.
+// A model from a block, as a search of a counterexample (model/counterexample.hpp) asks it.
 #pragma once
 
 #include <utility>
@@ -12,7 +12,7 @@
 
 namespace programs {
 
-/// What is searched where nothing is proven.
+/// The model that is searched where nothing is proven.
 inline SearchedModel searched_model(const Block& block, const Identity& identity, const AskedModel& model) {
   SearchedModel searched;
   searched.lower = block.envelope_lower;

@@ -51,7 +51,7 @@ inline std::pair<std::vector<int>, int> thrust_places(const std::vector<std::str
 
 }  // namespace detail
 
-/// What a certificate asks of the airframe, and of the formula that a block's outputs add to.
+/// The airframe, and the formula that a block's outputs add to, as a certificate reads them.
 template <class Scalar>
 pinnquad::CertifiedVehicle<Scalar> certified_vehicle_of(const Block& block, const Identity& identity) {
   using namespace pinnquad;

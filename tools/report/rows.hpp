@@ -38,7 +38,7 @@ struct StudyRow {
 
 namespace detail {
 
-/// What figures of a kind can be, by how their columns' names begin; those that are not named can be anything.
+/// The range of figures of a kind, by how their columns' names begin; those that are not named can be anything.
 struct FigureRange {
   const char* begin;
   double least, most;

@@ -140,7 +140,7 @@ std::string reason_against_export(const TrainOptions& options, const programs::C
   return {};
 }
 
-/// What may help where the best model is worse than the mean.
+/// Advice where the best model is worse than the mean.
 std::string instead_of_poor(const TrainOptions& options, const programs::LossName& loss) {
   if (!programs::is_structured(loss)) return "more epochs or a better flight, or --allow-poor";
   const std::string learned = options.slopes == "pinned" ? "--slopes learned, " : "";

@@ -66,7 +66,7 @@ class TrackingController {
   Status operator()(const State<Scalar>&, const TrajectoryPoint<Scalar>&, Seconds, Commands<Scalar>&) = delete;
 
   const FeedForward& feed_forward() const noexcept { return feed_forward_; }
-  /// What the policy itself came to in the last tick that asked it.
+  /// The policy's own Status of the last tick that asked it.
   Status feed_forward_status() const noexcept { return feed_forward_status_; }
 
  private:

@@ -81,7 +81,7 @@ class BoundSearch {
     return *best;
   }
 
-  /// What is climbed for: the bound first, then the others that no vector passes.
+  /// The search climbs for the bound first, then for the others that no vector passes.
   double height(const FeatureVector& x, std::size_t bound, const std::array<bool, bounds>& missing) const {
     const std::array<double, bounds> by = passed(x);
     double sum = 0;

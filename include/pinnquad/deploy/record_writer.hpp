@@ -145,7 +145,7 @@ class ConstantWriter {
   explicit ConstantWriter(std::ostream& out) : out_(out) {}
 
   std::uint64_t contents_hash() const { return sum_; }
-  /// What counts and is no constant.
+  /// Takes into the hash a value that is no constant.
   template <class Value>
   void count(std::string_view name, const Value& value) {
     if (!is_hashed(name)) return;

@@ -130,7 +130,7 @@ constexpr void take_thrust(const CertifiedNumbers<Scalar>& from, Certificate& ce
   certificate.held_thrust_slope = held - doubt;
 }
 
-/// What rounding does to the base inside the envelope, and from which step on a slope is above it (docs/certificate.md).
+/// The base's rounding inside the envelope, and the step from which on a slope is above it (docs/certificate.md).
 template <class Scalar>
 constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate& certificate) noexcept {
   if (from.has_paths || from.vehicle.on_formula || !certificate.bounded) {

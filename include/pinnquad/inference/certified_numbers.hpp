@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a certificate (inference/certificate.hpp) is worked out from: a structure that is proven, the vehicle, stored
+// The arguments of a certificate (inference/certificate.hpp): a structure that is proven, the vehicle, stored
 // numbers wherever they are.
 #pragma once
 
@@ -164,7 +164,7 @@ inline constexpr bool has_certificate =
     is_signed_sums<typename Shape::Outputs>&& base_reads<typename Shape::Features, typename Shape::Outputs>() &&
     !std::is_void_v<typename detail::ProvenStructure<typename Shape::Network, typename Shape::Features>::Base>;
 
-/// What a certificate asks of a vehicle and of the formula that its outputs add to.
+/// A vehicle, and the formula that its outputs add to, as a certificate reads them.
 template <class Scalar>
 struct CertifiedVehicle {
   detail::SignedMix<Scalar> mix{};
@@ -202,7 +202,7 @@ struct CertifiedScales {
   const Scalar* envelope_upper;
 };
 
-/// What a certificate is worked out from: stored numbers, wherever they are. No pointer is null: a pointer into an array
+/// The stored numbers that a certificate reads, wherever they are. No pointer is null: a pointer into an array
 /// that is compared with null is no constant to g++ -fsanitize=undefined.
 template <class Scalar>
 struct CertifiedNumbers {

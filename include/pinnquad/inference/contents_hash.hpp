@@ -161,7 +161,7 @@ struct HasContentsHash : std::false_type {};
 template <class M>
 struct HasContentsHash<M, std::void_t<decltype(std::uint64_t{M::contents_hash})>> : std::true_type {};
 
-/// What the header's constant must be, from its members as they are.
+/// The value that the header's constant must have, from its members as they are.
 template <class M>
 constexpr std::uint64_t contents_hash_of() noexcept {
   std::uint64_t sum = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a model says twice, compared: for the compiler (inference/model.hpp), for a block that is opened
+// Compares what a model says twice: for the compiler (inference/model.hpp), for a block that is opened
 // (inference/model_view.hpp) and for the program on the ground. A tolerance is what rounding makes.
 #pragma once
 

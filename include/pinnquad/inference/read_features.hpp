@@ -59,7 +59,7 @@ struct FormulasOf {
   static constexpr bool read(const NamedFeatures&) noexcept { return true; }
 };
 
-/// What an output schema adds its outputs to: its `Base`, or nothing.
+/// The formula that an output schema adds its outputs to: its `Base`, or nothing.
 struct NoBase {
   static constexpr const char* description = "";
   static constexpr std::array<ReadFeature, 0> reads{};
