@@ -399,9 +399,9 @@ class Import {
     if (!found) return;
     std::string causes;
     for (const std::string& warning : dataset_.warnings) causes += "; " + warning;
-    throw pinnquad::InputError(
-        source, 0, 0, found->expected,
-        found->found + " at " + pinnquad::number_text(flight[found->row].time_s) + " s of flight " + flight.name + causes);
+    throw pinnquad::InputError(source, 0, 0, found->expected,
+                               found->found + " at " + pinnquad::number_text(flight[found->row].time_s) +
+                                   " s of flight " + flight.name + causes);
   }
 
   const ImportRequest& request_;
