@@ -11,9 +11,9 @@
 #include "../examples/models/demo_quadrotor.hpp"
 #include "../examples/models/structured_quadrotor.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
 #include "pinnquad/inference/monitored_inverse.hpp"
 #include "support/program.hpp"
 

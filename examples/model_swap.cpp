@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A new model while the vehicle flies: the control thread never waits, locks or allocates; another thread opens a model
-// block in the slot that is not in use, tests it, and publishes it with one atomic pointer (flight_stacks/model_slots.hpp).
+// block in the slot that is not in use, tests it, and publishes it with one atomic pointer (pinnquad/control/autopilot/model_slots.hpp).
 //   exit code 0: every prediction was that of one whole model, all good blocks flew, no bad one did
 #include <atomic>
 #include <chrono>
@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "flight_stacks/model_slots.hpp"
 #include "models/demo_quadrotor.hpp"
+#include "pinnquad/control/autopilot/model_slots.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 
 namespace {
@@ -21,7 +21,7 @@ using namespace pinnquad;
 using Clock = std::chrono::steady_clock;
 using View = ModelView<DemoQuadModel>;
 using Inverse = InverseDynamics<View>;
-using Slots = flight_stacks::ModelSlots<Inverse>;  // says how the old slot is known to be free
+using Slots = pinnquad::autopilot::ModelSlots<Inverse>;  // says how the old slot is known to be free
 
 /// Loading thread: waits for the control thread's next tick if it has not yet taken the model published last.
 Status replace(Slots& slots, const std::vector<unsigned char>& block) {

@@ -16,8 +16,8 @@
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
 #include "model.hpp"
-#include "pinnquad/data/regular_file.hpp"
 #include "pinnquad/flight.hpp"
+#include "pinnquad/io/regular_file.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 
 namespace {

@@ -72,7 +72,7 @@ struct StructuredQuadModel {
     {{1, 1, -1}},
     {{-1, -1, -1}}}};
 
-  // records: a reader that does not know one of them must not fly the model (inference/model_records.hpp)
+  // records: a reader that does not know one of them must not fly the model (exported/model_records.hpp)
   static constexpr std::array<const char*, 7> records = {{"answer", "commands", "clock", "window", "columns", "allocation", "base"}};
   static constexpr const char* answer = "pinnquad::AxisAligned<float, 19, 1>";
   static constexpr auto command_meaning = pinnquad::CommandMeaning::thrust;
@@ -175,7 +175,7 @@ struct StructuredQuadModel {
       -0.00025123588f, 0.10264491f, -0.0015613193f, 0.0022342945f, 0.0006267158f, -0.002746572f, 0.0005076283f, -0.0007971216f,
       0.002819453f, 1.5425916e-05f, 0.0039976374f, 9.024931e-15f, -5.67402e-17f, -1.1402832e-18f, -4.709057e-18f}};
 
-  // over all of this: what was edited does not compile (inference/contents_hash.hpp)
+  // over all of this: what was edited does not compile (exported/contents_hash.hpp)
   static constexpr std::uint64_t contents_hash = 0xc7e20f1eb7ef2bfd;
 };
 

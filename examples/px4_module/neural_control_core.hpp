@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flight_stacks/neural_controller.hpp"
+#include "pinnquad/control/autopilot/neural_controller.hpp"
 #include "propulsion.hpp"
 
 namespace pinnquad_px4 {
@@ -104,15 +104,15 @@ struct PinnquadStatus {
   float fallback_share{0};   ///< of the predictions
   float envelope_excess{0};  ///< how far the worst feature lay outside, in half-widths of its range
   std::int8_t envelope_feature{-1};
-  std::uint8_t reaction{0};      ///< flight_stacks::Reaction
+  std::uint8_t reaction{0};      ///< pinnquad::autopilot::Reaction
   std::uint8_t status{0};        ///< pinnquad::Status
   std::uint8_t cause{0};         ///< pinnquad::Status of the network alone
   std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point
 };
 
 /// `Model` is an exported header; the weights come as a model block. `Controller`: one that writes down what it is told
-/// (flight_stacks/recorded_controller.hpp), where the module logs it.
-template <class Model, class Controller = flight_stacks::NeuralController<Model>>
+/// (pinnquad/control/autopilot/recorded_controller.hpp), where the module logs it.
+template <class Model, class Controller = pinnquad::autopilot::NeuralController<Model>>
 class NeuralControl {
  public:
   using ClockUs = std::uint64_t (*)();
@@ -165,7 +165,7 @@ class NeuralControl {
   }
 
   /// Whose the motors are, and whether the vehicle stands (vehicle_status, vehicle_land_detected).
-  void situation(const flight_stacks::Situation& now) noexcept { controller_.situation(now); }
+  void situation(const pinnquad::autopilot::Situation& now) noexcept { controller_.situation(now); }
 
   /// Before the first run(): what makes PX4's controls of the model's commands. The controller's output limits are thrusts, too.
   void propulsion(const Propulsion& propulsion) noexcept { propulsion_ = propulsion; }
@@ -180,13 +180,13 @@ class NeuralControl {
   bool run(ActuatorMotors& motors, PinnquadStatus& status) noexcept {
     const std::uint64_t start_us = clock_();
     pinnquad::Commands<float> commands{};
-    flight_stacks::StepReport report;
-    const flight_stacks::Reaction reaction = controller_.step(start_us, commands, report);
+    pinnquad::autopilot::StepReport report;
+    const pinnquad::autopilot::Reaction reaction = controller_.step(start_us, commands, report);
     const std::uint64_t end_us = clock_();
     controller_.describe(report, status);
     status.timestamp = end_us;
     status.inference_time_us = static_cast<std::uint32_t>(end_us - start_us);
-    if (reaction == flight_stacks::Reaction::gives_up) return false;
+    if (reaction == pinnquad::autopilot::Reaction::gives_up) return false;
     motors.timestamp = end_us;
     motors.timestamp_sample = rates_us_;
     propulsion_.controls(commands, motors.control);
@@ -197,7 +197,7 @@ class NeuralControl {
   static pinnquad::Vector3<float> vector(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
 
   void take_resets(const VehicleLocalPosition& m) noexcept {
-    flight_stacks::EstimateJump by;
+    pinnquad::autopilot::EstimateJump by;
     bool jumps = false;
     const auto reset = [&](std::uint8_t counter, std::uint8_t before) noexcept {
       const bool moved = has_local_ && counter != before;

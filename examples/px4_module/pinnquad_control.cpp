@@ -65,15 +65,15 @@ PinnquadControl::PinnquadControl()
       ScheduledWorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl),
       _propulsion(_param_air_density.get(), _param_curve.get(), px4_parameter("THR_MDL_FAC", 0.0f)),
       _core(&clock_us,
-            flight_stacks::AgeLimits{static_cast<uint64_t>(_param_age_rates.get()) * 1000,
-                                     static_cast<uint64_t>(_param_age_attitude.get()) * 1000,
-                                     static_cast<uint64_t>(_param_age_position.get()) * 1000,
-                                     static_cast<uint64_t>(_param_age_setpoint.get()) * 1000},
-            flight_stacks::OutputLimits{_propulsion.thrust(_param_out_min.get()), _propulsion.thrust(1.0f)},
+            pinnquad::autopilot::AgeLimits{static_cast<uint64_t>(_param_age_rates.get()) * 1000,
+                                           static_cast<uint64_t>(_param_age_attitude.get()) * 1000,
+                                           static_cast<uint64_t>(_param_age_position.get()) * 1000,
+                                           static_cast<uint64_t>(_param_age_setpoint.get()) * 1000},
+            pinnquad::autopilot::OutputLimits{_propulsion.thrust(_param_out_min.get()), _propulsion.thrust(1.0f)},
             pinnquad::FlightGains<float>{_param_gain_position.get(), _param_gain_velocity.get(), _param_gain_tilt.get(),
                                          _param_gain_yaw.get(), _param_gain_rate.get(), _param_gain_yaw_rate.get()},
-            flight_stacks::SpeedLimits{_param_speed_horizontal.get(), _param_speed_up.get(), _param_speed_down.get(),
-                                       _param_take_off.get()},
+            pinnquad::autopilot::SpeedLimits{_param_speed_horizontal.get(), _param_speed_up.get(),
+                                             _param_speed_down.get(), _param_take_off.get()},
             pinnquad::BiasSettings<float>{_param_bias_bandwidth.get(), _param_bias_most.get()}),
       _source(stick_speeds()) {
   _core.propulsion(_propulsion);
@@ -418,8 +418,9 @@ void PinnquadControl::say_no_commands() {
   _said_no_commands = true;
   const auto stale = [this](uint8_t bit, const char* what) { return (_stale_inputs & bit) != 0 ? what : ""; };
   mavlink_log_critical(&_ground_station, "will not arm: no answer to fly by; too old:%s%s%s",
-                       stale(flight_stacks::body_rates_bit, " body rates"),
-                       stale(flight_stacks::attitude_bit, " attitude"), stale(flight_stacks::local_bit, " position"));
+                       stale(pinnquad::autopilot::body_rates_bit, " body rates"),
+                       stale(pinnquad::autopilot::attitude_bit, " attitude"),
+                       stale(pinnquad::autopilot::local_bit, " position"));
 }
 
 void PinnquadControl::check_ranges() {
@@ -485,7 +486,7 @@ void PinnquadControl::answer_arming_check() {
 
 /// Sooner than the next arming check: without commands every tick counts. Again until the mode is another one.
 void PinnquadControl::ask_for_takeover() {
-  const bool position_stale = (_stale_inputs & flight_stacks::local_bit) != 0;
+  const bool position_stale = (_stale_inputs & pinnquad::autopilot::local_bit) != 0;
   vehicle_command_s command{};
   command.timestamp = hrt_absolute_time();
   command.command = vehicle_command_s::VEHICLE_CMD_SET_NAV_STATE;

@@ -37,10 +37,10 @@
 #include <uORB/Subscription.hpp>
 #include <uORB/SubscriptionCallback.hpp>
 
-#include "flight_stacks/recorded_controller.hpp"
 #include "model.hpp"  // the exported header: what pinnquad train wrote
 #include "neural_control_core.hpp"
 #include "parameter_ranges.hpp"
+#include "pinnquad/control/autopilot/recorded_controller.hpp"
 #include "px4_version.hpp"
 #include "rotor_geometry.hpp"
 #include "set_point_source.hpp"
@@ -60,7 +60,7 @@ using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
 #include "trust.hpp"
 using FlownLimits = TrainedQuadModelTrust;
 #else
-using FlownLimits = flight_stacks::NoTrust;
+using FlownLimits = pinnquad::autopilot::NoTrust;
 #endif
 
 class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
@@ -85,8 +85,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
 
  private:
   using Model = TrainedQuadModel;
-  using Controller = flight_stacks::Recorded<
-      flight_stacks::NeuralController<Model, pinnquad::ModelView<Model>, FlownVehicle, FlownLimits>>;
+  using Controller = pinnquad::autopilot::Recorded<
+      pinnquad::autopilot::NeuralController<Model, pinnquad::ModelView<Model>, FlownVehicle, FlownLimits>>;
   using Core = pinnquad_px4::NeuralControl<Model, Controller>;
 
   /// Room for one block of this model, golden vectors included.

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// What a core wrote down (flight_stacks/core_record.hpp) as messages of PX4: same names, same order, other types.
+// What a core wrote down (pinnquad/control/autopilot/core_record.hpp) as messages of PX4: same names, same order, other types.
 #pragma once
 
 #include <string.h>
 
-#include "flight_stacks/core_record.hpp"
+#include "pinnquad/control/autopilot/core_record.hpp"
 
 namespace pinnquad_px4 {
 
 /// `Message`: pinnquad_record_s.
 template <class Message>
-void copy_record(const flight_stacks::CoreRecord& from, Message& to) {
+void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   to.timestamp = from.timestamp;
   to.body_rates_us = from.body_rates_us;
   to.attitude_us = from.attitude_us;
@@ -53,7 +53,7 @@ void copy_record(const flight_stacks::CoreRecord& from, Message& to) {
 
 /// `Message`: pinnquad_settings_s.
 template <class Message>
-void copy_settings(const flight_stacks::CoreSettings& from, Message& to) {
+void copy_settings(const pinnquad::autopilot::CoreSettings& from, Message& to) {
   to.timestamp = from.timestamp;
   to.body_rates_us = from.body_rates_us;
   to.attitude_us = from.attitude_us;

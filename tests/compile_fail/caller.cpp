@@ -9,9 +9,9 @@
 // CASE BLOCK_OF_HEADER: pinnquad: the model's commands mean something else to the caller
 // CASE NOT_A_VEHICLE: pinnquad: a Caller's vehicle is not an airframe
 #include "../support/recorded_model.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/inference/self_test.hpp"
-#include "pinnquad/inference/windowed.hpp"
 
 namespace {
 

@@ -16,7 +16,7 @@
 // CASE MEASURING_IN_SECONDS: pinnquad: what measures for NetworkInverse is called .*; time is a std::uint64_t of microseconds
 // CASE MEASURING_MAY_THROW: pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be noexcept
 #include "pinnquad/control/feed_forward.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 
 namespace {
 

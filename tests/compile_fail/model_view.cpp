@@ -5,7 +5,7 @@
 // CASE BLOCK_OF_FIRST_FORMAT: pinnquad: a header of format 1 does not check its own names; export it again
 #include "../support/described_model.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
 namespace {

@@ -7,10 +7,10 @@
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/axis_aligned.hpp"
-#include "pinnquad/inference/inverse_features.hpp"
-#include "pinnquad/inference/signed_sum_outputs.hpp"
+#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
 
 namespace {
 

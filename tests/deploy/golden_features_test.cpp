@@ -9,12 +9,12 @@
 #include <stdexcept>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/model.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
-#include "pinnquad/inference/signed_sum_outputs.hpp"
-#include "pinnquad/inference/windowed.hpp"
+#include "pinnquad/exported/model.hpp"
+#include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "support/random_network.hpp"
 #include "support/training_sets.hpp"

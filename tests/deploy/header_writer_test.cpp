@@ -17,7 +17,7 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/composition.hpp"
+#include "pinnquad/model/composition.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"

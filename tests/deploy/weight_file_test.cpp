@@ -11,7 +11,7 @@
 
 #include "data/temporary_folder.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "support/block_bytes.hpp"
@@ -123,7 +123,7 @@ TEST_CASE("the bytes of a block are fixed") {
       4,    0,    0,    0,    16,   0,    0,    0,    4, 0, 0, 0,  // bytes of a scalar, inputs, outputs
       172,  0,    0,    0,    6,    0,    0,    0,                 // parameters, golden vectors
       0x70, 0x17, 0,    0,                                         // 6000 rows
-      0x87, 0x3c, 0x5b, 0x04, 0x18, 0xb0, 0xf9, 0xf6,              // shape hash: see tests/inference/model_view.cpp
+      0x87, 0x3c, 0x5b, 0x04, 0x18, 0xb0, 0xf9, 0xf6,              // shape hash: see tests/exported/model_view.cpp
       0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,              // training data
       4,    0,    0,    0,    0x80, 0,    0,    0,                 // 4 records of 128 bytes
       1,    0x80, 0,    0,    16,   0,    0,    0,                 // commands, mandatory

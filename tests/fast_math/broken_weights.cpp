@@ -12,7 +12,7 @@
 #include "../support/block_bytes.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/evaluation/verdict.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
 namespace {

@@ -12,9 +12,9 @@
 
 namespace {
 
-using namespace flight_stacks::test;
-using flight_stacks::Reaction;
+using namespace pinnquad::autopilot::test;
 using pinnquad::Status;
+using pinnquad::autopilot::Reaction;
 
 constexpr float not_asked = std::numeric_limits<float>::quiet_NaN();
 std::uint64_t clock_us = 0;
@@ -170,7 +170,7 @@ TEST_CASE("PX4: a model that is refused changes no bit of what flies; one that i
 }
 
 TEST_CASE("PX4: silence, step by step: holds, levels, keeps, gives up") {
-  using flight_stacks::AgeLimits;
+  using pinnquad::autopilot::AgeLimits;
   const auto last_at = [](std::uint64_t rates_age, std::uint64_t attitude_age, std::uint64_t local_age,
                           std::uint64_t set_point_age) {
     Px4 px4;
@@ -262,7 +262,7 @@ TEST_CASE("whatever comes in, what goes out is a command within its limits") {
   };
   Px4 px4;
   Crazyflie cf;
-  const flight_stacks::OutputLimits limits;
+  const pinnquad::autopilot::OutputLimits limits;
   int px4_answers = 0, cf_answers = 0;
   for (std::uint64_t tick = 0; tick < 100'000; ++tick) {
     for (float& v : px4.rates.xyz) v = hostile(0);

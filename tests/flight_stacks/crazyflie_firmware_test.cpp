@@ -15,9 +15,9 @@
 
 #include "core_log.h"
 #include "crazyflie/firmware.h"
-#include "flight_stacks/inputs.hpp"
 #include "model_blocks.hpp"
 #include "models/crazyflie_2_1.hpp"
+#include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/flight.hpp"
 
@@ -29,7 +29,7 @@ __asm__(
 
 namespace {
 
-using namespace flight_stacks::test;
+using namespace pinnquad::autopilot::test;
 using pinnquad::Vector3;
 
 enum class Estimator { kalman, complementary, ukf };
@@ -443,7 +443,7 @@ TEST_CASE("what the core received and answered goes to the uSD card, each step, 
   CrazyflieCoreRecord record{};
   pinnquad_flight_record(&record);
   CHECK(std::uint32_t{record.timestamp_ms} == tick_ms);
-  CHECK(static_cast<flight_stacks::Reaction>(record.reaction) == flight_stacks::Reaction::gives_up);
+  CHECK(static_cast<pinnquad::autopilot::Reaction>(record.reaction) == pinnquad::autopilot::Reaction::gives_up);
   const std::string file = card.file();
   const Block block = sound_block<CrazyflieModel>();
   std::ofstream("flight_stacks_crazyflie.usd", std::ios::binary) << file;

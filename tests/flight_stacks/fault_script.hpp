@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "flight_stacks/inputs.hpp"
+#include "pinnquad/control/autopilot/inputs.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 enum class FaultKind {
   rates_stop,
@@ -61,4 +61,4 @@ inline constexpr std::array<Fault, 19> fault_script = {{
     {28.0, 0.300, FaultKind::attitude_stops, 0, "attitude stops for 300 ms", Reaction::gives_up},
 }};
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

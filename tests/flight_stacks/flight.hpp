@@ -15,7 +15,7 @@
 #include "pinnquad/simulation/flights.hpp"
 #include "stacks.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 using pinnquad::Status;
 using pinnquad::TrajectoryPoint;
@@ -315,4 +315,4 @@ class FaultyFlight {
   FlightFigures figures_;
 };
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

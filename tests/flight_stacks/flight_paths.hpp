@@ -8,7 +8,7 @@
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/simulation/flights.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 using pinnquad::TrajectoryPoint;
 
@@ -44,4 +44,4 @@ struct RandomPlaces {
   TrajectoryPoint<double> operator()(double time_s) const { return places[static_cast<std::size_t>(time_s / 2)]; }
 };
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

@@ -10,9 +10,9 @@
 
 namespace {
 
-using namespace flight_stacks::test;
-using flight_stacks::AgeLimits;
-using flight_stacks::Reaction;
+using namespace pinnquad::autopilot::test;
+using pinnquad::autopilot::AgeLimits;
+using pinnquad::autopilot::Reaction;
 
 constexpr double duration_s = 33, calm_duration_s = 20;
 constexpr double lowest_m = 9;         // 10.9 m is flown; the lowest place asked for is 9.9 m
@@ -88,7 +88,7 @@ void carries_a_payload() {
        {loaded_s, relieved_s - loaded_s, FaultKind::payload, 1.3, "30 % heavier", Reaction::flies}}};
   FaultyFlight<Stack> flight;
   REQUIRE(flight.boot());
-  using flight_stacks::CoreRecord;
+  using pinnquad::autopilot::CoreRecord;
   double handed_over_s = 0, taken_back_s = 0, deepest_m = 0, late_error_m = 0;
   bool by_formula = false;
   const FlightFigures flown = flight.fly(hover, ends_s, faults, [&](const CoreRecord& tick) {
@@ -104,7 +104,8 @@ void carries_a_payload() {
     if (late) late_error_m = std::max(late_error_m, std::abs(below_m));
   });
   std::printf(
-      "%s, 30 %% heavier under a soft model: the formula flies from %.2f s after to %.2f s after the load is gone; %.2f m "
+      "%s, 30 %% heavier under a soft model: the formula flies from %.2f s after to %.2f s after the load is gone; "
+      "%.2f m "
       "too low at worst, %.3f m late\n",
       Stack::name, handed_over_s - loaded_s, taken_back_s - relieved_s, deepest_m, late_error_m);
   CHECK_FALSE(flown.crashed);

@@ -9,7 +9,7 @@
 
 #include "pinnquad/deploy/weight_file.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 /// Aligned as a block must be: vectors of bytes come from the heap, which aligns by 16.
 using Block = std::vector<unsigned char>;
@@ -99,4 +99,4 @@ Block wrong_block() {
   return block;
 }
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

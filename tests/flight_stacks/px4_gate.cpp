@@ -3,14 +3,15 @@
 // The core of px4_module behind C functions, for the compile gates: its glue needs PX4's tree.
 #include <new>
 
-#include "flight_stacks/recorded_controller.hpp"
 #include "models/demo_quadrotor.hpp"
+#include "pinnquad/control/autopilot/recorded_controller.hpp"
 #include "px4_module/neural_control_core.hpp"
 
 namespace {
 using Core = pinnquad_px4::NeuralControl<DemoQuadModel>;
 using RecordedCore =
-    pinnquad_px4::NeuralControl<DemoQuadModel, flight_stacks::Recorded<flight_stacks::NeuralController<DemoQuadModel>>>;
+    pinnquad_px4::NeuralControl<DemoQuadModel,
+                                pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<DemoQuadModel>>>;
 }  // namespace
 
 extern "C" {
@@ -42,7 +43,7 @@ bool pinnquad_flight_px4_run_recorded(RecordedCore* core, const pinnquad_px4::Ve
                                       const pinnquad_px4::VehicleLocalPosition* local,
                                       const pinnquad_px4::TrajectorySetpoint* set_point,
                                       pinnquad_px4::ActuatorMotors* motors, pinnquad_px4::PinnquadStatus* status,
-                                      flight_stacks::CoreRecord* record) {
+                                      pinnquad::autopilot::CoreRecord* record) {
   static_cast<void>(core->take(*rates));
   static_cast<void>(core->take(*attitude));
   static_cast<void>(core->take(*local));

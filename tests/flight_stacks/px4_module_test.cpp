@@ -11,7 +11,7 @@
 #include "px4/world.hpp"
 #include "px4_module/pinnquad_control.hpp"
 
-using namespace flight_stacks::test;
+using namespace pinnquad::autopilot::test;
 
 TEST_CASE("it registers although nobody listens at first, and when it was refused; config and arming check follow") {
   Px4World world;

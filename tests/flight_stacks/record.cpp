@@ -14,10 +14,10 @@
 
 namespace {
 
-using namespace flight_stacks::test;
-using flight_stacks::CoreRecord;
-using flight_stacks::CoreSettings;
-using flight_stacks::Reaction;
+using namespace pinnquad::autopilot::test;
+using pinnquad::autopilot::CoreRecord;
+using pinnquad::autopilot::CoreSettings;
+using pinnquad::autopilot::Reaction;
 
 constexpr double duration_s = 33;
 
@@ -64,8 +64,8 @@ int record(const std::string& folder, const Target& target, const std::vector<Fa
 }
 
 template <class Stack>
-int record(const std::string& path, const std::string& folder, double half_length_m, double period_s,
-           double half_box_m, const std::vector<Fault>& faults = faults_of<Stack>()) {
+int record(const std::string& path, const std::string& folder, double half_length_m, double period_s, double half_box_m,
+           const std::vector<Fault>& faults = faults_of<Stack>()) {
   if (path == "hover") return record<Stack>(folder, hover, faults);
   if (path == "eight") return record<Stack>(folder, Eight(half_length_m, period_s), faults);
   return record<Stack>(folder, RandomPlaces(half_box_m), faults);

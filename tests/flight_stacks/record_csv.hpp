@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records of a core (flight_stacks/core_record.hpp) as CSV, as PX4's ulog2csv would write the messages: FOLDER/NAME_TOPIC_0.csv.
+// Records of a core (pinnquad/control/autopilot/core_record.hpp) as CSV, as PX4's ulog2csv would write the messages: FOLDER/NAME_TOPIC_0.csv.
 // The shortest digits that read back to the same number.
 #pragma once
 
@@ -8,9 +8,9 @@
 #include <string>
 #include <type_traits>
 
-#include "flight_stacks/core_record.hpp"
+#include "pinnquad/control/autopilot/core_record.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 template <class Number>
 void add_cell(std::string& line, Number number) {
@@ -61,4 +61,4 @@ std::ofstream record_file(const std::string& folder, const std::string& name) {
   return file;
 }
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

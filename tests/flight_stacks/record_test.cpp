@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a core writes down (flight_stacks/core_record.hpp): the messages have its numbers, a recorded core answers as any other,
+// What a core writes down (pinnquad/control/autopilot/core_record.hpp): the messages have its numbers, a recorded core answers as any other,
 // inputs are there as they came, refused ones too.
 #include <doctest/doctest.h>
 
@@ -15,11 +15,11 @@
 
 namespace {
 
-using namespace flight_stacks::test;
-using flight_stacks::CoreRecord;
-using flight_stacks::CoreSettings;
-using flight_stacks::Reaction;
+using namespace pinnquad::autopilot::test;
 using pinnquad::Status;
+using pinnquad::autopilot::CoreRecord;
+using pinnquad::autopilot::CoreSettings;
+using pinnquad::autopilot::Reaction;
 
 std::uint64_t clock_us = 0;
 std::uint64_t test_clock() { return clock_us; }
@@ -64,7 +64,8 @@ std::vector<std::string> fields(const std::string& file) {
 }
 
 using Recording =
-    pinnquad_px4::NeuralControl<DemoQuadModel, flight_stacks::Recorded<flight_stacks::NeuralController<DemoQuadModel>>>;
+    pinnquad_px4::NeuralControl<DemoQuadModel,
+                                pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<DemoQuadModel>>>;
 using Plain = pinnquad_px4::NeuralControl<DemoQuadModel>;
 
 }  // namespace
@@ -103,10 +104,10 @@ TEST_CASE("a recorded core answers as a plain one, and its record says what it a
       came |= bit;
       CHECK(recorded.take(message) == plain.take(message));
     };
-    take(rates, flight_stacks::body_rates_bit, tick % 3 != 0);
-    take(attitude, flight_stacks::attitude_bit, tick % 5 != 0);
-    take(local, flight_stacks::local_bit, tick % 200 < 50);
-    take(wanted, flight_stacks::set_point_bit, tick % 900 < 300);
+    take(rates, pinnquad::autopilot::body_rates_bit, tick % 3 != 0);
+    take(attitude, pinnquad::autopilot::attitude_bit, tick % 5 != 0);
+    take(local, pinnquad::autopilot::local_bit, tick % 200 < 50);
+    take(wanted, pinnquad::autopilot::set_point_bit, tick % 900 < 300);
     pinnquad_px4::ActuatorMotors motors, others;
     pinnquad_px4::PinnquadStatus status, other;
     const bool has_commands = recorded.run(motors, status);
@@ -130,15 +131,15 @@ TEST_CASE("a recorded core answers as a plain one, and its record says what it a
     } else {
       CHECK(pinnquad::is_finite(record.commands[0]) == false);
     }
-    if ((came & flight_stacks::body_rates_bit) != 0) {
+    if ((came & pinnquad::autopilot::body_rates_bit) != 0) {
       CHECK(record.body_rates_us == clock_us);
       CHECK(std::memcmp(record.body_rates_rad_s, rates.xyz, sizeof rates.xyz) == 0);  // NaN too
     }
-    if ((came & flight_stacks::attitude_bit) != 0) {
+    if ((came & pinnquad::autopilot::attitude_bit) != 0) {
       CHECK(std::memcmp(record.attitude, attitude.q, sizeof attitude.q) == 0);
     }
-    if ((came & flight_stacks::local_bit) != 0) CHECK(record.position_m[0] == local.x);
-    if ((came & flight_stacks::set_point_bit) != 0) CHECK(record.wanted_position_m[0] == wanted.position[0]);
+    if ((came & pinnquad::autopilot::local_bit) != 0) CHECK(record.position_m[0] == local.x);
+    if ((came & pinnquad::autopilot::set_point_bit) != 0) CHECK(record.wanted_position_m[0] == wanted.position[0]);
   }
 }
 
@@ -183,11 +184,11 @@ TEST_CASE("flown by hand nothing is asked, and the record says so") {
 }
 
 TEST_CASE("settings are those that the controller was made with") {
-  flight_stacks::AgeLimits ages;
+  pinnquad::autopilot::AgeLimits ages;
   ages.attitude_us = 12'000;
   pinnquad::FlightGains<float> gains;
   gains.tilt_1_s = 7;
-  const flight_stacks::NeuralController<DemoQuadModel> controller(ages, {0.1f, 0.9f}, gains);
+  const pinnquad::autopilot::NeuralController<DemoQuadModel> controller(ages, {0.1f, 0.9f}, gains);
   const CoreSettings settings = controller.settings();
   CHECK(settings.attitude_us == 12'000);
   CHECK(settings.body_rates_us == 10'000);

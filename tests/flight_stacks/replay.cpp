@@ -14,7 +14,7 @@
 
 namespace {
 
-using namespace flight_stacks::test;
+using namespace pinnquad::autopilot::test;
 using pinnquad::Vector3;
 
 constexpr int ticks = 5000;

@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "crazyflie_app/src/neural_control_core.hpp"
-#include "flight_stacks/recorded_controller.hpp"
 #include "models/crazyflie_2_1.hpp"
 #include "models/demo_quadrotor.hpp"
+#include "pinnquad/control/autopilot/recorded_controller.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "px4_module/neural_control_core.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 /// What a step came to, whichever the stack.
 struct Answer {
@@ -211,4 +211,4 @@ class CrazyflieStackOf {
 
 using CrazyflieStack = CrazyflieStackOf<CrazyflieModel>;
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

@@ -7,21 +7,21 @@
 #include <limits>
 #include <random>
 
-#include "flight_stacks/recorded_controller.hpp"
 #include "model_blocks.hpp"
 #include "models/crazyflie_2_1.hpp"
 #include "models/demo_quadrotor.hpp"
+#include "pinnquad/control/autopilot/recorded_controller.hpp"
 
 namespace {
 
-using namespace flight_stacks::test;
-using flight_stacks::Reaction;
-using flight_stacks::SpeedLimits;
+using namespace pinnquad::autopilot::test;
 using pinnquad::TrajectoryPoint;
 using pinnquad::Vector3;
+using pinnquad::autopilot::Reaction;
+using pinnquad::autopilot::SpeedLimits;
 
-constexpr flight_stacks::AgeLimits ages{};
-constexpr flight_stacks::OutputLimits outputs{};
+constexpr pinnquad::autopilot::AgeLimits ages{};
+constexpr pinnquad::autopilot::OutputLimits outputs{};
 constexpr pinnquad::FlightGains<float> gains{};
 
 /// A battery that is weaker than the airframe says.
@@ -65,7 +65,7 @@ class Flight {
       const auto now_us = static_cast<std::uint64_t>(1'000'000 + 2000 * tick);
       tell(now_us, place_m);
       pinnquad::Commands<float> commands{};
-      flight_stacks::StepReport report;
+      pinnquad::autopilot::StepReport report;
       REQUIRE(controller_.step(now_us, commands, report) == Reaction::flies);
       pinnquad::Commands<double> u{};
       for (std::size_t i = 0; i < u.size(); ++i) u[i] = static_cast<double>(commands[i]);
@@ -101,7 +101,7 @@ class Flight {
   const Block block_ = sound_block<Model>();
   Vehicle vehicle_;
   pinnquad::VehicleState<double> body_{};
-  flight_stacks::NeuralController<Model> controller_;
+  pinnquad::autopilot::NeuralController<Model> controller_;
 };
 
 template <class Model>
@@ -125,9 +125,9 @@ void far_places(const SpeedLimits& limits) {
 /// Hovering, told everything at 1 s.
 struct Standing {
   const Block block = sound_block<DemoQuadModel>();
-  flight_stacks::Recorded<flight_stacks::NeuralController<DemoQuadModel>> controller;
+  pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<DemoQuadModel>> controller;
   TrajectoryPoint<float> wanted;
-  flight_stacks::LocalState local;
+  pinnquad::autopilot::LocalState local;
   std::uint64_t now_us = 1'000'000;
   pinnquad::Commands<float> commands{};
 
@@ -142,7 +142,7 @@ struct Standing {
     tick();
   }
   void tick() {
-    flight_stacks::StepReport report;
+    pinnquad::autopilot::StepReport report;
     REQUIRE(controller.step(now_us, commands, report) != Reaction::gives_up);
     now_us += 2000;
   }
@@ -201,10 +201,11 @@ TEST_CASE("the bias is estimated in flight alone, and never beyond its bound") {
   CHECK(standing.controller.bias().acceleration_m_s2() == before);
 }
 
-TEST_CASE("a bias at its bound along the thrust raises the alarm, one across it or short of it none; a quarter clears it") {
+TEST_CASE(
+    "a bias at its bound along the thrust raises the alarm, one across it or short of it none; a quarter clears it") {
   constexpr float step_s = 0.002f;
   const Vector3<float> upright(0, 0, 1);
-  flight_stacks::BiasAlarm alarm;
+  pinnquad::autopilot::BiasAlarm alarm;
   // how long it takes to change its mind, at most 5 s
   const auto changes_after_s = [&](const Vector3<float>& bias_m_s2, const Vector3<float>& down) {
     pinnquad::BiasEstimate<float> bias;
@@ -216,8 +217,8 @@ TEST_CASE("a bias at its bound along the thrust raises the alarm, one across it 
     }
     return 0.0;
   };
-  CHECK(changes_after_s({0, 0, 2.9f}, upright) == 0);   // carried, if barely
-  CHECK(changes_after_s({3, 0, 0}, upright) == 0);      // drag of more than a bias may be
+  CHECK(changes_after_s({0, 0, 2.9f}, upright) == 0);  // carried, if barely
+  CHECK(changes_after_s({3, 0, 0}, upright) == 0);     // drag of more than a bias may be
   CHECK(changes_after_s({0, -2.7f, 1.3f}, upright) == 0);
   pinnquad::BiasEstimate<float> at_bound;
   at_bound.resume({0, 0, 3}, {0, 0, 0});
@@ -247,19 +248,20 @@ TEST_CASE("a bias at its bound along the thrust raises the alarm, one across it 
 TEST_CASE("the alarm of a bias at its bound begins anew on the ground, in other hands and with another model") {
   Standing standing;
   const Block other = other_block<DemoQuadModel>();
-  const auto falls_until_alarm = [&] {  // as under a model that makes nothing of what is asked, and told to fall as it does
-    standing.local.velocity_m_s.setZero();
-    standing.wanted.position_m.setConstant(std::numeric_limits<float>::quiet_NaN());
-    for (int i = 0; i < 1500 && !standing.controller.bias_alarm(); ++i) {
-      if (i >= 600) standing.local.velocity_m_s[2] += 5 * 0.002f;  // all of its thrust is there
-      standing.wanted.velocity_m_s = standing.local.velocity_m_s;
-      REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
-      standing.step();
-    }
-    CHECK(standing.controller.bias_alarm());
-    CHECK(static_cast<pinnquad::Status>(standing.controller.record().cause) == pinnquad::Status::distrusted);
-    CHECK(standing.controller.record().trusted == 1);
-  };
+  const auto falls_until_alarm =
+      [&] {  // as under a model that makes nothing of what is asked, and told to fall as it does
+        standing.local.velocity_m_s.setZero();
+        standing.wanted.position_m.setConstant(std::numeric_limits<float>::quiet_NaN());
+        for (int i = 0; i < 1500 && !standing.controller.bias_alarm(); ++i) {
+          if (i >= 600) standing.local.velocity_m_s[2] += 5 * 0.002f;  // all of its thrust is there
+          standing.wanted.velocity_m_s = standing.local.velocity_m_s;
+          REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
+          standing.step();
+        }
+        CHECK(standing.controller.bias_alarm());
+        CHECK(static_cast<pinnquad::Status>(standing.controller.record().cause) == pinnquad::Status::distrusted);
+        CHECK(standing.controller.record().trusted == 1);
+      };
   standing.controller.situation({true, false});
   falls_until_alarm();
   SUBCASE("on the ground") { standing.controller.situation({true, true}); }
@@ -274,7 +276,7 @@ TEST_CASE("the alarm of a bias at its bound begins anew on the ground, in other 
 }
 
 TEST_CASE("at the motors' ends the bias stays") {
-  constexpr flight_stacks::OutputLimits little{0.02f, 0.8f};
+  constexpr pinnquad::autopilot::OutputLimits little{0.02f, 0.8f};
   Standing standing(ages, little);
   standing.controller.situation({true, false});
   standing.wanted.position_m = {0, 0, -1000};  // as much thrust as there is
@@ -325,7 +327,7 @@ TEST_CASE("on the ground the rotors idle until a set point asks to go up; then t
 TEST_CASE("an estimator that moves its estimate by 3 m and 0.4 rad moves nothing else") {
   Standing standing;
   standing.controller.situation({true, false});
-  const flight_stacks::EstimateJump by{{3, -1, 0.5f}, {0.2f, 0, -0.1f}, 0.4f};
+  const pinnquad::autopilot::EstimateJump by{{3, -1, 0.5f}, {0.2f, 0, -0.1f}, 0.4f};
   const auto turned = [&](float yaw_rad) { return pinnquad::from_euler<float>({0, 0, yaw_rad}); };
   const auto step = [&](float yaw_rad) {
     REQUIRE(standing.controller.body_rates(standing.now_us, {0, 0, 0}) == pinnquad::Status::ok);
@@ -356,8 +358,8 @@ TEST_CASE("the formula knows the effects that the vehicle is said to have") {
   using View = pinnquad::ModelView<DemoQuadModel>;
   const Dragging vehicle(pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>(), {}, {},
                          pinnquad::RotorDrag{0.02});
-  flight_stacks::NeuralController<DemoQuadModel> plain;
-  flight_stacks::NeuralController<DemoQuadModel, View, Dragging> dragging(vehicle);
+  pinnquad::autopilot::NeuralController<DemoQuadModel> plain;
+  pinnquad::autopilot::NeuralController<DemoQuadModel, View, Dragging> dragging(vehicle);
   const Block block = narrow_block<DemoQuadModel>();  // all answers are the formula's
   const auto commands = [&](auto& controller) {
     REQUIRE(controller.offer_model(block.data(), block.size()) == pinnquad::Status::ok);
@@ -369,7 +371,7 @@ TEST_CASE("the formula knows the effects that the vehicle is said to have") {
     REQUIRE(controller.local(now_us, {{0, 0, 0}, {5, 0, 0}}) == pinnquad::Status::ok);
     REQUIRE(controller.set_point(now_us, wanted) == pinnquad::Status::ok);
     pinnquad::Commands<float> u{};
-    flight_stacks::StepReport report;
+    pinnquad::autopilot::StepReport report;
     REQUIRE(controller.step(now_us, u, report) == Reaction::flies);
     REQUIRE(report.status == pinnquad::Status::fell_back);
     return u;

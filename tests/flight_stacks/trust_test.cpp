@@ -9,9 +9,9 @@
 
 namespace {
 
-using namespace flight_stacks::test;
-using flight_stacks::CoreRecord;
-using flight_stacks::Reaction;
+using namespace pinnquad::autopilot::test;
+using pinnquad::autopilot::CoreRecord;
+using pinnquad::autopilot::Reaction;
 
 /// What the innovation came to in a flight.
 struct Trusted {
@@ -96,8 +96,8 @@ struct NarrowTrust : StructuredQuadModelTrust {
 };
 using NarrowStack =
     Px4StackOf<StructuredQuadModel,
-               flight_stacks::NeuralController<StructuredQuadModel, pinnquad::ModelView<StructuredQuadModel>,
-                                               pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>, NarrowTrust>>;
+               pinnquad::autopilot::NeuralController<StructuredQuadModel, pinnquad::ModelView<StructuredQuadModel>,
+                                                     pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>, NarrowTrust>>;
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 #include "stacks.hpp"
 #include "structured_trust.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 using TrustingController =
     NeuralController<StructuredQuadModel, pinnquad::ModelView<StructuredQuadModel>,
@@ -20,4 +20,4 @@ template <class Stack>
 inline constexpr bool is_trusting =
     std::is_same_v<Stack, TrustingPx4Stack> || std::is_same_v<Stack, TrustingCrazyflieStack>;
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "fuzz/fuzzing.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "support/described_model.hpp"
 

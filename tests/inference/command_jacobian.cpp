@@ -10,9 +10,9 @@
 
 #include "../examples/models/demo_quadrotor.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
 #include "support/block_bytes.hpp"
 #include "support/jacobian_differences.hpp"
 #include "support/small_model_variants.hpp"

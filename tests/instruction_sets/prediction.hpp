@@ -3,12 +3,10 @@
 #pragma once
 
 #include "../support/small_model.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
-#include "pinnquad/inference/loaded_model.hpp"
-#include "pinnquad/inference/residual_outputs.hpp"
 #include "pinnquad/inference/self_test.hpp"
-#include "pinnquad/inference/wrench_outputs.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/batched_network.hpp"
 #include "pinnquad/nn/gelu.hpp"
@@ -18,6 +16,8 @@
 #include "pinnquad/nn/sine.hpp"
 #include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/outputs/wrench_outputs.hpp"
 
 namespace instruction_sets {
 

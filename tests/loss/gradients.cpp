@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "pinnquad/inference/residual_outputs.hpp"
-#include "pinnquad/inference/wrench_outputs.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/outputs/wrench_outputs.hpp"
 #include "pinnquad/schedule/constant.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "support/central_difference.hpp"

@@ -4,8 +4,8 @@
 
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/extra_columns.hpp"
-#include "pinnquad/inference/windowed.hpp"
+#include "pinnquad/features/extra_columns.hpp"
+#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace battery {

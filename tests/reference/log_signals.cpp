@@ -6,13 +6,13 @@
 #include <fstream>
 #include <limits>
 
+#include "logs/motor_lag.hpp"
+#include "logs/motor_order_check.hpp"
+#include "logs/rate_frame.hpp"
+#include "logs/resampling.hpp"
+#include "logs/row_checks.hpp"
+#include "logs/savitzky_golay_choice.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/identification/motor_lag.hpp"
-#include "pinnquad/identification/motor_order_check.hpp"
-#include "pinnquad/identification/rate_frame.hpp"
-#include "pinnquad/identification/resampling.hpp"
-#include "pinnquad/identification/row_checks.hpp"
-#include "pinnquad/identification/savitzky_golay_choice.hpp"
 #include "reference/reference_rows.hpp"
 
 using namespace pinnquad;  // NOLINT: a test of many of its names

@@ -15,7 +15,7 @@
 #include "models/v3/own_racer.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/data/sample_inputs.hpp"
-#include "pinnquad/inference/input_history.hpp"
+#include "pinnquad/features/input_history.hpp"
 #include "pinnquad/simulation/flights.hpp"
 
 namespace {

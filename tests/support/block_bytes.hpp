@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "pinnquad/inference/model_block.hpp"
+#include "pinnquad/exported/model_block.hpp"
 
 namespace pinnquad::test {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "pinnquad/core/status.hpp"
-#include "pinnquad/inference/features.hpp"
+#include "pinnquad/features/features.hpp"
 #include "support/random_states.hpp"
 
 namespace pinnquad::test {

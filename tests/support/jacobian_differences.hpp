@@ -8,15 +8,15 @@
 #include <cstddef>
 #include <vector>
 
-#include "pinnquad/inference/axis_aligned.hpp"
-#include "pinnquad/inference/composition.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "pinnquad/inference/path_bound.hpp"
-#include "pinnquad/inference/symmetrised.hpp"
+#include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/model/composition.hpp"
+#include "pinnquad/model/path_bound.hpp"
+#include "pinnquad/model/symmetrised.hpp"
 
 namespace pinnquad::test {
 
-/// An answer (inference/answer.hpp) in double.
+/// An answer (model/answer.hpp) in double.
 template <class Answer>
 struct InDouble {
   using type = typename Answer::template Rebind<double>;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Monotone models for tests (inference/axis_aligned.hpp): of physics features, alone, with a residual and through a
+// Monotone models for tests (model/axis_aligned.hpp): of physics features, alone, with a residual and through a
 // window; their numbers are random, their slopes above 0.
 #pragma once
 
 #include <random>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/certificate.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "support/random_network.hpp"
@@ -89,9 +89,7 @@ struct MonotoneModel {
                                  {input.mean.data(), input.spread.data(), output.mean.data(), output.spread.data(),
                                   envelope_lower.data(), envelope_upper.data()});
   }
-  Certificate certificate() const {
-    return certificate(airframe_value<Vehicle, Scalar>());
-  }
+  Certificate certificate() const { return certificate(airframe_value<Vehicle, Scalar>()); }
 };
 
 }  // namespace pinnquad::test

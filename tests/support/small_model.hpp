@@ -6,7 +6,7 @@
 #include <array>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/model.hpp"
+#include "pinnquad/exported/model.hpp"
 #include "pinnquad/nn/relu.hpp"
 
 namespace pinnquad::test {

@@ -83,7 +83,7 @@ print(f"""// SPDX-License-Identifier: MIT
 #include <array>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/model.hpp"
+#include "pinnquad/exported/model.hpp"
 #include "pinnquad/nn/relu.hpp"
 
 namespace pinnquad::test {{

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/identification/ridge.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
-#include "pinnquad/inference/windowed.hpp"
+#include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/weight_average.hpp"
 #include "support/random_network.hpp"
 #include "support/training_sets.hpp"

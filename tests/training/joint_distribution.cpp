@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 
 using namespace pinnquad;
 

@@ -9,10 +9,10 @@
 #include <random>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/certificate.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
-#include "pinnquad/inference/rigid_body_inverse.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/outputs/rigid_body_inverse.hpp"
 
 using namespace pinnquad;
 

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/inference/certificate.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
 #include "pinnquad/training/tangent_rows.hpp"

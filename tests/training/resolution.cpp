@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "pinnquad/inference/features.hpp"
-#include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/features/features.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
 
 using pinnquad::ColumnStatistics;
 using pinnquad::resolution_of;

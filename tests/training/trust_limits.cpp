@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/inference/innovation.hpp"
-#include "pinnquad/inference/motion_parts.hpp"
 
 using namespace pinnquad;
 

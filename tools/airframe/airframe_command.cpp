@@ -14,9 +14,9 @@
 #include "airframe/toml_writer.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/file_roles.hpp"
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
-#include "pinnquad/inference/model.hpp"
+#include "pinnquad/exported/model.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "pinnquad/data/file_error.hpp"
-#include "pinnquad/data/printable.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/io/printable.hpp"
 
 namespace programs {
 

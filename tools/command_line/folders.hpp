@@ -6,7 +6,7 @@
 #include <string>
 #include <system_error>
 
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/nesting.hpp"
-#include "pinnquad/data/text_file.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 

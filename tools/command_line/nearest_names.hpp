@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "pinnquad/data/printable.hpp"
+#include "pinnquad/io/printable.hpp"
 
 namespace programs {
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <string>
 
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

@@ -14,9 +14,9 @@
 #include <system_error>
 
 #include "command_line/nesting.hpp"
-#include "pinnquad/data/decimal.hpp"
-#include "pinnquad/data/file_error.hpp"
-#include "pinnquad/data/text_file.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "command_line/folders.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

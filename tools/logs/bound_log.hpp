@@ -17,7 +17,7 @@
 #include "command_line/nearest_names.hpp"
 #include "logs/motor_commands.hpp"
 #include "logs/signal.hpp"
-#include "pinnquad/data/decimal.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace programs {
 

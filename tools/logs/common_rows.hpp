@@ -13,9 +13,9 @@
 
 #include "logs/bound_log.hpp"
 #include "logs/imported_dataset.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "logs/resampling.hpp"
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/identification/resampling.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

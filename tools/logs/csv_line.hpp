@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A line of a CSV file that holds text beside numbers; tables of numbers alone: pinnquad/data/csv_table.hpp.
+// A line of a CSV file that holds text beside numbers; tables of numbers alone: pinnquad/io/csv_table.hpp.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "pinnquad/data/csv_cells.hpp"
+#include "pinnquad/io/csv_cells.hpp"
 
 namespace programs {
 

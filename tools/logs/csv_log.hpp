@@ -17,10 +17,10 @@
 
 #include "logs/flight_log.hpp"
 #include "logs/log_selection.hpp"
-#include "pinnquad/data/csv_cells.hpp"
-#include "pinnquad/data/decimal.hpp"
-#include "pinnquad/data/file_error.hpp"
-#include "pinnquad/data/text_file.hpp"
+#include "pinnquad/io/csv_cells.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 namespace csv_log {

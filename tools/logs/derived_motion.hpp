@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "logs/common_rows.hpp"
+#include "logs/savitzky_golay_choice.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
-#include "pinnquad/identification/savitzky_golay_choice.hpp"
 
 namespace programs {
 

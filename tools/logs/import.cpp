@@ -11,22 +11,22 @@
 #include <utility>
 #include <vector>
 
+#include "logs/attitude_convention.hpp"
 #include "logs/bound_log.hpp"
+#include "logs/clock_checks.hpp"
+#include "logs/command_lag.hpp"
 #include "logs/common_rows.hpp"
 #include "logs/derived_motion.hpp"
+#include "logs/frozen_signal.hpp"
 #include "logs/log_parts.hpp"
 #include "logs/mapping_choice.hpp"
+#include "logs/motor_order_check.hpp"
+#include "logs/rate_frame.hpp"
 #include "logs/read_log.hpp"
+#include "logs/row_checks.hpp"
 #include "logs/row_rules.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/identification/attitude_convention.hpp"
-#include "pinnquad/identification/clock_checks.hpp"
-#include "pinnquad/identification/command_lag.hpp"
-#include "pinnquad/identification/frozen_signal.hpp"
-#include "pinnquad/identification/motor_order_check.hpp"
-#include "pinnquad/identification/rate_frame.hpp"
-#include "pinnquad/identification/row_checks.hpp"
 
 namespace programs {
 namespace {

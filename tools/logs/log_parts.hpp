@@ -18,7 +18,7 @@
 #include "logs/mapping.hpp"
 #include "logs/name_pattern.hpp"
 #include "logs/ulog2csv_folder.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

@@ -88,7 +88,7 @@ struct Mapping {
   bool ground_from_log = false;  ///< that of the rows before the flight
   double least_height_m = 0;     ///< rows lower than this above ground are on it; 0: no such test
   bool ground_by_contact =
-      false;  ///< what bears the vehicle is told by forces and commands (identification/row_checks.hpp)
+      false;  ///< what bears the vehicle is told by forces and commands (tools/logs/row_checks.hpp)
 
   double lowest_command = 0, highest_command = 1;  ///< where a motor is at its limit
   double idle_below = 0.05;                        ///< all four commands lower than this: the motors idle

@@ -17,8 +17,8 @@
 #include "logs/ulog.hpp"
 #include "logs/ulog2csv_folder.hpp"
 #include "logs/usd_log.hpp"
-#include "pinnquad/data/file_error.hpp"
-#include "pinnquad/data/text_file.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 

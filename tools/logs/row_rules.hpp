@@ -10,7 +10,7 @@
 
 #include "logs/derived_motion.hpp"
 #include "logs/mapping.hpp"
-#include "pinnquad/identification/row_checks.hpp"
+#include "logs/row_checks.hpp"
 
 namespace programs {
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "logs/attitude_convention.hpp"
+#include "logs/common_clock.hpp"
 #include "logs/flight_log.hpp"
 #include "logs/mapping.hpp"
 #include "pinnquad/core/rotation.hpp"
-#include "pinnquad/data/csv_table.hpp"
-#include "pinnquad/identification/attitude_convention.hpp"
-#include "pinnquad/identification/common_clock.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace programs {
 

@@ -18,8 +18,8 @@
 #include "logs/ulog_format.hpp"
 #include "logs/ulog_messages.hpp"
 #include "logs/ulog_types.hpp"
-#include "pinnquad/data/decimal.hpp"
-#include "pinnquad/data/text_file.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 namespace ulog {

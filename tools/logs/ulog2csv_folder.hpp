@@ -16,8 +16,8 @@
 #include "logs/csv_log.hpp"
 #include "logs/flight_log.hpp"
 #include "logs/log_selection.hpp"
-#include "pinnquad/data/csv_table.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/csv_table.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 namespace ulog2csv {

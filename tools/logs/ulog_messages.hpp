@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "logs/ulog_types.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs::ulog {
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "logs/flight_log.hpp"
-#include "pinnquad/data/file_error.hpp"
-#include "pinnquad/data/text_file.hpp"
-#include "pinnquad/inference/checksum.hpp"
+#include "pinnquad/exported/checksum.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a block whose shape is known says twice, compared as ModelView::open() does (inference/model_agreement.hpp), and its
+// What a block whose shape is known says twice, compared as ModelView::open() does (exported/model_agreement.hpp), and its
 // golden vectors replayed as the self test does.
 #pragma once
 
@@ -12,7 +12,7 @@
 #include "model/block.hpp"
 #include "model/identity.hpp"
 #include "model/structure_certificate.hpp"
-#include "pinnquad/inference/model_agreement.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
 
 namespace programs {
 namespace detail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A model block (inference/model_block.hpp) read on the ground, whatever its shape: its numbers, and which shape it is.
+// A model block (exported/model_block.hpp) read on the ground, whatever its shape: its numbers, and which shape it is.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/data/decimal.hpp"
-#include "pinnquad/data/text_file.hpp"
-#include "pinnquad/inference/model_agreement.hpp"
-#include "pinnquad/inference/model_block.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 
@@ -75,7 +75,7 @@ class BlockBytes {
   std::string bytes_;
 };
 
-/// The records between header and scalars, each as open() wants it (inference/block_records.hpp). Gives the bytes that they
+/// The records between header and scalars, each as open() wants it (exported/block_records.hpp). Gives the bytes that they
 /// take.
 inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, Block& block) {
   using pinnquad::BlockRecord;
@@ -168,7 +168,7 @@ inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, 
   return Layout::counts + whole;
 }
 
-/// Refuses what no reader takes, whatever the shape (inference/model_agreement.hpp).
+/// Refuses what no reader takes, whatever the shape (exported/model_agreement.hpp).
 inline void require_sound(const BlockBytes& bytes, const Block& block) {
   using namespace pinnquad::detail;
   const auto inputs = static_cast<std::size_t>(block.inputs), outputs = static_cast<std::size_t>(block.outputs);

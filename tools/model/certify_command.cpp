@@ -26,7 +26,7 @@
 #include "model/response.hpp"
 #include "model/searched_model.hpp"
 #include "model/structure_certificate.hpp"
-#include "pinnquad/inference/hover_slopes.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
 #include "training/certificate_words.hpp"
 
 namespace {

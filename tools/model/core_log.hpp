@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a flight stack's core logged (examples/flight_stacks/core_record.hpp), from a log's columns: numbers checked against what
+// What a flight stack's core logged (pinnquad/control/autopilot/core_record.hpp), from a log's columns: numbers checked against what
 // each may be.
 #pragma once
 
@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "flight_stacks/core_record.hpp"
 #include "logs/flight_log.hpp"
 #include "model/replayed_row.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/control/autopilot/core_record.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

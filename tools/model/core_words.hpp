@@ -9,14 +9,14 @@
 #include <string>
 
 #include "command_line/listed.hpp"
-#include "flight_stacks/core_record.hpp"
-#include "flight_stacks/neural_controller.hpp"
 #include "model/replayed_row.hpp"
+#include "pinnquad/control/autopilot/core_record.hpp"
+#include "pinnquad/control/autopilot/neural_controller.hpp"
 
 namespace programs {
 
-inline flight_stacks::AgeLimits age_limits(const flight_stacks::CoreSettings& s) {
-  flight_stacks::AgeLimits ages;
+inline pinnquad::autopilot::AgeLimits age_limits(const pinnquad::autopilot::CoreSettings& s) {
+  pinnquad::autopilot::AgeLimits ages;
   ages.body_rates_us = s.body_rates_us;
   ages.attitude_us = s.attitude_us;
   ages.local_us = s.local_us;
@@ -26,27 +26,27 @@ inline flight_stacks::AgeLimits age_limits(const flight_stacks::CoreSettings& s)
   return ages;
 }
 
-inline flight_stacks::OutputLimits output_limits(const flight_stacks::CoreSettings& s) {
+inline pinnquad::autopilot::OutputLimits output_limits(const pinnquad::autopilot::CoreSettings& s) {
   return {s.lowest_command, s.highest_command};
 }
 
-inline pinnquad::FlightGains<float> flight_gains(const flight_stacks::CoreSettings& s) {
+inline pinnquad::FlightGains<float> flight_gains(const pinnquad::autopilot::CoreSettings& s) {
   return {s.position_1_s, s.velocity_1_s, s.tilt_1_s, s.yaw_1_s, s.roll_pitch_rate_1_s, s.yaw_rate_1_s};
 }
 
-inline flight_stacks::SpeedLimits speed_limits(const flight_stacks::CoreSettings& s) {
+inline pinnquad::autopilot::SpeedLimits speed_limits(const pinnquad::autopilot::CoreSettings& s) {
   return {s.horizontal_speed_m_s, s.climb_m_s, s.descent_m_s, s.take_off_s};
 }
 
-inline pinnquad::BiasSettings<float> bias_settings(const flight_stacks::CoreSettings& s) {
+inline pinnquad::BiasSettings<float> bias_settings(const pinnquad::autopilot::CoreSettings& s) {
   return {s.bias_bandwidth_1_s, s.most_bias_m_s2};
 }
 
 /// The numbers that a log holds may be those of a newer core.
 inline std::string reaction_name(std::uint8_t number) {
-  const auto last = static_cast<std::uint8_t>(flight_stacks::Reaction::gives_up);
+  const auto last = static_cast<std::uint8_t>(pinnquad::autopilot::Reaction::gives_up);
   return number > last ? "reaction " + std::to_string(number)
-                       : flight_stacks::to_string(static_cast<flight_stacks::Reaction>(number));
+                       : pinnquad::autopilot::to_string(static_cast<pinnquad::autopilot::Reaction>(number));
 }
 inline std::string status_name(std::uint8_t number) {
   return number >= pinnquad::status_count ? "status " + std::to_string(number)
@@ -70,7 +70,7 @@ template <std::size_t Count>
 std::string bad_numbers(const char* name, const float (&values)[Count]) {
   for (std::size_t i = 0; i < Count; ++i) {
     const auto value = static_cast<double>(values[i]);
-    if (std::isfinite(value) && std::fabs(value) <= static_cast<double>(flight_stacks::most_plausible)) continue;
+    if (std::isfinite(value) && std::fabs(value) <= static_cast<double>(pinnquad::autopilot::most_plausible)) continue;
     const std::string which = std::string(name) + "[" + std::to_string(i) + "]";
     return which + (std::isnan(value) ? " is NaN" : in_words(" = %.3g", value));
   }
@@ -80,7 +80,7 @@ std::string bad_numbers(const char* name, const float (&values)[Count]) {
 /// Follows the inputs of a controller, so that it can say why one is stale.
 class CoreWords {
  public:
-  explicit CoreWords(const flight_stacks::CoreSettings& settings)
+  explicit CoreWords(const pinnquad::autopilot::CoreSettings& settings)
       : settings_(settings),
         limits_us_{settings.body_rates_us, settings.attitude_us, settings.local_us, settings.set_point_us} {}
 
@@ -100,13 +100,13 @@ class CoreWords {
   bool refused(int input) const { return inputs_[static_cast<std::size_t>(input)].refused; }
 
   /// "attitude is 21 ms old (limit 20 ms); body rates are refused: body_rates_rad_s[0] is NaN"; empty if nothing is stale.
-  std::string stale(const flight_stacks::StepReport& report, std::uint64_t now_us) const {
+  std::string stale(const pinnquad::autopilot::StepReport& report, std::uint64_t now_us) const {
     std::string words;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       if ((report.stale_inputs() >> i & 1u) == 0) continue;
       words += (words.empty() ? "" : "; ") + std::string(core_input_names[i]) + ": " + stale(i, now_us);
     }
-    if (report.reaction != flight_stacks::Reaction::gives_up) return words;
+    if (report.reaction != pinnquad::autopilot::Reaction::gives_up) return words;
     const bool keeps = report.body_rates_stale || report.attitude_stale;
     if (keeps) words += in_words("; commands are kept for %.0f ms at most", 1e-3 * settings_.keep_us);
     if (!keeps && report.local_stale) words += in_words("; it levels for %.0f ms at most", 1e-3 * settings_.level_us);
@@ -132,7 +132,7 @@ class CoreWords {
     return in.refused ? words + "; the last sample was refused: " + in.why : words;
   }
 
-  flight_stacks::CoreSettings settings_;
+  pinnquad::autopilot::CoreSettings settings_;
   std::array<Input, 4> inputs_{};
   std::array<std::uint32_t, 4> limits_us_;
 };

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The flight stacks' controller (examples/flight_stacks/neural_controller.hpp) of a model that is known at run time alone, its
+// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) of a model that is known at run time alone, its
 // guard, and an airframe as it has one.
 #pragma once
 
 #include "airframe/names.hpp"
-#include "flight_stacks/neural_controller.hpp"
 #include "model/run_time_view.hpp"
+#include "pinnquad/control/autopilot/neural_controller.hpp"
 
 namespace programs {
 
 /// The guard that flies.
-using FlightStackController = flight_stacks::NeuralController<RunTimeShape<pinnquad::PaperFeatures, float>,
-                                                              RunTimeView<pinnquad::PaperFeatures, float>>;
+using FlightStackController = pinnquad::autopilot::NeuralController<RunTimeShape<pinnquad::PaperFeatures, float>,
+                                                                    RunTimeView<pinnquad::PaperFeatures, float>>;
 using FallbackFormula = FlightStackController::Formula;
 using FlightStackGuard = pinnquad::Extend<FlightStackController::NetworkGuard, pinnquad::Fallback<FallbackFormula>>;
 

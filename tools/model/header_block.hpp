@@ -12,8 +12,8 @@
 
 #include "airframe/choice.hpp"
 #include "model/header_file.hpp"
-#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/deploy/block_writer.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace programs {
 

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "pinnquad/data/text_file.hpp"
-#include "pinnquad/inference/contents_hash.hpp"
+#include "pinnquad/exported/contents_hash.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 
@@ -122,7 +122,7 @@ class HeaderFile {
   }
 
   /// Throws InputError where the header says a hash over all of it that is not that of its constants and this airframe
-  /// (inference/contents_hash.hpp).
+  /// (exported/contents_hash.hpp).
   void require_contents(const pinnquad::Airframe<double>& airframe) const {
     if (!has("contents_hash")) return;
     std::uint64_t sum = 0;

@@ -12,10 +12,10 @@
 #include "model/block.hpp"
 #include "model/run_time_answer.hpp"
 #include "pinnquad/deploy/record_writer.hpp"
-#include "pinnquad/inference/features.hpp"
-#include "pinnquad/inference/inverse_features.hpp"
-#include "pinnquad/inference/signed_sum_outputs.hpp"
-#include "pinnquad/inference/symmetrised.hpp"
+#include "pinnquad/features/features.hpp"
+#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/model/symmetrised.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {

@@ -3,10 +3,10 @@
 // they have; and those of monotone models on a formula.
 #pragma once
 
-#include "pinnquad/inference/output_schema.hpp"
-#include "pinnquad/inference/residual_outputs.hpp"
-#include "pinnquad/inference/rigid_body_inverse.hpp"
-#include "pinnquad/inference/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/outputs/rigid_body_inverse.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
 #include "training/log_features.hpp"
 
 namespace programs {

@@ -9,7 +9,7 @@
 #include "model/header_airframe.hpp"
 #include "model/header_block.hpp"
 #include "model/identity.hpp"
-#include "pinnquad/data/text_file.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace programs {
 

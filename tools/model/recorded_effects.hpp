@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The effects of the formula's vehicle, as a record names them (flight_stacks/flown_effects.hpp): which they are is known at run
+// The effects of the formula's vehicle, as a record names them (pinnquad/control/autopilot/flown_effects.hpp): which they are is known at run
 // time alone.
 #pragma once
 
@@ -7,22 +7,22 @@
 #include <stdexcept>
 
 #include "command_line/listed.hpp"
-#include "flight_stacks/flown_effects.hpp"
 #include "model/replayed_row.hpp"
+#include "pinnquad/control/autopilot/flown_effects.hpp"
 
 namespace programs {
 
 /// The sum of the effects in their order, as a vehicle of their types has it.
 struct RecordedEffects {
   static constexpr pinnquad::VariesWith varies_with = pinnquad::VariesWith::motion;
-  flight_stacks::FlownEffects flown{};
+  pinnquad::autopilot::FlownEffects flown{};
 
   template <class Scalar>
   pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
                                   const pinnquad::Airframe<Scalar>& airframe) const noexcept {
     pinnquad::Wrench<Scalar> sum;
     for (std::uint32_t code = flown.code; code != 0; code >>= 4) {
-      if ((code & 15u) == flight_stacks::FlownEffects::quadratic_drag) {
+      if ((code & 15u) == pinnquad::autopilot::FlownEffects::quadratic_drag) {
         sum = sum + pinnquad::QuadraticDrag{}.wrench(condition, airframe);
       } else {
         const pinnquad::LinearDamping damping{static_cast<double>(flown.drag_N_s_m),
@@ -35,8 +35,8 @@ struct RecordedEffects {
 };
 
 /// Throws std::invalid_argument, one line, for an effect that is not known here.
-inline RecordedEffects recorded_effects(const flight_stacks::CoreSettings& settings) {
-  using flight_stacks::FlownEffects;
+inline RecordedEffects recorded_effects(const pinnquad::autopilot::CoreSettings& settings) {
+  using pinnquad::autopilot::FlownEffects;
   for (std::uint32_t code = settings.effects; code != 0; code >>= 4) {
     const std::uint32_t effect = code & 15u;
     if (effect == FlownEffects::quadratic_drag || effect == FlownEffects::linear_damping) continue;

@@ -69,12 +69,12 @@ ReplayModel read_model(const std::string& path, const ReplayOptions& options) {
 }
 
 /// NAME=VALUE of --set. Throws std::invalid_argument: no such setting, no number.
-void apply_setting(const std::string& text, flight_stacks::CoreSettings& settings) {
+void apply_setting(const std::string& text, pinnquad::autopilot::CoreSettings& settings) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
   bool found = false;
   std::string known;
-  flight_stacks::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& number) {
+  pinnquad::autopilot::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& number) {
     if (std::string(of) == "timestamp") return;
     programs::add_to_list(known, of);
     if (name != of) return;
@@ -133,7 +133,7 @@ class FlownModels {
   }
 
   /// Throws std::invalid_argument for one that is not among several.
-  std::optional<std::size_t> of(const flight_stacks::CoreRecord& tick, Replayed& replayed) {
+  std::optional<std::size_t> of(const pinnquad::autopilot::CoreRecord& tick, Replayed& replayed) {
     if (tick.model == 0) return {};
     const auto found = std::find(checksums_.begin(), checksums_.end(), tick.model);
     if (found != checksums_.end()) return static_cast<std::size_t>(found - checksums_.begin());
@@ -154,7 +154,7 @@ class FlownModels {
 
 /// The limits that the core had. Throws InputError and std::invalid_argument: it had some and none are given.
 void take_trust(const ReplayOptions& options, programs::CoreReplayOptions& core, Replayed& replayed) {
-  const flight_stacks::CoreSettings& logged = core.settings;
+  const pinnquad::autopilot::CoreSettings& logged = core.settings;
   if (options.trust.empty()) {
     if (!(logged.distance_limit > 0)) return;
     throw std::invalid_argument(
@@ -191,7 +191,7 @@ Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, con
   FlownModels flown(models);
   programs::ProgressLine progress("replaying " + std::to_string(input.ticks.size()) + " ticks");
   replayed.rows.reserve(input.ticks.size());
-  for (const flight_stacks::CoreRecord& tick : input.ticks) {
+  for (const pinnquad::autopilot::CoreRecord& tick : input.ticks) {
     replayed.rows.push_back(core->run(tick, flown.of(tick, replayed), replayed));
     progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(input.ticks.size()));
   }
@@ -270,7 +270,7 @@ programs::Command programs::replay_command(CLI::App& program) {
   add_model_hints(*line, options->hints);
   line->add_option("--guard", options->guard,
                    "what stands between model and motors where the log is a flight: flight_stack, as "
-                   "examples/flight_stacks, which falls back to the formula; training, which refuses")
+                   "the autopilot, which falls back to the formula; training, which refuses")
       ->capture_default_str()
       ->check(CLI::IsMember({"flight_stack", "training"}));
   line->add_option("--set", options->settings,

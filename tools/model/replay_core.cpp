@@ -3,7 +3,7 @@
 // alone.
 #include "model/replay_core.hpp"
 
-#include "pinnquad/inference/inverse_features.hpp"
+#include "pinnquad/features/inverse_features.hpp"
 
 namespace programs {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The flight stacks' controller (examples/flight_stacks/neural_controller.hpp) over what it logged: each tick's inputs go in as
+// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) over what it logged: each tick's inputs go in as
 // they came, what it answers is compared with what was logged.
 #pragma once
 
@@ -34,7 +34,7 @@ struct ReplayModel {
 };
 
 struct CoreReplayOptions {
-  flight_stacks::CoreSettings settings;
+  pinnquad::autopilot::CoreSettings settings;
   std::optional<TrustLimits> trust;
   double tolerance = 1e-5;  ///< of a command
 };
@@ -48,7 +48,7 @@ class CoreReplay {
   virtual ~CoreReplay() = default;
 
   /// One tick. `model`: which of the models flew, or none.
-  virtual ReplayedRow run(const flight_stacks::CoreRecord& record, std::optional<std::size_t> model,
+  virtual ReplayedRow run(const pinnquad::autopilot::CoreRecord& record, std::optional<std::size_t> model,
                           Replayed& replayed) = 0;
 };
 
@@ -82,8 +82,8 @@ class CoreReplayOf : public CoreReplay {
   using View = RunTimeView<FeatureSet, float>;
   using Vehicle = pinnquad::Quadrotor<float, RecordedEffects>;
   using Trust = RunTimeTrust<FeatureSet>;
-  using Controller = flight_stacks::NeuralController<Shape, View, Vehicle, Trust>;
-  using Record = flight_stacks::CoreRecord;
+  using Controller = pinnquad::autopilot::NeuralController<Shape, View, Vehicle, Trust>;
+  using Record = pinnquad::autopilot::CoreRecord;
   using Features = typename Shape::Features;
 
  public:
@@ -113,7 +113,7 @@ class CoreReplayOf : public CoreReplay {
     row.row = record.tick;
     row.time_s = static_cast<double>(record.timestamp) / 1e6;
     take_inputs(record, record.came);
-    flight_stacks::StepReport report;
+    pinnquad::autopilot::StepReport report;
     pinnquad::Commands<float> commands{};
     controller_->situation({record.drives_motors != 0, record.landed != 0});
     if (record.asked != 0) {
@@ -157,8 +157,8 @@ class CoreReplayOf : public CoreReplay {
     restart();
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
-    window_known_us_ = record.timestamp + 2 * flight_stacks::FlownMotion::window_us;
-    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * flight_stacks::BiasAlarm::clear_s);
+    window_known_us_ = record.timestamp + 2 * pinnquad::autopilot::FlownMotion::window_us;
+    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * pinnquad::autopilot::BiasAlarm::clear_s);
     controller_->resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 15));
     for (int i = 0; i < 4; ++i) {  // what was refused hides the good one before it
@@ -169,8 +169,8 @@ class CoreReplayOf : public CoreReplay {
   }
 
   void take_jump(const Record& record) {
-    const flight_stacks::EstimateJump by{vector(record.jump_position_m), vector(record.jump_velocity_m_s),
-                                         record.jump_yaw_rad};
+    const pinnquad::autopilot::EstimateJump by{vector(record.jump_position_m), vector(record.jump_velocity_m_s),
+                                               record.jump_yaw_rad};
     if (!by.position_m.isZero(0) || !by.velocity_m_s.isZero(0) || std::fabs(by.yaw_rad) > 0) controller_->jump(by);
   }
 
@@ -187,11 +187,11 @@ class CoreReplayOf : public CoreReplay {
       words_.came(input, time_us, status, what);
       if (status == Status::ok) unknown_inputs_ = static_cast<std::uint8_t>(unknown_inputs_ & ~(1 << input));
     };
-    if ((which & flight_stacks::body_rates_bit) != 0) {
+    if ((which & pinnquad::autopilot::body_rates_bit) != 0) {
       note(0, r.body_rates_us, controller_->body_rates(r.body_rates_us, vector(r.body_rates_rad_s)),
            bad_numbers("body_rates_rad_s", r.body_rates_rad_s));
     }
-    if ((which & flight_stacks::attitude_bit) != 0) {
+    if ((which & pinnquad::autopilot::attitude_bit) != 0) {
       const pinnquad::Quaternion<float> q{r.attitude[0], r.attitude[1], r.attitude[2], r.attitude[3]};
       const Status status = controller_->attitude(r.attitude_us, q);
       note(1, r.attitude_us, status,
@@ -199,12 +199,12 @@ class CoreReplayOf : public CoreReplay {
                ? in_words("its norm is %.6g", std::sqrt(static_cast<double>(pinnquad::squared_norm(q))))
                : bad_numbers("attitude", r.attitude));
     }
-    if ((which & flight_stacks::local_bit) != 0) {
+    if ((which & pinnquad::autopilot::local_bit) != 0) {
       const std::string position = bad_numbers("position_m", r.position_m);
       note(2, r.local_us, controller_->local(r.local_us, {vector(r.position_m), vector(r.velocity_m_s)}),
            position.empty() ? bad_numbers("velocity_m_s", r.velocity_m_s) : position);
     }
-    if ((which & flight_stacks::set_point_bit) != 0) {
+    if ((which & pinnquad::autopilot::set_point_bit) != 0) {
       pinnquad::TrajectoryPoint<float> wanted;
       wanted.position_m = vector(r.wanted_position_m);
       wanted.velocity_m_s = vector(r.wanted_velocity_m_s);
@@ -216,12 +216,12 @@ class CoreReplayOf : public CoreReplay {
     }
   }
 
-  void describe(const Record& record, const flight_stacks::StepReport& report,
+  void describe(const Record& record, const pinnquad::autopilot::StepReport& report,
                 const pinnquad::Commands<float>& commands, std::optional<std::size_t> model, ReplayedRow& row) {
-    using flight_stacks::Reaction;
+    using pinnquad::autopilot::Reaction;
     row.status = report.status;
     row.cause = report.cause;
-    row.reaction = flight_stacks::to_string(report.reaction);
+    row.reaction = pinnquad::autopilot::to_string(report.reaction);
     row.excess = static_cast<double>(report.worst_excess);
     if (report.worst_feature >= 0) row.feature = Features::names[static_cast<std::size_t>(report.worst_feature)];
     if (report.reaction != Reaction::gives_up) {
@@ -260,7 +260,7 @@ class CoreReplayOf : public CoreReplay {
     }
   }
 
-  std::string distrust_in_words(const flight_stacks::StepReport& report) const {
+  std::string distrust_in_words(const pinnquad::autopilot::StepReport& report) const {
     if (report.cause == pinnquad::Status::distrusted && controller_->trusted()) {
       return in_words("the bias stood at its bound, %.4g m/s^2: the model does not make the acceleration asked for",
                       static_cast<double>(options_.settings.most_bias_m_s2));
@@ -281,14 +281,14 @@ class CoreReplayOf : public CoreReplay {
     std::array<float, static_cast<std::size_t>(Features::size)> excess{};
     int worst_feature;
     bool features_clamped = false;
-    explicit Excess(const flight_stacks::StepReport& report) : worst_feature(report.worst_feature) {
+    explicit Excess(const pinnquad::autopilot::StepReport& report) : worst_feature(report.worst_feature) {
       if (worst_feature >= 0) excess[static_cast<std::size_t>(worst_feature)] = report.worst_excess;
     }
   };
 
   /// False behind a gap, as long as what the core answered may depend on what was not logged.
-  bool is_known(const Record& record, const flight_stacks::StepReport& report) const {
-    using flight_stacks::Reaction;
+  bool is_known(const Record& record, const pinnquad::autopilot::StepReport& report) const {
+    using pinnquad::autopilot::Reaction;
     if (record.asked == 0) return true;
     if (unknown_inputs_ != 0) return false;
     const auto logged = static_cast<Reaction>(record.reaction);
@@ -300,12 +300,14 @@ class CoreReplayOf : public CoreReplay {
     return !answer_unknown_ || (logged <= Reaction::levels && report.reaction <= Reaction::levels);
   }
 
-  void compare(const Record& record, const flight_stacks::StepReport& report, ReplayedRow& row, Replayed& replayed) {
+  void compare(const Record& record, const pinnquad::autopilot::StepReport& report, ReplayedRow& row,
+               Replayed& replayed) {
     using pinnquad::Status;
     const auto say = [&row](const std::string& text) { row.differs += (row.differs.empty() ? "" : "; ") + text; };
     const std::string reaction = reaction_name(record.reaction), status = status_name(record.status),
                       cause = status_name(record.cause);
-    if (reaction != flight_stacks::to_string(report.reaction)) say("it " + row.reaction + ", logged: " + reaction);
+    if (reaction != pinnquad::autopilot::to_string(report.reaction))
+      say("it " + row.reaction + ", logged: " + reaction);
     if (status != pinnquad::to_string(report.status)) {
       say(std::string("status ") + pinnquad::to_string(report.status) + ", logged " + status);
     }
@@ -358,12 +360,12 @@ class CoreReplayOf : public CoreReplay {
   }
 
   /// In the envelope here, just outside it there, or the other way round: rounding of another machine.
-  static bool at_the_edge(const Record& record, const flight_stacks::StepReport& report) {
+  static bool at_the_edge(const Record& record, const pinnquad::autopilot::StepReport& report) {
     using pinnquad::Status;
     constexpr float rounding = 1e-5f;
     const auto logged = static_cast<Status>(record.cause);
     const bool one_side = (report.cause == Status::outside_envelope) != (logged == Status::outside_envelope);
-    const bool answered = report.reaction <= flight_stacks::Reaction::levels &&
+    const bool answered = report.reaction <= pinnquad::autopilot::Reaction::levels &&
                           record.reaction == static_cast<std::uint8_t>(report.reaction);
     return one_side && answered && record.stale_inputs == report.stale_inputs() &&
            (report.cause == Status::outside_envelope ? report.worst_excess : record.envelope_excess) <= rounding;

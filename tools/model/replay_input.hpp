@@ -24,8 +24,8 @@ namespace programs {
 /// Either flights or ticks of a core.
 struct ReplayInput {
   std::vector<pinnquad::Flight> flights;
-  std::vector<flight_stacks::CoreRecord> ticks;
-  flight_stacks::CoreSettings settings;  ///< of the core; as made where the log does not say
+  std::vector<pinnquad::autopilot::CoreRecord> ticks;
+  pinnquad::autopilot::CoreSettings settings;  ///< of the core; as made where the log does not say
   bool has_settings = false;
   std::vector<std::string> notes;
 
@@ -91,26 +91,26 @@ inline ReplayInput read_dataset(const std::string& path) {
 
 /// The settings that held when the core began.
 inline void take_settings(const LogTopic& topic, ReplayInput& input) {
-  const std::vector<flight_stacks::CoreSettings> all = core_records<flight_stacks::CoreSettings>(topic);
+  const std::vector<pinnquad::autopilot::CoreSettings> all = core_records<pinnquad::autopilot::CoreSettings>(topic);
   if (all.empty()) return;
   input.settings = all.front();
-  for (const flight_stacks::CoreSettings& settings : all) {
+  for (const pinnquad::autopilot::CoreSettings& settings : all) {
     if (settings.timestamp <= input.ticks.front().timestamp) input.settings = settings;
   }
   input.has_settings = true;
 }
 
 inline ReplayInput read_core_topics(const std::string& path, const FlightLog& log) {
-  const LogTopic* ticks = log.topic(flight_stacks::CoreRecord::topic);
+  const LogTopic* ticks = log.topic(pinnquad::autopilot::CoreRecord::topic);
   if (ticks == nullptr || ticks->size() == 0) {
     throw pinnquad::InputError(path, 0, 0,
-                               std::string("a topic ") + flight_stacks::CoreRecord::topic +
+                               std::string("a topic ") + pinnquad::autopilot::CoreRecord::topic +
                                    ", which a core logs, or a " + "dataset (pinnquad import makes one of a log)",
                                "neither");
   }
   ReplayInput input;
-  input.ticks = core_records<flight_stacks::CoreRecord>(*ticks);
-  if (const LogTopic* settings = log.topic(flight_stacks::CoreSettings::topic)) take_settings(*settings, input);
+  input.ticks = core_records<pinnquad::autopilot::CoreRecord>(*ticks);
+  if (const LogTopic* settings = log.topic(pinnquad::autopilot::CoreSettings::topic)) take_settings(*settings, input);
   for (const std::string& warning : log.warnings) input.notes.push_back(warning);
   if (!log.dropouts.empty()) {
     input.notes.push_back(in_words("the logger dropped out %zu times", log.dropouts.size()));
@@ -128,16 +128,16 @@ inline ReplayInput read_core_table(const std::string& path) {
   }();
   FlightLog log;
   log.topics.push_back(read_csv_topic(path, selection));
-  log.topics.back().name = flight_stacks::CoreRecord::topic;
+  log.topics.back().name = pinnquad::autopilot::CoreRecord::topic;
   std::string beside = path;
-  const std::string name = flight_stacks::CoreRecord::topic;
+  const std::string name = pinnquad::autopilot::CoreRecord::topic;
   const std::size_t at = beside.rfind(name);
   std::error_code ignored;
   if (at != std::string::npos) {
-    beside.replace(at, name.size(), flight_stacks::CoreSettings::topic);
+    beside.replace(at, name.size(), pinnquad::autopilot::CoreSettings::topic);
     if (std::filesystem::is_regular_file(beside, ignored)) {
       log.topics.push_back(read_csv_topic(beside, selection));
-      log.topics.back().name = flight_stacks::CoreSettings::topic;
+      log.topics.back().name = pinnquad::autopilot::CoreSettings::topic;
     }
   }
   return read_core_topics(path, log);
@@ -161,12 +161,14 @@ inline ReplayInput read_replay_input(const std::string& path) {
     return input;
   }
   LogSelection selection;
-  selection.topics = {flight_stacks::CoreRecord::topic, flight_stacks::CoreSettings::topic};
+  selection.topics = {pinnquad::autopilot::CoreRecord::topic, pinnquad::autopilot::CoreSettings::topic};
   FlightLog log = read_log(path, selection);
   if (kind_of_log(path) == LogKind::usd) {
     for (LogTopic& topic : log.topics) {
-      if (topic.name == flight_stacks::CoreRecord::topic) complete_core_topic<flight_stacks::CoreRecord>(topic);
-      if (topic.name == flight_stacks::CoreSettings::topic) complete_core_topic<flight_stacks::CoreSettings>(topic);
+      if (topic.name == pinnquad::autopilot::CoreRecord::topic)
+        complete_core_topic<pinnquad::autopilot::CoreRecord>(topic);
+      if (topic.name == pinnquad::autopilot::CoreSettings::topic)
+        complete_core_topic<pinnquad::autopilot::CoreSettings>(topic);
     }
   }
   return detail::read_core_topics(path, log);

@@ -16,7 +16,7 @@
 
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
-#include "pinnquad/data/printable.hpp"
+#include "pinnquad/io/printable.hpp"
 
 namespace programs {
 

@@ -8,8 +8,8 @@
 
 #include "logs/csv_line.hpp"
 #include "model/replayed_row.hpp"
-#include "pinnquad/data/atomic_file.hpp"
-#include "pinnquad/data/decimal.hpp"
+#include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace programs {
 

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pinnquad/inference/certified_numbers.hpp"
+#include "pinnquad/model/certified_numbers.hpp"
 #include "training/run_time_network.hpp"
 
 namespace programs {

@@ -11,8 +11,8 @@
 #include "model/block.hpp"
 #include "model/identity.hpp"
 #include "model/run_time_answer.hpp"
-#include "pinnquad/inference/output_schema.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "training/derivatives.hpp"
 

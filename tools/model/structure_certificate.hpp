@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The certificate (inference/certificate.hpp) of a model that is known at run time.
+// The certificate (exported/certificate.hpp) of a model that is known at run time.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include "model/asked_model.hpp"
 #include "model/block.hpp"
 #include "model/identity.hpp"
-#include "pinnquad/inference/certificate.hpp"
-#include "pinnquad/inference/rigid_body_inverse.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/outputs/rigid_body_inverse.hpp"
 
 namespace programs {
 
@@ -64,7 +64,7 @@ namespace detail {
 
 template <class Scalar>
 std::optional<pinnquad::Certificate> certificate_in(const Block& block, const Identity& identity,
-                                                           const AskedModel& model) {
+                                                    const AskedModel& model) {
   const std::vector<int>& taps = model.taps;
   const std::vector<NetworkSpec>& parts = identity.networks;
   const NetworkSpec& base = parts.front();

@@ -9,7 +9,7 @@
 
 #include "pictures/gnuplot_process.hpp"
 #include "pictures/html_text.hpp"
-#include "pinnquad/data/atomic_file.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 
 namespace programs {
 

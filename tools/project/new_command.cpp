@@ -19,10 +19,10 @@
 #include "command_line/folders.hpp"
 #include "command_line/options.hpp"
 #include "model/header_airframe.hpp"
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/identifier.hpp"
 #include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "project/template.hpp"
 
 namespace {

@@ -19,8 +19,8 @@
 
 #include "pictures/html_text.hpp"
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 #ifndef PINNQUAD_REPLAY_PAGE

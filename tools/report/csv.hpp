@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "logs/csv_line.hpp"
-#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "report/claims.hpp"
 #include "report/comparisons.hpp"
 

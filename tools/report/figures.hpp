@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "pictures/drawing.hpp"
-#include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "report/comparisons.hpp"
 #include "training/ellipses_drawing.hpp"

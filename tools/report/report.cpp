@@ -14,7 +14,7 @@
 #include "command_line/console.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/progress_line.hpp"
-#include "pinnquad/data/atomic_file.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "report/csv.hpp"
 #include "report/input.hpp"
 #include "report/page.hpp"

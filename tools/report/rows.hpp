@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "report/columns.hpp"
 #include "report/settings.hpp"
 #include "training/judgement.hpp"

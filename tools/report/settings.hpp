@@ -14,7 +14,7 @@
 
 #include "command_line/json_file.hpp"
 #include "command_line/listed.hpp"
-#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/schedule/cyclical_annealing.hpp"
 #include "report/columns.hpp"
 

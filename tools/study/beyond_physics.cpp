@@ -2,10 +2,10 @@
 // Unconstrained models: the paper's network on other features and under another loss, and an affine map.
 #include <random>
 
-#include "pinnquad/identification/ridge.hpp"
-#include "pinnquad/inference/inverse_features.hpp"
+#include "pinnquad/features/inverse_features.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
+#include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/closed_form.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trainer.hpp"

@@ -3,9 +3,9 @@
 // body's inverse, with a network that is shown the angular acceleration.
 #include <random>
 
-#include "pinnquad/inference/inverse_features.hpp"
-#include "pinnquad/inference/rigid_body_inverse.hpp"
+#include "pinnquad/features/inverse_features.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/outputs/rigid_body_inverse.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
 #include "pinnquad/training/path_bounded_fit.hpp"
 #include "study/beyond_models.hpp"

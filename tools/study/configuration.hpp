@@ -13,8 +13,8 @@
 
 #include "command_line/build_facts.hpp"
 #include "command_line/json_file.hpp"
-#include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/version.hpp"
 #include "study/contender.hpp"
 #include "study/rows.hpp"

@@ -107,7 +107,7 @@ struct Outcome {
   double training_s = 0;
   bool best_weights = false;   ///< which weights were judged
   bool residual_kept = false;  ///< of a model that is a base and a network on it
-  bool proven = false;         ///< its certificate holds (inference/certificate.hpp)
+  bool proven = false;         ///< its certificate holds (exported/certificate.hpp)
   LoopFigures loop;            ///< of a model that was flown
   pinnquad::IndexRange test_rows;
   programs::Predictions predictions;  ///< of the test rows

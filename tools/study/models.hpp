@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/inference/features.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "report/paper.hpp"
 

@@ -2,7 +2,7 @@
 // The paper's network (Sec. 5.2) for a feature set, with and without batch norm.
 #pragma once
 
-#include "pinnquad/inference/features.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/relu.hpp"

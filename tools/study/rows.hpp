@@ -19,8 +19,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "pinnquad/data/atomic_file.hpp"
-#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "report/columns.hpp"
 #include "study/contender.hpp"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/inference/certificate.hpp"
-#include "pinnquad/inference/hover_slopes.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {

@@ -17,7 +17,7 @@
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
-#include "pinnquad/inference/hover_slopes.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "pinnquad/inference/motion_parts.hpp"
-#include "pinnquad/inference/windowed.hpp"
+#include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/features/windowed.hpp"
 #include "training/log_model.hpp"
 
 namespace programs {

@@ -17,8 +17,8 @@
 
 #include "command_line/folders.hpp"
 #include "pinnquad/core/fnv1a.hpp"
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "training/log_fits.hpp"
 
 namespace programs {

@@ -5,7 +5,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "pinnquad/identification/ridge.hpp"
+#include "pinnquad/regression/ridge.hpp"
 
 namespace programs {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/identification/regression_sums.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/regression/regression_sums.hpp"
 #include "pinnquad/training/monotone_base.hpp"
 
 namespace programs {

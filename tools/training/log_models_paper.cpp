@@ -3,7 +3,7 @@
 #include "training/log_closed_form.hpp"
 #include "training/log_kinds.hpp"
 
-#include "pinnquad/inference/residual_outputs.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 
 namespace programs {
 

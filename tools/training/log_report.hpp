@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "logs/imported_dataset.hpp"
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/printable.hpp"
-#include "pinnquad/inference/hover_slopes.hpp"
+#include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/printable.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
 #include "pinnquad/version.hpp"
 #include "training/log_figures.hpp"
 #include "training/log_verdict.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A ridge and a small network on what it leaves, for the features that a translation unit compiles it with; monotone by
-// construction (inference/axis_aligned.hpp): each signed sum's ridge sees its own angular acceleration alone, the network
+// construction (model/axis_aligned.hpp): each signed sum's ridge sees its own angular acceleration alone, the network
 // sees none. Whole trajectories left out say how long the network is trained and what share of each output counts: none,
 // where it has learnt nothing that holds on each path that it has not seen. Then both are fitted to all rows that are not
 // held out.

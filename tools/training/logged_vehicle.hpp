@@ -12,11 +12,11 @@
 #include <optional>
 #include <vector>
 
+#include "logs/specific_force.hpp"
 #include "pinnquad/aero/effect.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/identification/ridge.hpp"
-#include "pinnquad/identification/specific_force.hpp"
+#include "pinnquad/regression/ridge.hpp"
 
 namespace programs {
 

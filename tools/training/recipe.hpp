@@ -15,7 +15,7 @@
 
 #include "command_line/listed.hpp"
 #include "pinnquad/data/split_flights.hpp"
-#include "pinnquad/inference/features.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "pinnquad/training/training_data.hpp"
 #include "training/losses.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The recipe `structured`: the paper's networks, and beside them a model that is monotone by construction
-// (inference/axis_aligned.hpp): an affine base in closed form, a network of 2 x 32 on what it leaves, dropped where the
+// (model/axis_aligned.hpp): an affine base in closed form, a network of 2 x 32 on what it leaves, dropped where the
 // validation rows do not gain. It is shown the altitude where they gain much: near the ground.
 #include <algorithm>
 #include <atomic>
@@ -13,9 +13,9 @@
 
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/deploy/trust_writer.hpp"
-#include "pinnquad/inference/inverse_features.hpp"
+#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
 #include "pinnquad/training/trust_limits.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A network that is known at run time alone: layers from the text of a description (inference/description.hpp), the
+// A network that is known at run time alone: layers from the text of a description (model/description.hpp), the
 // sums in the order of the portable kernel; and its derivatives. For judging on the ground; what flies is compiled.
-// The parts of a monotone model (inference/axis_aligned.hpp) are networks too: with weights that are 0 where a part is
+// The parts of a monotone model (model/axis_aligned.hpp) are networks too: with weights that are 0 where a part is
 // not shown a feature, and bounds of the outputs.
 #pragma once
 
@@ -170,7 +170,7 @@ inline std::optional<std::pair<std::string_view, std::string_view>> network_and_
   return std::pair(text.substr(0, network + 1), text.substr(network + 2));
 }
 
-/// Dense layers, at most 3, and activations between them whose slope is from 0 to 1 (inference/path_bound.hpp).
+/// Dense layers, at most 3, and activations between them whose slope is from 0 to 1 (model/path_bound.hpp).
 inline bool has_path_bound(const NetworkSpec& spec) {
   if (spec.layers.size() > 5 || spec.layers.size() % 2 == 0 || spec.scalar != "float") return false;
   for (std::size_t i = 0; i < spec.layers.size(); ++i) {

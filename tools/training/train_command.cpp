@@ -29,7 +29,7 @@
 #include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/evaluation/model_errors.hpp"
-#include "pinnquad/inference/hover_slopes.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
 #include "training/certificate_words.hpp"
 #include "training/export_choice.hpp"
 #include "training/judge_all.hpp"

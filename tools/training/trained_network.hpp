@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "airframe/names.hpp"
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/deploy/golden_features.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/inference/certificate.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "training/derivatives.hpp"
 #include "training/model_predictions.hpp"

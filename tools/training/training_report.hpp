@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "logs/training_flights.hpp"
-#include "pinnquad/data/atomic_file.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/version.hpp"
 #include "training/certificate_words.hpp"
 #include "training/judge_all.hpp"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the core received and answered (flight_stacks/core_record.hpp), packed as the payload of an event trigger, for the
+ * What the core received and answered (pinnquad/control/autopilot/core_record.hpp), packed as the payload of an event trigger, for the
  * firmware's log on a uSD card: at most 255 bytes. Names are the record's; times are in ms, which is what the core is told. What
  * a Crazyflie does not say (jerk, resets of the estimator) is left out. Each list has a struct, its variables' types and names,
  * and who fills it. */

@@ -6,7 +6,7 @@
 #include <new>
 
 #include "core_log.h"
-#include "flight_stacks/recorded_controller.hpp"
+#include "pinnquad/control/autopilot/recorded_controller.hpp"
 
 // A model.hpp beside the app, as pinnquad train writes it, takes the place of the one for the Crazyflie 2.1; a flown_vehicle.hpp
 // says which effects the formula knows, a trust.hpp when the model is not to be trusted.
@@ -26,13 +26,13 @@ using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
 #include "trust.hpp"
 using FlownLimits = TrainedQuadModelTrust;
 #else
-using FlownLimits = flight_stacks::NoTrust;
+using FlownLimits = pinnquad::autopilot::NoTrust;
 #endif
 
 namespace {
 
-using Controller = flight_stacks::Recorded<
-    flight_stacks::NeuralController<FlownModel, pinnquad::ModelView<FlownModel>, FlownVehicle, FlownLimits>>;
+using Controller = pinnquad::autopilot::Recorded<
+    pinnquad::autopilot::NeuralController<FlownModel, pinnquad::ModelView<FlownModel>, FlownVehicle, FlownLimits>>;
 using Control = pinnquad_crazyflie::NeuralControl<FlownModel, Controller>;
 
 alignas(Control) unsigned char memory[sizeof(Control)];
@@ -41,9 +41,9 @@ Control* made = nullptr;
 /// Made by the first call, which must have returned before another thread calls; the firmware may run no constructors.
 Control& controller(float most_command = 1.0f) noexcept {
   if (made == nullptr) {
-    flight_stacks::OutputLimits outputs;
+    pinnquad::autopilot::OutputLimits outputs;
     if (most_command < outputs.upper && most_command > outputs.lower) outputs.upper = most_command;
-    made = new (memory) Control(flight_stacks::AgeLimits{}, outputs);
+    made = new (memory) Control(pinnquad::autopilot::AgeLimits{}, outputs);
   }
   return *made;
 }
@@ -58,12 +58,12 @@ Control& controller(float most_command = 1.0f) noexcept {
 extern "C" {
 
 void pinnquad_flight_record(CrazyflieCoreRecord* to) {
-  const flight_stacks::CoreRecord& from = controller().controller().record();
+  const pinnquad::autopilot::CoreRecord& from = controller().controller().record();
   PINNQUAD_RECORD_LIST(PINNQUAD_COPY_ONE, PINNQUAD_COPY_MANY, PINNQUAD_COPY_TIME)
 }
 
 void pinnquad_flight_settings(uint32_t now_ms, CrazyflieCoreSettings* to) {
-  flight_stacks::CoreSettings from = controller().controller().settings();
+  pinnquad::autopilot::CoreSettings from = controller().controller().settings();
   from.timestamp = std::uint64_t{now_ms} * 1000;
   PINNQUAD_SETTINGS_LIST(PINNQUAD_COPY_ONE, PINNQUAD_COPY_MANY, PINNQUAD_COPY_TIME)
 }

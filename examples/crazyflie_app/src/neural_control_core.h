@@ -50,7 +50,7 @@ struct CrazyflieReport {
   float envelope_excess; /* how far the worst feature lay outside, in half-widths of its range */
   float lift;            /* how much of its thrust it used, 0 to 1: 0 idles on the ground */
   int8_t envelope_feature;
-  uint8_t reaction;     /* flight_stacks::Reaction */
+  uint8_t reaction;     /* pinnquad::autopilot::Reaction */
   uint8_t status;       /* pinnquad::Status */
   uint8_t cause;        /* pinnquad::Status of the network alone */
   uint8_t stale_inputs; /* bit 0 gyro, 1 attitude, 2 position, 3 set point */

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "flight_stacks/neural_controller.hpp"
 #include "neural_control_core.h"
+#include "pinnquad/control/autopilot/neural_controller.hpp"
 
 namespace pinnquad_crazyflie {
 
@@ -16,8 +16,8 @@ inline constexpr float rad_per_deg = 0.017453292519943295f;
 /// counter-clockwise seen from above.
 inline constexpr std::size_t rotor_of_motor[4] = {0, 3, 1, 2};
 
-/// `Controller`: one that writes down what it is told (flight_stacks/recorded_controller.hpp), where the app logs it.
-template <class Model, class Controller = flight_stacks::NeuralController<Model>>
+/// `Controller`: one that writes down what it is told (pinnquad/control/autopilot/recorded_controller.hpp), where the app logs it.
+template <class Model, class Controller = pinnquad::autopilot::NeuralController<Model>>
 class NeuralControl {
  public:
   /// With the settings that the controller is made with.
@@ -39,7 +39,7 @@ class NeuralControl {
       controller_.situation({state.drives_motors, state.landed});
       take(state);
       take(setpoint);
-      has_commands = controller_.step(in_us(now_ms), commands_, why_) != flight_stacks::Reaction::gives_up;
+      has_commands = controller_.step(in_us(now_ms), commands_, why_) != pinnquad::autopilot::Reaction::gives_up;
     } else {
       controller_.situation({false, state.landed});
       controller_.skip(in_us(now_ms));
@@ -108,7 +108,7 @@ class NeuralControl {
   }
 
   Controller controller_;
-  flight_stacks::StepReport why_{};  ///< of the last step; here, not on the stack of a task that has little
+  pinnquad::autopilot::StepReport why_{};  ///< of the last step; here, not on the stack of a task that has little
   pinnquad::Commands<float> commands_{};
   pinnquad::Heading<float> heading_{};  ///< of the body in the firmware's world
 };

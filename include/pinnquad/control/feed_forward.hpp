@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "pinnquad/features/input_history.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
-#include "pinnquad/inference/input_history.hpp"
 
 namespace pinnquad {
 
@@ -113,7 +113,7 @@ class NetworkInverse {
   using Present = typename History::Present;
   static_assert(std::is_base_of_v<MotionInputs<NetworkScalar>, Present>,
                 "pinnquad: NetworkInverse fills MotionInputs; this model's feature set asks for other inputs "
-                "(inference/features.hpp)");
+                "(features/features.hpp)");
   static_assert(
       !std::is_same_v<Measured, MotionAlone> || std::is_same_v<MotionInputs<NetworkScalar>, Present>,
       "pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument that measures it "

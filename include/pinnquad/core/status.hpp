@@ -21,12 +21,12 @@ enum class [[nodiscard]] Status : std::uint8_t{
     self_test_failed,     ///< a golden vector was not reproduced
     outside_limits,       ///< a command lies outside the output limits, and the guard refuses it
     limited,              ///< features clamped to the envelope or commands clipped to limits; they are written
-    fell_back,            ///< the network declined; the commands written are the fallback's, or its beyond the edge (Fallback)
-    block_truncated,      ///< a model block is shorter than it says, or not aligned
-    block_incompatible,   ///< a block of another format, network or feature set
-    block_corrupt,        ///< a block whose checksum or contents are wrong
-    disagreement,         ///< the network's commands are further from another inverse's than the guard allows
-    warming_up,  ///< a model with a past has not seen enough of it yet, or lost it in a gap (inference/windowed.hpp)
+    fell_back,  ///< the network declined; the commands written are the fallback's, or its beyond the edge (Fallback)
+    block_truncated,     ///< a model block is shorter than it says, or not aligned
+    block_incompatible,  ///< a block of another format, network or feature set
+    block_corrupt,       ///< a block whose checksum or contents are wrong
+    disagreement,        ///< the network's commands are further from another inverse's than the guard allows
+    warming_up,  ///< a model with a past has not seen enough of it yet, or lost it in a gap (features/windowed.hpp)
     outside_distribution,  ///< the features lie further from the training rows than the guard allows, taken together
     distrusted,            ///< the model has lately been wrong about what was flown (inference/monitored_inverse.hpp)
 };

@@ -11,9 +11,9 @@
 #include <string>
 
 #include "pinnquad/core/rotation.hpp"
-#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/data/degrees.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace pinnquad {
 

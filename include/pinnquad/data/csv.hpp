@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/csv_table.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad {
 

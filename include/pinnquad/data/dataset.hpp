@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "pinnquad/core/fnv1a.hpp"
-#include "pinnquad/data/printable.hpp"
 #include "pinnquad/data/sample.hpp"
+#include "pinnquad/io/printable.hpp"
 
 namespace pinnquad {
 

@@ -10,7 +10,7 @@
 
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/data/sample_inputs.hpp"
-#include "pinnquad/inference/input_history.hpp"
+#include "pinnquad/features/input_history.hpp"
 
 namespace pinnquad {
 
@@ -65,7 +65,7 @@ class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
   std::array<const std::vector<double>*, sizeof...(Column)> columns_;
 };
 
-/// Windows about a row, which is their present instant; the taps are interpolated as in flight (inference/input_history.hpp).
+/// Windows about a row, which is their present instant; the taps are interpolated as in flight (features/input_history.hpp).
 /// False where a tap lies beyond these rows or behind a gap: no window crosses a border.
 template <class Tap, class Scalar, class Window>
 class FlightInputs<WindowInputs<Tap, Scalar, Window>> {

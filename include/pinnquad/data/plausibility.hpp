@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "pinnquad/data/acceleration_columns.hpp"
-#include "pinnquad/data/csv_table.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/degrees.hpp"
-#include "pinnquad/data/file_error.hpp"
 #include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/inference/model_agreement.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/io/csv_table.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "pinnquad/data/sample.hpp"
-#include "pinnquad/inference/features.hpp"
+#include "pinnquad/features/features.hpp"
 
 namespace pinnquad {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The bytes of a model block from what it says, whoever says it: a training, the types of an exported header
-// (deploy/weight_file.hpp), or its text. Layout: inference/model_block.hpp; the same bytes on every machine.
+// (deploy/weight_file.hpp), or its text. Layout: exported/model_block.hpp; the same bytes on every machine.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "pinnquad/deploy/record_writer.hpp"
-#include "pinnquad/inference/model_block.hpp"
+#include "pinnquad/exported/model_block.hpp"
 
 namespace pinnquad {
 namespace detail {

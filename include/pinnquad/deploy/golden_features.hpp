@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/inference/model_agreement.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
 
 namespace pinnquad {
 namespace detail {

@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/data/atomic_file.hpp"
-#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/identifier.hpp"
 #include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/deploy/record_writer.hpp"
 #include "pinnquad/deploy/type_name.hpp"
-#include "pinnquad/inference/certificate.hpp"
-#include "pinnquad/inference/model.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/exported/model.hpp"
+#include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/decimal.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/version.hpp"
 
@@ -90,7 +90,7 @@ ExportedTerms exported_terms(const Model& model, Provenance provenance) {
 }  // namespace detail
 
 /// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
-/// commands are computed here by the portable kernel. The contract of what is written: inference/model.hpp; no locale plays
+/// commands are computed here by the portable kernel. The contract of what is written: exported/model.hpp; no locale plays
 /// a part. A GivenAirframe stands before the
 /// model as a struct of its own. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
 /// name that no struct may have, for no golden vector, for one outside the envelope, for a number that is not finite, for terms that no model has (deploy/provenance.hpp), and for a model of proven structure that has no certificate.
@@ -182,7 +182,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
   write.list(scalar, "parameters", model.network.parameters);
   write.count("Vehicle", model.template airframe<double>());
-  out << "\n  // over all of this: what was edited does not compile (inference/contents_hash.hpp)\n"
+  out << "\n  // over all of this: what was edited does not compile (exported/contents_hash.hpp)\n"
       << "  static constexpr std::uint64_t contents_hash = " << hexadecimal(write.contents_hash()) << ";\n";
   out << "};\n\nstatic_assert(pinnquad::require_model<" << struct_name << ">());\n";
   if constexpr (has_certificate<Model>) {

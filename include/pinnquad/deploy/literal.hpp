@@ -9,7 +9,7 @@
 #include <string>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/data/printable.hpp"
+#include "pinnquad/io/printable.hpp"
 
 namespace pinnquad::detail {
 

@@ -11,7 +11,7 @@
 
 #include "pinnquad/dynamics/command_meaning.hpp"
 #include "pinnquad/evaluation/verdict.hpp"
-#include "pinnquad/inference/model.hpp"
+#include "pinnquad/exported/model.hpp"
 
 namespace pinnquad {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The records of an exported model, found once, for the header (inference/model_records.hpp) and for the block
-// (inference/block_records.hpp).
+// The records of an exported model, found once, for the header (exported/model_records.hpp) and for the block
+// (exported/block_records.hpp).
 #pragma once
 
 #include <optional>
@@ -13,12 +13,12 @@
 #include "pinnquad/data/sample_period.hpp"
 #include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/deploy/provenance.hpp"
-#include "pinnquad/inference/block_records.hpp"
-#include "pinnquad/inference/contents_hash.hpp"
+#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/contents_hash.hpp"
 
 namespace pinnquad::detail {
 
-/// A description as a text (inference/description.hpp).
+/// A description as a text (model/description.hpp).
 struct DescriptionText {
   std::string text;
   void add(std::string_view piece) { text += piece; }
@@ -139,7 +139,7 @@ std::vector<Scalar> rounded(const std::vector<double>& values) {
   return result;
 }
 
-/// The constants of a struct, written one after the other, and the hash over those that count (inference/contents_hash.hpp).
+/// The constants of a struct, written one after the other, and the hash over those that count (exported/contents_hash.hpp).
 class ConstantWriter {
  public:
   explicit ConstantWriter(std::ostream& out) : out_(out) {}
@@ -225,7 +225,7 @@ void write_header_records(std::ostream& out, ConstantWriter& write, const Export
   const std::string scalar = std::is_same_v<Scalar, float> ? "float" : "double";
   using Window = WindowOf<Features>;
   out << "\n  // records: a reader that does not know one of them must not fly the model "
-         "(inference/model_records.hpp)\n";
+         "(exported/model_records.hpp)\n";
   std::vector<std::string> names;
   for (const std::string_view record : known_records) names.emplace_back(record);
   std::vector<const char*> records;

@@ -13,8 +13,8 @@
 
 #include "pinnquad/deploy/identifier.hpp"
 #include "pinnquad/deploy/literal.hpp"
-#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/io/decimal.hpp"
 #include "pinnquad/training/trust_limits.hpp"
 
 namespace pinnquad {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Writes a trained or an exported model as a block of bytes, to be read in place by a ModelView: weights that change
-// without a new firmware. Layout: inference/model_block.hpp; the same bytes on every machine.
+// without a new firmware. Layout: exported/model_block.hpp; the same bytes on every machine.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "pinnquad/data/atomic_file.hpp"
 #include "pinnquad/deploy/block_writer.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
-#include "pinnquad/inference/model_block.hpp"
+#include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {

@@ -2,7 +2,7 @@
 // The inverse by formula as a policy: of a loop (state, motion, time -> commands), and of a guard, which falls back to it.
 #pragma once
 
-#include "pinnquad/inference/features.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/vehicle/inverse.hpp"
 

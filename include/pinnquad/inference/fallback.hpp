@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "pinnquad/inference/features.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/model_numbers.hpp"
 

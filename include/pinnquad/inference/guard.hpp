@@ -9,10 +9,10 @@
 #include <type_traits>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/held.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
-#include "pinnquad/inference/held.hpp"
 #include "pinnquad/inference/joint_distance.hpp"
 #include "pinnquad/inference/place_and_time.hpp"
 

@@ -3,10 +3,10 @@
 // No heap, bounded time; weights stay where the exported header put them, and the object is empty then.
 #pragma once
 
-#include "pinnquad/inference/caller.hpp"
+#include "pinnquad/exported/caller.hpp"
+#include "pinnquad/exported/model.hpp"
 #include "pinnquad/inference/fallback.hpp"
 #include "pinnquad/inference/guard.hpp"
-#include "pinnquad/inference/model.hpp"
 #include "pinnquad/inference/model_numbers.hpp"
 #include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/packed_network.hpp"
@@ -67,7 +67,7 @@ constexpr bool check_model() noexcept {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// An exported network as an inverse-dynamics model: motion wanted -> commands, in the terms of a caller
-/// (inference/caller.hpp). Every function leaves the commands untouched unless has_output(status).
+/// (exported/caller.hpp). Every function leaves the commands untouched unless has_output(status).
 template <class ModelType, class GuardType = TrainingGuard, class CallerType = AnyCaller>
 class InverseDynamics : private detail::Held<ModelType>, private detail::Held<GuardType> {
   static_assert(detail::check_model<ModelType>());

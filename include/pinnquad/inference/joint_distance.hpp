@@ -12,7 +12,7 @@
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/instruction_set.hpp"
-#include "pinnquad/inference/model_records.hpp"
+#include "pinnquad/exported/model_records.hpp"
 
 namespace pinnquad {
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "pinnquad/dynamics/airframe_value.hpp"
-#include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
 
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {

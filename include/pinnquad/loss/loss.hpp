@@ -12,9 +12,9 @@
 
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
-#include "pinnquad/inference/features.hpp"
-#include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/schedule/progress.hpp"
 
 namespace pinnquad {

@@ -2,7 +2,7 @@
 // The contract of a layer. A spec (`Dense<25>`) names what is wanted; Bind<Scalar, Inputs> makes it a layer:
 //   using Scalar;  static constexpr int inputs, outputs, parameter_count;
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
-// A spec may name itself for flash: `static constexpr const char* description` (inference/description.hpp).
+// A spec may name itself for flash: `static constexpr const char* description` (model/description.hpp).
 // Layers are types without data: a network owns all parameters in one flat array, as the exported header does.
 // forward(), activate() and the slope are noexcept. They are asked about samples alone: where a batch is padded to whole packs,
 // the padding repeats a sample or is left out (training), and what a pack gives in lanes past the last neuron, NaN too, is not

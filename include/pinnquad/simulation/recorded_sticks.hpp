@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/simulation/pilot.hpp"
 
 namespace pinnquad {

@@ -100,7 +100,7 @@ struct ExactRecorder {
   }
 };
 
-/// Another recorder's rows, and extra columns beside them. A Column is what inference/extra_columns.hpp says, with a
+/// Another recorder's rows, and extra columns beside them. A Column is what features/extra_columns.hpp says, with a
 /// `double operator()(const Quadrotor&, const VehicleState<double>&)`: what its sensor shows at the present instant.
 template <class Recorder, class... Column>
 class ColumnRecorder {

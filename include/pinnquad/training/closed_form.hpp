@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Models that are solved rather than trained: a context's rows as sums for least squares (identification/ridge.hpp), and an
+// Models that are solved rather than trained: a context's rows as sums for least squares (regression/ridge.hpp), and an
 // affine map as the answer of a model, which is exported, guarded and tested as a network is.
 #pragma once
 
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/identification/regression_sums.hpp"
-#include "pinnquad/inference/composition.hpp"
+#include "pinnquad/model/composition.hpp"
+#include "pinnquad/regression/regression_sums.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {

@@ -6,10 +6,10 @@
 #include <array>
 
 #include "pinnquad/data/settings.hpp"
-#include "pinnquad/inference/features.hpp"
-#include "pinnquad/inference/output_schema.hpp"
-#include "pinnquad/inference/read_features.hpp"
+#include "pinnquad/features/features.hpp"
+#include "pinnquad/features/read_features.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/schedule/progress.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
@@ -18,12 +18,12 @@ namespace pinnquad {
 template <class FeatureSet, class VehicleType, class Schema = CommandOutputs>
 struct Context : ContextAirframe<VehicleType> {
   static_assert(is_feature_set<FeatureSet>,
-                "pinnquad: Context's first argument is not a feature set (inference/features.hpp)");
+                "pinnquad: Context's first argument is not a feature set (features/features.hpp)");
   static_assert(is_output_schema<Schema>,
-                "pinnquad: Context's third argument is not an output schema (inference/output_schema.hpp)");
+                "pinnquad: Context's third argument is not an output schema (outputs/output_schema.hpp)");
   static_assert(base_reads<FeatureSet, Schema>(),
                 "pinnquad: the base of Context's outputs reads a feature that the feature set has not, or not there "
-                "(inference/read_features.hpp)");
+                "(features/read_features.hpp)");
   using Features = FeatureSet;
   using Vehicle = VehicleType;
   using Outputs = Schema;

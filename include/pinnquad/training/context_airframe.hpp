@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "pinnquad/dynamics/airframe_value.hpp"
-#include "pinnquad/inference/output_schema.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
 
 namespace pinnquad {
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "pinnquad/identification/symmetric_system.hpp"
+#include "pinnquad/regression/symmetric_system.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {

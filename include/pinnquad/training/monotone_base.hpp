@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "pinnquad/identification/bounded_ridge.hpp"
-#include "pinnquad/inference/axis_aligned.hpp"
-#include "pinnquad/inference/hover_slopes.hpp"
-#include "pinnquad/inference/signed_sum_outputs.hpp"
+#include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/regression/bounded_ridge.hpp"
 #include "pinnquad/training/closed_form.hpp"
 
 namespace pinnquad {

@@ -7,7 +7,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "pinnquad/inference/path_bound.hpp"
+#include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/training/closed_form.hpp"
 
 namespace pinnquad {

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "pinnquad/inference/axis_aligned.hpp"
-#include "pinnquad/inference/signed_sum_outputs.hpp"
+#include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {

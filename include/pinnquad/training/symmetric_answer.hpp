@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "pinnquad/inference/symmetrised.hpp"
+#include "pinnquad/model/symmetrised.hpp"
 #include "pinnquad/training/residual_features.hpp"
 
 namespace pinnquad {

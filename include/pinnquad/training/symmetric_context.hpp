@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Scalers that a mirror leaves as they are: what SymmetricAnswer (inference/symmetrised.hpp) is standardised by.
+// Scalers that a mirror leaves as they are: what SymmetricAnswer (model/symmetrised.hpp) is standardised by.
 #pragma once
 
-#include "pinnquad/inference/signed_sum_outputs.hpp"
-#include "pinnquad/inference/symmetrised.hpp"
+#include "pinnquad/model/symmetrised.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
 
 namespace pinnquad {
 

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "pinnquad/inference/hover_slopes.hpp"
-#include "pinnquad/inference/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {

@@ -8,7 +8,7 @@
 
 #include "px4.hpp"
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 /// True once what it is told has been true for `after_us`; false at once.
 class Lasting {
@@ -52,4 +52,4 @@ class LandDetector {
   Lasting contact_, maybe_, landed_;
 };
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

@@ -21,7 +21,7 @@
 
 extern "C" int pinnquad_control_main(int argc, char* argv[]);
 
-namespace flight_stacks::test {
+namespace pinnquad::autopilot::test {
 
 /// By name, as module.yaml has them.
 inline std::map<std::string, double>& parameter_bounds(const char* which) {
@@ -319,4 +319,4 @@ class Px4World {
       check_sub{ORB_ID(arming_check_reply)}, motors_sub{ORB_ID(actuator_motors)};
 };
 
-}  // namespace flight_stacks::test
+}  // namespace pinnquad::autopilot::test

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "pinnquad/deploy/record_writer.hpp"
+#include "pinnquad/features/inverse_features.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "pinnquad/inference/inverse_features.hpp"
-#include "pinnquad/inference/symmetrised.hpp"
+#include "pinnquad/model/symmetrised.hpp"
 #include "support/monotone_shapes.hpp"
 
 namespace {

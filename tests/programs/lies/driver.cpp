@@ -12,8 +12,8 @@
 
 #include "models/v3/near_ground_quadrotor.hpp"
 #include "models/v3/own_racer.hpp"
-#include "pinnquad/data/decimal.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/io/decimal.hpp"
 #include "support/block_bytes.hpp"
 
 namespace {

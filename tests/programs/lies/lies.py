@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Headers that lie, a row each: edits of a structured model with a residual and of one with a window. The compiler, certify,
-evaluate and block refuse each; block writes nothing. With a hash over all of it (inference/contents_hash.hpp) every edit is
+evaluate and block refuse each; block writes nothing. With a hash over all of it (exported/contents_hash.hpp) every edit is
 refused; without one, as in headers of before, whatever contradicts itself.
     lies.py SOURCE_DIR PINNQUAD HASH FLIGHT COMPILER [FLAG]..."""
 import os

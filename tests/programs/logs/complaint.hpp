@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "pinnquad/data/file_error.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad_test {
 

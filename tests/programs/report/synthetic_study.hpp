@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "report/rows.hpp"
 
 namespace synthetic {

@@ -7,7 +7,7 @@
 
 #include "data/temporary_folder.hpp"
 #include "pinnquad/core/random.hpp"
-#include "pinnquad/data/csv_table.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "study/campaign.hpp"
 
 using pinnquad::Flight;

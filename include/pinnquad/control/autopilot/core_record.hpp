@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// What the controller received and what it answered, tick by tick, as plain numbers: what a module logs and what
+// `pinnquad replay` runs through the same controller on the ground (docs/replay_log.md). The one place that says which numbers,
+// in which order, under which names and units: a PX4 message (px4_module/msg) and a CSV have those of each_number().
+// NED, FRD, SI units, commands in the airframe's rotor order, whatever the stack's own are.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace pinnquad::autopilot {
+
+/// An input's bit in `came` and `stale_inputs`.
+inline constexpr std::uint8_t body_rates_bit = 1, attitude_bit = 2, local_bit = 4, set_point_bit = 8;
+
+/// One tick. Inputs are those that came last, as they came: refused ones too. Of one input, one sample per tick at most.
+struct CoreRecord {
+  static constexpr const char* topic = "pinnquad_record";
+
+  std::uint64_t timestamp{0};  ///< of the tick, on the clock of the samples
+  std::uint64_t body_rates_us{0};
+  std::uint64_t attitude_us{0};
+  std::uint64_t local_us{0};
+  std::uint64_t set_point_us{0};
+  std::uint32_t tick{0};   ///< counts from 1; a number that is missing was not logged
+  std::uint32_t model{0};  ///< checksum of the model block that flew; 0: none was accepted yet
+  std::uint32_t refused_samples{0};
+  float body_rates_rad_s[3]{};
+  float attitude[4]{1, 0, 0, 0};  ///< w, x, y, z; body -> world
+  float position_m[3]{};
+  float velocity_m_s[3]{};       ///< world
+  float wanted_position_m[3]{};  ///< of the set point, as all that follows; NaN: not asked for
+  float wanted_velocity_m_s[3]{};
+  float wanted_acceleration_m_s2[3]{};
+  float wanted_jerk_m_s3[3]{};
+  float wanted_yaw_rad{0};
+  float wanted_yaw_rate_rad_s{0};
+  float bias_m_s2[3]{};               ///< acceleration besides the model's that this tick reckoned with, NED
+  float predicted_velocity_m_s[3]{};  ///< of the bias estimate
+  float jump_position_m[3]{};         ///< by how much the estimator moved its estimate before this tick, NED; 0: not
+  float jump_velocity_m_s[3]{};
+  float jump_yaw_rad{0};
+  float lift{1};              ///< how much of its thrust it used, 0 to 1: below 1 while it takes off
+  float commands[4]{};        ///< NaN where there were none
+  float envelope_excess{0};   ///< how far the worst feature lay outside, in half-widths of its range
+  float squared_distance{0};  ///< of the features from the training rows; 0 without limits of trust
+  float innovation{0};        ///< of the model about what was flown; 0 without limits of trust
+  std::int8_t envelope_feature{-1};
+  std::uint8_t came{0};           ///< which inputs came since the tick before, as bits
+  std::uint8_t asked{0};          ///< 0: the stack asked nothing of the controller: off, or flown by hand
+  std::uint8_t drives_motors{0};  ///< its commands reached the motors
+  std::uint8_t landed{0};         ///< the stack said so
+  std::uint8_t reaction{0};       ///< Reaction
+  std::uint8_t status{0};         ///< Status
+  std::uint8_t cause{0};          ///< Status of the network alone
+  std::uint8_t stale_inputs{0};   ///< as bits
+  std::uint8_t trusted{1};        ///< by the innovation
+
+  /// Calls `visit(name, unit, number or array)` for each, in their order. No more noexcept than `visit`.
+  template <class Self, class Visit>
+  static void each_number(Self& self, const Visit& visit) {
+    visit("timestamp", "us", self.timestamp);
+    visit("body_rates_us", "us", self.body_rates_us);
+    visit("attitude_us", "us", self.attitude_us);
+    visit("local_us", "us", self.local_us);
+    visit("set_point_us", "us", self.set_point_us);
+    visit("tick", "1", self.tick);
+    visit("model", "1", self.model);
+    visit("refused_samples", "1", self.refused_samples);
+    visit("body_rates_rad_s", "rad/s", self.body_rates_rad_s);
+    visit("attitude", "1", self.attitude);
+    visit("position_m", "m", self.position_m);
+    visit("velocity_m_s", "m/s", self.velocity_m_s);
+    visit("wanted_position_m", "m", self.wanted_position_m);
+    visit("wanted_velocity_m_s", "m/s", self.wanted_velocity_m_s);
+    visit("wanted_acceleration_m_s2", "m/s^2", self.wanted_acceleration_m_s2);
+    visit("wanted_jerk_m_s3", "m/s^3", self.wanted_jerk_m_s3);
+    visit("wanted_yaw_rad", "rad", self.wanted_yaw_rad);
+    visit("wanted_yaw_rate_rad_s", "rad/s", self.wanted_yaw_rate_rad_s);
+    visit("bias_m_s2", "m/s^2", self.bias_m_s2);
+    visit("predicted_velocity_m_s", "m/s", self.predicted_velocity_m_s);
+    visit("jump_position_m", "m", self.jump_position_m);
+    visit("jump_velocity_m_s", "m/s", self.jump_velocity_m_s);
+    visit("jump_yaw_rad", "rad", self.jump_yaw_rad);
+    visit("lift", "1", self.lift);
+    visit("commands", "1", self.commands);
+    visit("envelope_excess", "1", self.envelope_excess);
+    visit("squared_distance", "1", self.squared_distance);
+    visit("innovation", "1", self.innovation);
+    visit("envelope_feature", "1", self.envelope_feature);
+    visit("came", "bits", self.came);
+    visit("asked", "1", self.asked);
+    visit("drives_motors", "1", self.drives_motors);
+    visit("landed", "1", self.landed);
+    visit("reaction", "1", self.reaction);
+    visit("status", "1", self.status);
+    visit("cause", "1", self.cause);
+    visit("stale_inputs", "bits", self.stale_inputs);
+    visit("trusted", "1", self.trusted);
+  }
+};
+
+/// What a controller was made with: once when it starts.
+struct CoreSettings {
+  static constexpr const char* topic = "pinnquad_settings";
+
+  std::uint64_t timestamp{0};
+  // AgeLimits
+  std::uint32_t body_rates_us{0};
+  std::uint32_t attitude_us{0};
+  std::uint32_t local_us{0};
+  std::uint32_t set_point_us{0};
+  std::uint32_t keep_us{0};
+  std::uint32_t level_us{0};
+  // OutputLimits
+  float lowest_command{0};
+  float highest_command{0};
+  // FlightGains
+  float position_1_s{0};
+  float velocity_1_s{0};
+  float tilt_1_s{0};
+  float yaw_1_s{0};
+  float roll_pitch_rate_1_s{0};
+  float yaw_rate_1_s{0};
+  // SpeedLimits
+  float horizontal_speed_m_s{0};
+  float climb_m_s{0};
+  float descent_m_s{0};
+  float take_off_s{0};
+  // BiasSettings
+  float bias_bandwidth_1_s{0};
+  float most_bias_m_s2{0};
+  // of the formula's vehicle: FlownEffects
+  std::uint32_t effects{0};
+  float drag_n_s_m{0};
+  float rate_damping_n_m_s{0};
+  // of trust; 0: none
+  float distance_limit{0};
+  float innovation_limit{0};
+
+  /// As CoreRecord's.
+  template <class Self, class Visit>
+  static void each_number(Self& self, const Visit& visit) {
+    visit("timestamp", "us", self.timestamp);
+    visit("body_rates_us", "us", self.body_rates_us);
+    visit("attitude_us", "us", self.attitude_us);
+    visit("local_us", "us", self.local_us);
+    visit("set_point_us", "us", self.set_point_us);
+    visit("keep_us", "us", self.keep_us);
+    visit("level_us", "us", self.level_us);
+    visit("lowest_command", "1", self.lowest_command);
+    visit("highest_command", "1", self.highest_command);
+    visit("position_1_s", "1/s", self.position_1_s);
+    visit("velocity_1_s", "1/s", self.velocity_1_s);
+    visit("tilt_1_s", "1/s", self.tilt_1_s);
+    visit("yaw_1_s", "1/s", self.yaw_1_s);
+    visit("roll_pitch_rate_1_s", "1/s", self.roll_pitch_rate_1_s);
+    visit("yaw_rate_1_s", "1/s", self.yaw_rate_1_s);
+    visit("horizontal_speed_m_s", "m/s", self.horizontal_speed_m_s);
+    visit("climb_m_s", "m/s", self.climb_m_s);
+    visit("descent_m_s", "m/s", self.descent_m_s);
+    visit("take_off_s", "s", self.take_off_s);
+    visit("bias_bandwidth_1_s", "1/s", self.bias_bandwidth_1_s);
+    visit("most_bias_m_s2", "m/s^2", self.most_bias_m_s2);
+    visit("effects", "1", self.effects);
+    visit("drag_n_s_m", "N s/m", self.drag_n_s_m);
+    visit("rate_damping_n_m_s", "N m s", self.rate_damping_n_m_s);
+    visit("distance_limit", "1", self.distance_limit);
+    visit("innovation_limit", "1", self.innovation_limit);
+  }
+};
+
+}  // namespace pinnquad::autopilot

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// What a controller was made with, as its record has it.
+#pragma once
+
+#include "pinnquad/control/autopilot/core_record.hpp"
+#include "pinnquad/control/autopilot/flown_effects.hpp"
+#include "pinnquad/control/autopilot/inputs.hpp"
+#include "pinnquad/control/autopilot/take_off.hpp"
+#include "pinnquad/control/bias_estimate.hpp"
+#include "pinnquad/control/flight_controller.hpp"
+
+namespace pinnquad::autopilot {
+
+inline CoreSettings core_settings(const AgeLimits& ages, const OutputLimits& outputs,
+                                  const FlightController<float>& outer_loop, const TakeOff& take_off,
+                                  const BiasEstimate<float>& bias) noexcept {
+  const auto us = [](std::uint64_t time_us) noexcept { return static_cast<std::uint32_t>(time_us); };
+  const FlightGains<float>& gains = outer_loop.gains();
+  CoreSettings all;
+  all.body_rates_us = us(ages.body_rates_us);
+  all.attitude_us = us(ages.attitude_us);
+  all.local_us = us(ages.local_us);
+  all.set_point_us = us(ages.set_point_us);
+  all.keep_us = us(ages.keep_us);
+  all.level_us = us(ages.level_us);
+  all.lowest_command = outputs.lower;
+  all.highest_command = outputs.upper;
+  all.position_1_s = gains.position_1_s;
+  all.velocity_1_s = gains.velocity_1_s;
+  all.tilt_1_s = gains.tilt_1_s;
+  all.yaw_1_s = gains.yaw_1_s;
+  all.roll_pitch_rate_1_s = gains.roll_pitch_rate_1_s;
+  all.yaw_rate_1_s = gains.yaw_rate_1_s;
+  all.horizontal_speed_m_s = outer_loop.limits().max_horizontal_speed_m_s;
+  all.climb_m_s = outer_loop.limits().max_climb_m_s;
+  all.descent_m_s = outer_loop.limits().max_descent_m_s;
+  all.take_off_s = take_off.duration_s();
+  all.bias_bandwidth_1_s = bias.settings().bandwidth_1_s;
+  all.most_bias_m_s2 = bias.settings().max_bias_m_s2;
+  return all;
+}
+
+inline void add_effects(const FlownEffects& effects, CoreSettings& to) noexcept {
+  to.effects = effects.code;
+  to.drag_n_s_m = effects.drag_N_s_m;
+  to.rate_damping_n_m_s = effects.rate_damping_N_m_s;
+}
+
+}  // namespace pinnquad::autopilot

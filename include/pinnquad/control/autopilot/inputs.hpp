@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// What a flight stack tells the controller, sample by sample, and how old it may be. A bad sample is a sample that did
+// not come: the last good one stays and ages, so that silence and NaN meet the same limits.
+#pragma once
+
+#include <cstdint>
+
+#include "pinnquad/control/trajectory.hpp"
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/status.hpp"
+#include "pinnquad/dynamics/state.hpp"
+
+namespace pinnquad::autopilot {
+
+/// How old an input may be, each after its time stamp, and what follows from it (Reaction).
+struct AgeLimits {
+  std::uint64_t body_rates_us = 10'000;  ///< older: keeps its commands
+  std::uint64_t attitude_us = 20'000;    ///< older: keeps its commands
+  std::uint64_t local_us = 100'000;      ///< position and velocity; older: levels
+  std::uint64_t set_point_us = 500'000;  ///< older: holds its place
+  std::uint64_t keep_us = 40'000;        ///< commands are kept this long; then it gives up
+  std::uint64_t level_us = 1'000'000;    ///< it levels this long without a position; then it gives up
+};
+
+/// What the controller does, from good to bad.
+enum class Reaction : std::uint8_t {
+  flies,           ///< to the set point
+  holds_position,  ///< no set point: stays where it was when the last one went stale
+  levels,          ///< no position: level attitude, hover thrust
+  keeps_commands,  ///< no attitude or body rates, or neither network nor formula had an answer: the last commands again
+  gives_up,        ///< no commands: the flight stack must take over
+};
+
+constexpr const char* to_string(Reaction reaction) noexcept {
+  switch (reaction) {
+    case Reaction::flies: return "flies";
+    case Reaction::holds_position: return "holds position";
+    case Reaction::levels: return "levels";
+    case Reaction::keeps_commands: return "keeps commands";
+    case Reaction::gives_up: return "gives up";
+  }
+  return "unknown reaction";
+}
+
+/// Position and velocity, NED.
+struct LocalState {
+  Vector3<float> position_m = Vector3<float>::Zero();
+  Vector3<float> velocity_m_s = Vector3<float>::Zero();
+};
+
+/// What no estimator or pilot means: their overflow would be infinity.
+inline constexpr float most_plausible = 1e6f;
+
+/// `not_finite`, or `out_of_range` beyond most_plausible.
+inline Status check_sample(const Vector3<float>& v) noexcept {
+  if (!all_finite(v)) return Status::not_finite;
+  for (int i = 0; i < 3; ++i) {
+    if (v[i] > most_plausible || v[i] < -most_plausible) return Status::out_of_range;
+  }
+  return Status::ok;
+}
+
+/// Of what is asked for: a number that is not finite is not. `not_finite` if it is no position, no velocity and no acceleration.
+inline Status check_set_point(const TrajectoryPoint<float>& wanted) noexcept {
+  Status checked = Status::not_finite;
+  for (const auto* v : {&wanted.position_m, &wanted.velocity_m_s, &wanted.acceleration_m_s2, &wanted.jerk_m_s3}) {
+    for (int i = 0; i < 3; ++i) {
+      if (!is_finite((*v)[i])) continue;
+      if ((*v)[i] > most_plausible || (*v)[i] < -most_plausible) return Status::out_of_range;
+      if (v != &wanted.jerk_m_s3) checked = Status::ok;
+    }
+  }
+  return checked;
+}
+
+/// What is asked for, and where nothing is what the vehicle does already.
+inline TrajectoryPoint<float> completed(const TrajectoryPoint<float>& wanted, const State<float>& now,
+                                        float yaw_rad) noexcept {
+  const auto or_else = [](float value, float otherwise) noexcept { return is_finite(value) ? value : otherwise; };
+  TrajectoryPoint<float> point;
+  for (int i = 0; i < 3; ++i) {
+    const bool place = is_finite(wanted.position_m[i]);
+    point.position_m[i] = place ? wanted.position_m[i] : now.position_m[i];
+    point.velocity_m_s[i] = or_else(wanted.velocity_m_s[i], place ? 0.0f : now.velocity_m_s[i]);
+    point.acceleration_m_s2[i] = or_else(wanted.acceleration_m_s2[i], 0.0f);
+    point.jerk_m_s3[i] = or_else(wanted.jerk_m_s3[i], 0.0f);
+  }
+  point.yaw_rad = or_else(wanted.yaw_rad, yaw_rad);
+  point.yaw_rate_rad_s = or_else(wanted.yaw_rate_rad_s, 0.0f);
+  return point;
+}
+
+/// The last good sample of an input.
+template <class Value>
+class Input {
+ public:
+  /// Takes the sample if `checked` is ok; what was there before stays otherwise.
+  Status accept(std::uint64_t time_us, const Value& value, Status checked) noexcept {
+    if (checked != Status::ok) {
+      ++refused_;
+      return checked;
+    }
+    value_ = value;
+    time_us_ = time_us;
+    came_ = true;
+    return checked;
+  }
+
+  /// A time stamp of the future is as stale as one long past.
+  bool fresh(std::uint64_t now_us, std::uint64_t limit_us) const noexcept {
+    return came_ && now_us - time_us_ <= limit_us;
+  }
+  const Value& value() const noexcept { return value_; }
+  /// As old as it was.
+  void replace(const Value& value) noexcept { value_ = value; }
+  std::uint32_t refused() const noexcept { return refused_; }
+
+ private:
+  Value value_{};
+  std::uint64_t time_us_ = 0;
+  std::uint32_t refused_ = 0;
+  bool came_ = false;
+};
+
+}  // namespace pinnquad::autopilot

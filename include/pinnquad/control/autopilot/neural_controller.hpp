@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: MIT
+// The controller that px4_module and crazyflie_app share: state and set point -> wanted accelerations (FlightController)
+// -> motor commands (the network behind its guard, the formula where it declines) -> output limits.
+// NED, FRD, SI units; no heap, no exceptions, no clock of its own.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/control/autopilot/bias_alarm.hpp"
+#include "pinnquad/control/autopilot/core_record.hpp"
+#include "pinnquad/control/autopilot/core_settings.hpp"
+#include "pinnquad/control/autopilot/flown_effects.hpp"
+#include "pinnquad/control/autopilot/flown_motion.hpp"
+#include "pinnquad/control/autopilot/inputs.hpp"
+#include "pinnquad/control/autopilot/model_slots.hpp"
+#include "pinnquad/control/autopilot/situation.hpp"
+#include "pinnquad/control/autopilot/step_report.hpp"
+#include "pinnquad/control/autopilot/take_off.hpp"
+#include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/inference/analytic_inverse.hpp"
+#include "pinnquad/inference/guard.hpp"
+#include "pinnquad/inference/monitored_inverse.hpp"
+
+namespace pinnquad::autopilot {
+
+/// What neither rotor nor sound network asks for: the formula is asked instead.
+struct AbsurdCommands {
+  static constexpr double lower = -0.5;
+  static constexpr double upper = 1.5;
+};
+
+/// `Shape` says what a model block must hold: an exported header. `View` opens the block; on the ground it may be one whose
+/// network is known at run time alone (tools/model/replay_core.hpp). `VehicleType`: airframe and effects that the formula knows,
+/// a Quadrotor. `Trust`: limits of distance and innovation, trust.hpp beside the model (docs/trust.md): beyond them the
+/// formula flies.
+template <class Shape, class View = ModelView<Shape>, class VehicleType = Quadrotor<float, QuadraticDrag>,
+          class Trust = NoTrust>
+class NeuralController {
+  static constexpr bool trusts = FlownTrust<Trust>::known;
+
+ public:
+  using Vehicle = VehicleType;
+  using Formula = AnalyticInverse<Vehicle>;
+  /// Of the network. The formula is asked here, not by the guard: below it the network's stack is available again.
+  using NetworkGuard =
+      std::conditional_t<trusts, Extend<TrainingGuard, JointDistance<Trust>, RefuseCommands<AbsurdCommands>>,
+                         Extend<TrainingGuard, RefuseCommands<AbsurdCommands>>>;
+  using Inverse = InverseDynamics<View, NetworkGuard>;
+  static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
+  static_assert(
+      std::is_same_v<typename Shape::Features::template Inputs<float>, MotionInputs<float>>,
+      "this controller is told no altitude above ground and no extra column: it flies models that ask for the "
+      "motion alone (pinnquad train --altitude no)");
+
+  explicit NeuralController(const AgeLimits& ages = {}, const OutputLimits& outputs = {},
+                            const FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
+                            const BiasSettings<float>& bias = {}) noexcept
+      : NeuralController(airframe_value<typename Shape::Vehicle, float>(), ages, outputs, gains, speeds, bias) {}
+  /// Of an airframe that is known at run time alone.
+  explicit NeuralController(const Airframe<float>& airframe, const AgeLimits& ages = {},
+                            const OutputLimits& outputs = {}, const FlightGains<float>& gains = {},
+                            const SpeedLimits& speeds = {}, const BiasSettings<float>& bias = {}) noexcept
+      : NeuralController(Vehicle(airframe), ages, outputs, gains, speeds, bias) {}
+  /// Of a vehicle whose effects have values of their own.
+  explicit NeuralController(const Vehicle& vehicle, const AgeLimits& ages = {}, const OutputLimits& outputs = {},
+                            const FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
+                            const BiasSettings<float>& bias = {}) noexcept
+      : ages_(ages),
+        outputs_(outputs),
+        vehicle_(vehicle),
+        formula_(vehicle_),
+        outer_loop_(gains, flight_limits(vehicle_, gains, speeds), vehicle_.site().gravity_m_s2),
+        models_(NetworkGuard{}),
+        bias_(bias),
+        take_off_(speeds.take_off_s),
+        trust_(vehicle_.airframe().rise_time_constant_s(0)) {}
+  NeuralController(const NeuralController&) = delete;  // slots are pointed to
+  NeuralController& operator=(const NeuralController&) = delete;
+
+  /// At boot, and in flight from another thread: see ModelSlots::offer(). With limits of trust a model of other training data than
+  /// theirs is `block_incompatible`.
+  Status offer_model(const void* block, std::size_t length) noexcept {
+    const Status status = models_.offer(block, length, training_data<Trust>());
+    if (status == Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
+    return status;
+  }
+  /// True once a model was accepted.
+  bool ready() const noexcept { return ready_; }
+  bool model_settled() const noexcept { return models_.settled(); }
+
+  /// Each input: `not_finite`, `out_of_range`, `not_unit_quaternion` for a sample that is refused.
+  Status body_rates(std::uint64_t time_us, const Vector3<float>& rates_rad_s) noexcept {
+    const Status status = rates_.accept(time_us, rates_rad_s, check_sample(rates_rad_s));
+    if constexpr (trusts) {
+      if (status == Status::ok) trust_.motion().body_rates(time_us, rates_rad_s);
+    }
+    return status;
+  }
+  /// Normalised, where the norm is within unit_quaternion_tolerance of 1.
+  Status attitude(std::uint64_t time_us, const Quaternion<float>& q) noexcept {
+    const float numbers[4] = {q.w, q.x, q.y, q.z};
+    if (!all_finite(numbers, 4)) return attitude_.accept(time_us, q, Status::not_finite);
+    if (!is_unit(q)) return attitude_.accept(time_us, q, Status::not_unit_quaternion);
+    return attitude_.accept(time_us, normalized(q), Status::ok);
+  }
+  Status local(std::uint64_t time_us, const LocalState& state) noexcept {
+    const Status position = check_sample(state.position_m);
+    const Status status =
+        local_.accept(time_us, state, position == Status::ok ? check_sample(state.velocity_m_s) : position);
+    if constexpr (trusts) {
+      if (status == Status::ok) trust_.motion().velocity(time_us, state.velocity_m_s);
+    }
+    return status;
+  }
+  /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point. `not_finite` if it asks for no
+  /// position, no velocity and no acceleration.
+  Status set_point(std::uint64_t time_us, const TrajectoryPoint<float>& wanted) noexcept {
+    return set_point_.accept(time_us, wanted, check_set_point(wanted));
+  }
+
+  /// Said before each step, by a stack that knows. Until then: its commands drive nothing, the vehicle is not on the ground.
+  /// Who takes over holds the place where that was, not one from before.
+  void situation(const Situation& now) noexcept {
+    if (now.drives_motors && !situation_.drives_motors) holding_ = false;
+    situation_ = now;
+  }
+  const Situation& situation() const noexcept { return situation_; }
+
+  /// The estimator has moved its origin under the vehicle: what is held, or was asked for before, moves with it.
+  void jump(const EstimateJump& by) noexcept {
+    TrajectoryPoint<float> wanted = set_point_.value();
+    wanted.position_m += by.position_m;
+    wanted.yaw_rad += by.yaw_rad;
+    set_point_.replace(wanted);
+    held_.position_m += by.position_m;
+    held_.yaw_rad += by.yaw_rad;
+    bias_.resume(bias_.acceleration_m_s2(), bias_.predicted_velocity_m_s() + by.velocity_m_s);
+    if constexpr (trusts) trust_.motion().interrupt();
+  }
+
+  const BiasEstimate<float>& bias() const noexcept { return bias_; }
+  /// 0 to 1: how much of its thrust it uses while it takes off.
+  float lift() const noexcept { return take_off_.lift(); }
+  /// How wrong the model has lately been about what was flown, and whether it is trusted; 0 and true without limits of trust.
+  float innovation() const noexcept { return trust_.innovation(); }
+  bool trusted() const noexcept { return trust_.trusted(); }
+  /// Whether the bias stood at its bound for too long: the formula flies, `distrusted`.
+  bool bias_alarm() const noexcept { return bias_alarm_.raised(); }
+  /// Goes on from what was logged (replay).
+  void resume(const CoreRecord& logged) noexcept {
+    const auto& b = logged.bias_m_s2;
+    const auto& v = logged.predicted_velocity_m_s;
+    bias_.resume({b[0], b[1], b[2]}, {v[0], v[1], v[2]});
+    take_off_.resume(logged.lift);
+    if constexpr (trusts) trust_.resume(logged.innovation, logged.trusted != 0);
+    // of a model that the innovation trusts `distrusted` is the bias' alarm
+    if (logged.trusted != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels) && logged.asked != 0) {
+      bias_alarm_.resume(logged.cause == static_cast<std::uint8_t>(Status::distrusted));
+    }
+  }
+
+  /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
+  /// the reaction is gives_up. The time between two calls does not matter; `now_us` is of the samples' clock.
+  Reaction step(std::uint64_t now_us, Commands<float>& commands, StepReport& report) noexcept {
+    report = {};
+    const Inverse* inverse = models_.take();
+    take_checksum(models_.checksum(inverse));
+    Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
+    estimate_bias(now_us, reaction);
+    take_off_.update(now_us, situation_, vertical_motion(reaction));
+    if constexpr (trusts) observe(now_us, reaction, inverse);
+    if (reaction <= Reaction::levels) {
+      Commands<float> answer{};
+      report.status = ask(*inverse, reaction, answer, report);
+      if (has_output(report.status)) {
+        last_commands_ = desaturate(vehicle_.rotors(), answer, {outputs_.lower, outputs_.upper});
+        const float lift = take_off_.lift();
+        if (lift < 1.0f) {
+          for (float& u : last_commands_) u = outputs_.lower + lift * (u - outputs_.lower);
+        }
+        expected_us_ = lift < 1.0f || at_an_end(last_commands_) ? 0 : now_us;
+        answered_us_ = now_us;
+        answered_ = true;
+      } else {
+        reaction = Reaction::keeps_commands;
+      }
+    }
+    if (reaction == Reaction::keeps_commands && !(answered_ && now_us - answered_us_ <= ages_.keep_us)) {
+      reaction = Reaction::gives_up;
+    }
+    if (reaction != Reaction::gives_up) commands = last_commands_;
+    report.reaction = reaction;
+    return reaction;
+  }
+
+  /// A tick in which the stack asks nothing: off, or flown by hand. For who writes down every tick (recorded_controller.hpp).
+  void skip(std::uint64_t /*now_us*/) noexcept {
+    expected_us_ = 0;
+    take_off_.skip(situation_);
+    if constexpr (trusts) trust_.motion().interrupt();
+  }
+
+  /// What it was made with.
+  CoreSettings settings() const noexcept {
+    CoreSettings all = core_settings(ages_, outputs_, outer_loop_, take_off_, bias_);
+    add_effects(flown_effects(vehicle_), all);
+    if constexpr (trusts) {
+      all.distance_limit = static_cast<float>(Trust::distance_limit);
+      all.innovation_limit = static_cast<float>(Trust::innovation_limit);
+    }
+    return all;
+  }
+
+  /// Of the block whose model the last step asked; 0: none.
+  std::uint32_t model_checksum() const noexcept { return checksum_; }
+
+  /// How often the network was asked since the start, and what it came to; the rest fell back to the formula.
+  const FallbackCount& count() const noexcept { return count_; }
+  std::uint32_t refused_samples() const noexcept {
+    return rates_.refused() + attitude_.refused() + local_.refused() + set_point_.refused();
+  }
+  /// Fills what both stacks publish, in messages whose fields have the same names.
+  template <class Message>
+  void describe(const StepReport& report, Message& message) const noexcept {
+    message.asked = count_.asked;
+    message.refused_samples = refused_samples();
+    message.fallback_share =
+        count_.asked > 0 ? static_cast<float>(count_.fallbacks()) / static_cast<float>(count_.asked) : 0.0f;
+    message.envelope_excess = report.worst_excess;
+    message.envelope_feature = static_cast<std::int8_t>(report.worst_feature);
+    message.reaction = static_cast<std::uint8_t>(report.reaction);
+    message.status = static_cast<std::uint8_t>(report.status);
+    message.cause = static_cast<std::uint8_t>(report.cause);
+    message.stale_inputs = report.stale_inputs();
+  }
+  const Vehicle& vehicle() const noexcept { return vehicle_; }
+
+ private:
+  void take_checksum(std::uint32_t checksum) noexcept {
+    if (checksum_ != 0 && checksum != checksum_) {
+      bias_alarm_.reset();
+      if constexpr (trusts) trust_.reset();
+    }
+    checksum_ = checksum;
+  }
+
+  Reaction judge_ages(std::uint64_t now_us, StepReport& report) noexcept {
+    report.body_rates_stale = !rates_.fresh(now_us, ages_.body_rates_us);
+    report.attitude_stale = !attitude_.fresh(now_us, ages_.attitude_us);
+    report.local_stale = !local_.fresh(now_us, ages_.local_us);
+    report.set_point_stale = !set_point_.fresh(now_us, ages_.set_point_us);
+    if (!report.set_point_stale) holding_ = false;
+    if (report.body_rates_stale || report.attitude_stale) return Reaction::keeps_commands;
+    if (report.local_stale) {
+      return local_.fresh(now_us, ages_.local_us + ages_.level_us) ? Reaction::levels : Reaction::gives_up;
+    }
+    return report.set_point_stale ? Reaction::holds_position : Reaction::flies;
+  }
+
+  State<float> state() const noexcept {
+    return {local_.value().position_m, local_.value().velocity_m_s, attitude_.value(), rates_.value()};
+  }
+
+  static FlightLimits<float> flight_limits(const Vehicle& vehicle, const FlightGains<float>& gains,
+                                           const SpeedLimits& speeds) noexcept {
+    FlightLimits<float> limits = flight_limits(vehicle.airframe(), 1.0f, gains);
+    limits.max_horizontal_speed_m_s = speeds.horizontal_m_s;
+    limits.max_climb_m_s = speeds.climb_m_s;
+    limits.max_descent_m_s = speeds.descent_m_s;
+    return limits;
+  }
+
+  bool at_an_end(const Commands<float>& commands) const noexcept {
+    bool at_end = false;
+    for (const float u : commands) at_end = at_end || !(u > outputs_.lower && u < outputs_.upper);
+    return at_end;
+  }
+
+  /// Compares what the last answer was to do with what the vehicle did. Only in flight, off the actuators' ends, with a
+  /// velocity. Out of line, as target() is.
+  PINNQUAD_NOINLINE void estimate_bias(std::uint64_t now_us, Reaction reaction) noexcept {
+    if (!situation_.in_flight()) bias_alarm_.reset();
+    if (reaction <= Reaction::holds_position && situation_.in_flight() && expected_us_ != 0) {
+      const float step_s = 1e-6f * static_cast<float>(now_us - expected_us_);
+      bias_.update(local_.value().velocity_m_s, expected_m_s2_, step_s);
+      bias_alarm_.update(bias_, body_down_axis(attitude_.value()), step_s);
+    } else {
+      bias_.freeze(local_.value().velocity_m_s);
+    }
+    expected_us_ = 0;
+  }
+
+  /// What the commands of the tick before came to. Out of line, as target() is.
+  PINNQUAD_NOINLINE void observe(std::uint64_t now_us, Reaction reaction, const Inverse* inverse) noexcept {
+    if (!situation_.in_flight()) trust_.reset();
+    const bool known = situation_.in_flight() && answered_ && reaction <= Reaction::holds_position;
+    if (inverse != nullptr) trust_.tick(now_us, known, state(), last_commands_, *inverse);
+  }
+
+  /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise. Without a set point it asks for neither.
+  VerticalMotion vertical_motion(Reaction reaction) const noexcept {
+    constexpr float noise = 0.1f;
+    VerticalMotion motion;
+    motion.sink_m_s = local_.value().velocity_m_s[2];
+    motion.expected_fall_m_s2 = expected_m_s2_[2];
+    if (reaction != Reaction::flies) return motion;
+    const TrajectoryPoint<float>& wanted = set_point_.value();
+    const float below_m = wanted.position_m[2] - local_.value().position_m[2], sink_m_s = wanted.velocity_m_s[2];
+    motion.asks_to_climb = below_m < -noise || sink_m_s < -noise || wanted.acceleration_m_s2[2] < -noise;
+    if (is_finite(below_m)) motion.asked_sink_m_s = outer_loop_.gains().position_1_s * below_m;
+    if (is_finite(sink_m_s)) motion.asked_sink_m_s += sink_m_s;
+    return motion;
+  }
+
+  /// The point of a trajectory that a reaction flies to; what was not asked for is what the vehicle does already.
+  PINNQUAD_NOINLINE TrajectoryPoint<float> target(Reaction reaction, const State<float>& now) noexcept {
+    TrajectoryPoint<float> point;
+    const Heading<float> heading = pinnquad::heading(now.attitude);
+    point.yaw_rad = std::atan2(heading.sine, heading.cosine);
+    if (reaction == Reaction::levels) {  // no errors: no feedback of what is not known
+      point.position_m = now.position_m;
+      point.velocity_m_s = now.velocity_m_s;
+      return point;
+    }
+    if (reaction == Reaction::holds_position) {
+      if (!holding_) {
+        held_.position_m = now.position_m;
+        held_.yaw_rad = point.yaw_rad;
+        holding_ = true;
+      }
+      return held_;
+    }
+    return completed(set_point_.value(), now, point.yaw_rad);
+  }
+
+  /// Outer loop, then the inverse. The network answers the whole demand, feed-forward and feedback together.
+  Status ask(const Inverse& inverse, Reaction reaction, Commands<float>& commands, StepReport& report) noexcept {
+    MotionInputs<float> wanted;
+    const Status outer = want(reaction, wanted);
+    if (outer != Status::ok) return outer;
+    report.cause = trusted() && !bias_alarm() ? ask_network(inverse, wanted, commands, report) : Status::distrusted;
+    count_.add(report.cause);
+    if (has_output(report.cause)) return report.cause;
+    Commands<float> replaced{};
+    Status status = formula_(wanted, replaced);
+    if (has_output(status)) status = NetworkGuard::check_commands(replaced.data());
+    if (!has_output(status)) return report.cause;
+    commands = replaced;
+    return Status::fell_back;
+  }
+
+  PINNQUAD_NOINLINE static Status ask_network(const Inverse& inverse, const MotionInputs<float>& wanted,
+                                              Commands<float>& commands, StepReport& report) noexcept {
+    typename Inverse::Report why;
+    const Status status = inverse.predict(wanted, commands, why);
+    report.worst_feature = why.worst_feature;
+    report.squared_distance = why.squared_distance;
+    if (why.worst_feature >= 0) report.worst_excess = why.excess[static_cast<std::size_t>(why.worst_feature)];
+    return status;
+  }
+
+  /// The motion that a reaction wants. Out of line, as target() is: what it needs of the stack is available again below network and
+  /// formula, where the stack is as deep.
+  PINNQUAD_NOINLINE Status want(Reaction reaction, MotionInputs<float>& motion) noexcept {
+    const State<float> now = state();
+    TrackingDemand<float> demand;
+    TrajectoryPoint<float> point = target(reaction, now);
+    const Vector3<float>& bias = bias_.acceleration_m_s2();
+    if (reaction == Reaction::levels) {
+      point.acceleration_m_s2[2] -= bias[2];  // thrust alone: level stays level
+    } else {
+      point.acceleration_m_s2 -= bias;
+    }
+    point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
+    const Status outer = outer_loop_(now, point, demand);
+    if (outer != Status::ok) return outer;
+    Accelerations<float> wanted;
+    wanted.linear_m_s2 = demand.reference.linear_m_s2 + demand.feedback_acceleration_m_s2;
+    wanted.angular_rad_s2 = demand.reference.angular_rad_s2 + demand.feedback_angular_acceleration_rad_s2;
+    // rotors make no lateral force: what gravity and rotation leave of it is what the network has seen
+    const float gravity = vehicle_.site().gravity_m_s2;
+    const Vector3<float> at_rest = body_derivative<float>(now, {0.0f, 0.0f, gravity});
+    wanted.linear_m_s2[0] = at_rest[0];
+    wanted.linear_m_s2[1] = at_rest[1];
+    expected_m_s2_ = world_acceleration<float>(now, wanted.linear_m_s2);
+    motion = motion_inputs(now, wanted);
+    return Status::ok;
+  }
+
+  AgeLimits ages_;
+  OutputLimits outputs_;
+  Vehicle vehicle_;
+  Formula formula_;
+  FlightController<float> outer_loop_;
+  ModelSlots<Inverse> models_;
+  Input<Vector3<float>> rates_;
+  Input<Quaternion<float>> attitude_;
+  Input<LocalState> local_;
+  Input<TrajectoryPoint<float>> set_point_;
+  TrajectoryPoint<float> held_;
+  bool holding_ = false;
+  Commands<float> last_commands_{};
+  BiasEstimate<float> bias_;
+  BiasAlarm bias_alarm_;
+  Vector3<float> expected_m_s2_ = Vector3<float>::Zero();  ///< of the last answer, NED
+  std::uint64_t expected_us_ = 0;                          ///< 0: nothing to compare with
+  Situation situation_{};
+  TakeOff take_off_;
+  std::uint64_t answered_us_ = 0;
+  bool answered_ = false;
+  bool ready_ = false;
+  std::uint32_t checksum_ = 0;
+  FallbackCount count_{};
+  FlownTrust<Trust> trust_;
+};
+
+}  // namespace pinnquad::autopilot

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// A number over all that an exported header says: one that was edited afterwards does not compile. The writer makes it
+// (deploy/header_writer.hpp), the compiler and the program compare. It finds accidents, not forgeries.
+//   contents_hash = sum over the constants of FNV-1a(name, value), in words of 32 bits: no order plays a part
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+#include "pinnquad/core/fnv1a.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/exported/model_records.hpp"
+#include "pinnquad/nn/scaler.hpp"
+
+namespace pinnquad {
+
+/// The constants that count, where a header has them; `Vehicle` is its airframe's value. The model's name, and where it
+/// comes from in words, may be edited.
+inline constexpr std::array<std::string_view, 40> hashed_constants = {"format_version",
+                                                                      "training_data_hash",
+                                                                      "training_rows",
+                                                                      "worse_than_mean",
+                                                                      "beats_linear_regression",
+                                                                      "frame",
+                                                                      "feature_names",
+                                                                      "feature_units",
+                                                                      "output_names",
+                                                                      "output_unit",
+                                                                      "output_units",
+                                                                      "vehicle_name",
+                                                                      "motor_torque_signs",
+                                                                      "Vehicle",
+                                                                      "records",
+                                                                      "answer",
+                                                                      "command_meaning",
+                                                                      "command_lower",
+                                                                      "command_upper",
+                                                                      "sample_period_s",
+                                                                      "lag_removed_s",
+                                                                      "window_taps",
+                                                                      "causal",
+                                                                      "column_names",
+                                                                      "column_units",
+                                                                      "allocation",
+                                                                      "base",
+                                                                      "slope_signs",
+                                                                      "residual_lower",
+                                                                      "residual_upper",
+                                                                      "distance_mean",
+                                                                      "distance_inverse_cholesky",
+                                                                      "distance_limit",
+                                                                      "input",
+                                                                      "output",
+                                                                      "envelope_lower",
+                                                                      "envelope_upper",
+                                                                      "golden_features",
+                                                                      "golden_commands",
+                                                                      "parameters"};
+
+namespace detail {
+
+#if defined(__clang__) || __GNUC__ >= 11
+inline constexpr bool reads_bits_of_constants = true;
+#else
+inline constexpr bool reads_bits_of_constants = false;  ///< then nothing is compared while compiling
+#endif
+
+/// The hash of one constant.
+class ConstantHash {
+ public:
+  constexpr explicit ConstantHash(std::string_view name) noexcept { add(name); }
+
+  constexpr std::uint64_t value() const noexcept { return hash_; }
+
+  constexpr void add(std::string_view text) noexcept {
+    for (const char letter : text) add_word(static_cast<unsigned char>(letter));
+    add_word(0x100);  // no letter: "ab", "c" is not "a", "bc"
+  }
+  constexpr void add(const char* text) noexcept { add(std::string_view(text)); }
+  constexpr void add(bool truth) noexcept { add_word(truth ? 1u : 0u); }
+  constexpr void add(int number) noexcept { add_word(static_cast<std::uint32_t>(number)); }
+  constexpr void add(CommandMeaning meaning) noexcept { add(std::string_view(to_string(meaning))); }
+  constexpr void add(std::uint64_t number) noexcept {
+    add_word(static_cast<std::uint32_t>(number));
+    add_word(static_cast<std::uint32_t>(number >> 32));
+  }
+#if defined(__clang__) || __GNUC__ >= 11
+  constexpr void add(float number) noexcept { add_word(__builtin_bit_cast(std::uint32_t, number)); }
+  constexpr void add(double number) noexcept { add(__builtin_bit_cast(std::uint64_t, number)); }
+#else
+  constexpr void add(float) noexcept {}
+  constexpr void add(double) noexcept {}
+#endif
+  template <class Value, std::size_t Size>
+  constexpr void add(const std::array<Value, Size>& values) noexcept {
+    if constexpr (std::is_same_v<Value, float> && reads_bits_of_constants) {
+      // most of a header: in place, since a compiler counts the steps of a constant
+      const float* from = values.data();
+      std::uint64_t hash = hash_;
+      for (std::size_t i = 0; i < Size; ++i) hash = (hash ^ __builtin_bit_cast(std::uint32_t, from[i])) * prime;
+      hash_ = hash;
+    } else {
+      for (std::size_t i = 0; i < Size; ++i) add(values[i]);
+    }
+  }
+  template <class Scalar, int Size>
+  constexpr void add(const Scaler<Scalar, Size>& scaler) noexcept {
+    add(scaler.mean);
+    add(scaler.spread);
+  }
+  constexpr void add(const Airframe<double>& airframe) noexcept {
+    add(airframe.mass_kg);
+    add(airframe.inertia_kg_m2);
+    add(airframe.inertia_products_kg_m2);
+    for (const RotorMount<double>& rotor : airframe.rotors) {
+      add(rotor.x_m);
+      add(rotor.y_m);
+      add(static_cast<int>(rotor.spin));
+      add(rotor.z_m);
+      add(rotor.axis);
+      add(rotor.thrust_scale);
+      add(rotor.thrust_curve);
+      add(rotor.rise_time_constant_s);
+      add(rotor.fall_time_constant_s);
+    }
+    add(airframe.thrust_coefficient);
+    add(airframe.power_coefficient);
+    add(airframe.propeller_diameter_m);
+    add(airframe.max_rotor_speed_rev_s);
+    add(airframe.rotor_time_constant_s);
+    add(airframe.drag_area_m2);
+    add(airframe.drag_deadband_m_s);
+  }
+
+ private:
+  static constexpr std::uint64_t prime = 0x100000001b3u;
+
+  constexpr void add_word(std::uint32_t word) noexcept { hash_ = (hash_ ^ word) * prime; }
+
+  std::uint64_t hash_ = Fnv1a{}.hash;
+};
+
+template <class Value>
+constexpr std::uint64_t constant_hash(std::string_view name, const Value& value) noexcept {
+  ConstantHash hash(name);
+  hash.add(value);
+  return hash.value();
+}
+
+constexpr bool is_hashed(std::string_view name) noexcept {
+  for (const std::string_view hashed : hashed_constants) {
+    if (hashed == name) return true;
+  }
+  return false;
+}
+
+template <class M, class = void>
+struct HasContentsHash : std::false_type {};
+template <class M>
+struct HasContentsHash<M, std::void_t<decltype(std::uint64_t{M::contents_hash})>> : std::true_type {};
+
+/// The value that the header's constant must have, from its members as they are.
+template <class M>
+constexpr std::uint64_t contents_hash_of() noexcept {
+  std::uint64_t sum = 0;
+  const auto add = [&sum](std::string_view name, const auto& value) { sum += constant_hash(name, value); };
+  add("format_version", M::format_version);
+  add("training_data_hash", M::training_data_hash);
+  if constexpr (HasTrainingRows<M>::value) add("training_rows", M::training_rows);
+  if constexpr (HasVerdict<M>::value) {
+    add("worse_than_mean", M::worse_than_mean);
+    add("beats_linear_regression", M::beats_linear_regression);
+  }
+  add("frame", M::frame);
+  add("feature_names", M::feature_names);
+  add("feature_units", M::feature_units);
+  add("output_names", M::output_names);
+  if constexpr (HasOutputUnits<M>::value) {
+    add("output_units", M::output_units);
+  } else {
+    add("output_unit", M::output_unit);
+  }
+  add("vehicle_name", M::vehicle_name);
+  add("motor_torque_signs", M::motor_torque_signs);
+  add("Vehicle", airframe_value<typename M::Vehicle, double>());
+  if constexpr (HasRecords<M>::value) {
+    add("records", M::records);
+    add("answer", M::answer);
+    add("command_meaning", M::command_meaning);
+    add("command_lower", M::command_lower);
+    add("command_upper", M::command_upper);
+    add("sample_period_s", M::sample_period_s);
+    add("lag_removed_s", M::lag_removed_s);
+    add("window_taps", M::window_taps);
+    add("causal", M::causal);
+    add("column_names", M::column_names);
+    add("column_units", M::column_units);
+    add("allocation", M::allocation);
+    add("base", M::base);
+  }
+  if constexpr (HasSlopeSigns<M>::value) add("slope_signs", M::slope_signs);
+  if constexpr (HasResidualRange<M>::value) {
+    add("residual_lower", M::residual_lower);
+    add("residual_upper", M::residual_upper);
+  }
+  if constexpr (HasDistance<M>::value) {
+    add("distance_mean", M::distance_mean);
+    add("distance_inverse_cholesky", M::distance_inverse_cholesky);
+    add("distance_limit", M::distance_limit);
+  }
+  add("input", M::input);
+  add("output", M::output);
+  add("envelope_lower", M::envelope_lower);
+  add("envelope_upper", M::envelope_upper);
+  add("golden_features", M::golden_features);
+  add("golden_commands", M::golden_commands);
+  add("parameters", M::parameters);
+  return sum;
+}
+
+/// True for a header that says no hash, as those of before did, and where the compiler can't read the bits of a constant.
+template <class M>
+constexpr bool same_contents() noexcept {
+  if constexpr (HasContentsHash<M>::value && reads_bits_of_constants) {
+    return M::contents_hash == contents_hash_of<M>();
+  } else {
+    return true;
+  }
+}
+
+}  // namespace detail
+}  // namespace pinnquad

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// The contract of an exported model, a struct with static constexpr members that deploy/header_writer.hpp writes. Each
+// format is described here once; what a header says of itself is checked against what the including code's types say.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/exported/contents_hash.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/model_records.hpp"
+#include "pinnquad/features/features.hpp"
+#include "pinnquad/features/read_features.hpp"
+#include "pinnquad/model/answer.hpp"
+#include "pinnquad/nn/network.hpp"
+#include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
+
+namespace pinnquad {
+
+/// Format that this library writes. A header of a newer one does not compile.
+///   1  types Scalar, Network, Features, Outputs, Vehicle; arrays parameters, envelope_lower, envelope_upper,
+///      golden_features, golden_commands; scalers input, output; format_version
+///   2  besides: frame, feature_names, feature_units, output_names, output_unit, vehicle_name, motor_torque_signs,
+///      training_data_hash; optional, of a model that was judged: test_r_squared, linear_regression_r_squared (finite),
+///      worse_than_mean, beats_linear_regression (evaluation/verdict.hpp)
+///      Where the outputs have several units, output_units, one per output, in place of output_unit.
+///   3  besides, and with output_units always: records, and what they name (exported/model_records.hpp). A Vehicle that is
+///      none of the library's stands before the model, in the same header. Optional: contents_hash, over all of it
+///      (exported/contents_hash.hpp).
+inline constexpr int model_format_version = 3;
+
+/// The oldest format that still flies.
+inline constexpr int oldest_model_format_version = 1;
+
+/// The frames of every feature set, as a header of format 2 or 3 states them.
+inline constexpr const char* model_frame = "body FRD, world NED";
+
+/// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
+/// about ten to spare.
+inline constexpr double golden_tolerance = 1e-5;
+
+namespace detail {
+template <class S, class = void>
+struct HasShape : std::false_type {};
+template <class S>
+struct HasShape<S, std::void_t<typename S::Scalar, typename S::Network, typename S::Features, typename S::Outputs,
+                               typename S::Vehicle>> : std::true_type {};
+
+/// A model made at run time for a shape: exported/model_view.hpp, loaded_model.hpp.
+template <class M, class = void>
+struct IsMadeForShape : std::false_type {};
+template <class M>
+struct IsMadeForShape<M, std::void_t<typename M::Shape>> : HasShape<typename M::Shape> {};
+
+template <class M, class = void>
+struct IsModel : std::false_type {};
+template <class M>
+struct IsModel<M,
+               std::void_t<std::enable_if_t<HasShape<M>::value>, decltype(M::format_version), decltype(M::parameters),
+                           decltype(M::input), decltype(M::output), decltype(M::envelope_lower),
+                           decltype(M::envelope_upper), decltype(M::golden_features), decltype(M::golden_commands)>>
+    : std::true_type {};
+
+template <class M, class = void>
+struct DescribesItself : std::false_type {};
+template <class M>
+struct DescribesItself<M, std::void_t<decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
+                                      decltype(M::output_names), decltype(M::vehicle_name),
+                                      decltype(M::motor_torque_signs), decltype(std::uint64_t{M::training_data_hash})>>
+    : std::true_type {};
+
+template <class M, class = void>
+struct HasOutputUnit : std::false_type {};
+template <class M>
+struct HasOutputUnit<M, std::void_t<decltype(M::output_unit)>> : std::true_type {};
+
+/// All texts are one.
+template <class Texts>
+constexpr bool one_unit(const Texts& texts) noexcept {
+  for (const auto& text : texts) {
+    if (!same_text(text, texts[0])) return false;
+  }
+  return true;
+}
+
+/// The units that a header states are its schema's.
+template <class M>
+constexpr bool same_output_units() noexcept {
+  using Map = OutputMap<typename M::Outputs>;
+  if constexpr (HasOutputUnits<M>::value) {
+    return same_texts(M::output_units, Map::units);
+  } else {
+    return one_unit(Map::units) && same_text(M::output_unit, Map::units[0]);
+  }
+}
+
+template <class Signs>
+constexpr bool same_signs(const Signs& signs, const std::array<TorqueSigns, rotor_count>& others) noexcept {
+  if (signs.size() != others.size()) return false;
+  for (std::size_t rotor = 0; rotor < others.size(); ++rotor) {
+    if (signs[rotor].size() != others[rotor].size()) return false;
+    for (std::size_t axis = 0; axis < others[rotor].size(); ++axis) {
+      if (signs[rotor][axis] != others[rotor][axis]) return false;
+    }
+  }
+  return true;
+}
+
+/// False for NaN.
+template <class M>
+constexpr bool golden_inside_envelope() noexcept {
+  for (const auto& x : M::golden_features) {
+    if (!inside_envelope(M::envelope_lower.data(), x.data(), M::envelope_upper.data(), x.size())) return false;
+  }
+  return true;
+}
+
+template <class M>
+constexpr bool golden_commands_finite() noexcept {
+  for (const auto& commands : M::golden_commands) {
+    if (!all_finite_constants(commands)) return false;
+  }
+  return true;
+}
+
+template <class Array>
+constexpr bool all_positive(const Array& values) noexcept {
+  for (const auto& value : values) {
+    if (!(value > 0)) return false;
+  }
+  return true;
+}
+
+/// What a header of format 2 or 3 says of itself, against what its types say.
+template <class M>
+constexpr void require_description() noexcept {
+  constexpr bool described = DescribesItself<M>::value && (HasOutputUnits<M>::value || HasOutputUnit<M>::value);
+  static_assert(
+      described,
+      "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of the "
+      "training data (exported/model.hpp)");
+  if constexpr (described) {
+    using Features = typename M::Features;
+    using Outputs = typename M::Outputs;
+    static_assert(same_text(M::frame, model_frame), "pinnquad: the model was trained in other frames (frame)");
+    static_assert(same_texts(M::feature_names, Features::names),
+                  "pinnquad: the model was trained on other features than its feature set now has (feature_names)");
+    static_assert(same_texts(M::feature_units, Features::units),
+                  "pinnquad: the model was trained in other units than its feature set now has (feature_units)");
+    static_assert(same_texts(M::output_names, OutputMap<Outputs>::names),
+                  "pinnquad: the model has other outputs than its output schema now has (output_names)");
+    static_assert(same_output_units<M>(),
+                  "pinnquad: the model's outputs have another unit than its output schema (output_unit, output_units)");
+    static_assert(same_text(M::vehicle_name, M::Vehicle::name),
+                  "pinnquad: the model was trained for another airframe than its Vehicle (vehicle_name)");
+    static_assert(
+        same_signs(M::motor_torque_signs, motor_torque_signs<typename M::Vehicle>()),
+        "pinnquad: the model was trained with another motor order than its Vehicle now has: a rotor sits or turns "
+        "elsewhere (motor_torque_signs)");
+    static_assert(all_finite_constants(M::parameters), "pinnquad: a weight of the model is NaN or infinite");
+    static_assert(all_finite_constants(M::input.mean) && all_finite_constants(M::input.spread) &&
+                      all_finite_constants(M::output.mean) && all_finite_constants(M::output.spread),
+                  "pinnquad: a scaler's number is NaN or infinite");
+    static_assert(all_finite_constants(M::envelope_lower) && all_finite_constants(M::envelope_upper),
+                  "pinnquad: a border of the model's envelope is NaN or infinite");
+    static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
+                  "pinnquad: a scaler's spread is not positive");
+    static_assert(
+        is_envelope(M::input.mean.data(), M::input.spread.data(), M::envelope_lower.data(), M::envelope_upper.data(),
+                    M::envelope_lower.size()),
+        "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
+        "spread can have been (envelope_lower, envelope_upper, input)");
+    static_assert(golden_commands_finite<M>(), "pinnquad: a golden command is NaN or infinite");
+    static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
+    static_assert(same_contents<M>(),
+                  "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
+                  "a number, a name or a text is another (contents_hash); export it again");
+  }
+}
+}  // namespace detail
+
+/// True for a type that fulfils the contract at the head of this file.
+template <class M>
+inline constexpr bool is_model = detail::IsModel<M>::value;
+
+/// Checks, at compile time and by rule, that the types of a model fit together, wherever its weights are.
+template <class S>
+constexpr bool require_shape() noexcept {
+  static_assert(detail::HasShape<S>::value,
+                "pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle (exported/model.hpp)");
+  if constexpr (detail::HasShape<S>::value) {
+    static_assert(is_answer<typename S::Network>,
+                  "pinnquad: the model's Network is neither a pinnquad::Network nor another answer (model/answer.hpp)");
+    static_assert(is_feature_set<typename S::Features>, "pinnquad: the model's Features are not a feature set");
+    static_assert(is_output_schema<typename S::Outputs>, "pinnquad: the model's Outputs are not an output schema");
+    if constexpr (is_feature_set<typename S::Features>) {
+      static_assert(
+          detail::is_noexcept_feature_set<typename S::Features>,
+          "pinnquad: a feature set's check() and extract() must be noexcept: they fly (features/features.hpp)");
+    }
+    if constexpr (is_output_schema<typename S::Outputs>) {
+      static_assert(detail::is_noexcept_output_schema<typename S::Outputs>,
+                    "pinnquad: an output schema's functions must be noexcept: they fly (outputs/output_schema.hpp)");
+    }
+    static_assert(is_airframe<typename S::Vehicle>, "pinnquad: the model's Vehicle is not an airframe");
+    static_assert(std::is_same_v<typename S::Scalar, typename S::Network::Scalar>,
+                  "pinnquad: the model's Scalar is not that of its Network");
+    static_assert(S::Network::inputs == S::Features::size,
+                  "pinnquad: the network's input count differs from the feature set's size");
+    if constexpr (is_output_schema<typename S::Outputs>) {
+      static_assert(S::Network::outputs == OutputMap<typename S::Outputs>::size,
+                    "pinnquad: the network's output count differs from the output schema's size");
+      static_assert(base_reads<typename S::Features, typename S::Outputs>(),
+                    "pinnquad: the outputs' base reads a feature that the feature set has not, or not there: "
+                    "LinearizedInverse is of what begins as PaperFeatures, RigidBodyInverse as PhysicsFeatures "
+                    "(features/read_features.hpp)");
+    }
+    static_assert(formulas_read<typename S::Features, typename S::Network>(),
+                  "pinnquad: a formula in the model's Network reads a feature that the feature set has not, or not "
+                  "there (features/read_features.hpp)");
+  }
+  return detail::HasShape<S>::value;
+}
+
+/// The same for a whole exported model: its types, its arrays, and what it says of itself. For a model made at run
+/// time, the types: the numbers were checked when its block was opened.
+template <class M>
+constexpr bool require_model() noexcept {
+  constexpr bool made_for_shape = detail::IsMadeForShape<M>::value;
+  static_assert(is_model<M> || made_for_shape, "pinnquad: this type is not an exported model (exported/model.hpp)");
+  if constexpr (made_for_shape) {
+    return require_shape<typename M::Shape>();
+  } else if constexpr (is_model<M>) {
+    static_assert(M::format_version <= model_format_version,
+                  "pinnquad: the model was exported by a newer pinnquad than this one; update the library");
+    static_assert(M::format_version >= oldest_model_format_version,
+                  "pinnquad: the model's format is older than this library reads; export it again");
+    static_assert(require_shape<M>());
+    static_assert(M::parameters.size() == static_cast<std::size_t>(M::Network::parameter_count),
+                  "pinnquad: the exported parameters do not have the network's length");
+    static_assert(M::input.size == M::Features::size && M::output.size == OutputMap<typename M::Outputs>::size,
+                  "pinnquad: a scaler does not have the length of what it scales");
+    static_assert(M::envelope_lower.size() == static_cast<std::size_t>(M::Features::size) &&
+                      M::envelope_upper.size() == static_cast<std::size_t>(M::Features::size),
+                  "pinnquad: the envelope does not have the length of the feature set");
+    static_assert(M::golden_features.size() == M::golden_commands.size() && M::golden_features.size() > 0,
+                  "pinnquad: the model has no golden vectors");
+    static_assert(std::tuple_size<typename std::decay_t<decltype(M::golden_features)>::value_type>::value ==
+                          static_cast<std::size_t>(M::Features::size) &&
+                      std::tuple_size<typename std::decay_t<decltype(M::golden_commands)>::value_type>::value ==
+                          static_cast<std::size_t>(rotor_count),
+                  "pinnquad: a golden vector does not have the length of features or commands");
+    if constexpr (M::format_version >= 2) detail::require_description<M>();
+    if constexpr (M::format_version >= 3) detail::require_records<M>();
+  }
+  return is_model<M>;
+}
+
+}  // namespace pinnquad

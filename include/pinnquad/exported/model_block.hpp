@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// The layout of a model block: a model's numbers in memory (a flash partition, a file read into RAM), little-endian.
+// Stated once, for deploy/weight_file.hpp, which writes it, and exported/model_view.hpp, which reads it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "pinnquad/core/first_of.hpp"
+#include "pinnquad/core/fnv1a.hpp"
+#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/checksum.hpp"
+#include "pinnquad/exported/model.hpp"
+#include "pinnquad/model/description.hpp"
+
+namespace pinnquad {
+
+inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N', 'N', 'Q', 'U', 'A', 'D'};
+
+/// The version that this library writes: 2 has records (exported/block_records.hpp), 1 has none and still opens.
+inline constexpr std::uint32_t model_block_version = 2;
+inline constexpr std::uint32_t oldest_model_block_version = 1;
+
+/// Where a block may begin: at multiples of this many bytes, so that its scalars can be read in place.
+inline constexpr std::size_t model_block_alignment = 8;
+
+/// Byte offsets of the header's fields, and what they hold:
+///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs, u32 outputs,
+///   u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
+/// In version 2 the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow: input mean and spread, output mean and spread, envelope lower and upper, golden features, golden
+/// commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
+struct ModelBlockHeader {
+  static constexpr std::size_t version = 8;
+  static constexpr std::size_t length = 12;
+  static constexpr std::size_t scalar_bytes = 16;
+  static constexpr std::size_t inputs = 20;
+  static constexpr std::size_t outputs = 24;
+  static constexpr std::size_t parameters = 28;
+  static constexpr std::size_t golden_vectors = 32;
+  static constexpr std::size_t training_rows = 36;
+  static constexpr std::size_t shape_hash = 40;
+  static constexpr std::size_t training_data_hash = 48;
+  static constexpr std::size_t size = 56;
+  static constexpr std::size_t checksum_size = 4;
+};
+
+/// Where the scalars of a block for this shape stand, counted in scalars from the end of the header and the records.
+template <class Shape>
+struct ModelBlockLayout {
+  static constexpr std::size_t inputs = Shape::Network::inputs;
+  static constexpr std::size_t outputs = Shape::Network::outputs;
+  static constexpr std::size_t parameter_count = Shape::Network::parameter_count;
+  static constexpr std::size_t commands = rotor_count;
+
+  static constexpr std::size_t input_mean = 0;
+  static constexpr std::size_t input_spread = inputs;
+  static constexpr std::size_t output_mean = 2 * inputs;
+  static constexpr std::size_t output_spread = output_mean + outputs;
+  static constexpr std::size_t envelope_lower = output_spread + outputs;
+  static constexpr std::size_t envelope_upper = envelope_lower + inputs;
+  static constexpr std::size_t golden_features = envelope_upper + inputs;
+  static PINNQUAD_ALWAYS_INLINE constexpr std::size_t golden_commands(std::size_t golden) noexcept {
+    return golden_features + golden * inputs;
+  }
+  static PINNQUAD_ALWAYS_INLINE constexpr std::size_t parameters(std::size_t golden) noexcept {
+    return golden_commands(golden) + golden * commands;
+  }
+  /// Bytes of the whole block without its records. In 64 bits: a golden count from a broken header must not wrap around.
+  static PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t length(std::uint64_t golden) noexcept {
+    const std::uint64_t scalars = golden_features + golden * (inputs + commands) + parameter_count;
+    return ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) + ModelBlockHeader::checksum_size;
+  }
+  /// Bytes of the records, counts included, that no block of this library exceeds: room for one in a buffer is length(golden)
+  /// and this.
+  static constexpr std::size_t most_record_bytes() noexcept {
+    using Features = typename Shape::Features;
+    using Records = BlockRecordLayout;
+    constexpr std::size_t scalar = sizeof(typename Shape::Scalar);
+    std::size_t columns = 0;
+    for (const char* name : extra_column_names<Features>) columns += std::string_view(name).size() + 1;
+    for (const char* unit : extra_column_units<Features>) columns += std::string_view(unit).size() + 1;
+    constexpr std::size_t base = detail::description_length<typename detail::BaseOf<typename Shape::Outputs>::type>();
+    const std::size_t distance = inputs + detail::triangle(inputs) + 1;
+    std::size_t bytes = Records::counts;
+    for (const std::size_t length :
+         {8 + 2 * scalar, std::size_t{8}, std::size_t{8}, columns, 16 * scalar, base, std::size_t{8},
+          3 * std::size_t(rotor_count), 2 * outputs * scalar, distance * scalar}) {
+      bytes += Records::head + Records::padded(length);
+    }
+    return bytes;
+  }
+};
+
+namespace detail {
+/// What a shape says behind its answer; texts of any kind.
+template <class Names, class Units, class OutputNames, class OutputUnits>
+constexpr void absorb_shape(Fnv1a& fnv, const Names& names, const Units& units, const OutputNames& output_names,
+                            const OutputUnits& output_units, std::string_view vehicle_name,
+                            const std::array<TorqueSigns, rotor_count>& signs) noexcept {
+  fnv.absorb_text(model_frame);
+  for (const auto& name : names) fnv.absorb_text(name);
+  for (const auto& unit : units) fnv.absorb_text(unit);
+  for (const auto& name : output_names) fnv.absorb_text(name);
+  // one unit for all is said once
+  const std::size_t said = output_units.size() > 1 && one_unit(output_units) ? 1 : output_units.size();
+  for (std::size_t i = 0; i < said; ++i) fnv.absorb_text(output_units[i]);
+  fnv.absorb_text(vehicle_name);
+  for (const TorqueSigns& rotor : signs) {
+    for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
+  }
+}
+
+/// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
+template <class Shape>
+constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
+                                      const std::array<TorqueSigns, rotor_count>& signs) noexcept {
+  using Map = OutputMap<typename Shape::Outputs>;
+  Fnv1a fnv;
+  absorb_description<typename Shape::Network>(fnv);
+  absorb_shape(fnv, Shape::Features::names, Shape::Features::units, Map::names, Map::units, vehicle_name, signs);
+  return fnv.hash;
+}
+}  // namespace detail
+
+/// Names what a block's weights are for: the answer's description (model/description.hpp), frame, feature names and units,
+/// output names and units, vehicle name and motor order.
+template <class Shape>
+inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>(Shape::Vehicle::name,
+                                                                         motor_torque_signs<typename Shape::Vehicle>());
+
+namespace detail {
+
+/// What a reader expects of a block's header.
+struct ExpectedBlock {
+  std::uint32_t scalar_bytes, inputs, outputs, parameters;
+  std::uint64_t shape_hash;
+};
+
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// The checks of a block that need no scalar, in this order: place and length (`block_truncated`), magic and version
+/// (`block_incompatible`), length stated (`block_truncated`), checksum (`block_corrupt`), shape (`block_incompatible`).
+inline Status check_block(const unsigned char* block, std::size_t available,
+                          const detail::ExpectedBlock& expected) noexcept {
+  using Header = ModelBlockHeader;
+  using detail::read_u32;
+  if (block == nullptr || reinterpret_cast<std::uintptr_t>(block) % model_block_alignment != 0) {
+    return Status::block_truncated;
+  }
+  if (available < Header::size + Header::checksum_size) return Status::block_truncated;
+  const unsigned char* magic = detail::first_of<unsigned char>(model_block_magic);
+  for (std::size_t i = 0; i < sizeof model_block_magic; ++i) {
+    if (block[i] != magic[i]) return Status::block_incompatible;
+  }
+  const std::uint32_t version = read_u32(block + Header::version);
+  if (version < oldest_model_block_version || version > model_block_version) return Status::block_incompatible;
+  const std::size_t length = read_u32(block + Header::length);
+  if (length > available) return Status::block_truncated;
+  if (length < Header::size + Header::checksum_size) return Status::block_corrupt;
+  const std::size_t checked = length - Header::checksum_size;
+  if (crc32(block, checked) != read_u32(block + checked)) return Status::block_corrupt;
+  const bool fits = read_u32(block + Header::scalar_bytes) == expected.scalar_bytes &&
+                    read_u32(block + Header::inputs) == expected.inputs &&
+                    read_u32(block + Header::outputs) == expected.outputs &&
+                    read_u32(block + Header::parameters) == expected.parameters &&
+                    detail::read_u64(block + Header::shape_hash) == expected.shape_hash;
+  return fits ? Status::ok : Status::block_incompatible;
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+}  // namespace pinnquad

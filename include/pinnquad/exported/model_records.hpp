@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT
+// What a header of format 3 says of itself beyond format 2, record by record, against what its types say. A record that a
+// reader must understand is named in `records`; a constant that is not may be ignored.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/dynamics/command_meaning.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/features/extra_columns.hpp"
+#include "pinnquad/features/read_features.hpp"
+#include "pinnquad/model/description.hpp"
+
+namespace pinnquad {
+
+/// The mandatory records that this library knows. A header that names another one does not compile.
+inline constexpr std::array<std::string_view, 7> known_records = {
+    "answer",      // what the parameters are of: `answer`, a description
+    "commands",    // `command_meaning`, `command_lower`, `command_upper`: of the commands that it was trained towards
+    "clock",       // `sample_period_s` of its flights or window, 0 if not said; `lag_removed_s`
+    "window",      // `window_taps` (1: the present alone), `causal`
+    "columns",     // `column_names`, `column_units`
+    "allocation",  // `allocation`: Eq. (2) at the rated density
+    "base"};       // `base`: a description of what the outputs add to, "" if to nothing
+
+/// How a rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw): -1, 0 or 1.
+using TorqueSigns = std::array<int, 3>;
+
+/// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe<double>& airframe) noexcept {
+  std::array<TorqueSigns, rotor_count> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto signs = allocation_signs(airframe, static_cast<int>(axis));
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
+  }
+  return result;
+}
+template <class Vehicle>
+constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+  return motor_torque_signs(Vehicle::template value<double>());
+}
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+constexpr bool same_text(std::string_view a, std::string_view b) noexcept { return a == b; }
+
+template <class Texts, class Others>
+constexpr bool same_texts(const Texts& texts, const Others& others) noexcept {
+  if (texts.size() != others.size()) return false;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (!same_text(texts[i], others[i])) return false;
+  }
+  return true;
+}
+
+template <class Array>
+constexpr bool all_finite_constants(const Array& values) noexcept {
+  for (const auto& value : values) {
+    if (!is_finite_constant(value)) return false;
+  }
+  return true;
+}
+
+/// A description's letters, without spaces: what a header and a block are compared with, made by the compiler.
+template <std::size_t Most>
+struct DescriptionLetters : LetterSink<DescriptionLetters<Most>> {
+  char text[Most + 1] = {};
+  std::size_t count = 0;
+
+  constexpr void take(char c) noexcept { text[count++] = c; }
+};
+/// The most letters that a description has.
+struct DescriptionLength {
+  std::size_t letters = 0;
+  constexpr void add(std::string_view text) noexcept { letters += text.size(); }
+  constexpr void add(int number) noexcept { letters += number >= 10 ? 10 : 1; }
+};
+template <class T>
+constexpr std::size_t description_length() noexcept {
+  DescriptionLength length;
+  Description<T>::add(length);
+  return length.letters;
+}
+template <class T>
+constexpr auto description_letters() noexcept {
+  DescriptionLetters<description_length<T>()> letters;
+  Description<T>::add(letters);
+  return letters;
+}
+
+/// A description's letters against a text of chars or bytes; spaces don't count.
+template <class Byte>
+constexpr bool same_letters(const char* letters, std::size_t count, const Byte* text, std::size_t length) noexcept {
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < length; ++i) {
+    const char letter = static_cast<char>(text[i]);
+    if (letter == ' ') continue;
+    if (seen == count || letter != letters[seen]) return false;
+    ++seen;
+  }
+  return seen == count;
+}
+
+/// True for the text of T's description (model/description.hpp).
+template <class T>
+constexpr bool describes(std::string_view text) noexcept {
+  constexpr auto letters = description_letters<T>();
+  return same_letters(letters.text, letters.count, text.data(), text.size());
+}
+
+/// The instants that a feature set sees.
+template <class Features, class = void>
+struct WindowOf {
+  static constexpr int taps = 1;
+  static constexpr bool causal = true;
+  static constexpr double period_s = 0.0;  ///< no period
+};
+template <class Features>
+struct WindowOf<Features, std::void_t<typename Features::Window>> {
+  static constexpr int taps = Features::Window::taps;
+  static constexpr bool causal = Features::Window::causal;
+  static constexpr double period_s = Features::Window::period_s;
+};
+
+/// Two periods count as one if they differ by no more than this share: clocks are measured.
+inline constexpr double period_tolerance = 0.01;
+
+constexpr bool same_period(double a, double b) noexcept {
+  const double difference = a < b ? b - a : a - b;
+  return difference <= period_tolerance * b;
+}
+
+/// Entries of two allocations count as one if they differ by no more than this share of the largest of their row: what a
+/// float's rounding makes of their products.
+inline constexpr double allocation_tolerance = 4e-6;
+
+/// Entries `get(row, column)` against those expected.
+template <class Scalar, class Get, class Expected>
+constexpr bool same_allocation(const Get& get, const Expected& expected) noexcept {
+  constexpr std::size_t rows = 4, columns = static_cast<std::size_t>(rotor_count);
+  for (std::size_t row = 0; row < rows; ++row) {
+    Scalar largest(0);
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Scalar entry = expected(row, column);
+      const Scalar magnitude = entry < Scalar(0) ? -entry : entry;
+      largest = magnitude > largest ? magnitude : largest;
+    }
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Scalar difference = get(row, column) - expected(row, column);
+      const Scalar magnitude = difference < Scalar(0) ? -difference : difference;
+      if (!(magnitude <= Scalar(allocation_tolerance) * largest)) return false;
+    }
+  }
+  return true;
+}
+
+template <class M>
+constexpr bool knows_records() noexcept {
+  for (const char* name : M::records) {
+    bool known = false;
+    for (const std::string_view record : known_records) known = known || record == name;
+    if (!known) return false;
+  }
+  return true;
+}
+
+template <class M, class = void>
+struct NamesRecords : std::false_type {};
+template <class M>
+struct NamesRecords<M, std::void_t<decltype(M::records)>> : std::true_type {};
+
+template <class M, class = void>
+struct HasRecords : std::false_type {};
+template <class M>
+struct HasRecords<
+    M, std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower),
+                   decltype(M::command_upper), decltype(M::sample_period_s), decltype(M::lag_removed_s),
+                   decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
+                   decltype(M::allocation), decltype(M::base)>> : std::true_type {};
+
+template <class M, class = void>
+struct HasTrainingRows : std::false_type {};
+template <class M>
+struct HasTrainingRows<M, std::void_t<decltype(int{M::training_rows})>> : std::true_type {};
+
+template <class M, class = void>
+struct HasOutputUnits : std::false_type {};
+template <class M>
+struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
+
+template <class M, class = void>
+struct HasVerdict : std::false_type {};
+template <class M>
+struct HasVerdict<M, std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>> : std::true_type {
+};
+
+/// Optional constants, for whoever has a use for them:
+///   slope_signs                        of du_i/d(angular acceleration), rotor by rotor about x, y, z, where proven, else 0
+///   residual_lower, residual_upper     between which a residual's outputs stay
+///   distance_mean, distance_inverse_cholesky, distance_limit    z = L^-1 (x - mean), rows of the triangle one after the
+///     other; |z| no larger than the limit is near the training features
+template <class M, class = void>
+struct HasSlopeSigns : std::false_type {};
+template <class M>
+struct HasSlopeSigns<M, std::void_t<decltype(M::slope_signs)>> : std::true_type {};
+template <class M, class = void>
+struct HasResidualRange : std::false_type {};
+template <class M>
+struct HasResidualRange<M, std::void_t<decltype(M::residual_lower), decltype(M::residual_upper)>> : std::true_type {};
+template <class M, class = void>
+struct HasDistance : std::false_type {};
+template <class M>
+struct HasDistance<
+    M, std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky), decltype(M::distance_limit)>>
+    : std::true_type {};
+
+/// Numbers in the lower triangle of a Size x Size matrix.
+constexpr std::size_t triangle(std::size_t size) noexcept { return size * (size + 1) / 2; }
+
+template <class M>
+constexpr bool same_header_allocation() noexcept {
+  constexpr AllocationMatrix<double> expected = allocation(M::Vehicle::template value<double>());
+  return same_allocation<double>([](std::size_t row, std::size_t column) { return double(M::allocation[row][column]); },
+                                 [&](std::size_t row, std::size_t column) { return expected[row][column]; });
+}
+
+/// Of an answer whose structure says them.
+template <class M>
+constexpr bool true_slope_signs() noexcept {
+  if constexpr (!StatedStructure<typename M::Network>::known) return true;
+  const auto signs = motor_torque_signs<typename M::Vehicle>();
+  for (std::size_t rotor = 0; rotor < signs.size(); ++rotor) {
+    for (std::size_t axis = 0; axis < signs[rotor].size(); ++axis) {
+      if (!true_slope_sign(M::slope_signs[rotor][axis], signs[rotor][axis])) return false;
+    }
+  }
+  return true;
+}
+
+/// The stated range of a residual is in order, and that of its parameters where their answer has bounds.
+template <class M>
+constexpr bool true_residual_range() noexcept {
+  for (std::size_t i = 0; i < M::residual_lower.size(); ++i) {
+    if (!(M::residual_lower[i] <= M::residual_upper[i])) return false;
+  }
+  using Structure = StatedStructure<typename M::Network>;
+  if constexpr (Structure::known) {
+    const typename M::Scalar* bounds = nullptr;
+    if constexpr (Structure::at >= 0) bounds = M::parameters.data() + Structure::at;
+    return same_residual_range(M::residual_lower.data(), M::residual_upper.data(), Structure::at >= 0, bounds,
+                               M::output.spread.data(), M::residual_lower.size());
+  } else {
+    return true;
+  }
+}
+
+template <class M>
+constexpr void require_optional_records() noexcept {
+  if constexpr (HasSlopeSigns<M>::value) {
+    constexpr bool three = M::slope_signs.size() == std::size_t(rotor_count) && M::slope_signs[0].size() == 3;
+    static_assert(three, "pinnquad: the model's slope signs are not three per rotor (slope_signs)");
+    if constexpr (three) {
+      static_assert(true_slope_signs<M>(),
+                    "pinnquad: a slope sign of the model is not that of the torque that its Vehicle's rotor makes "
+                    "(slope_signs)");
+    }
+  }
+  if constexpr (HasResidualRange<M>::value) {
+    constexpr bool numbers = M::residual_lower.size() == std::size_t(M::Network::outputs) &&
+                             M::residual_upper.size() == std::size_t(M::Network::outputs) &&
+                             all_finite_constants(M::residual_lower) && all_finite_constants(M::residual_upper);
+    static_assert(numbers,
+                  "pinnquad: the model's range of a residual is not one of numbers per output (residual_lower)");
+    if constexpr (numbers) {
+      static_assert(true_residual_range<M>(),
+                    "pinnquad: the model's range of a residual is upside down, or not that of the bounds among its "
+                    "parameters (residual_lower, residual_upper)");
+    }
+  }
+  if constexpr (HasDistance<M>::value) {
+    constexpr auto size = static_cast<std::size_t>(M::Features::size);
+    constexpr bool numbers = M::distance_mean.size() == size && M::distance_inverse_cholesky.size() == triangle(size) &&
+                             all_finite_constants(M::distance_mean) &&
+                             all_finite_constants(M::distance_inverse_cholesky) && M::distance_limit > 0 &&
+                             is_finite_constant(M::distance_limit);
+    static_assert(
+        numbers,
+        "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
+        "is no number (distance_mean)");
+    if constexpr (numbers) {
+      static_assert(
+          is_distance(M::distance_mean.data(), M::distance_inverse_cholesky.data(), M::distance_limit,
+                      M::envelope_lower.data(), M::envelope_upper.data(), size),
+          "pinnquad: the model's statistics of a distance have a mean outside the envelope, or a diagonal that "
+          "is not above 0 (distance_mean, distance_inverse_cholesky)");
+    }
+  }
+}
+
+/// What a header of format 3 says of itself beyond format 2, against what its types say.
+template <class M>
+constexpr void require_records() noexcept {
+  static_assert(NamesRecords<M>::value && HasRecords<M>::value,
+                "pinnquad: the model lacks what format 3 demands: records, answer, commands, clock, window, columns, "
+                "allocation, base (exported/model_records.hpp)");
+  if constexpr (NamesRecords<M>::value && HasRecords<M>::value) {
+    static_assert(knows_records<M>(),
+                  "pinnquad: the model has a record that must be understood and that this pinnquad does not know "
+                  "(records); update the library");
+    using Window = WindowOf<typename M::Features>;
+    static_assert(describes<typename M::Network>(M::answer),
+                  "pinnquad: the model's parameters are of another answer than its Network now is (answer)");
+    static_assert(M::command_lower <= M::command_upper && is_finite_constant(M::command_lower) &&
+                      is_finite_constant(M::command_upper),
+                  "pinnquad: the range of the model's commands is none (command_lower, command_upper)");
+    static_assert(is_clock_time(M::sample_period_s) && is_clock_time(M::lag_removed_s),
+                  "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
+    static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
+                  "pinnquad: the model has another window than its feature set now has (window_taps, causal)");
+    static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),
+                  "pinnquad: the model's sample period is another than its window's (sample_period_s)");
+    static_assert(
+        same_texts(M::column_names, extra_column_names<typename M::Features>) &&
+            same_texts(M::column_units, extra_column_units<typename M::Features>),
+        "pinnquad: the model has other extra columns than its feature set now has (column_names, column_units)");
+    static_assert(same_header_allocation<M>(),
+                  "pinnquad: the model was trained for another allocation than its Vehicle now has (allocation)");
+    static_assert(describes<typename BaseOf<typename M::Outputs>::type>(M::base),
+                  "pinnquad: the model's outputs add to another base than its output schema's (base)");
+    require_optional_records<M>();
+  }
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+}  // namespace pinnquad

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+// A model whose weights lie in a memory block, checked when it is opened and read in place.
+// The one view of the library: the block must neither move nor change while a view of it is used.
+#pragma once
+
+#include <cstring>
+#include <limits>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/exported/model_block.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+template <class Scalar>
+inline constexpr bool reads_in_place = __BYTE_ORDER__ ==
+                                           __ORDER_LITTLE_ENDIAN__&& std::numeric_limits<Scalar>::is_iec559 &&
+                                       (sizeof(Scalar) == 4 || sizeof(Scalar) == 8);
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// The members that a model has besides its weights. As made, the envelope is empty: every input lies outside.
+template <class ShapeType>
+struct ModelScales {
+  using Shape = ShapeType;
+  using Scalar = typename Shape::Scalar;
+  using Network = typename Shape::Network;
+  using Features = typename Shape::Features;
+  using Outputs = typename Shape::Outputs;
+  using Vehicle = typename Shape::Vehicle;
+  static_assert(require_shape<Shape>());
+  static_assert(detail::reads_in_place<Scalar>,
+                "pinnquad: a model block is read in place: float or double of IEEE 754, on a little-endian machine");
+  using FeatureVector = std::array<Scalar, static_cast<std::size_t>(Features::size)>;
+
+  Scaler<Scalar, Features::size> input{};
+  Scaler<Scalar, OutputMap<Outputs>::size> output{};
+  FeatureVector envelope_lower = detail::ones<Scalar, Features::size>;
+  FeatureVector envelope_upper{};
+  std::uint64_t training_data_hash = 0;
+  std::uint32_t training_rows = 0;
+  /// What the block says of itself, where it is of version 2.
+  ModelRecords<Scalar, Features::size, OutputMap<Outputs>::size> records{};
+};
+
+/// Rows of scalars in a block. As made, one row of zeros.
+template <class Scalar, int Columns>
+class BlockRows {
+ public:
+  using value_type = std::array<Scalar, static_cast<std::size_t>(Columns)>;
+
+  BlockRows() = default;
+  BlockRows(const Scalar* first, std::size_t count) noexcept : first_(first), count_(count) {}
+
+  std::size_t size() const noexcept { return count_; }
+  /// A copy of a row.
+  value_type operator[](std::size_t row) const noexcept {
+    value_type result{};
+    if (first_ != nullptr) std::memcpy(&result, first_ + row * std::size_t(Columns), sizeof result);
+    return result;
+  }
+
+ private:
+  const Scalar* first_ = nullptr;
+  std::size_t count_ = 1;
+};
+
+/// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
+/// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle, which may name its Caller.
+/// Lifetime: scalers and envelope are copied; weights and golden vectors are read in the block each time. A copy of a
+/// view looks into the same block. As made, a view declines: its envelope is empty, its self test fails, forward()
+/// gives NaN.
+template <class ShapeType>
+class ModelView : public ModelScales<ShapeType> {
+ public:
+  using Scales = ModelScales<ShapeType>;
+  using typename Scales::Features;
+  using typename Scales::Network;
+  using typename Scales::Scalar;
+
+  BlockRows<Scalar, Features::size> golden_features{};
+  BlockRows<Scalar, rotor_count> golden_commands{};
+
+  /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
+  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
+  /// another shape or caller, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
+  /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a spread that is not
+  /// positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
+  /// (exported/model_agreement.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
+  /// untouched unless the Status is ok.
+  /// Reads the whole block, twice: not for a control loop.
+  static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
+    using Layout = ModelBlockLayout<ShapeType>;
+    using Header = ModelBlockHeader;
+    const auto* bytes = static_cast<const unsigned char*>(block);
+    const Status checked =
+        check_block(bytes, length,
+                    {sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, shape_hash<ShapeType>});
+    if (checked != Status::ok) return checked;
+    const std::size_t whole = detail::read_u32(bytes + Header::length);
+    decltype(view.records) records{};
+    std::size_t record_bytes = 0;
+    const Status read = detail::read_u32(bytes + Header::version) < 2
+                            ? RecordReader::read_none()
+                            : RecordReader::read(bytes + Header::size, whole - Header::size - Header::checksum_size,
+                                                 records, record_bytes);
+    if (read != Status::ok) return read;
+    const std::uint32_t golden = detail::read_u32(bytes + Header::golden_vectors);
+    if (golden == 0 || Layout::length(golden) != whole - record_bytes) return Status::block_corrupt;
+    // aligned, and of this scalar type: the header says so
+    const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes + Header::size + record_bytes));
+    if (!sound(scalars, golden, records)) return Status::block_corrupt;
+
+    copy(scalars + Layout::input_mean, view.input.mean);
+    copy(scalars + Layout::input_spread, view.input.spread);
+    copy(scalars + Layout::output_mean, view.output.mean);
+    copy(scalars + Layout::output_spread, view.output.spread);
+    copy(scalars + Layout::envelope_lower, view.envelope_lower);
+    copy(scalars + Layout::envelope_upper, view.envelope_upper);
+    view.golden_features = {scalars + Layout::golden_features, golden};
+    view.golden_commands = {scalars + Layout::golden_commands(golden), golden};
+    view.parameters_ = scalars + Layout::parameters(golden);
+    view.training_data_hash = detail::read_u64(bytes + Header::training_data_hash);
+    view.training_rows = detail::read_u32(bytes + Header::training_rows);
+    view.records = records;
+    return Status::ok;
+  }
+
+  /// The bare network, standardised in and out, straight from the block: the portable kernel.
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
+    if (parameters_ == nullptr) {
+      constexpr Scalar nothing = std::numeric_limits<Scalar>::quiet_NaN();
+      for (int i = 0; i < Network::outputs; ++i) outputs[i] = nothing;
+      return;
+    }
+    Network::forward(parameters_, standardised, outputs);
+  }
+
+  /// The weights in the block, or null.
+  const Scalar* parameters() const noexcept { return parameters_; }
+
+ private:
+  using RecordReader = BlockRecordReader<ShapeType>;
+
+  template <class Array>
+  static void copy(const Scalar* from, Array& to) noexcept {
+    std::memcpy(&to, from, sizeof to);
+  }
+
+  using Records = ModelRecords<Scalar, Features::size, OutputMap<typename Scales::Outputs>::size>;
+
+  static bool sound(const Scalar* scalars, std::size_t golden, const Records& records) noexcept {
+    using Layout = ModelBlockLayout<ShapeType>;
+    const std::size_t count = Layout::parameters(golden) + Layout::parameter_count;
+    const Scalar* lower = scalars + Layout::envelope_lower;
+    const Scalar* upper = scalars + Layout::envelope_upper;
+    bool sound = true;
+    for (std::size_t i = 0; i < count; ++i) sound &= is_finite(scalars[i]);
+    for (std::size_t i = 0; i < Layout::inputs; ++i) sound &= scalars[Layout::input_spread + i] > Scalar(0);
+    for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_spread + i] > Scalar(0);
+    sound &=
+        detail::is_envelope(scalars + Layout::input_mean, scalars + Layout::input_spread, lower, upper, Layout::inputs);
+    for (std::size_t row = 0; row < golden; ++row) {
+      const Scalar* x = scalars + Layout::golden_features + row * Layout::inputs;
+      sound &= detail::inside_envelope(lower, x, upper, Layout::inputs);
+    }
+    if (records.distance != nullptr) {
+      const Scalar* triangle = records.distance + Layout::inputs;
+      sound &= detail::is_distance(records.distance, triangle, triangle[detail::triangle(Layout::inputs)], lower, upper,
+                                   Layout::inputs);
+    }
+    using Structure = detail::StatedStructure<Network>;
+    if constexpr (Structure::known) {
+      const Scalar* bounds = nullptr;
+      if constexpr (Structure::at >= 0) bounds = scalars + Layout::parameters(golden) + Structure::at;
+      if (records.has_residual_range) {
+        sound &= detail::same_residual_range(detail::first_of<Scalar>(records.residual_lower),
+                                             detail::first_of<Scalar>(records.residual_upper), Structure::at >= 0,
+                                             bounds, scalars + Layout::output_spread, Layout::outputs);
+      }
+    }
+    if constexpr (has_certificate<ShapeType>) {
+      constexpr auto vehicle =
+          certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
+      const Certificate certificate = certificate_of<ShapeType>(
+          vehicle, scalars + Layout::parameters(golden),
+          {scalars + Layout::input_mean, scalars + Layout::input_spread, scalars + Layout::output_mean,
+           scalars + Layout::output_spread, scalars + Layout::envelope_lower, scalars + Layout::envelope_upper});
+      sound &= certificate.proven();
+    }
+    return sound;
+  }
+
+  const Scalar* parameters_ = nullptr;
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// The inputs of a control loop as a feature set wants them: the present ones, or a window of them at exact distances in time
+// whatever the loop's jitter. A value without heap.
+#pragma once
+
+#include <cmath>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/scalar_math.hpp"
+#include "pinnquad/features/windowed.hpp"
+
+namespace pinnquad {
+
+/// Inputs between two samples, `share` from 0 (a) to 1 (b): straight lines; the attitude by the normalised straight line between
+/// the quaternions, the shorter way. Of a turn at constant rate it misses 6e-5 rad over 0.25 rad, 5e-4 rad over 0.5 rad.
+/// Flight and training use the same.
+/// A feature set with inputs of its own is windowed once there is an `interpolated` for them in their namespace.
+template <class Scalar>
+MotionInputs<Scalar> interpolated(const MotionInputs<Scalar>& a, const MotionInputs<Scalar>& b, Scalar share) noexcept {
+  MotionInputs<Scalar> result;
+  result.linear_acceleration_m_s2 =
+      a.linear_acceleration_m_s2 + share * (b.linear_acceleration_m_s2 - a.linear_acceleration_m_s2);
+  result.angular_acceleration_rad_s2 =
+      a.angular_acceleration_rad_s2 + share * (b.angular_acceleration_rad_s2 - a.angular_acceleration_rad_s2);
+  result.velocity_m_s = a.velocity_m_s + share * (b.velocity_m_s - a.velocity_m_s);
+  result.body_rates_rad_s = a.body_rates_rad_s + share * (b.body_rates_rad_s - a.body_rates_rad_s);
+  const Quaternion<Scalar>& p = a.attitude;
+  const Quaternion<Scalar>& q = b.attitude;
+  const Scalar cosine = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;  // of half the turn
+  const Scalar of_a = Scalar(1) - share, of_b = cosine < Scalar(0) ? -share : share;
+  result.attitude = normalized(Quaternion<Scalar>{of_a * p.w + of_b * q.w, of_a * p.x + of_b * q.x,
+                                                  of_a * p.y + of_b * q.y, of_a * p.z + of_b * q.z});
+  return result;
+}
+
+template <class Scalar>
+MotionInputsWithAltitude<Scalar> interpolated(const MotionInputsWithAltitude<Scalar>& a,
+                                              const MotionInputsWithAltitude<Scalar>& b, Scalar share) noexcept {
+  MotionInputsWithAltitude<Scalar> result;
+  static_cast<MotionInputs<Scalar>&>(result) =
+      interpolated(static_cast<const MotionInputs<Scalar>&>(a), static_cast<const MotionInputs<Scalar>&>(b), share);
+  result.altitude_m = a.altitude_m + share * (b.altitude_m - a.altitude_m);
+  return result;
+}
+
+template <class Base, class Scalar, class... Column>
+InputsWithColumns<Base, Scalar, Column...> interpolated(const InputsWithColumns<Base, Scalar, Column...>& a,
+                                                        const InputsWithColumns<Base, Scalar, Column...>& b,
+                                                        Scalar share) noexcept {
+  InputsWithColumns<Base, Scalar, Column...> result;
+  static_cast<Base&>(result) = interpolated(static_cast<const Base&>(a), static_cast<const Base&>(b), share);
+  for (std::size_t i = 0; i < result.columns.size(); ++i) {
+    result.columns[i] = a.columns[i] + share * (b.columns[i] - a.columns[i]);
+  }
+  return result;
+}
+
+namespace detail {
+
+/// The inputs at an instant among samples `first` to `last`, whose times rise: a sample itself where it is within the window's
+/// tolerance. `near` is where the search begins. False before the first and behind the last sample.
+template <class Scalar, class Window, class Index, class TimeOf, class Read, class Tap>
+bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
+             Tap& result) noexcept {
+  const double until_s = time_s + Window::tolerance_s;
+  Index at = near;
+  while (at > first && time_of(at) > until_s) --at;
+  while (at < last && time_of(at + 1) <= until_s) ++at;
+  const double behind_s = time_s - time_of(at);
+  if (behind_s < -Window::tolerance_s) return false;
+  if (behind_s <= Window::tolerance_s) return read(at, result);
+  if (at == last) return false;
+  Tap before, after;
+  if (!read(at, before) || !read(at + 1, after)) return false;
+  const double share = behind_s / (time_of(at + 1) - time_of(at));
+  result = interpolated(before, after, static_cast<Scalar>(share));
+  return true;
+}
+
+/// The other taps of a window about a present instant; `complete` if all of them are there.
+template <class Tap, class Scalar, class Window, class Index, class TimeOf, class Read>
+void fill_window(double present_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
+                 WindowInputs<Tap, Scalar, Window>& window) noexcept {
+  window.complete = true;
+  for (int tap = 0; tap < Window::taps - 1; ++tap) {
+    const double time_s = present_s + Window::offset_s(tap);
+    window.complete &=
+        read_at<Scalar, Window>(time_s, first, last, near, time_of, read, window.others[std::size_t(tap)]);
+  }
+}
+
+/// Largest distance of two samples in time that are neighbours to a window: more is a gap, and so is no time at all or time
+/// that runs backwards.
+template <class Window>
+constexpr bool follows(double earlier_s, double later_s) noexcept {
+  return later_s > earlier_s && later_s - earlier_s <= Window::largest_gap_s + Window::tolerance_s;
+}
+
+}  // namespace detail
+
+/// Samples that a history keeps by default: eight per period of the window. A loop that is faster is thinned to that.
+template <class Features>
+constexpr int default_history_length() noexcept {
+  if constexpr (is_windowed<Features>) {
+    return 8 * (Features::Window::taps - 1) + 4;
+  } else {
+    return 0;
+  }
+}
+
+/// Inputs of a feature set without a past: the present ones are all there is, always `ok`; predict() checks them.
+template <class Features, class Scalar, int MostSamples = default_history_length<Features>(), class = void>
+class InputHistory {
+ public:
+  using Inputs = typename Features::template Inputs<Scalar>;
+  using Present = Inputs;
+
+  Status take(const Present& present, double /*time_s*/) noexcept {
+    inputs_ = present;
+    return Status::ok;
+  }
+  const Inputs& inputs() const noexcept { return inputs_; }
+  void clear() noexcept {}
+
+ private:
+  Inputs inputs_{};
+};
+
+/// Inputs of a causal window. Take the present inputs in every tick with their time; between them the taps are interpolated.
+template <class Features, class Scalar, int MostSamples>
+class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<Features>>> {
+  using FeatureSet = typename Features::TapFeatures;
+  using Window = typename Features::Window;
+  static_assert(
+      Window::causal,
+      "pinnquad: a centred window looks ahead, and no loop can: planned_window() makes it of a motion that is "
+      "known (features/input_history.hpp)");
+  static_assert(MostSamples >= 4, "pinnquad: an InputHistory keeps four samples or more");
+
+ public:
+  using Inputs = typename Features::template Inputs<Scalar>;
+  using Present = typename FeatureSet::template Inputs<Scalar>;
+
+  /// The present inputs; time in seconds from any start. What inputs() then are: `ok`, the window is complete; `warming_up`, it
+  /// is not yet: since the start, a gap of more than Window::largest_gap_s, or time that ran backwards, all of which empty the
+  /// history. `not_finite` for the time, and any Status of `Features` for inputs that are refused: the history stays as it was.
+  /// A time that comes twice replaces what came first.
+  Status take(const Present& present, double time_s) noexcept {
+    static_cast<Present&>(inputs_) = present;
+    inputs_.complete = false;
+    if (!is_finite(time_s)) return Status::not_finite;
+    const Status checked = FeatureSet::check(present);
+    if (checked != Status::ok) return checked;
+    if (count_ > 0) {
+      const double newest_s = sample(count_ - 1).time_s;
+      if (detail::equal(time_s, newest_s)) {
+        --count_;
+      } else if (!detail::follows<Window>(newest_s, time_s)) {
+        count_ = 0;
+      } else if (count_ > 1 && newest_s - sample(count_ - 2).time_s < thinned_s &&
+                 (!keeps_neighbours || detail::follows<Window>(sample(count_ - 2).time_s, time_s))) {
+        --count_;  // the present one takes the place of one that was kept as the newest alone
+      }
+    }
+    sample(count_) = {time_s, present};
+    ++count_;
+    while (count_ > 1 && sample(1).time_s <= time_s + Window::earliest_s + Window::tolerance_s) {
+      oldest_ = (oldest_ + 1) % MostSamples;
+      --count_;
+    }
+    detail::fill_window(
+        time_s, 0, count_ - 1, count_ - 1, [this](int i) noexcept { return sample(i).time_s; },
+        [this](int i, Present& result) noexcept {
+          result = sample(i).inputs;
+          return true;
+        },
+        inputs_);
+    return inputs_.complete ? Status::ok : Status::warming_up;
+  }
+
+  /// As of the last take(): the present inputs, and the window's taps where it was `ok`.
+  const Inputs& inputs() const noexcept { return inputs_; }
+
+  /// Forgets the past: a controller that was switched off.
+  void clear() noexcept {
+    count_ = 0;
+    inputs_.complete = false;
+  }
+
+ private:
+  struct Sample {
+    double time_s;
+    Present inputs;
+  };
+
+  /// Samples closer than this do not all stay. So many fit into the window's length that the one before it and the newest
+  /// have room too.
+  static constexpr double thinned_s = -Window::earliest_s / (MostSamples - 3);
+  /// Thinning leaves no two samples further apart than a gap: one more that stays before a late tick takes no more room, as the
+  /// two steps together are as long as two that thinning leaves. A shorter history has no room for that.
+  static constexpr bool keeps_neighbours = 2 * thinned_s <= Window::largest_gap_s;
+
+  /// Counted from the oldest.
+  Sample& sample(int i) noexcept { return samples_[std::size_t((oldest_ + i) % MostSamples)]; }
+  const Sample& sample(int i) const noexcept { return samples_[std::size_t((oldest_ + i) % MostSamples)]; }
+
+  std::array<Sample, std::size_t(MostSamples)> samples_{};
+  int oldest_{0};
+  int count_{0};
+  Inputs inputs_{};
+};
+
+/// A window, causal or centred, of a motion that is known ahead: `plan(time_s, inputs)` gives the inputs of an instant, a Status,
+/// and does not throw.
+/// The first Status of the plan that is not ok, and then `window` is untouched.
+template <class Tap, class Scalar, class Window, class Plan>
+Status planned_window(const Plan& plan, double present_s, WindowInputs<Tap, Scalar, Window>& window) noexcept {
+  WindowInputs<Tap, Scalar, Window> filled;
+  Status status = plan(present_s, static_cast<Tap&>(filled));
+  for (int tap = 0; tap < Window::taps - 1 && status == Status::ok; ++tap) {
+    status = plan(present_s + Window::offset_s(tap), filled.others[std::size_t(tap)]);
+  }
+  if (status != Status::ok) return status;
+  filled.complete = true;
+  window = filled;
+  return Status::ok;
+}
+
+}  // namespace pinnquad

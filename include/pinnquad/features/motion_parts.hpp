@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// What moves a vehicle, as feature sets to be joined: Joined<SpecificForce, AngularAcceleration, BodyRates> is one. They
+// say of a motion what forces and torques depend on; a network would have to find it in velocities and Euler angles.
+// Body frame FRD. An input that is not finite makes a feature of each part that depends on it not finite.
+#pragma once
+
+#include "pinnquad/dynamics/airframe.hpp"
+#include "pinnquad/features/extra_columns.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+
+/// A part of three features of a motion: everything but `extract(inputs, x)`, which fills x[0..3) of inputs that have passed
+/// check(): number by number, for a vector in between would lie on the stack beside the network's numbers.
+template <class Part>
+struct MotionPart {
+  template <class Scalar>
+  using Inputs = MotionInputs<Scalar>;
+  static constexpr int size = 3;
+  static constexpr int angular_acceleration = -1;
+
+  /// As PaperFeatures: of all inputs, whatever the part reads.
+  template <class Scalar>
+  static Status check(const MotionInputs<Scalar>& in) noexcept {
+    return PaperFeatures::check<Scalar>(in);
+  }
+};
+
+/// x[0..3) = v.
+template <class Scalar>
+void write_vector(const Vector3<Scalar>& v, Scalar* x) noexcept {
+  for (int i = 0; i < 3; ++i) x[i] = v[i];
+}
+
+template <class Part>
+inline constexpr bool is_motion_part = std::is_base_of_v<MotionPart<Part>, Part>;
+
+}  // namespace detail
+
+/// What an accelerometer measures: the sum of all forces but gravity over the mass. s = v_dot + omega x v - R^T g.
+/// Hovering it is (0, 0, -g) whatever the heading; a wind is in it, the frame's turning is not.
+struct SpecificForce : detail::MotionPart<SpecificForce> {
+  static constexpr std::array<const char*, 3> names = {"s_x", "s_y", "s_z"};
+  static constexpr std::array<const char*, 3> units = {"m/s^2", "m/s^2", "m/s^2"};
+
+  template <class Scalar>
+  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
+    const Vector3<Scalar> turning = cross<Scalar>(in.body_rates_rad_s, in.velocity_m_s);
+    const Vector3<Scalar> down = world_down_axis(in.attitude);
+    return in.linear_acceleration_m_s2 + turning - standard_gravity_m_s2<Scalar> * down;
+  }
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector<Scalar>(of<Scalar>(in), x);
+  }
+};
+
+struct AngularAcceleration : detail::MotionPart<AngularAcceleration> {
+  static constexpr int angular_acceleration = 0;
+  static constexpr std::array<const char*, 3> names = {"wdot_x", "wdot_y", "wdot_z"};
+  static constexpr std::array<const char*, 3> units = {"rad/s^2", "rad/s^2", "rad/s^2"};
+
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector(in.angular_acceleration_rad_s2, x);
+  }
+};
+
+struct BodyRates : detail::MotionPart<BodyRates> {
+  static constexpr std::array<const char*, 3> names = {"w_x", "w_y", "w_z"};
+  static constexpr std::array<const char*, 3> units = {"rad/s", "rad/s", "rad/s"};
+
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector(in.body_rates_rad_s, x);
+  }
+};
+
+/// What omega x J omega is made of: (w_y w_z, w_z w_x, w_x w_y). With principal axes along the body's each component of
+/// omega x J omega is one of these times a difference of two moments of inertia: a factor that a linear map finds by
+/// itself, and that a standardised feature does not have. So no airframe is asked.
+struct RateProducts : detail::MotionPart<RateProducts> {
+  static constexpr std::array<const char*, 3> names = {"w_yz", "w_zx", "w_xy"};
+  static constexpr std::array<const char*, 3> units = {"rad^2/s^2", "rad^2/s^2", "rad^2/s^2"};
+
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    const Vector3<Scalar>& w = in.body_rates_rad_s;
+    x[0] = w[1] * w[2];
+    x[1] = w[2] * w[0];
+    x[2] = w[0] * w[1];
+  }
+};
+
+/// Rotor drag is proportional to it.
+struct BodyVelocity : detail::MotionPart<BodyVelocity> {
+  static constexpr std::array<const char*, 3> names = {"v_bx", "v_by", "v_bz"};
+  static constexpr std::array<const char*, 3> units = {"m/s", "m/s", "m/s"};
+
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector(in.velocity_m_s, x);
+  }
+};
+
+/// Drag of a body is proportional to it: v_i |v_i|, axis by axis.
+struct SquaredVelocity : detail::MotionPart<SquaredVelocity> {
+  static constexpr std::array<const char*, 3> names = {"vv_bx", "vv_by", "vv_bz"};
+  static constexpr std::array<const char*, 3> units = {"m^2/s^2", "m^2/s^2", "m^2/s^2"};
+
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      const Scalar speed = in.velocity_m_s[i];
+      x[i] = speed < Scalar(0) ? -speed * speed : speed * speed;
+    }
+  }
+};
+
+/// R^T e_z: how far down each body axis points. The tilt without angles, and no heading: a vehicle does not feel north.
+struct DownVector : detail::MotionPart<DownVector> {
+  static constexpr std::array<const char*, 3> names = {"down_x", "down_y", "down_z"};
+  static constexpr std::array<const char*, 3> units = {"1", "1", "1"};
+
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    detail::write_vector<Scalar>(world_down_axis(in.attitude), x);
+  }
+};
+
+/// Feature sets of the same inputs, one after the other.
+template <class First, class... More>
+struct Joined {
+  static_assert(is_feature_set<First> && (is_feature_set<More> && ...),
+                "pinnquad: an argument of Joined is not a feature set (features/features.hpp)");
+  static_assert((std::is_same_v<typename First::template Inputs<double>, typename More::template Inputs<double>> &&
+                 ...),
+                "pinnquad: feature sets that are Joined have the same Inputs");
+  static_assert(
+      !detail::HasWindow<First>::value,
+      "pinnquad: a window is around what is joined: PartlyWindowed<Joined<...>, ...> (features/windowed.hpp)");
+
+  template <class Scalar>
+  using Inputs = typename First::template Inputs<Scalar>;
+  static constexpr int size = (First::size + ... + More::size);
+  static constexpr int angular_acceleration = [] {
+    const int places[] = {First::angular_acceleration, More::angular_acceleration...};
+    const int sizes[] = {First::size, More::size...};
+    int before = 0;
+    for (std::size_t i = 0; i <= sizeof...(More); before += sizes[i++]) {
+      if (places[i] >= 0) return before + places[i];
+    }
+    return -1;
+  }();
+  static constexpr auto names = [] {
+    if constexpr (sizeof...(More) == 0) {
+      return First::names;
+    } else {
+      return detail::joined_texts(First::names, Joined<More...>::names);
+    }
+  }();
+  static constexpr auto units = [] {
+    if constexpr (sizeof...(More) == 0) {
+      return First::units;
+    } else {
+      return detail::joined_texts(First::units, Joined<More...>::units);
+    }
+  }();
+  static_assert(detail::all_differ(names), "pinnquad: feature sets that are Joined have a feature in common");
+
+  /// The first Status that is not ok.
+  template <class AnyInputs>
+  static Status check(const AnyInputs& in) noexcept {
+    if constexpr (sizeof...(More) == 0 || (detail::is_motion_part<First> && ... && detail::is_motion_part<More>)) {
+      return First::check(in);  // parts of a motion check all of it
+    } else {
+      const Status first = First::check(in);
+      return first == Status::ok ? Joined<More...>::check(in) : first;
+    }
+  }
+  /// Fills x[0..size). The inputs must have passed check().
+  template <class Scalar, class AnyInputs>
+  static void extract(const AnyInputs& in, Scalar* x) noexcept {
+    First::extract(in, x);
+    if constexpr (sizeof...(More) > 0) Joined<More...>::extract(in, x + First::size);
+  }
+};
+
+/// What the thrust and the torques of a vehicle go with at once: what a window is worth for.
+struct AccelerationFeatures : Joined<SpecificForce, AngularAcceleration> {};
+
+/// Of a vehicle whose velocity is known.
+struct PhysicsFeatures
+    : Joined<SpecificForce, AngularAcceleration, BodyRates, RateProducts, DownVector, BodyVelocity, SquaredVelocity> {};
+
+/// Of one whose velocity was not measured. The specific force is then known of an accelerometer; where it is made of
+/// MotionInputs all the same, their velocity is 0 and their v_dot is s + R^T g.
+struct PhysicsFeaturesWithoutVelocity
+    : Joined<SpecificForce, AngularAcceleration, BodyRates, RateProducts, DownVector> {};
+
+}  // namespace pinnquad

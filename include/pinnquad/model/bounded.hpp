@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// An answer whose outputs stay between bounds, whatever it is asked: a residual that says no more than it did in
+// training.
+#pragma once
+
+#include "pinnquad/model/composition.hpp"
+
+namespace pinnquad {
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// y = clip(Inner(x)), output by output. Parameters: lower bounds, upper bounds, then those of `Inner`. NaN goes
+/// through.
+template <class Inner>
+struct Bounded : AnswerBase<Bounded<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
+                            2 * Inner::outputs + Inner::parameter_count> {
+  static_assert(is_answer<Inner>, "pinnquad: Bounded is of an answer (model/answer.hpp)");
+  using Scalar = typename Inner::Scalar;
+  using Bounded::AnswerBase::forward;
+  static constexpr int lower = 0;  ///< where they stand among the parameters
+  static constexpr int upper = Inner::outputs;
+  static constexpr int own = 2 * Inner::outputs;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Inner::forward(parameters + own, x, y);
+    clip(parameters, y);
+  }
+  /// The derivative of an output that is clipped, and of one on its bound, is 0.
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    answer_jacobian<Inner>(parameters + own, x, y, by_x);
+    for (int i = 0; i < Inner::outputs; ++i) {
+      if (y[i] > parameters[lower + i] && y[i] < parameters[upper + i]) continue;
+      for (int k = 0; k < Inner::inputs; ++k) by_x[i * Inner::inputs + k] = Scalar(0);
+    }
+    clip(parameters, y);
+  }
+
+ private:
+  static PINNQUAD_ALWAYS_INLINE void clip(const Scalar* parameters, Scalar* y) noexcept {
+    for (int i = 0; i < Inner::outputs; ++i) {
+      const Scalar least = parameters[lower + i], most = parameters[upper + i];
+      y[i] = y[i] < least ? least : (y[i] > most ? most : y[i]);
+    }
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+namespace detail {
+template <class Inner>
+struct FormulasOf<Bounded<Inner>> : FormulasOf<Inner> {};
+}  // namespace detail
+
+template <class Inner>
+struct Description<Bounded<Inner>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<Inner>(sink, "pinnquad::Bounded");
+  }
+};
+
+}  // namespace pinnquad

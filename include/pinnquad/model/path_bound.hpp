@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Bounds of the derivative of a network's outputs by one input, for all inputs at once: along every path from the input
+// to an output the product of the weights, each activation's slope anywhere from 0 to 1 (docs/certificate.md). For a
+// network that is shown the angular acceleration and must not turn a base's slope round.
+#pragma once
+
+#include <limits>
+
+#include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/softplus.hpp"
+#include "pinnquad/nn/tanh.hpp"
+
+namespace pinnquad {
+
+/// Activations whose slope is never below 0 nor above 1: of Relu 0 or 1, of Tanh 1 - y^2, of Softplus 1 / (1 + exp(-v)).
+/// Not Gelu, Silu (-0.13 to 1.13) and Sine (-1 to 1).
+template <class Layer>
+inline constexpr bool slopes_from_0_to_1 = false;
+template <class Scalar, int Size>
+inline constexpr bool slopes_from_0_to_1<ReluLayer<Scalar, Size>> = true;
+template <class Scalar, int Size>
+inline constexpr bool slopes_from_0_to_1<TanhLayer<Scalar, Size>> = true;
+template <class Scalar, int Size>
+inline constexpr bool slopes_from_0_to_1<SoftplusLayer<Scalar, Size>> = true;
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// Weighs intervals: `outputs` sums of `inputs` products, weights row by row. Where the intervals hold 0 each end of a
+/// sum has terms of one sign, so that rounding errs by less than (inputs + 1) 2^-53 of it.
+template <class Scalar>
+constexpr void weigh_intervals(const Scalar* weights, int inputs, int outputs, const double* lower, const double* upper,
+                               double* sum_lower, double* sum_upper) noexcept {
+  for (int row = 0; row < outputs; ++row) {
+    sum_lower[row] = sum_upper[row] = 0;
+    for (int i = 0; i < inputs; ++i) {
+      const double weight = static_cast<double>(weights[row * inputs + i]);
+      sum_lower[row] += weight * (weight < 0 ? upper[i] : lower[i]);
+      sum_upper[row] += weight * (weight < 0 ? lower[i] : upper[i]);
+    }
+  }
+}
+
+template <class Network, class Indices = std::make_index_sequence<std::size_t(Network::layer_count)>>
+struct PathShape;
+template <class NetworkType, std::size_t... Index>
+struct PathShape<NetworkType, std::index_sequence<Index...>> {
+  template <std::size_t At>
+  using Layer = typename NetworkType::template Layer<int(At)>;
+  template <class L>
+  static constexpr bool is_dense = std::is_same_v<L, DenseLayer<typename NetworkType::Scalar, L::inputs, L::outputs>>;
+
+  /// Dense layers, an activation with such a slope after each but the last.
+  static constexpr bool alternates =
+      (... && (Index % 2 == 0 ? is_dense<Layer<Index>> : slopes_from_0_to_1<Layer<Index>>)) &&
+      sizeof...(Index) % 2 == 1;
+  static constexpr int dense_layers = (int(sizeof...(Index)) + 1) / 2;
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// Between which d(output)/d(input) stays, 0 among it: what clips an output may rest.
+template <int Outputs>
+struct PathBound {
+  double lower[Outputs]{};
+  double upper[Outputs]{};
+};
+
+/// Shapes of networks of which a bound is worked out at run time: `widths` of the dense layers' outputs, parameters as a
+/// Network has them. `work`: 4 x the widest, in which the first layer's intervals stand, 0 among each: lower ends, then
+/// from `widest` on upper ones.
+template <class Scalar>
+constexpr void path_bound_behind_first(const Scalar* parameters, int inputs, const int* widths, int layers,
+                                       double* work, int widest, double* lower, double* upper) noexcept {
+  double *from_lower = work, *from_upper = work + widest, *to_lower = work + 2 * widest, *to_upper = work + 3 * widest;
+  int operations = 4;
+  const Scalar* own = parameters + (inputs + 1) * widths[0];
+  for (int layer = 1; layer < layers; ++layer) {
+    const int in = widths[layer - 1], out = widths[layer];
+    detail::weigh_intervals(own, in, out, from_lower, from_upper, to_lower, to_upper);
+    own += (in + 1) * out;
+    operations += in + 1;
+    double* const spare[2] = {from_lower, from_upper};
+    from_lower = to_lower;
+    from_upper = to_upper;
+    to_lower = spare[0];
+    to_upper = spare[1];
+  }
+  const double outward = 1 + operations * std::numeric_limits<double>::epsilon();
+  for (int row = 0; row < widths[layers - 1]; ++row) {
+    lower[row] = from_lower[row] * outward;
+    upper[row] = from_upper[row] * outward;
+  }
+}
+
+/// By one input.
+template <class Scalar>
+constexpr void path_bound(const Scalar* parameters, int inputs, const int* widths, int layers, int input, double* work,
+                          int widest, double* lower, double* upper) noexcept {
+  for (int row = 0; row < widths[0]; ++row) {
+    const double weight = static_cast<double>(parameters[row * inputs + input]);
+    work[row] = weight < 0 ? weight : 0;
+    work[widest + row] = weight > 0 ? weight : 0;
+  }
+  path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
+}
+
+/// Along a direction, each input between two ends: tighter than the sum of the bounds by each.
+template <class Scalar>
+constexpr void path_bound_along(const Scalar* parameters, int inputs, const int* widths, int layers,
+                                const double* least, const double* most, double* work, int widest, double* lower,
+                                double* upper) noexcept {
+  detail::weigh_intervals(parameters, inputs, widths[0], least, most, work, work + widest);
+  for (int row = 0; row < widths[0]; ++row) {
+    double magnitudes = 0;  // of terms that may cancel
+    for (int i = 0; i < inputs; ++i) {
+      const double weight = static_cast<double>(parameters[row * inputs + i]);
+      const double far = -least[i] > most[i] ? -least[i] : most[i];
+      magnitudes += (weight < 0 ? -weight : weight) * far;
+    }
+    const double doubt = (inputs + 1) * std::numeric_limits<double>::epsilon() * magnitudes;
+    work[row] = work[row] - doubt < 0 ? work[row] - doubt : 0;
+    work[widest + row] = work[widest + row] + doubt > 0 ? work[widest + row] + doubt : 0;
+  }
+  path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
+}
+
+/// A network whose sight of the angular acceleration is bounded by its weights, as PathProjection leaves them: an answer
+/// like `NetworkType`, of which a certificate asks that bound. At most 3 dense layers: the bound adds up the worst of
+/// all units, which cannot all be at their worst at once, and with each layer more it grows away from what the
+/// network does, until nothing is left of what it is shown. A float network: products of few of its weights are no
+/// subnormal double.
+template <class NetworkType>
+struct PathBounded : AnswerBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
+                                NetworkType::outputs, NetworkType::parameter_count> {
+  using Inner = NetworkType;
+  using Shape = detail::PathShape<NetworkType>;
+  static_assert(std::is_same_v<typename NetworkType::Scalar, float>, "pinnquad: a PathBounded network is of floats");
+  static_assert(Shape::alternates,
+                "pinnquad: a PathBounded network has Dense layers with Relu, Tanh or Softplus between them");
+  static_assert(Shape::dense_layers <= 3,
+                "pinnquad: a PathBounded network has at most 3 Dense layers: of more the bound "
+                "says nothing (docs/certificate.md)");
+  using Scalar = typename NetworkType::Scalar;
+  using PathBounded::AnswerBase::forward;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    NetworkType::forward(parameters, x, y);
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    answer_jacobian<NetworkType>(parameters, x, y, by_x);
+  }
+  /// Of all outputs by one input, standardised as the network is.
+  static constexpr PathBound<NetworkType::outputs> bound(const Scalar* parameters, int input) noexcept {
+    int widths[Shape::dense_layers]{};
+    for (int i = 0; i < Shape::dense_layers; ++i) widths[i] = NetworkType::Sizes::outputs[std::size_t(2 * i)];
+    constexpr int widest = NetworkType::widest;
+    double work[4 * widest]{};
+    PathBound<NetworkType::outputs> found;
+    path_bound(parameters, NetworkType::inputs, widths, Shape::dense_layers, input, work, widest, found.lower,
+               found.upper);
+    return found;
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+template <class NetworkType>
+struct Description<PathBounded<NetworkType>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<NetworkType>(sink, "pinnquad::PathBounded");
+  }
+};
+
+/// The base of these features and a network that is shown all of them, the angular accelerations too: where its path
+/// bound leaves the slopes above 0 each signed sum rises with the angular acceleration about its axis.
+template <class Features, class Residual>
+using PathBoundedAnswer = Sum<MonotoneBase<Features, typename Residual::Scalar>, Bounded<PathBounded<Residual>>>;
+
+}  // namespace pinnquad

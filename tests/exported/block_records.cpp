@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: MIT
+// The records of a block: read back, refused where they say another thing than shape and caller, skipped where unknown and
+// optional; whatever their bytes are, none beyond the block is read and a refused block leaves the view as it was.
+#include "pinnquad/exported/block_records.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/features/windowed.hpp"
+#include "pinnquad/inference/self_test.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "support/block_bytes.hpp"
+#include "support/recorded_model.hpp"
+
+using namespace pinnquad;
+using pinnquad::test::BlockBytes;
+using pinnquad::test::DescribedModel;
+using pinnquad::test::RecordedModel;
+
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+/// One record as it stands in a block.
+struct Record {
+  unsigned type;  ///< with bit 15
+  Bytes bytes;
+};
+
+void add_u32(Bytes& to, std::uint32_t value) {
+  for (int byte = 0; byte < 4; ++byte) to.push_back(static_cast<unsigned char>(value >> (8 * byte) & 0xffu));
+}
+
+std::vector<Record> records_of(const Bytes& block) {
+  std::vector<Record> records;
+  const unsigned char* at = block.data() + ModelBlockHeader::size;
+  std::uint32_t count = detail::read_u32(at);
+  for (at += 8; count > 0; --count) {
+    const std::uint32_t length = detail::read_u32(at + 4);
+    records.push_back({detail::read_u32(at), Bytes(at + 8, at + 8 + length)});
+    at += 8 + (length + 7) / 8 * 8;
+  }
+  return records;
+}
+
+/// The block with other records, its lengths and checksum right.
+BlockBytes with_records(const Bytes& block, const std::vector<Record>& records) {
+  Bytes all;
+  for (const Record& record : records) {
+    add_u32(all, record.type);
+    add_u32(all, static_cast<std::uint32_t>(record.bytes.size()));
+    all.insert(all.end(), record.bytes.begin(), record.bytes.end());
+    all.resize((all.size() + 7) / 8 * 8, 0);
+  }
+  Bytes result(block.begin(), block.begin() + ModelBlockHeader::size);
+  add_u32(result, static_cast<std::uint32_t>(records.size()));
+  add_u32(result, static_cast<std::uint32_t>(all.size()));
+  result.insert(result.end(), all.begin(), all.end());
+  const auto scalars = static_cast<std::ptrdiff_t>(BlockBytes(block).scalars());
+  result.insert(result.end(), block.begin() + scalars, block.end());
+  BlockBytes made(result);
+  made.set_u32(ModelBlockHeader::length, static_cast<std::uint32_t>(result.size()));
+  made.seal();
+  return made;
+}
+
+/// As the first version had it: without records.
+BlockBytes first_version(const Bytes& block) {
+  Bytes result(block.begin(), block.begin() + ModelBlockHeader::size);
+  result.insert(result.end(), block.begin() + static_cast<std::ptrdiff_t>(BlockBytes(block).scalars()), block.end());
+  BlockBytes made(result);
+  made.set_u32(ModelBlockHeader::version, 1);
+  made.set_u32(ModelBlockHeader::length, static_cast<std::uint32_t>(result.size()));
+  made.seal();
+  return made;
+}
+
+template <class Shape>
+Status opened(const BlockBytes& block, ModelView<Shape>& view) {
+  const ModelView<Shape> before = view;
+  const Status status = ModelView<Shape>::open(block.data(), block.size(), view);
+  if (status != Status::ok) {
+    CHECK(view.parameters() == before.parameters());
+    CHECK(view.records.terms.stated == before.records.terms.stated);
+    CHECK(view.records.terms.sample_period_ns == before.records.terms.sample_period_ns);
+    CHECK(view.records.judged == before.records.judged);
+    CHECK(view.records.distance == before.records.distance);
+    CHECK(view.input.mean == before.input.mean);
+  }
+  return status;
+}
+template <class Shape>
+Status opened(const BlockBytes& block) {
+  ModelView<Shape> view;
+  return opened(block, view);
+}
+
+/// A shape without weights.
+template <class CallerType>
+struct ShapeFor {
+  using Scalar = float;
+  using Network = DescribedModel::Network;
+  using Features = PaperFeatures;
+  using Outputs = CommandOutputs;
+  using Vehicle = PaperQuadrotor;
+  using Caller = CallerType;
+};
+
+template <CommandMeaning Meaning, class Period = AnyPeriod>
+using CallerOfPaper = Caller<Meaning, PaperQuadrotor, Period>;
+
+Record& find(std::vector<Record>& records, BlockRecord type) {
+  for (Record& record : records) {
+    if ((record.type & 0x7fffu) == static_cast<unsigned>(type)) return record;
+  }
+  FAIL("no such record");
+  return records.front();
+}
+
+}  // namespace
+
+TEST_CASE("terms are read back from a block") {
+  const BlockBytes block(model_block<RecordedModel>());
+  ModelView<RecordedModel> view;
+  REQUIRE(opened(block, view) == Status::ok);
+  LoadedModel<RecordedModel> loaded;
+  REQUIRE(loaded.load(view) == Status::ok);
+  for (const auto& records : {view.records, loaded.records}) {
+    CHECK(records.terms.stated);
+    CHECK(records.terms.command_meaning == CommandMeaning::thrust);
+    CHECK(records.terms.command_lower == 0.0f);
+    CHECK(records.terms.command_upper == 1.0f);
+    CHECK(records.terms.sample_period_ns == 4000000u);
+    CHECK(records.terms.lag_removed_ns == 12500000u);
+    CHECK_FALSE(records.has_verdict);
+    CHECK_FALSE(records.has_slope_signs);
+    CHECK_FALSE(records.has_residual_range);
+    CHECK(records.distance == nullptr);
+  }
+}
+
+TEST_CASE("a block of version 1 opens, and says nothing of its terms") {
+  const BlockBytes block = first_version(model_block<RecordedModel>());
+  CHECK(block.size() == ModelBlockLayout<RecordedModel>::length(6));
+  ModelView<RecordedModel> view;
+  REQUIRE(opened(block, view) == Status::ok);
+  CHECK_FALSE(view.records.terms.stated);
+  CHECK(self_test(InverseDynamics<ModelView<RecordedModel>>(view)) == Status::ok);
+  CHECK(opened<ShapeFor<AnyCaller>>(block) == Status::ok);
+  // to a caller that asks, silence is no answer
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust>>>(block) == Status::block_incompatible);
+}
+
+TEST_CASE("a block of other terms than its caller's does not open") {
+  const BlockBytes block(model_block<RecordedModel>());
+  using Thrust = CallerOfPaper<CommandMeaning::thrust>;
+  CHECK(opened<ShapeFor<Thrust>>(block) == Status::ok);
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::pulse_width>>>(block) == Status::block_incompatible);
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::speed>>>(block) == Status::block_incompatible);
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4000>>>>(block) == Status::ok);
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4030>>>>(block) == Status::ok);
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4100>>>>(block) ==
+        Status::block_incompatible);
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<2000>>>>(block) ==
+        Status::block_incompatible);
+  // a header of format 2 says no period: a block of it has none for a caller that keeps one
+  const BlockBytes described(model_block<DescribedModel>());
+  CHECK(opened<ShapeFor<Thrust>>(described) == Status::ok);
+  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4000>>>>(described) ==
+        Status::block_incompatible);
+  // nor does it fit a header of format 3 as a shape
+  CHECK(opened<RecordedModel>(described) == Status::block_incompatible);
+  // what opened for a caller flies for it
+  using Shape = ShapeFor<Thrust>;
+  ModelView<Shape> view;
+  REQUIRE(opened(block, view) == Status::ok);
+  CHECK(self_test(InverseDynamics<ModelView<Shape>, TrainingGuard, Thrust>(view)) == Status::ok);
+  ModelView<RecordedModel> of_header;
+  REQUIRE(opened(block, of_header) == Status::ok);
+  CHECK(self_test(InverseDynamics<ModelView<RecordedModel>, TrainingGuard, Thrust>(of_header)) == Status::ok);
+}
+
+TEST_CASE("an unknown record is refused if it is mandatory, else skipped") {
+  const Bytes block = model_block<RecordedModel>();
+  for (const unsigned type : {0u, 11u, 77u, 0x7fffu}) {
+    for (const std::size_t length : {0u, 1u, 8u, 13u, 64u}) {
+      auto records = records_of(block);
+      records.insert(records.begin() + 1, Record{type, Bytes(length, 0xab)});
+      ModelView<RecordedModel> view;
+      REQUIRE(opened(with_records(block, records), view) == Status::ok);
+      CHECK(view.records.terms.sample_period_ns == 4000000u);
+      records[1].type |= mandatory_record;
+      CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
+    }
+  }
+}
+
+TEST_CASE("what a shape has can't be left unsaid, nor said twice") {
+  const Bytes block = model_block<RecordedModel>();
+  const auto sound = records_of(block);
+  REQUIRE(sound.size() == 4);  // commands, clock, window, allocation
+  for (std::size_t i = 0; i < sound.size(); ++i) {
+    CHECK(sound[i].type >= mandatory_record);
+    auto records = sound;
+    records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));
+    CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
+    records = sound;
+    records.push_back(sound[i]);
+    CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_corrupt);
+  }
+}
+
+TEST_CASE("a record of another length is corrupt, and so are counts that do not add up") {
+  const Bytes block = model_block<RecordedModel>();
+  for (std::size_t i = 0; i < records_of(block).size(); ++i) {
+    for (const int change : {-1, 1, 4, 8}) {
+      auto records = records_of(block);
+      records[i].bytes.resize(static_cast<std::size_t>(static_cast<int>(records[i].bytes.size()) + change), 0);
+      CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_corrupt);
+    }
+  }
+  const std::size_t counts = ModelBlockHeader::size;
+  const auto changed = [&](std::size_t offset, std::uint32_t value) {
+    BlockBytes other(block);
+    other.set_u32(offset, value);
+    other.seal();
+    return opened<RecordedModel>(other);
+  };
+  const std::uint32_t bytes = detail::read_u32(block.data() + counts + 4);
+  for (const std::uint32_t value : {0u, 3u, 5u, 6u, 0x80000000u, 0xffffffffu}) {
+    CHECK(changed(counts, value) == Status::block_corrupt);
+  }
+  for (const std::uint32_t value :
+       {0u, 7u, bytes - 8, bytes - 1, bytes + 1, bytes + 8, 0x80000000u, 0xfffffff8u, 0xffffffffu}) {
+    CHECK(changed(counts + 4, value) == Status::block_corrupt);
+  }
+  for (const std::uint32_t value : {0u, 1u, 15u, 17u, 100000u, 0x7ffffff8u, 0xfffffff8u, 0xffffffffu}) {
+    CHECK(changed(counts + 12, value) == Status::block_corrupt);  // length of the first record
+  }
+  // a record that is skipped, whose length leaves the records or the block
+  auto records = records_of(block);
+  records.insert(records.begin(), Record{77, Bytes(8, 0)});
+  for (const std::uint32_t value : {bytes + 8, bytes + 16, 100000u, 0x7ffffff8u, 0xfffffff0u, 0xffffffffu}) {
+    BlockBytes other = with_records(block, records);
+    other.set_u32(counts + 12, value);
+    other.seal();
+    CHECK(opened<RecordedModel>(other) == Status::block_corrupt);
+  }
+  CHECK(changed(counts + 8, 0x18001u) == Status::block_corrupt);  // the word behind a type is 0
+}
+
+TEST_CASE("whatever byte a record has under a right checksum, a block opens or leaves the view alone") {
+  const Bytes block = model_block<RecordedModel>();
+  const std::size_t end = BlockBytes(block).scalars();
+  int refused = 0, opened_all_the_same = 0;
+  for (std::size_t i = ModelBlockHeader::size; i < end; ++i) {
+    for (const unsigned mask : {0x01u, 0x04u, 0x10u, 0x40u, 0x80u, 0xffu}) {
+      BlockBytes other(block);
+      other[i] = static_cast<unsigned char>(other[i] ^ mask);
+      other.seal();
+      const Status status = opened<RecordedModel>(other);
+      refused += status == Status::block_corrupt || status == Status::block_incompatible;
+      opened_all_the_same += status == Status::ok;  // a removed lag, last bits of a range or of an allocation
+    }
+  }
+  CHECK(refused + opened_all_the_same == 6 * int(end - ModelBlockHeader::size));
+  CHECK(refused > opened_all_the_same);
+}
+
+TEST_CASE("a record that says another thing than the shape is refused") {
+  const Bytes block = model_block<RecordedModel>();
+  const auto changed = [&](BlockRecord type, std::size_t at, const auto value) {
+    auto records = records_of(block);
+    std::memcpy(find(records, type).bytes.data() + at, &value, sizeof value);
+    return opened<RecordedModel>(with_records(block, records));
+  };
+  CHECK(changed(BlockRecord::commands, 0, std::uint32_t{0}) == Status::ok);
+  CHECK(changed(BlockRecord::commands, 0, std::uint32_t{1}) == Status::block_incompatible);
+  CHECK(changed(BlockRecord::commands, 0, std::uint32_t{3}) == Status::block_incompatible);
+  CHECK(changed(BlockRecord::commands, 8, 2.0f) == Status::block_corrupt);  // above the upper one
+  CHECK(changed(BlockRecord::commands, 8, std::numeric_limits<float>::quiet_NaN()) == Status::block_corrupt);
+  CHECK(changed(BlockRecord::clock, 0, std::uint32_t{5000000}) == Status::block_incompatible);
+  CHECK(changed(BlockRecord::clock, 4, std::uint32_t{0}) == Status::ok);
+  CHECK(changed(BlockRecord::window, 0, std::uint32_t{2}) == Status::block_incompatible);
+  CHECK(changed(BlockRecord::window, 4, std::uint32_t{0}) == Status::block_incompatible);
+  for (std::size_t i = 0; i < 16; ++i) {
+    CHECK(changed(BlockRecord::allocation, 4 * i, 0.5f) == Status::block_incompatible);
+    CHECK(changed(BlockRecord::allocation, 4 * i, std::numeric_limits<float>::quiet_NaN()) ==
+          Status::block_incompatible);
+  }
+  auto records = records_of(block);
+  records.push_back({static_cast<unsigned>(BlockRecord::columns) | mandatory_record, Bytes{'n', '1', 0, 's', 0}});
+  CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
+  records.back() = {static_cast<unsigned>(BlockRecord::base) | mandatory_record, Bytes{'b'}};
+  CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
+  records.back().bytes.clear();  // no base is none
+  CHECK(opened<RecordedModel>(with_records(block, records)) == Status::ok);
+}
+
+namespace {
+
+using WindowedFeatures = Windowed<WithColumns<PaperFeatures, BatteryVoltage>, 2, PeriodMicroseconds<10000>>;
+using WindowedNet = Network<float, InputSize<WindowedFeatures::size>, Dense<4>>;
+
+/// A trained model whose weights are of no interest.
+template <class NetworkType, class ContextType>
+TrainedModel<NetworkType, ContextType> some_model() {
+  TrainedModel<NetworkType, ContextType> model;
+  model.input.spread.fill(1.0f);
+  model.output.spread.fill(1.0f);
+  model.envelope_lower.fill(-1.0f);
+  model.envelope_upper.fill(1.0f);
+  model.network.parameters.fill(0.01f);
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("window, columns and period of a feature set with a past are records") {
+  using Shape = TrainedModel<WindowedNet, Context<WindowedFeatures, PaperQuadrotor>>;
+  const auto model = some_model<WindowedNet, Context<WindowedFeatures, PaperQuadrotor>>();
+  const Bytes block = model_block(model, {Shape::FeatureVector{}}, {});
+  ModelView<Shape> view;
+  REQUIRE(opened(BlockBytes(block), view) == Status::ok);
+  CHECK(view.records.terms.sample_period_ns == 10000000u);
+  auto records = records_of(block);
+  CHECK(detail::read_u32(find(records, BlockRecord::window).bytes.data()) == 2);
+  const std::string columns = std::string("battery_voltage") + '\0' + "V" + '\0';
+  CHECK(find(records, BlockRecord::columns).bytes == Bytes(columns.begin(), columns.end()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    auto others = records;
+    unsigned char& letter = find(others, BlockRecord::columns).bytes[i];
+    letter = static_cast<unsigned char>(letter ^ 1u);
+    CHECK(opened<Shape>(with_records(block, others)) == Status::block_incompatible);
+  }
+  find(records, BlockRecord::columns).bytes.pop_back();
+  CHECK(opened<Shape>(with_records(block, records)) == Status::block_incompatible);
+  Provenance from;
+  from.sample_period_s = 0.02;
+  CHECK_THROWS_WITH_AS(model_block(model, {Shape::FeatureVector{}}, from),
+                       "export: the sample period is not that of the features' window", std::invalid_argument);
+}
+
+namespace {
+
+struct OtherInverse : LinearizedInverse {
+  static constexpr const char* description = "OtherInverse";
+};
+using Net16 = Network<float, InputSize<16>, Dense<4>>;
+template <class Base>
+using ResidualContext = Context<PaperFeatures, PaperQuadrotor, ResidualOutputs<Base>>;
+template <class Base>
+using ResidualModel = TrainedModel<Net16, ResidualContext<Base>>;
+
+}  // namespace
+
+TEST_CASE("a residual on another base does not open, though its outputs have the same names") {
+  const auto model = some_model<Net16, ResidualContext<LinearizedInverse>>();
+  const Bytes block = model_block(model, {ResidualModel<LinearizedInverse>::FeatureVector{}}, {});
+  CHECK(opened<ResidualModel<LinearizedInverse>>(BlockBytes(block)) == Status::ok);
+  CHECK(opened<ResidualModel<OtherInverse>>(BlockBytes(block)) == Status::block_incompatible);
+  auto records = records_of(block);
+  const std::string base = "pinnquad::LinearizedInverse";
+  CHECK(find(records, BlockRecord::base).bytes == Bytes(base.begin(), base.end()));
+  records.pop_back();  // the base is the last of them
+  CHECK(opened<ResidualModel<LinearizedInverse>>(with_records(block, records)) == Status::block_incompatible);
+}
+
+TEST_CASE("verdict, proven slopes, range of a residual and statistics of a distance go along where they are given") {
+  using Model = ResidualModel<LinearizedInverse>;
+  const auto model = some_model<Net16, ResidualContext<LinearizedInverse>>();
+  Provenance from;
+  from.verdict = Verdict{-0.5, 0.25, -1.0};
+  from.slope_signs = {{{-1, 1, 0}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
+  from.residual_range = ResidualRange{{-0.125, -0.25, -0.5, -1}, {0.125, 0.25, 0.5, 1}};
+  DistanceStatistics distance;
+  distance.mean.assign(16, 0.5);
+  distance.inverse_cholesky.assign(136, 0.25);
+  distance.limit = 3;
+  from.distance = distance;
+  const std::vector<Model::FeatureVector> golden = {Model::FeatureVector{}};
+  const Bytes block = model_block(model, golden, from);
+  CHECK(block.size() <= ModelBlockLayout<Model>::length(1) + ModelBlockLayout<Model>::most_record_bytes());
+  ModelView<Model> view;
+  REQUIRE(opened(BlockBytes(block), view) == Status::ok);
+  const BlockBytes kept(block);
+  REQUIRE(opened(kept, view) == Status::ok);
+  CHECK(view.records.has_verdict);
+  CHECK(view.records.worse_than_mean());
+  CHECK(view.records.has_slope_signs);
+  CHECK(view.records.slope_signs[0] == std::array<std::int8_t, 3>{-1, 1, 0});
+  CHECK(view.records.slope_signs[3] == std::array<std::int8_t, 3>{-1, -1, -1});
+  CHECK(view.records.has_residual_range);
+  CHECK(view.records.residual_lower == std::array<float, 4>{-0.125f, -0.25f, -0.5f, -1});
+  CHECK(view.records.residual_upper == std::array<float, 4>{0.125f, 0.25f, 0.5f, 1});
+  REQUIRE(view.records.distance != nullptr);
+  CHECK(view.records.distance[15] == 0.5f);
+  CHECK(view.records.distance[16] == 0.25f);
+  CHECK(view.records.distance[16 + 136] == 3.0f);
+
+  for (const Record& record : records_of(block)) {
+    const bool optional = record.type == 7 || record.type == 8 || record.type == 9 || record.type == 10;
+    CHECK((record.type < mandatory_record) == optional);
+  }
+  const auto corrupt = [&](BlockRecord type, std::size_t at, const auto value) {
+    auto records = records_of(block);
+    std::memcpy(find(records, type).bytes.data() + at, &value, sizeof value);
+    return opened<Model>(with_records(block, records)) == Status::block_corrupt;
+  };
+  CHECK(corrupt(BlockRecord::slope_signs, 5, static_cast<unsigned char>(2)));
+  CHECK(corrupt(BlockRecord::residual_range, 0, 1.0f));
+  CHECK(corrupt(BlockRecord::distance, 4 * 20, std::numeric_limits<float>::infinity()));
+  CHECK(corrupt(BlockRecord::distance, 4 * (16 + 136), 0.0f));
+
+  from.distance->mean.pop_back();
+  CHECK_THROWS_WITH_AS(model_block(model, golden, from),
+                       "export: the statistics of a distance are not those of 16 features", std::invalid_argument);
+  from.distance.reset();
+  from.residual_range->lower[2] = 0.75;
+  CHECK_THROWS_WITH_AS(model_block(model, golden, from),
+                       "export: a lower bound of the residual lies above the upper one", std::invalid_argument);
+}

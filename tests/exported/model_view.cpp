@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+// What a model block holds is read back to the bit, and a block that is not sound is refused with the view untouched.
+#include "pinnquad/exported/model_view.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/nn/tanh.hpp"
+#include "support/block_bytes.hpp"
+#include "support/described_model.hpp"
+
+using namespace pinnquad;
+using pinnquad::test::BlockBytes;
+using pinnquad::test::DescribedModel;
+using pinnquad::test::DoubleModel;
+
+namespace {
+
+/// A shape without any weights: types are enough to read a block.
+struct ShapeAlone {
+  using Scalar = float;
+  using Network = DescribedModel::Network;
+  using Features = PaperFeatures;
+  using Outputs = CommandOutputs;
+  using Vehicle = PaperQuadrotor;
+};
+
+template <class Array>
+bool same_bits(const Array& a, const Array& b) {
+  return std::memcmp(a.data(), b.data(), sizeof a) == 0;
+}
+
+template <class Model, class View>
+bool holds(const View& view) {
+  bool same = same_bits(view.input.mean, Model::input.mean) && same_bits(view.input.spread, Model::input.spread) &&
+              same_bits(view.output.mean, Model::output.mean) && same_bits(view.output.spread, Model::output.spread) &&
+              same_bits(view.envelope_lower, Model::envelope_lower) &&
+              same_bits(view.envelope_upper, Model::envelope_upper) &&
+              view.golden_features.size() == Model::golden_features.size() &&
+              view.golden_commands.size() == Model::golden_commands.size();
+  for (std::size_t i = 0; same && i < Model::golden_features.size(); ++i) {
+    same = same_bits(view.golden_features[i], Model::golden_features[i]) &&
+           same_bits(view.golden_commands[i], Model::golden_commands[i]);
+  }
+  return same && view.training_data_hash == Model::training_data_hash &&
+         view.training_rows == std::uint32_t(Model::training_rows);
+}
+
+/// The status, after a look at whether a refused block left the view as it was.
+template <class Shape>
+Status opened(const void* block, std::size_t length) {
+  static const BlockBytes sound(model_block<DescribedModel>());
+  ModelView<Shape> view;
+  if constexpr (std::is_same_v<typename Shape::Scalar, float> && Shape::Network::parameter_count == 172) {
+    const Status before = ModelView<Shape>::open(sound.data(), sound.size(), view);
+    REQUIRE((before == Status::ok || !std::is_same_v<Shape, DescribedModel>));
+  }
+  const ModelView<Shape> copy = view;
+  const Status status = ModelView<Shape>::open(block, length, view);
+  if (status != Status::ok) {
+    CHECK(same_bits(view.input.mean, copy.input.mean));
+    CHECK(same_bits(view.output.spread, copy.output.spread));
+    CHECK(same_bits(view.envelope_lower, copy.envelope_lower));
+    CHECK(view.parameters() == copy.parameters());
+    CHECK(view.golden_features.size() == copy.golden_features.size());
+    CHECK(view.training_data_hash == copy.training_data_hash);
+  }
+  return status;
+}
+
+Status opened(const BlockBytes& block) { return opened<DescribedModel>(block.data(), block.size()); }
+
+/// The sound block after a change, its checksum right again.
+template <class Change>
+Status changed(const Change& change) {
+  BlockBytes block(model_block<DescribedModel>());
+  change(block);
+  block.seal();
+  return opened(block);
+}
+
+template <class Base>
+struct OtherActivation : Base {
+  using Network = Mlp<float, InputSize<16>, Hidden<1, 8>, OutputSize<4>, Tanh>;
+};
+struct RenamedFeatures : PaperFeatures {
+  static constexpr auto names = [] {
+    auto result = PaperFeatures::names;
+    result[3] = "wdot_roll";
+    return result;
+  }();
+};
+struct FeaturesInDegrees : PaperFeatures {
+  static constexpr auto units = [] {
+    auto result = PaperFeatures::units;
+    result[12] = "deg";
+    return result;
+  }();
+};
+struct RenamedVehicle : PaperQuadrotor {
+  static constexpr const char* name = "other_quadrotor";
+};
+/// Rotors 1 and 2 change places; the name stays.
+struct RewiredVehicle : PaperQuadrotor {
+  template <class Scalar>
+  static constexpr Airframe<Scalar> value() {
+    auto a = PaperQuadrotor::value<Scalar>();
+    const auto first = a.rotors[0];
+    a.rotors[0] = a.rotors[1];
+    a.rotors[1] = first;
+    return a;
+  }
+};
+template <class FeaturesType, class OutputsType, class VehicleType>
+struct OtherShape : ShapeAlone {
+  using Features = FeaturesType;
+  using Outputs = OutputsType;
+  using Vehicle = VehicleType;
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("a block gives back every number of the model, bit for bit", Model, DescribedModel, DoubleModel) {
+  const BlockBytes block(model_block<Model>());
+  ModelView<Model> view;
+  REQUIRE(ModelView<Model>::open(block.data(), block.size(), view) == Status::ok);
+  CHECK(holds<Model>(view));
+  CHECK(std::memcmp(view.parameters(), Model::parameters.data(), sizeof Model::parameters) == 0);
+  const auto* begin = reinterpret_cast<const unsigned char*>(view.parameters());
+  CHECK(begin >= block.data());  // in place
+  CHECK(begin + sizeof Model::parameters + 4 == block.data() + block.size());
+}
+
+TEST_CASE_TEMPLATE("forward() of a view is the portable kernel's, of a loaded model the vector unit's", Model,
+                   DescribedModel, DoubleModel) {
+  using Scalar = typename Model::Scalar;
+  LoadedModel<Model> loaded;
+  {
+    BlockBytes block(model_block<Model>());
+    ModelView<Model> view;
+    REQUIRE(ModelView<Model>::open(block.data(), block.size(), view) == Status::ok);
+    REQUIRE(loaded.load(view) == Status::ok);
+    for (const auto& x : Model::golden_features) {
+      Scalar z[16], expected[4], y[4], fast[4];
+      view.input.standardise(x.data(), z);
+      Model::Network::forward(Model::parameters.data(), z, expected);
+      view.forward(z, y);
+      loaded.forward(z, fast);
+      for (int i = 0; i < 4; ++i) {
+        CHECK(y[i] == expected[i]);
+        CHECK(std::abs(fast[i] - expected[i]) <= Scalar(1e-5));
+      }
+    }
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = 0xff;  // the loaded model needs it no more
+  }
+  CHECK(holds<Model>(loaded));
+  std::size_t checked = 0;
+  for (std::size_t i = 0; i < Model::golden_features.size(); ++i) {
+    Scalar z[16], y[4], u[4];
+    loaded.input.standardise(Model::golden_features[i].data(), z);
+    loaded.forward(z, y);
+    loaded.output.restore(y, u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      CHECK(std::abs(u[k] - Model::golden_commands[i][k]) <= Scalar(golden_tolerance));
+      ++checked;
+    }
+  }
+  CHECK(checked == 24);
+}
+
+TEST_CASE("types are enough to read a block, and trailing bytes are no concern of it") {
+  std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  bytes.resize(bytes.size() + 100, 0xff);  // the rest of a flash partition
+  const BlockBytes block(bytes);
+  ModelView<ShapeAlone> view;
+  REQUIRE(ModelView<ShapeAlone>::open(block.data(), block.size(), view) == Status::ok);
+  CHECK(holds<DescribedModel>(view));
+}
+
+TEST_CASE("each flipped bit of each byte is found") {
+  const std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  BlockBytes block(bytes);
+  int refused = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      const auto mask = static_cast<unsigned char>(1 << bit);
+      block[i] ^= mask;
+      ModelView<DescribedModel> view;
+      refused += ModelView<DescribedModel>::open(block.data(), block.size(), view) != Status::ok;
+      block[i] ^= mask;
+    }
+  }
+  CHECK(refused == 8 * int(bytes.size()));
+  CHECK(opened(block) == Status::ok);
+}
+
+TEST_CASE("a block cut at any length is truncated") {
+  const std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    const BlockBytes block(bytes, length);
+    ModelView<DescribedModel> view;
+    CHECK(ModelView<DescribedModel>::open(block.data(), length, view) == Status::block_truncated);
+  }
+  CHECK(opened<DescribedModel>(nullptr, 0) == Status::block_truncated);
+  CHECK(opened<DescribedModel>(nullptr, 10000) == Status::block_truncated);
+}
+
+TEST_CASE("a block that is not aligned is refused, not read") {
+  const std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  for (std::size_t offset = 0; offset <= model_block_alignment; ++offset) {
+    std::vector<unsigned char> shifted(offset, 0);
+    shifted.insert(shifted.end(), bytes.begin(), bytes.end());
+    const BlockBytes memory(shifted);
+    const Status expected = offset % model_block_alignment == 0 ? Status::ok : Status::block_truncated;
+    CHECK(opened<DescribedModel>(memory.data() + offset, bytes.size()) == expected);
+  }
+}
+
+TEST_CASE("another magic, version or shape is incompatible, whatever the checksum says") {
+  using Header = ModelBlockHeader;
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(changed([&](BlockBytes& block) { block[i] ^= 0x20; }) == Status::block_incompatible);
+  }
+  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::version, 0); }) == Status::block_incompatible);
+  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::version, model_block_version + 1); }) ==
+        Status::block_incompatible);
+  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::scalar_bytes, 8); }) == Status::block_incompatible);
+  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::inputs, 15); }) == Status::block_incompatible);
+  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::outputs, 5); }) == Status::block_incompatible);
+  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::parameters, 171); }) == Status::block_incompatible);
+  CHECK(changed([](BlockBytes& block) { block[Header::shape_hash + 7] ^= 1; }) == Status::block_incompatible);
+
+  const BlockBytes block(model_block<DescribedModel>());
+  const auto incompatible = [&](auto shape) {
+    return opened<decltype(shape)>(block.data(), block.size()) == Status::block_incompatible;
+  };
+  CHECK(opened<ShapeAlone>(block.data(), block.size()) == Status::ok);
+  CHECK(incompatible(OtherActivation<ShapeAlone>{}));
+  CHECK(incompatible(OtherShape<RenamedFeatures, CommandOutputs, PaperQuadrotor>{}));
+  CHECK(incompatible(OtherShape<FeaturesInDegrees, CommandOutputs, PaperQuadrotor>{}));
+  CHECK(incompatible(OtherShape<PaperFeatures, RotorSpeedOutputs, PaperQuadrotor>{}));
+  CHECK(incompatible(OtherShape<PaperFeatures, CommandOutputs, RenamedVehicle>{}));
+  CHECK(incompatible(OtherShape<PaperFeatures, CommandOutputs, RewiredVehicle>{}));
+  CHECK(incompatible(DoubleModel{}));
+}
+
+TEST_CASE("lengths and counts that do not agree are corrupt, however large") {
+  using Header = ModelBlockHeader;
+  for (const std::uint32_t golden : {0u, 5u, 7u, 0x7fffffffu, 0x80000000u, 0xffffffffu}) {
+    CHECK(changed([&](BlockBytes& block) { block.set_u32(Header::golden_vectors, golden); }) == Status::block_corrupt);
+  }
+  BlockBytes block(model_block<DescribedModel>());
+  for (const std::uint32_t length : {0u, 4u, 59u}) {
+    block.set_u32(Header::length, length);
+    block.seal();
+    CHECK(opened(block) == Status::block_corrupt);
+  }
+  block.set_u32(Header::length, static_cast<std::uint32_t>(block.size() + 1));
+  block.seal();
+  CHECK(opened(block) == Status::block_truncated);
+  // no golden vector, and a count of them whose length is 0 modulo 2^32
+  const std::size_t records = BlockBytes(model_block<DescribedModel>()).scalars() - Header::size;
+  BlockBytes wrapped(model_block<DescribedModel>(), ModelBlockLayout<DescribedModel>::length(0) + records);
+  wrapped.set_u32(Header::length, static_cast<std::uint32_t>(wrapped.size()));
+  for (const std::uint32_t golden : {0u, 0x80000000u}) {
+    wrapped.set_u32(Header::golden_vectors, golden);
+    wrapped.seal();
+    CHECK(opened(wrapped) == Status::block_corrupt);
+  }
+  block.set_u32(Header::length, 0xffffffffu);
+  block.seal();
+  CHECK(opened(block) == Status::block_truncated);
+}
+
+TEST_CASE("a value that is not finite is corrupt, wherever it stands") {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const BlockBytes sound(model_block<DescribedModel>());
+  const std::size_t scalars = (sound.size() - sound.scalars() - 4) / 4;
+  for (std::size_t i = 0; i < scalars; ++i) {
+    const float value = i % 3 == 0 ? nan : (i % 3 == 1 ? infinity : -infinity);
+    CHECK(changed([&](BlockBytes& block) { block.set_scalar(i, value); }) == Status::block_corrupt);
+  }
+}
+
+TEST_CASE("a spread that is not positive and an envelope upside down are corrupt") {
+  using Layout = ModelBlockLayout<DescribedModel>;
+  for (const float spread : {0.0f, -0.0f, -1.0f}) {
+    for (const std::size_t i : {Layout::input_spread, Layout::input_spread + 15, Layout::output_spread + 3}) {
+      CHECK(changed([&](BlockBytes& block) { block.set_scalar(i, spread); }) == Status::block_corrupt);
+    }
+  }
+  for (std::size_t i = 0; i < 16; ++i) {
+    CHECK(changed([&](BlockBytes& block) {
+            const auto upper = block.scalar<float>(Layout::envelope_upper + i);
+            block.set_scalar(Layout::envelope_lower + i, upper + 1.0f);
+          }) == Status::block_corrupt);
+    CHECK(changed([&](BlockBytes& block) {
+            const auto upper = block.scalar<float>(Layout::envelope_upper + i);
+            block.set_scalar(Layout::envelope_lower + i, upper);
+          }) == Status::block_corrupt);  // its golden vectors lie outside
+    CHECK(changed([&](BlockBytes& block) {
+            const auto upper = block.scalar<float>(Layout::envelope_upper + i);
+            block.set_scalar(Layout::envelope_lower + i, upper);  // a feature that never moved
+            for (std::size_t row = 0; row < DescribedModel::golden_features.size(); ++row) {
+              block.set_scalar(Layout::golden_features + row * Layout::inputs + i, upper);
+            }
+          }) == Status::ok);
+  }
+}
+
+TEST_CASE("a view of no block declines, and so does a model that was not loaded") {
+  const ModelView<DescribedModel> view;
+  CHECK(view.parameters() == nullptr);
+  CHECK(view.envelope_lower[0] > view.envelope_upper[0]);
+  CHECK(view.golden_features.size() == 1);  // so that a self test has something to fail by
+  CHECK(view.golden_features[0][0] == 0.0f);
+  float y[4] = {};
+  view.forward(DescribedModel::golden_features[0].data(), y);
+  for (const float v : y) CHECK(std::isnan(v));
+
+  LoadedModel<DescribedModel> loaded;
+  CHECK(loaded.load(view) == Status::block_truncated);
+  CHECK(loaded.envelope_lower[0] > loaded.envelope_upper[0]);
+  CHECK(loaded.golden_features.size() == 1);
+}
+
+TEST_CASE("the shape's hash is the same from every compiler") {
+  CHECK(shape_hash<DescribedModel> == 0xf6f9b018045b3c87u);
+  CHECK(shape_hash<ShapeAlone> == shape_hash<DescribedModel>);
+  static_assert(shape_hash<DoubleModel> != shape_hash<DescribedModel>);
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// The rigid body's inverse without the angular acceleration, on an airframe whose inertia has products and whose rotors
+// have curves: against the rotors' own inverse, slopes against differences; and signed sums on it, there and back.
+#include "pinnquad/outputs/rigid_body_inverse.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/outputs/signed_sum_outputs.hpp"
+
+using namespace pinnquad;
+
+namespace {
+
+using Sums = SignedSumsOn<RigidBodyInverse>;
+constexpr int features = PhysicsFeatures::size;
+static_assert(PhysicsFeatures::names[RigidBodyInverse::force_z][2] == 'z' &&
+              PhysicsFeatures::names[RigidBodyInverse::body_rates][0] == 'w' &&
+              PhysicsFeatures::names[RigidBodyInverse::body_rates][2] == 'x');
+
+Airframe<double> crooked() {
+  Airframe<double> airframe = PaperQuadrotor::value<double>();
+  airframe.inertia_products_kg_m2 = {1.1e-3, -0.7e-3, 0.4e-3};
+  const double curves[] = {0.0, 0.3, 0.6, 0.2};
+  for (std::size_t i = 0; i < rotor_count; ++i) airframe.rotors[i].thrust_curve = curves[i];
+  REQUIRE(check_airframe(airframe) == Status::ok);
+  return airframe;
+}
+
+struct Point {
+  double x[features] = {0.3, -0.2, -9.1, 4.0, -3.0, 0.5, 1.3, -2.1, 0.7};
+
+  Point() {
+    for (int i = 9; i < features; ++i) x[i] = 0.1 * i;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("its commands make the thrust and the torque that hold the body rates") {
+  const Airframe<double> airframe = crooked();
+  const Point at;
+  double u[rotor_count];
+  RigidBodyInverse::commands(static_cast<const double*>(at.x), RigidBodyInverse::prepare(airframe),
+                             static_cast<double*>(u));
+  const Vector3<double> rates(at.x[6], at.x[7], at.x[8]);
+  Wrench<double> wrench;
+  wrench.force_N = Vector3<double>(0, 0, airframe.mass_kg * at.x[2]);
+  wrench.torque_N_m = cross<double>(rates, inertia_times(airframe, rates));
+  const Commands<double> expected = Rotors<double>(airframe).commands(wrench, 1.0);
+  for (std::size_t i = 0; i < rotor_count; ++i) CHECK(u[i] == doctest::Approx(expected[i]).epsilon(1e-12));
+
+  Point turning;
+  for (int axis = 0; axis < 3; ++axis) turning.x[3 + axis] += 100;
+  double same[rotor_count];
+  RigidBodyInverse::commands(static_cast<const double*>(turning.x), RigidBodyInverse::prepare(airframe),
+                             static_cast<double*>(same));
+  for (int i = 0; i < rotor_count; ++i) CHECK(same[i] == u[i]);
+}
+
+TEST_CASE("its slopes are central differences, and none is by the angular acceleration") {
+  const auto body = RigidBodyInverse::prepare(crooked());
+  Point at;
+  double slopes[rotor_count * features] = {};
+  RigidBodyInverse::slopes<features>(static_cast<const double*>(at.x), body, static_cast<double*>(slopes));
+  constexpr double step = 1e-6;
+  for (int k = 0; k < features; ++k) {
+    double above[rotor_count], below[rotor_count];
+    const double kept = at.x[k];
+    at.x[k] = kept + step;
+    RigidBodyInverse::commands(static_cast<const double*>(at.x), body, static_cast<double*>(above));
+    at.x[k] = kept - step;
+    RigidBodyInverse::commands(static_cast<const double*>(at.x), body, static_cast<double*>(below));
+    at.x[k] = kept;
+    for (int i = 0; i < rotor_count; ++i) {
+      CAPTURE(i);
+      CAPTURE(k);
+      CHECK(slopes[i * features + k] == doctest::Approx((above[i] - below[i]) / (2 * step)).epsilon(1e-6));
+      if (k >= 3 && k < 6) CHECK(slopes[i * features + k] == 0);
+    }
+  }
+}
+
+TEST_CASE("signed sums on it: there and back; 0 are its own commands") {
+  const Airframe<double> airframe = crooked();
+  const auto body = Sums::prepare(airframe);
+  const Point at;
+  const double* x = at.x;
+  const double u[rotor_count] = {0.31, 0.62, 0.44, 0.57};
+  double y[4], again[rotor_count], base[rotor_count];
+  Sums::from_commands(x, static_cast<const double*>(u), body, static_cast<double*>(y));
+  Sums::commands(x, static_cast<const double*>(y), body, static_cast<double*>(again));
+  for (int i = 0; i < rotor_count; ++i) CHECK(again[i] == doctest::Approx(u[i]).epsilon(1e-14));
+  const double nothing[4] = {};
+  Sums::commands(x, static_cast<const double*>(nothing), body, static_cast<double*>(again));
+  RigidBodyInverse::commands(x, body.base, static_cast<double*>(base));
+  for (int i = 0; i < rotor_count; ++i) CHECK(again[i] == base[i]);
+}

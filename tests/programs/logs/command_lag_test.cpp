@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "logs/command_lag.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "logs/motor_lag.hpp"
+#include "programs/logs/synthetic_flight.hpp"
+
+using pinnquad::CommandLag;
+using pinnquad::estimate_command_lag;
+using pinnquad::Flight;
+using pinnquad::MotorLag;
+using pinnquad::remove_lag;
+using pinnquad::test::synthetic_flight;
+using pinnquad::test::SyntheticVehicle;
+
+TEST_CASE("a pure delay is found to a fifth of a row, on each motion") {
+  for (const double delay_s : {0.0, 0.02, 0.05, 0.12}) {
+    CAPTURE(delay_s);
+    SyntheticVehicle vehicle;
+    vehicle.motor_time_constant_s = 0;
+    vehicle.delay_s = delay_s;
+    vehicle.acceleration_noise_rad_s2 = 1;
+    // a command acts from its row on: the motion of the next row is the first to have it
+    const double expected_s = delay_s + 0.01;
+    const CommandLag lag = estimate_command_lag({synthetic_flight(vehicle)}, vehicle.period_s);
+    REQUIRE(lag.found);
+    CHECK(lag.warning == "");
+    CHECK(std::abs(lag.lag_s - expected_s) < 0.2 * vehicle.period_s);
+    CHECK(lag.confidence > 0.3);
+    CHECK(lag.motions[0].found);
+    CHECK(lag.motions[1].found);
+    CHECK(lag.motions[3].found);
+  }
+}
+
+TEST_CASE("a motor's time constant and delay are told apart, and explain more than a delay alone") {
+  for (const double time_constant_s : {0.03, 0.05, 0.09}) {
+    CAPTURE(time_constant_s);
+    SyntheticVehicle vehicle;
+    vehicle.motor_time_constant_s = time_constant_s;
+    vehicle.delay_s = 0.01;
+    vehicle.acceleration_noise_rad_s2 = 0.5;
+    const std::vector<Flight> segments = {synthetic_flight(vehicle)};
+    const CommandLag pure = estimate_command_lag(segments, vehicle.period_s);
+    const MotorLag motor = fit_motor_lag(segments, vehicle.period_s, pure);
+    REQUIRE(motor.found);
+    CHECK(motor.warning == "");
+    CHECK(std::abs(motor.time_constant_s - time_constant_s) < 0.12 * time_constant_s);
+    CHECK(std::abs(motor.delay_s - (vehicle.delay_s + vehicle.period_s)) < 0.005);
+    CHECK(motor.explained > motor.explained_by_pure_delay + 0.002);
+    CHECK(pure.lag_s < motor.equivalent_delay_s() + 0.005);
+    CHECK(pure.lag_s > 0.4 * motor.equivalent_delay_s());
+  }
+}
+
+TEST_CASE("nothing is found where commands and motion have nothing to do with each other") {
+  Flight flight = synthetic_flight({0.01, 300, 0.05, 0.01, 1, 0, 1});
+  const Flight other = synthetic_flight({0.01, 300, 0.05, 0.01, 1, 0, 99});
+  for (std::size_t row = 0; row < flight.size(); ++row) flight[row].commands = other[row].commands;
+  const CommandLag lag = estimate_command_lag({flight}, 0.01);
+  CHECK_FALSE(lag.found);
+  CHECK(lag.lag_s == 0);
+  CHECK(lag.warning.find("no lag stands out") != std::string::npos);
+  CHECK_FALSE(fit_motor_lag({flight}, 0.01, lag).found);
+  CHECK(estimate_command_lag({}, 0.01).warning.find("no stretch") != std::string::npos);
+  CHECK_FALSE(estimate_command_lag({Flight(10)}, 0.01).found);
+}
+
+TEST_CASE("motion before its command is said to be a clock's fault") {
+  SyntheticVehicle vehicle;
+  vehicle.motor_time_constant_s = 0;
+  vehicle.delay_s = 0;
+  const Flight flight = remove_lag(synthetic_flight(vehicle), vehicle.period_s, 0.05);
+  const CommandLag lag = estimate_command_lag({flight}, vehicle.period_s);
+  REQUIRE(lag.found);
+  CHECK(std::abs(lag.lag_s + 0.04) < 0.002);
+  CHECK(lag.warning.find("before the commands") != std::string::npos);
+}
+
+TEST_CASE("a lag between two rows is found there, not at the next row") {
+  SyntheticVehicle vehicle;
+  vehicle.motor_time_constant_s = 0;
+  vehicle.delay_s = 0.05;
+  for (const double earlier_s : {0.004, 0.013, 0.027}) {
+    CAPTURE(earlier_s);
+    const Flight flight = remove_lag(synthetic_flight(vehicle), vehicle.period_s, earlier_s);
+    const CommandLag lag = estimate_command_lag({flight}, vehicle.period_s);
+    REQUIRE(lag.found);
+    CHECK(std::abs(lag.lag_s - (0.06 - earlier_s)) < 0.2 * vehicle.period_s);
+  }
+}
+
+TEST_CASE("segments are not joined: a lag is looked for inside each") {
+  SyntheticVehicle vehicle;
+  const Flight whole = synthetic_flight(vehicle);
+  std::vector<Flight> parts;
+  for (std::size_t row = 0; row < whole.size(); ++row) {
+    if (row % 500 == 0) parts.emplace_back();
+    parts.back().push_back(whole[row]);
+  }
+  const CommandLag one = estimate_command_lag({whole}, 0.01), many = estimate_command_lag(parts, 0.01);
+  CHECK(std::abs(many.lag_s - one.lag_s) < 0.003);
+}
+
+TEST_CASE("removing a lag moves a line by it, in whole and part rows, both ways") {
+  std::vector<double> line;
+  for (int row = 0; row < 20; ++row) line.push_back(2.0 * row);
+  for (const double lag_s : {0.0, 0.02, 0.015, -0.013}) {
+    CAPTURE(lag_s);
+    const auto moved = remove_lag(line, 0.01, lag_s);
+    std::size_t missing = 0;
+    for (std::size_t row = 0; row < line.size(); ++row) {
+      if (std::isnan(moved[row])) {
+        missing += 1;
+        continue;
+      }
+      CHECK(moved[row] == doctest::Approx(2 * (static_cast<double>(row) - lag_s / 0.01)));
+    }
+    CHECK(missing == static_cast<std::size_t>(std::ceil(std::abs(lag_s) / 0.01 - 1e-9)));
+  }
+}
+
+TEST_CASE("of a flight only the commands move; rows without one are gone, extra columns stay with their rows") {
+  Flight flight = synthetic_flight({0.01, 5, 0.05, 0.01, 1, 0, 1});
+  std::vector<double> volts(flight.size());
+  for (std::size_t row = 0; row < volts.size(); ++row) volts[row] = static_cast<double>(row);
+  flight.add_column({{"battery_voltage", "V"}, volts});
+  flight.name = "one";
+  const Flight moved = remove_lag(flight, 0.01, 0.03);
+  REQUIRE(moved.size() == flight.size() - 3);
+  CHECK(moved.name == "one");
+  for (std::size_t row = 0; row < moved.size(); ++row) {
+    CHECK(moved[row].commands[2] == flight[row].commands[2]);
+    CHECK(moved[row].time_s == flight[row + 3].time_s);
+    CHECK(moved.column("battery_voltage")->values[row] == static_cast<double>(row + 3));
+  }
+}
