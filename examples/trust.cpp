@@ -22,9 +22,9 @@ namespace {
 using Calm = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
 using Windy = Quadrotor<double, StandardAtmosphere, ConstantWind, QuadraticDrag>;
 using Gusty = Quadrotor<double, StandardAtmosphere, ConstantWind, DrydenTurbulence<>, QuadraticDrag>;
-using Settings = Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>;
+using Settings = Context<PhysicsFeatures, PaperQuadrotor, AxisCommandOutputs>;
 using Residual = Mlp<float, InputSize<residual_inputs<PhysicsFeatures>>, Hidden<2, 32>, OutputSize<4>, Relu>;
-using Model = TrainedModel<MonotoneAnswer<PhysicsFeatures, Residual>, Settings>;
+using Model = TrainedModel<MonotonePredictor<PhysicsFeatures, Residual>, Settings>;
 
 struct Scale {
   std::size_t rows = 15000;  ///< of a flight, 0.05 s apart

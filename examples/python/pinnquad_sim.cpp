@@ -25,7 +25,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 #include "pinnquad/simulation/noisy_recorder.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
 

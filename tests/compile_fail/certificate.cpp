@@ -5,8 +5,8 @@
 // CASE SLOPE_HARDLY_ABOVE_ZERO: pinnquad: a slope of the model is not above 0 by its floor
 // CASE SLOPE_BELOW_ROUNDING: pinnquad: a slope of the model is not above 0 by its floor, or by what its network or rounding
 // CASE BOUNDS_UPSIDE_DOWN: pinnquad: the bounds of the model's residual are none
-// CASE RESIDUAL_SEES_TOO_MUCH: pinnquad: an answer from which features are Withheld takes all the others
-// CASE WITHHELD_TWICE: pinnquad: what is Withheld are features in threes, ascending, that do not overlap
+// CASE RESIDUAL_SEES_TOO_MUCH: pinnquad: an answer from which features are Masked takes all the others
+// CASE WITHHELD_TWICE: pinnquad: what is Masked are features in threes, ascending, that do not overlap
 // CASE BASE_SEES_THE_TURNING: pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration
 // CASE BASE_SAYS_NOTHING: pinnquad: a base says which features it reads, by name
 // CASE RIGID_BODY_OF_INVERSE_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
@@ -25,7 +25,7 @@ using namespace pinnquad;
 using Features = PhysicsFeatures;
 constexpr int inputs = Features::size;
 using Residual = Network<float, InputSize<residual_inputs<Features>>, Dense<4>>;
-using Answer = MonotoneAnswer<Features, Residual>;
+using Answer = MonotonePredictor<Features, Residual>;
 
 constexpr auto all_at(float value) {
   std::array<float, std::size_t(inputs)> values{};
@@ -66,7 +66,7 @@ struct Certified {
 #ifdef NO_STRUCTURE
   using Outputs = CommandOutputs;
 #else
-  using Outputs = SignedSumOutputs;
+  using Outputs = AxisCommandOutputs;
 #endif
   using Vehicle = PaperQuadrotor;
   static constexpr Answer::Parameters parameters = numbers();
@@ -98,21 +98,21 @@ template <class FeatureSet>
 using FourOf = Network<float, InputSize<FeatureSet::size>, Dense<4>>;
 template <class FeatureSet>
 using FormulaAnd =
-    Sum<Ensemble<Analytic<float, FeatureSet::size, LinearizedInverse, PaperQuadrotor>, 2>, FourOf<FeatureSet>>;
-using Behind = Withheld<Analytic<float, 13, LinearizedInverse, PaperQuadrotor>, 16, 3>;
-static_assert(require_shape<OnFormula<PhysicsFeatures, SignedSumsOn<RigidBodyInverse>>>() &&
-              require_shape<OnFormula<WithColumns<PhysicsFeatures, BatteryVoltage>, SignedSumsOn<RigidBodyInverse>>>());
+    Sum<Ensemble<Analytic<float, FeatureSet::size, LinearizedBase, PaperQuadrotor>, 2>, FourOf<FeatureSet>>;
+using Behind = Masked<Analytic<float, 13, LinearizedBase, PaperQuadrotor>, 16, 3>;
+static_assert(require_shape<OnFormula<PhysicsFeatures, SignedSumsOn<RigidBodyBase>>>() &&
+              require_shape<OnFormula<WithColumns<PhysicsFeatures, BatteryVoltage>, SignedSumsOn<RigidBodyBase>>>());
 static_assert(
-    require_shape<OnFormula<PaperFeatures, ResidualOutputs<LinearizedInverse>, FourOf<PaperFeatures>>>() &&
+    require_shape<OnFormula<PaperFeatures, ResidualOutputs<LinearizedBase>, FourOf<PaperFeatures>>>() &&
     require_shape<OnFormula<PaperFeaturesWithAltitude, CommandOutputs, FormulaAnd<PaperFeaturesWithAltitude>>>());
 #if defined(RIGID_BODY_OF_INVERSE_FEATURES)
-static_assert(require_shape<OnFormula<InverseFeatures, SignedSumsOn<RigidBodyInverse>>>());
+static_assert(require_shape<OnFormula<InverseFeatures, SignedSumsOn<RigidBodyBase>>>());
 #elif defined(RIGID_BODY_OF_PAPER_FEATURES)
-static_assert(require_shape<OnFormula<PaperFeatures, SignedSumsOn<RigidBodyInverse>>>());
+static_assert(require_shape<OnFormula<PaperFeatures, SignedSumsOn<RigidBodyBase>>>());
 #elif defined(RIGID_BODY_OF_OTHER_UNITS)
-static_assert(require_shape<OnFormula<OtherUnits, SignedSumsOn<RigidBodyInverse>>>());
+static_assert(require_shape<OnFormula<OtherUnits, SignedSumsOn<RigidBodyBase>>>());
 #elif defined(LINEARIZED_OF_PHYSICS_FEATURES)
-static_assert(require_shape<OnFormula<PhysicsFeatures, ResidualOutputs<LinearizedInverse>, FourOf<PhysicsFeatures>>>());
+static_assert(require_shape<OnFormula<PhysicsFeatures, ResidualOutputs<LinearizedBase>, FourOf<PhysicsFeatures>>>());
 #elif defined(FORMULA_OF_PHYSICS_FEATURES)
 static_assert(require_shape<OnFormula<PhysicsFeatures, CommandOutputs, FormulaAnd<PhysicsFeatures>>>());
 #elif defined(FORMULA_OF_WITHHELD_FEATURES)
@@ -120,11 +120,11 @@ static_assert(require_shape<OnFormula<PaperFeatures, CommandOutputs, Behind>>())
 #endif
 
 #ifdef RESIDUAL_SEES_TOO_MUCH
-constexpr int wrong = Withheld<Network<float, InputSize<inputs>, Dense<4>>, inputs, 3>::outputs;
+constexpr int wrong = Masked<Network<float, InputSize<inputs>, Dense<4>>, inputs, 3>::outputs;
 #elif defined(WITHHELD_TWICE)
-constexpr int wrong = Withheld<Residual, inputs, 3, 5>::outputs;
+constexpr int wrong = Masked<Residual, inputs, 3, 5>::outputs;
 #elif defined(BASE_SEES_THE_TURNING)
-struct Turning : RigidBodyInverse {
+struct Turning : RigidBodyBase {
   static constexpr std::array<ReadFeature, 2> reads = {{{2, "s_z", "m/s^2"}, {4, "wdot_y", "rad/s^2"}}};
 };
 constexpr int wrong = SignedSumsOn<Turning>::size;

@@ -75,7 +75,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 constexpr auto with_spread(pinnquad::Scaler<float, 16> scaler, float last) {
-  scaler.spread[15] = last;
+  scaler.standard_deviation[15] = last;
   return scaler;
 }
 

@@ -10,7 +10,7 @@
 #include "pinnquad/features/inverse_features.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 
 namespace {
 
@@ -33,13 +33,13 @@ void write(const std::string& path, const std::string& name) {
   const double spread[16] = {4, 4, 4, 10, 10, 10, 3, 3, 3, 1.5, 1.5, 1.5, 0.8, 0.5, 0.7, 0.7};
   for (std::size_t i = 0; i < 16; ++i) {
     model.input.mean[i] = float(spread[i] * uniform(engine, -0.2, 0.2));
-    model.input.spread[i] = float(spread[i]);
+    model.input.standard_deviation[i] = float(spread[i]);
     model.envelope_lower[i] = float(-5.0 * spread[i]);
     model.envelope_upper[i] = float(5.0 * spread[i]);
   }
   for (std::size_t i = 0; i < 4; ++i) {
     model.output.mean[i] = 0.5F;
-    model.output.spread[i] = 0.1F;
+    model.output.standard_deviation[i] = 0.1F;
   }
   std::vector<Model::FeatureVector> golden(4);
   for (auto& x : golden) {
@@ -52,8 +52,8 @@ void write(const std::string& path, const std::string& name) {
 void write_structured(const std::string& path, const std::string& name) {
   using Features = InverseFeatures;
   using Residual = Mlp<float, InputSize<residual_inputs<Features>>, Hidden<2, 32>, OutputSize<4>, Relu>;
-  using Answer = MonotoneAnswer<Features, Residual>;
-  using Model = TrainedModel<Answer, Context<Features, PaperQuadrotor, SignedSumOutputs>>;
+  using Answer = MonotonePredictor<Features, Residual>;
+  using Model = TrainedModel<Answer, Context<Features, PaperQuadrotor, AxisCommandOutputs>>;
   std::mt19937_64 engine(8);
   Model model;
   for (float& v : model.network.parameters) v = float(uniform(engine, -0.2, 0.2));
@@ -65,13 +65,13 @@ void write_structured(const std::string& path, const std::string& name) {
   }
   for (std::size_t i = 0; i < model.input.mean.size(); ++i) {
     model.input.mean[i] = float(uniform(engine, -0.2, 0.2));
-    model.input.spread[i] = 8.0F;
+    model.input.standard_deviation[i] = 8.0F;
     model.envelope_lower[i] = -200.0F;
     model.envelope_upper[i] = 200.0F;
   }
   for (std::size_t i = 0; i < 4; ++i) {
     model.output.mean[i] = i == 0 ? 2.0F : 0.0F;
-    model.output.spread[i] = 0.1F;
+    model.output.standard_deviation[i] = 0.1F;
   }
   std::vector<Model::FeatureVector> golden(4);
   for (auto& x : golden) {

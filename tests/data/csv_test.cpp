@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "recorded_flight.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 using pinnquad::Flight;
 using pinnquad::InputError;

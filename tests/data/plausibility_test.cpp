@@ -11,12 +11,12 @@
 #include <random>
 #include <vector>
 
-#include "data/temporary_folder.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/simulation/noisy_recorder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace {
 

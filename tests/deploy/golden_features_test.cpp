@@ -14,7 +14,7 @@
 #include "pinnquad/features/windowed.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "pinnquad/nn/tanh.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "support/random_network.hpp"
 #include "support/training_sets.hpp"
@@ -27,8 +27,8 @@ template <class Features>
 using ModelOf = TrainedModel<Network<float, InputSize<Features::size>, Dense<4>>, Context<Features, PaperQuadrotor>>;
 
 using Shown = Network<float, InputSize<residual_inputs<PhysicsFeatures>>, Dense<8>, Tanh, Dense<4>>;
-using Structured =
-    TrainedModel<MonotoneAnswer<PhysicsFeatures, Shown>, Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>>;
+using Structured = TrainedModel<MonotonePredictor<PhysicsFeatures, Shown>,
+                                Context<PhysicsFeatures, PaperQuadrotor, AxisCommandOutputs>>;
 using Bound = MonotoneResidual<PhysicsFeatures, Shown>;
 constexpr auto first_bound = static_cast<std::size_t>(MonotoneBase<PhysicsFeatures>::parameter_count);
 
@@ -37,7 +37,7 @@ Structured structured(const RowSet& rows, std::uint64_t seed) {
   Structured model;
   std::mt19937_64 engine(seed);
   test::fill_uniform(model.network.parameters, engine, 0.5);
-  for (std::size_t k = 0; k < 4; ++k) model.output.spread[k] = 0.1F;
+  for (std::size_t k = 0; k < 4; ++k) model.output.standard_deviation[k] = 0.1F;
   bool first = true;
   each_features<PhysicsFeatures, float>(rows, [&](const Flight&, std::size_t, const auto& x) {
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -48,7 +48,7 @@ Structured structured(const RowSet& rows, std::uint64_t seed) {
   });
   for (std::size_t i = 0; i < model.envelope_lower.size(); ++i) {
     model.input.mean[i] = (model.envelope_lower[i] + model.envelope_upper[i]) / 2;
-    model.input.spread[i] = (model.envelope_upper[i] - model.envelope_lower[i]) / 3 + 0.1F;
+    model.input.standard_deviation[i] = (model.envelope_upper[i] - model.envelope_lower[i]) / 3 + 0.1F;
   }
   float* bounds = model.network.parameters.data() + first_bound;
   std::fill(bounds, bounds + 4, -1e30F);

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "data/temporary_folder.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -24,6 +23,7 @@
 #include "pinnquad/nn/sine.hpp"
 #include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/training/initialization.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace {
 
@@ -38,7 +38,7 @@ Model some_model(std::uint64_t seed) {
   model.network = initialised<Net>(engine);
   for (std::size_t i = 0; i < 16; ++i) {
     model.input.mean[i] = float(standard_normal(engine));
-    model.input.spread[i] = float(0.5 + uniform_01(engine));
+    model.input.standard_deviation[i] = float(0.5 + uniform_01(engine));
     model.envelope_lower[i] = float(-5 - uniform_01(engine));
     model.envelope_upper[i] = float(5 + uniform_01(engine));
   }
@@ -120,7 +120,7 @@ TEST_CASE("weights, scalers, envelope and golden vectors are in the header, bit 
     REQUIRE(input.size() == 32);
     for (std::size_t i = 0; i < 16; ++i) {
       CHECK(input[i] == model.input.mean[i]);
-      CHECK(input[16 + i] == model.input.spread[i]);
+      CHECK(input[16 + i] == model.input.standard_deviation[i]);
     }
     const std::vector<float> lower = numbers_of(header, "envelope_lower");
     const std::vector<float> upper = numbers_of(header, "envelope_upper");
@@ -219,7 +219,7 @@ TEST_CASE("a number that is not finite is not written: it has no literal") {
   model.envelope_lower[0] = -infinity;
   CHECK(said(model) == "export: number 1 of the lower envelope is not finite");
   model = sound;
-  model.input.spread[15] = infinity;
+  model.input.standard_deviation[15] = infinity;
   CHECK(said(model) == "export: number 16 of the input spreads is not finite");
   model = sound;
   model.output.mean[1] = nan;

@@ -9,13 +9,13 @@
 #include <iterator>
 #include <random>
 
-#include "data/temporary_folder.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "support/block_bytes.hpp"
 #include "support/described_model.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace {
 
@@ -36,13 +36,13 @@ Model some_model(std::uint64_t seed) {
   const auto draw = [&](double low, double high) { return static_cast<Scalar>(uniform(engine, low, high)); };
   for (std::size_t i = 0; i < 17; ++i) {
     model.input.mean[i] = draw(-1, 1);
-    model.input.spread[i] = draw(0.5, 1.5);
+    model.input.standard_deviation[i] = draw(0.5, 1.5);
     model.envelope_lower[i] = draw(-6, -5);
     model.envelope_upper[i] = draw(5, 6);
   }
   for (std::size_t i = 0; i < 4; ++i) {
     model.output.mean[i] = draw(0.4, 0.6);
-    model.output.spread[i] = draw(0.1, 0.2);
+    model.output.standard_deviation[i] = draw(0.1, 0.2);
   }
   return model;
 }
@@ -84,9 +84,9 @@ TEST_CASE_TEMPLATE("what a training writes is what a view reads, bit for bit", M
     ModelView<Model> view;
     REQUIRE(ModelView<Model>::open(block.data(), block.size(), view) == Status::ok);
     CHECK(view.input.mean == model.input.mean);
-    CHECK(view.input.spread == model.input.spread);
+    CHECK(view.input.standard_deviation == model.input.standard_deviation);
     CHECK(view.output.mean == model.output.mean);
-    CHECK(view.output.spread == model.output.spread);
+    CHECK(view.output.standard_deviation == model.output.standard_deviation);
     CHECK(view.envelope_lower == model.envelope_lower);
     CHECK(view.envelope_upper == model.envelope_upper);
     CHECK(view.training_data_hash == 0xfedcba9876543210u);

@@ -24,8 +24,8 @@ constexpr double rounding = 1e-9;  // of sums over some hundred rows of order 1,
 /// y_k = sum_i cos(1.7 (i + 1)(k + 1)) x_i + 0.1 k, nothing standardised.
 Model linear_model() {
   Model model;
-  model.input.spread.fill(1);
-  model.output.spread.fill(1);
+  model.input.standard_deviation.fill(1);
+  model.output.standard_deviation.fill(1);
   for (int k = 0; k < 4; ++k) {
     for (int i = 0; i < 16; ++i) model.network.parameters[std::size_t(16 * k + i)] = std::cos(1.7 * (i + 1) * (k + 1));
     model.network.parameters[std::size_t(64 + k)] = 0.1 * k;

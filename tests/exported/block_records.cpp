@@ -313,8 +313,8 @@ using WindowedNet = Network<float, InputSize<WindowedFeatures::size>, Dense<4>>;
 template <class NetworkType, class ContextType>
 TrainedModel<NetworkType, ContextType> some_model() {
   TrainedModel<NetworkType, ContextType> model;
-  model.input.spread.fill(1.0f);
-  model.output.spread.fill(1.0f);
+  model.input.standard_deviation.fill(1.0f);
+  model.output.standard_deviation.fill(1.0f);
   model.envelope_lower.fill(-1.0f);
   model.envelope_upper.fill(1.0f);
   model.network.parameters.fill(0.01f);
@@ -350,7 +350,7 @@ TEST_CASE("window, columns and period of a feature set with a past are records")
 
 namespace {
 
-struct OtherInverse : LinearizedInverse {
+struct OtherInverse : LinearizedBase {
   static constexpr const char* description = "OtherInverse";
 };
 using Net16 = Network<float, InputSize<16>, Dense<4>>;
@@ -362,20 +362,20 @@ using ResidualModel = TrainedModel<Net16, ResidualContext<Base>>;
 }  // namespace
 
 TEST_CASE("a residual on another base does not open, though its outputs have the same names") {
-  const auto model = some_model<Net16, ResidualContext<LinearizedInverse>>();
-  const Bytes block = model_block(model, {ResidualModel<LinearizedInverse>::FeatureVector{}}, {});
-  CHECK(opened<ResidualModel<LinearizedInverse>>(BlockBytes(block)) == Status::ok);
+  const auto model = some_model<Net16, ResidualContext<LinearizedBase>>();
+  const Bytes block = model_block(model, {ResidualModel<LinearizedBase>::FeatureVector{}}, {});
+  CHECK(opened<ResidualModel<LinearizedBase>>(BlockBytes(block)) == Status::ok);
   CHECK(opened<ResidualModel<OtherInverse>>(BlockBytes(block)) == Status::block_incompatible);
   auto records = records_of(block);
   const std::string base = "pinnquad::LinearizedInverse";
   CHECK(find(records, BlockRecord::base).bytes == Bytes(base.begin(), base.end()));
   records.pop_back();  // the base is the last of them
-  CHECK(opened<ResidualModel<LinearizedInverse>>(with_records(block, records)) == Status::block_incompatible);
+  CHECK(opened<ResidualModel<LinearizedBase>>(with_records(block, records)) == Status::block_incompatible);
 }
 
 TEST_CASE("verdict, proven slopes, range of a residual and statistics of a distance go along where they are given") {
-  using Model = ResidualModel<LinearizedInverse>;
-  const auto model = some_model<Net16, ResidualContext<LinearizedInverse>>();
+  using Model = ResidualModel<LinearizedBase>;
+  const auto model = some_model<Net16, ResidualContext<LinearizedBase>>();
   Provenance from;
   from.verdict = Verdict{-0.5, 0.25, -1.0};
   from.slope_signs = {{{-1, 1, 0}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};

@@ -23,7 +23,8 @@ static_assert(has_certificate<BaseAlone> && has_certificate<WithResidual> && has
               has_certificate<ForceWindowedModel>);
 
 /// Shown the angular acceleration after all, or another feature in its place; or outputs of another meaning.
-using Seeing = Sum<MonotoneBase<PhysicsFeatures>, Bounded<Network<float, InputSize<PhysicsFeatures::size>, Dense<4>>>>;
+using Seeing =
+    Sum<MonotoneBase<PhysicsFeatures>, Saturated<Network<float, InputSize<PhysicsFeatures::size>, Dense<4>>>>;
 using Elsewhere = AxisAligned<float, PhysicsFeatures::size, 6>;
 struct AsCommands : BaseAlone {
   using Outputs = CommandOutputs;
@@ -193,10 +194,10 @@ TEST_CASE("numbers that deserve no certificate get none") {
     CHECK(model.certificate().monotone);
   }
   MonotoneModel<WithResidual> turned(1);
-  turned.output.spread[2] = -turned.output.spread[2];
+  turned.output.standard_deviation[2] = -turned.output.standard_deviation[2];
   CHECK(!turned.certificate().monotone);
   MonotoneModel<WithResidual> upside_down(1);
-  upside_down.input.spread[4] = -1;
+  upside_down.input.standard_deviation[4] = -1;
   CHECK(!upside_down.certificate().monotone);
 
   // a window whose present slope is above 0 and whose sum is not, and the other way round
@@ -213,7 +214,7 @@ TEST_CASE("numbers that deserve no certificate get none") {
 
 TEST_CASE("taps that cancel to less than the doubt of their sum prove nothing") {
   MonotoneModel<WindowedModel> model(1);
-  model.input.spread.fill(1);
+  model.input.standard_deviation.fill(1);
   model.slope(0) = 1;
   model.slope(3) = -0.5F;
   model.slope(6) = -0.5F;
@@ -234,19 +235,19 @@ TEST_CASE("a vehicle whose rotors have no exact mix has no proof") {
   for (auto& rotor : airframe.rotors) rotor.spin = airframe.rotors[0].spin;  // no sign of yaw is another one
   CHECK(!of(airframe).monotone);
   double y[4] = {1, 2, 3, 4}, u[4];
-  SignedSumOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y),
-                             SignedSumOutputs::prepare(airframe), static_cast<double*>(u));
+  AxisCommandOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y),
+                               AxisCommandOutputs::prepare(airframe), static_cast<double*>(u));
   for (const double command : u) CHECK(std::isnan(command));  // and its commands reach no motor
 }
 
 TEST_CASE("signed sums there and back") {
-  const auto mix = SignedSumOutputs::prepare(PaperQuadrotor::value<double>());
+  const auto mix = AxisCommandOutputs::prepare(PaperQuadrotor::value<double>());
   const double u[4] = {0.3, 0.9, 0.1, 0.4};
   double y[4], again[4];
-  SignedSumOutputs::from_commands(static_cast<const double*>(nullptr), static_cast<const double*>(u), mix, y);
+  AxisCommandOutputs::from_commands(static_cast<const double*>(nullptr), static_cast<const double*>(u), mix, y);
   CHECK(y[0] == doctest::Approx(1.7));
   for (std::size_t axis = 0; axis < 3; ++axis) CHECK(y[1 + axis] == doctest::Approx(sum_of(u, axis)));
-  SignedSumOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), mix, again);
+  AxisCommandOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), mix, again);
   for (int i = 0; i < 4; ++i) CHECK(again[i] == doctest::Approx(u[i]).epsilon(1e-15));
 }
 
@@ -259,8 +260,8 @@ TEST_CASE("a slope is proven above its floor, a share of the airframe's own, not
       const auto place = std::size_t(PhysicsFeatures::angular_acceleration + axis);
       constexpr auto others = MonotoneModel<WithResidual>::Base::weights;
       std::fill(model.parameters.begin() + others, model.parameters.end(), 0.0F);  // rounding hides nothing
-      model.input.spread[place] = 1;
-      model.output.spread[std::size_t(1 + axis)] = 1;
+      model.input.standard_deviation[place] = 1;
+      model.output.standard_deviation[std::size_t(1 + axis)] = 1;
       model.slope(axis) = static_cast<float>(slope);
       return model.certificate(airframe);
     };
@@ -299,7 +300,7 @@ TEST_CASE(
     model.slope(3 + axis) *= -0.4F;
     model.slope(6 + axis) *= -0.3F;
     for (int tap = 0; tap < 3; ++tap) {
-      model.input.spread[std::size_t(angular_acceleration_at<PhysicsWindow>(tap) + axis)] = 2;
+      model.input.standard_deviation[std::size_t(angular_acceleration_at<PhysicsWindow>(tap) + axis)] = 2;
     }
     model.slope(axis) = 0.7F;
   }
@@ -334,7 +335,7 @@ TEST_CASE(
 
 TEST_CASE("nobody knows the rounding of a network that is shown the angular acceleration, nor of a formula") {
   using Shown = Network<float, InputSize<PhysicsFeatures::size>, Dense<4>, Tanh, Dense<4>>;
-  const MonotoneModel<MonotoneShape<PhysicsFeatures, PathBoundedAnswer<PhysicsFeatures, Shown>>> model(1);
+  const MonotoneModel<MonotoneShape<PhysicsFeatures, PathBoundedPredictor<PhysicsFeatures, Shown>>> model(1);
   CHECK(std::isinf(model.certificate().rounding));
   CHECK(std::isinf(model.certificate().sure_step[2]));
 }

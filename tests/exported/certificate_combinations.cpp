@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pinnquad/features/inverse_features.hpp"
-#include "pinnquad/outputs/rigid_body_inverse.hpp"
+#include "pinnquad/outputs/rigid_body_base.hpp"
 #include "support/monotone_shapes.hpp"
 
 using namespace pinnquad;
@@ -24,7 +24,7 @@ struct AnyShape : MonotoneShape<FeatureSet, Answer> {
   using Outputs = Schema;
 };
 
-using OnRigidBody = SignedSumsOn<RigidBodyInverse>;
+using OnRigidBody = SignedSumsOn<RigidBodyBase>;
 using WithBattery = WithColumns<PhysicsFeatures, BatteryVoltage>;
 using CentredWindow = PartlyWindowed<InverseFeatures, AccelerationFeatures, 3, PeriodMicroseconds<20000>, Centred>;
 using WholeWindow = Windowed<PhysicsFeaturesWithoutVelocity, 2, PeriodMicroseconds<10000>>;
@@ -170,9 +170,9 @@ template <class Features, class Schema>
 void check_answers() {
   CAPTURE(Features::size);
   check_slopes<AnyShape<Features, MonotoneBase<Features>, Schema>>();
-  check_slopes<AnyShape<Features, MonotoneAnswer<Features, SmallResidual<Features>>, Schema>>();
+  check_slopes<AnyShape<Features, MonotonePredictor<Features, SmallResidual<Features>>, Schema>>();
   using Seeing = Network<float, InputSize<Features::size>, Dense<4>, Tanh, Dense<4>>;
-  check_slopes<AnyShape<Features, PathBoundedAnswer<Features, Seeing>, Schema>>();
+  check_slopes<AnyShape<Features, PathBoundedPredictor<Features, Seeing>, Schema>>();
 }
 
 }  // namespace
@@ -181,7 +181,7 @@ TEST_CASE_TEMPLATE("slopes are no more than differences give, other sums no less
                    Features, PhysicsFeatures, PhysicsFeaturesWithoutVelocity, InverseFeatures,
                    InverseFeaturesWithAltitude, PaperFeatures, WithBattery, PhysicsWindow, ForceWindow, CentredWindow,
                    WholeWindow) {
-  check_answers<Features, SignedSumOutputs>();
+  check_answers<Features, AxisCommandOutputs>();
   if constexpr (certified<Features, OnRigidBody>) check_answers<Features, OnRigidBody>();
 }
 
@@ -198,7 +198,7 @@ TEST_CASE_TEMPLATE("the thrust slope is no more than differences give, the resid
       const Certificate certificate = model.certificate(airframe_in<float>(airframe));
       const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
       // a formula's curve is known to be no steeper than at command 1 while its commands are in 0 to 1
-      constexpr bool on_formula = !std::is_same_v<typename Shape::Outputs, SignedSumOutputs>;
+      constexpr bool on_formula = !std::is_same_v<typename Shape::Outputs, AxisCommandOutputs>;
       const bool curved = on_formula && airframe.rotors[3].thrust_curve > 0;
       double nearest = 1e300, nearest_held = 1e300;
       for (int sample = 0; sample < 60 && !curved; ++sample) {
@@ -216,24 +216,24 @@ TEST_CASE_TEMPLATE("the thrust slope is no more than differences give, the resid
       CHECK(nearest_held <= 1e-6);
     }
   };
-  check(AnyShape<Features, MonotoneBase<Features>, SignedSumOutputs>{});
-  check(AnyShape<Features, MonotoneAnswer<Features, SmallResidual<Features>>, SignedSumOutputs>{});
+  check(AnyShape<Features, MonotoneBase<Features>, AxisCommandOutputs>{});
+  check(AnyShape<Features, MonotonePredictor<Features, SmallResidual<Features>>, AxisCommandOutputs>{});
   if constexpr (certified<Features, OnRigidBody>) {
     check(AnyShape<Features, MonotoneBase<Features>, OnRigidBody>{});
-    check(AnyShape<Features, MonotoneAnswer<Features, SmallResidual<Features>>, OnRigidBody>{});
+    check(AnyShape<Features, MonotonePredictor<Features, SmallResidual<Features>>, OnRigidBody>{});
   }
 }
 
 TEST_CASE("of a formula with curved thrust the least thrust slope is below each between commands 0 and 1") {
   for (const Airframe<double>& airframe : airframes()) {
-    const double least = RigidBodyInverse::least_thrust_slope(airframe);
-    const auto body = RigidBodyInverse::prepare(airframe);
+    const double least = RigidBodyBase::least_thrust_slope(airframe);
+    const auto body = RigidBodyBase::prepare(airframe);
     double nearest = 1e300;
     int inside = 0;
     for (double force = -0.5; force > -40; force -= 0.5) {
       double x[9] = {0, 0, force}, less[9] = {0, 0, force + 1e-4}, u[rotor_count], u_of_less[rotor_count];
-      RigidBodyInverse::commands(static_cast<const double*>(x), body, static_cast<double*>(u));
-      RigidBodyInverse::commands(static_cast<const double*>(less), body, static_cast<double*>(u_of_less));
+      RigidBodyBase::commands(static_cast<const double*>(x), body, static_cast<double*>(u));
+      RigidBodyBase::commands(static_cast<const double*>(less), body, static_cast<double*>(u_of_less));
       double rise = 0;
       for (std::size_t i = 0; i < rotor_count; ++i) rise += (u[i] - u_of_less[i]) / 1e-4;
       if (*std::max_element(u, u + rotor_count) > 1) continue;

@@ -34,12 +34,12 @@ Enclosure enclosure_of(const MonotoneModel<Shape>& model, const std::vector<Inte
   std::vector<Dual> z(x.size());
   std::vector<bool> is_acceleration(x.size(), false);
   for (std::size_t i = 0; i < x.size(); ++i)
-    z[i][0] = (x[i] - double(model.input.mean[i])) / double(model.input.spread[i]);
+    z[i][0] = (x[i] - double(model.input.mean[i])) / double(model.input.standard_deviation[i]);
   for (int tap = 0; tap < all_taps; ++tap) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto place = std::size_t(angular_acceleration_at<Features>(tap) + axis);
       is_acceleration[place] = true;
-      if (tap < taps) z[place][std::size_t(axis) + 1] = Interval(1) / double(model.input.spread[place]);
+      if (tap < taps) z[place][std::size_t(axis) + 1] = Interval(1) / double(model.input.standard_deviation[place]);
     }
   }
   std::vector<Dual> seen;
@@ -59,7 +59,7 @@ Enclosure enclosure_of(const MonotoneModel<Shape>& model, const std::vector<Inte
       const auto place = std::size_t(angular_acceleration_at<Features>(tap)) + k - 1;
       add(y, double(model.parameters[std::size_t(3 * tap) + k - 1]), z[place]);
     }
-    for (std::size_t d = 0; d < 4; ++d) result.sums[k][d] = y[d] * double(model.output.spread[k]);
+    for (std::size_t d = 0; d < 4; ++d) result.sums[k][d] = y[d] * double(model.output.standard_deviation[k]);
     result.sums[k][0] = result.sums[k][0] + double(model.output.mean[k]);
   }
   if constexpr (Model::Structure::has_residual) {
@@ -84,9 +84,9 @@ Enclosure enclosure_of(const MonotoneModel<Shape>& model, const std::vector<Inte
     for (std::size_t k = 0; k < 4; ++k) {
       const Interval y =
           clipped(v[k][0], double(model.parameters[bounds + k]), double(model.parameters[bounds + 4 + k]));
-      result.residual[k] = y * double(model.output.spread[k]);
+      result.residual[k] = y * double(model.output.standard_deviation[k]);
       for (std::size_t d = 1; d < 4; ++d) {
-        result.sums[k][d] = result.sums[k][d] + v[k][d] * Interval(0, 1) * double(model.output.spread[k]);
+        result.sums[k][d] = result.sums[k][d] + v[k][d] * Interval(0, 1) * double(model.output.standard_deviation[k]);
       }
     }
   }

@@ -320,8 +320,8 @@ TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or inf
       switch (hostility.below(4)) {
         case 0: model.parameters[hostility.below(172)] = hostility.value(); break;
         case 1: model.parameters[hostility.below(172)] *= 1e30F; break;
-        case 2: model.output.spread[hostility.below(4)] = hostility.value(); break;
-        default: model.input.spread[hostility.below(16)] = hostility.value();
+        case 2: model.output.standard_deviation[hostility.below(4)] = hostility.value(); break;
+        default: model.input.standard_deviation[hostility.below(16)] = hostility.value();
       }
     }
     const auto inputs = hostility.inputs(0);

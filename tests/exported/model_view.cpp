@@ -38,8 +38,10 @@ bool same_bits(const Array& a, const Array& b) {
 
 template <class Model, class View>
 bool holds(const View& view) {
-  bool same = same_bits(view.input.mean, Model::input.mean) && same_bits(view.input.spread, Model::input.spread) &&
-              same_bits(view.output.mean, Model::output.mean) && same_bits(view.output.spread, Model::output.spread) &&
+  bool same = same_bits(view.input.mean, Model::input.mean) &&
+              same_bits(view.input.standard_deviation, Model::input.standard_deviation) &&
+              same_bits(view.output.mean, Model::output.mean) &&
+              same_bits(view.output.standard_deviation, Model::output.standard_deviation) &&
               same_bits(view.envelope_lower, Model::envelope_lower) &&
               same_bits(view.envelope_upper, Model::envelope_upper) &&
               view.golden_features.size() == Model::golden_features.size() &&
@@ -65,7 +67,7 @@ Status opened(const void* block, std::size_t length) {
   const Status status = ModelView<Shape>::open(block, length, view);
   if (status != Status::ok) {
     CHECK(same_bits(view.input.mean, copy.input.mean));
-    CHECK(same_bits(view.output.spread, copy.output.spread));
+    CHECK(same_bits(view.output.standard_deviation, copy.output.standard_deviation));
     CHECK(same_bits(view.envelope_lower, copy.envelope_lower));
     CHECK(view.parameters() == copy.parameters());
     CHECK(view.golden_features.size() == copy.golden_features.size());

@@ -102,9 +102,9 @@ void try_instance() {
   };
   try_each(model->parameters.data(), model->parameters.size(), "self test of an instance, weight", true);
   try_each(model->input.mean.data(), 16, "self test, input mean", false);
-  try_each(model->input.spread.data(), 16, "self test, input spread", false);
+  try_each(model->input.standard_deviation.data(), 16, "self test, input spread", false);
   try_each(model->output.mean.data(), 4, "self test, output mean", false);
-  try_each(model->output.spread.data(), 4, "self test, output spread", false);
+  try_each(model->output.standard_deviation.data(), 4, "self test, output spread", false);
   try_each(model->envelope_lower.data(), 16, "self test, envelope", false);
   try_each(model->envelope_upper.data(), 16, "self test, envelope", false);
 }

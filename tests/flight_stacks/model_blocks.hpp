@@ -77,7 +77,7 @@ Block soft_block() {
   for (std::size_t i = 0; i < Model::feature_names.size(); ++i) {
     if (std::string_view(Model::feature_names[i]) != "vdot_bz") continue;
     model.input.mean[i] /= share;
-    model.input.spread[i] /= share;
+    model.input.standard_deviation[i] /= share;
   }
   return pinnquad::model_block(model, {Model::golden_features.begin(), Model::golden_features.end()}, {});
 }

@@ -111,7 +111,7 @@ void load(const std::uint8_t* data, std::size_t size) {
   const Memory memory(data, size, 0);
   View view;
   view.input.mean[0] = Scalar(77);
-  view.output.spread[3] = Scalar(78);
+  view.output.standard_deviation[3] = Scalar(78);
   view.envelope_lower[15] = Scalar(79);
   const Status status = View::open(memory.block(), size, view);
   ++tally.count[to_string(status)];
@@ -119,7 +119,7 @@ void load(const std::uint8_t* data, std::size_t size) {
     expect(status == Status::block_truncated || status == Status::block_incompatible || status == Status::block_corrupt,
            "a refusal says why");
     expect(view.parameters() == nullptr && view.golden_features.size() == 1 && view.input.mean[0] == Scalar(77) &&
-               view.output.spread[3] == Scalar(78) && view.envelope_lower[15] == Scalar(79),
+               view.output.standard_deviation[3] == Scalar(78) && view.envelope_lower[15] == Scalar(79),
            "a refusal leaves the view alone");
     return;
   }
@@ -140,14 +140,16 @@ void load(const std::uint8_t* data, std::size_t size) {
     expect(std::isfinite(view.parameters()[i]), "weights are finite");
   }
   for (std::size_t i = 0; i < view.input.mean.size(); ++i) {
-    expect(std::isfinite(view.input.mean[i]) && std::isfinite(view.input.spread[i]) && view.input.spread[i] > 0,
+    expect(std::isfinite(view.input.mean[i]) && std::isfinite(view.input.standard_deviation[i]) &&
+               view.input.standard_deviation[i] > 0,
            "the input's scaler is sound");
     expect(std::isfinite(view.envelope_lower[i]) && std::isfinite(view.envelope_upper[i]) &&
                view.envelope_lower[i] <= view.envelope_upper[i],
            "the envelope is sound");
   }
   for (std::size_t i = 0; i < view.output.mean.size(); ++i) {
-    expect(std::isfinite(view.output.mean[i]) && std::isfinite(view.output.spread[i]) && view.output.spread[i] > 0,
+    expect(std::isfinite(view.output.mean[i]) && std::isfinite(view.output.standard_deviation[i]) &&
+               view.output.standard_deviation[i] > 0,
            "the output's scaler is sound");
   }
   expect(view.golden_features.size() > 0 && view.golden_features.size() == view.golden_commands.size(),

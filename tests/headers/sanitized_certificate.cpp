@@ -11,8 +11,8 @@ struct Seeing {
   using Scalar = float;
   using Features = PhysicsFeatures;
   using Network =
-      PathBoundedAnswer<Features, pinnquad::Network<float, InputSize<Features::size>, Dense<4>, Tanh, Dense<4>>>;
-  using Outputs = SignedSumOutputs;
+      PathBoundedPredictor<Features, pinnquad::Network<float, InputSize<Features::size>, Dense<4>, Tanh, Dense<4>>>;
+  using Outputs = AxisCommandOutputs;
   using Vehicle = PaperQuadrotor;
   static constexpr Network::Parameters parameters = [] {
     Network::Parameters all{};

@@ -156,8 +156,8 @@ TEST_CASE("numbers that are none: refused, and nothing is written") {
     CHECK(predict_with_jacobian(inverse, x.data(), commands, jacobian) == Status::output_not_finite);
   }
   SUBCASE("the commands are sound, a derivative overflows") {
-    broken.input.spread[3] = 2e-38f;
-    broken.output.spread.fill(1e3f);
+    broken.input.standard_deviation[3] = 2e-38f;
+    broken.output.standard_deviation.fill(1e3f);
     x[3] = broken.input.mean[3];
     const InverseDynamics<test::SmallInstance> inverse(broken);
     CHECK(inverse.predict_features(x.data(), plain) == Status::ok);

@@ -23,7 +23,7 @@ struct EdgyModel : SmallModel {
 };
 
 struct BrokenModel : SmallModel {
-  static constexpr Scaler<float, 4> output{{0.5F, not_a_number, 0.5F, 0.5F}, SmallModel::output.spread};
+  static constexpr Scaler<float, 4> output{{0.5F, not_a_number, 0.5F, 0.5F}, SmallModel::output.standard_deviation};
 };
 
 struct WideCommands {
@@ -470,7 +470,8 @@ TEST_CASE("a model may be an instance: its own numbers and its own forward pass 
   REQUIRE(inverse.predict(inputs, before) == Status::ok);
   model.parameters[171] += 1.0F;  // the last bias: the last command, by the spread
   REQUIRE(InverseDynamics<SmallInstance>(model).predict(inputs, after) == Status::ok);
-  CHECK(after[3] - before[3] == doctest::Approx(static_cast<double>(SmallModel::output.spread[3])).epsilon(1e-4));
+  CHECK(after[3] - before[3] ==
+        doctest::Approx(static_cast<double>(SmallModel::output.standard_deviation[3])).epsilon(1e-4));
   CHECK(after[0] == before[0]);
   model.output.mean[0] += 0.25F;
   model.input.mean[2] += 0.5F;

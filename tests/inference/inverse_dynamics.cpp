@@ -38,11 +38,12 @@ std::vector<double> plain_commands(const float* x) {
   std::vector<double> z(16);
   for (std::size_t i = 0; i < 16; ++i) {
     z[i] = (static_cast<double>(x[i]) - static_cast<double>(SmallModel::input.mean[i])) /
-           static_cast<double>(SmallModel::input.spread[i]);
+           static_cast<double>(SmallModel::input.standard_deviation[i]);
   }
   auto y = plain::forward({{16, 8, 4}, plain::Activation::relu}, SmallModel::parameters, z).outputs;
   for (std::size_t i = 0; i < 4; ++i) {
-    y[i] = y[i] * static_cast<double>(SmallModel::output.spread[i]) + static_cast<double>(SmallModel::output.mean[i]);
+    y[i] = y[i] * static_cast<double>(SmallModel::output.standard_deviation[i]) +
+           static_cast<double>(SmallModel::output.mean[i]);
   }
   return y;
 }
@@ -125,7 +126,7 @@ TEST_CASE("a network with rotor speeds as outputs gives commands all the same") 
   const double n_max_rev_s = 8500.0 / 60.0;
   for (std::size_t k = 0; k < 4; ++k) {
     const double z = (static_cast<double>(plain[k]) - static_cast<double>(SmallModel::output.mean[k])) /
-                     static_cast<double>(SmallModel::output.spread[k]);
+                     static_cast<double>(SmallModel::output.standard_deviation[k]);
     const double speed_rev_s = 10.0 * z + (k < 3 ? 100.0 : 0.0);
     const double expected = std::copysign(speed_rev_s * speed_rev_s / (n_max_rev_s * n_max_rev_s), speed_rev_s);
     CHECK(std::fabs(static_cast<double>(by_speed[k]) - expected) <= 10 * float_tolerance);  // z was divided by 0.1

@@ -86,11 +86,11 @@ std::vector<double> plain_commands(const SmallInstance& model, std::size_t vecto
   std::vector<double> z(16);
   for (std::size_t i = 0; i < 16; ++i) {
     z[i] = (static_cast<double>(SmallModel::golden_features[vector][i]) - static_cast<double>(model.input.mean[i])) /
-           static_cast<double>(model.input.spread[i]);
+           static_cast<double>(model.input.standard_deviation[i]);
   }
   auto y = plain::forward({{16, 8, 4}, plain::Activation::relu}, model.parameters, z).outputs;
   for (std::size_t i = 0; i < 4; ++i) {
-    y[i] = y[i] * static_cast<double>(model.output.spread[i]) + static_cast<double>(model.output.mean[i]);
+    y[i] = y[i] * static_cast<double>(model.output.standard_deviation[i]) + static_cast<double>(model.output.mean[i]);
   }
   return y;
 }

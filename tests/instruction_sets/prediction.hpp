@@ -69,7 +69,7 @@ struct WrenchModel : Model {
   using Outputs = pinnquad::WrenchOutputs;
 };
 struct ResidualModel : Model {
-  using Outputs = pinnquad::ResidualOutputs<pinnquad::LinearizedInverse>;
+  using Outputs = pinnquad::ResidualOutputs<pinnquad::LinearizedBase>;
 };
 
 /// A block of it, which main.cpp writes before any call.

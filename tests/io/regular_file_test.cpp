@@ -6,7 +6,7 @@
 #include <pinnquad/io/csv_table.hpp>
 #include <string>
 
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 using pinnquad::InputError;
 using pinnquad_test::TemporaryFolder;

@@ -18,7 +18,7 @@ using pinnquad::CommandOutputs;
 using pinnquad::Constant;
 using pinnquad::Context;
 using pinnquad::CyclicalAnnealing;
-using pinnquad::LinearizedInverse;
+using pinnquad::LinearizedBase;
 using pinnquad::Literal;
 using pinnquad::LocalMonotonicity;
 using pinnquad::Match;
@@ -126,9 +126,9 @@ TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>,
     check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, AccelerationOutputs>>());
   }
   SUBCASE("a residual on another inverse") {
-    using Residual = ResidualOutputs<LinearizedInverse>;
+    using Residual = ResidualOutputs<LinearizedBase>;
     auto context = flight_context<Context<PaperFeatures, PaperQuadrotor, Residual>>();
-    context.input.spread.fill(0.05);  // motions whose commands by the base leave the steps a slope
+    context.input.standard_deviation.fill(0.05);  // motions whose commands by the base leave the steps a slope
     check_gradient(Loss{}, context);
   }
 }

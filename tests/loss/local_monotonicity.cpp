@@ -63,7 +63,7 @@ double plain_monotonicity(const std::array<double, 4>& signs, int axis, double g
     double sum = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
       const double output =
-          batch.prediction(static_cast<int>(i), sample) * context.output.spread[i] + context.output.mean[i];
+          batch.prediction(static_cast<int>(i), sample) * context.output.standard_deviation[i] + context.output.mean[i];
       sum += signs[i] * to_command(output);
     }
     m.push_back(sum / context.signed_sum_spread[static_cast<std::size_t>(axis)]);
@@ -253,7 +253,7 @@ TEST_CASE("a motion and its commands agree: the loss of true commands is below t
   for (int i = 0; i < 64; ++i) {
     double sum = 0.0;
     for (std::size_t k = 0; k < 4; ++k)
-      sum += signs[k] * batch.prediction(static_cast<int>(k), i) * context.output.spread[k];
+      sum += signs[k] * batch.prediction(static_cast<int>(k), i) * context.output.standard_deviation[k];
     batch.features(3, i) = sum / context.signed_sum_spread[0];
   }
   const double agreeing = value(LocalMonotonicity<Roll>{}, context, batch);

@@ -60,11 +60,12 @@ Series physical_series(const std::array<double, 4>& signs, int axis, const Paper
   for (int sample = 0; sample < batch.size(); ++sample) {
     double sum = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
-      sum += signs[i] *
-             (batch.prediction(static_cast<int>(i), sample) * context.output.spread[i] + context.output.mean[i]);
+      sum += signs[i] * (batch.prediction(static_cast<int>(i), sample) * context.output.standard_deviation[i] +
+                         context.output.mean[i]);
     }
     series.m.push_back(sum);
-    series.n.push_back(batch.features(3 + axis, sample) * context.input.spread[feature] + context.input.mean[feature]);
+    series.n.push_back(batch.features(3 + axis, sample) * context.input.standard_deviation[feature] +
+                       context.input.mean[feature]);
   }
   return series;
 }
@@ -100,9 +101,9 @@ TEST_CASE("the gain a form begins with; one that is set stays") {
 TEST_CASE("literal: raw commands and rad/s^2, N_b - 1 terms over N_b, in every axis") {
   std::mt19937_64 engine(65);
   auto context = flight_context<PaperContext>();
-  context.input.spread[3] = 11.0;
-  context.input.spread[4] = 7.0;
-  context.input.spread[5] = 0.9;
+  context.input.standard_deviation[3] = 11.0;
+  context.input.standard_deviation[4] = 7.0;
+  context.input.standard_deviation[5] = 0.9;
   context.input.mean[3] = 2.0;
   for (const int size : {1, 2, 3, 17, 64}) {
     const auto batch = random_batch<double>(size, engine);

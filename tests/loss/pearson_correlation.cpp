@@ -115,7 +115,7 @@ TEST_CASE("the sign is the allocation's: commands that turn the vehicle the meas
   for (int i = 0; i < 64; ++i) {
     double sum = 0.0;
     for (int k = 0; k < 4; ++k)
-      sum += signs[k] * batch.prediction(k, i) * context.output.spread[static_cast<std::size_t>(k)];
+      sum += signs[k] * batch.prediction(k, i) * context.output.standard_deviation[static_cast<std::size_t>(k)];
     batch.features(3, i) = 40.0 * sum;
   }
   PaperBatch<double>::Gradient gradient;

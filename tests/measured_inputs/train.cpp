@@ -14,7 +14,7 @@
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/schedule/cosine_decay.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/scheduled.hpp"

@@ -25,12 +25,12 @@ using One = Network<float, InputSize<6>, Dense<4>>;
 
 template <class Features>
 using Seeing = Network<float, InputSize<Features::size>, Dense<8>, Relu, Dense<8>, Relu, Dense<4>>;
-using PathModel = MonotoneShape<PhysicsFeatures, PathBoundedAnswer<PhysicsFeatures, Seeing<PhysicsFeatures>>>;
-using PathWindow = MonotoneShape<PhysicsWindow, PathBoundedAnswer<PhysicsWindow, Seeing<PhysicsWindow>>>;
+using PathModel = MonotoneShape<PhysicsFeatures, PathBoundedPredictor<PhysicsFeatures, Seeing<PhysicsFeatures>>>;
+using PathWindow = MonotoneShape<PhysicsWindow, PathBoundedPredictor<PhysicsWindow, Seeing<PhysicsWindow>>>;
 static_assert(has_certificate<PathModel> && has_certificate<PathWindow>);
 /// A network that sees the angular acceleration, and says nothing of a bound.
 static_assert(!has_certificate<
-              MonotoneShape<PhysicsFeatures, Sum<MonotoneBase<PhysicsFeatures>, Bounded<Seeing<PhysicsFeatures>>>>>);
+              MonotoneShape<PhysicsFeatures, Sum<MonotoneBase<PhysicsFeatures>, Saturated<Seeing<PhysicsFeatures>>>>>);
 
 constexpr std::array<std::array<double, rotor_count>, 3> signs = {allocation_signs(PaperQuadrotor::value<double>(), 0),
                                                                   allocation_signs(PaperQuadrotor::value<double>(), 1),
@@ -167,13 +167,13 @@ TEST_CASE_TEMPLATE("a certified model rises everywhere by at least its slope, an
         const int place = Shape::Features::angular_acceleration + axis;
         double sums[4], others = 0;
         for (int k = 0; k < 4; ++k) {
-          sums[k] = double(by_x[k * size + place]) * double(model.output.spread[std::size_t(k)]) /
-                    double(model.input.spread[std::size_t(place)]);
+          sums[k] = double(by_x[k * size + place]) * double(model.output.standard_deviation[std::size_t(k)]) /
+                    double(model.input.standard_deviation[std::size_t(place)]);
           if (k != 1 + axis) others += std::abs(sums[k]);
         }
         CHECK(sums[1 + axis] >= certificate.slope[axis] * (1 - 1e-5));
         CHECK(others <= certificate.other_sums[axis] * (1 + 1e-5));
-        const auto mix = SignedSumOutputs::prepare(PaperQuadrotor::value<double>());
+        const auto mix = AxisCommandOutputs::prepare(PaperQuadrotor::value<double>());
         for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
           double slope = 0;
           for (std::size_t k = 0; k < 4; ++k) slope += mix.by[rotor][k] * sums[k];

@@ -14,7 +14,7 @@
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/training/symmetric_answer.hpp"
 #include "pinnquad/training/symmetric_context.hpp"
 #include "pinnquad/training/training_data.hpp"
@@ -59,16 +59,16 @@ TEST_CASE_TEMPLATE("features that a mirror turns are those of mirrored samples w
 
 TEST_CASE_TEMPLATE("commands to a mirrored motion are the mirrored commands, whatever the weights", Activation, Relu,
                    Tanh) {
-  using Answer = SymmetricAnswer<PhysicsFeatures, Inner<Activation>>;
+  using Answer = SymmetricPredictor<PhysicsFeatures, Inner<Activation>>;
   std::mt19937_64 engine(2);
   const auto airframe = PaperQuadrotor::value<double>();
   const RotorMirror mirror = mirror_of(airframe);
-  const auto mix = SignedSumOutputs::prepare(airframe);
-  Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs> given;
+  const auto mix = AxisCommandOutputs::prepare(airframe);
+  Context<PhysicsFeatures, PaperQuadrotor, AxisCommandOutputs> given;
   for (double& v : given.input.mean) v = uniform(engine, -1, 1);
-  for (double& v : given.input.spread) v = uniform(engine, 0.5, 2);
+  for (double& v : given.input.standard_deviation) v = uniform(engine, 0.5, 2);
   for (double& v : given.output.mean) v = uniform(engine, -1, 1);
-  for (double& v : given.output.spread) v = uniform(engine, 0.5, 2);
+  for (double& v : given.output.standard_deviation) v = uniform(engine, 0.5, 2);
   const auto context = context_of_mirror_images(given);
   double asymmetry_of_inner = 0;
   for (int i = 0; i < 50; ++i) {
@@ -82,8 +82,8 @@ TEST_CASE_TEMPLATE("commands to a mirrored motion are the mirrored commands, wha
       context.input.standardise(x.data(), x.data());
       double y[4];
       model.forward(x.data(), y);
-      for (std::size_t k = 0; k < 4; ++k) y[k] = y[k] * context.output.spread[k] + context.output.mean[k];
-      SignedSumOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), mix, u);
+      for (std::size_t k = 0; k < 4; ++k) y[k] = y[k] * context.output.standard_deviation[k] + context.output.mean[k];
+      AxisCommandOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), mix, u);
     };
     double u[4], image[4];
     commands_of(sample, answer, u);
@@ -99,7 +99,7 @@ TEST_CASE_TEMPLATE("commands to a mirrored motion are the mirrored commands, wha
 }
 
 TEST_CASE("the Jacobian of a symmetrised answer is what differences give") {
-  using Answer = SymmetricAnswer<PhysicsFeatures, Inner<Tanh>>;
+  using Answer = SymmetricPredictor<PhysicsFeatures, Inner<Tanh>>;
   constexpr int size = PhysicsFeatures::size;
   std::mt19937_64 engine(3);
   Answer answer;
@@ -126,7 +126,7 @@ TEST_CASE("a monotone answer of any weights as its own mirror image, with the sl
   using Residual = Network<double, InputSize<residual_inputs<PhysicsFeatures>>, Dense<7>, Tanh, Dense<4>>;
   constexpr std::size_t size = PhysicsFeatures::size;
   std::mt19937_64 engine(4);
-  MonotoneAnswer<PhysicsFeatures, Residual> fitted;
+  MonotonePredictor<PhysicsFeatures, Residual> fitted;
   fill_uniform(fitted.parameters, engine, 0.7);
   double* const bounds = fitted.parameters.data() + MonotoneBase<PhysicsFeatures>::parameter_count;
   for (int sum = 0; sum < 4; ++sum) {

@@ -16,11 +16,11 @@ TEST_CASE_TEMPLATE("standardise and restore are inverse, also in place", Scalar,
   std::mt19937_64 engine(3);
   Scaler<Scalar, 5> scaler;
   pinnquad::test::fill_uniform(scaler.mean, engine, 3.0);
-  for (Scalar& spread : scaler.spread) spread = static_cast<Scalar>(pinnquad::uniform(engine, 0.1, 4.0));
+  for (Scalar& spread : scaler.standard_deviation) spread = static_cast<Scalar>(pinnquad::uniform(engine, 0.1, 4.0));
   std::array<Scalar, 5> v{}, z{};
   pinnquad::test::fill_uniform(v, engine, 10.0);
   scaler.standardise(v.data(), z.data());
-  for (std::size_t i = 0; i < 5; ++i) CHECK(z[i] == (v[i] - scaler.mean[i]) / scaler.spread[i]);
+  for (std::size_t i = 0; i < 5; ++i) CHECK(z[i] == (v[i] - scaler.mean[i]) / scaler.standard_deviation[i]);
   scaler.restore(z.data(), z.data());
   // two operations each way on values of order 10
   CHECK(pinnquad::test::distance(z, v) <= 10 * rounding<Scalar>(4));

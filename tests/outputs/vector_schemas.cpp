@@ -82,7 +82,7 @@ TEST_CASE("the linearised inverse of features is Eq. (3) inverted") {
   const Airframe<double> airframe = crooked();
   const double x[6] = {0.3, -0.2, -1.1, 4.0, -3.0, 0.5};
   double u[rotor_count];
-  LinearizedInverse::commands(static_cast<const double*>(x), LinearizedInverse::prepare(airframe), u);
+  LinearizedBase::commands(static_cast<const double*>(x), LinearizedBase::prepare(airframe), u);
   const Commands<double> expected = linearized_commands(airframe, Rotors<double>(airframe),
                                                         Accelerations<double>{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}},
                                                         standard_gravity_m_s2<double>, 1.0);
@@ -91,17 +91,17 @@ TEST_CASE("the linearised inverse of features is Eq. (3) inverted") {
 
 TEST_CASE("the linearised inverse on a crooked airframe, of more features than it reads: slopes") {
   constexpr int features = PaperFeaturesWithAltitude::size;
-  const auto prepared = LinearizedInverse::prepare(crooked());
+  const auto prepared = LinearizedBase::prepare(crooked());
   double x[features] = {0.3, -0.2, -1.1, 4.0, -3.0, 0.5, 1, 2, 3, 0.1, 0.2, 0.3, 0.05, -0.06, 0.6, 0.8, 1.5};
   double slopes[rotor_count * features] = {};
-  LinearizedInverse::slopes<features>(static_cast<const double*>(x), prepared, slopes);
+  LinearizedBase::slopes<features>(static_cast<const double*>(x), prepared, slopes);
   for (int k = 0; k < features; ++k) {
     double above[rotor_count], below[rotor_count];
     const double kept = x[k];
     x[k] = kept + step;
-    LinearizedInverse::commands(static_cast<const double*>(x), prepared, above);
+    LinearizedBase::commands(static_cast<const double*>(x), prepared, above);
     x[k] = kept - step;
-    LinearizedInverse::commands(static_cast<const double*>(x), prepared, below);
+    LinearizedBase::commands(static_cast<const double*>(x), prepared, below);
     x[k] = kept;
     for (int i = 0; i < rotor_count; ++i) {
       CAPTURE(i);

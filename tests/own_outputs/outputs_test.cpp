@@ -17,7 +17,7 @@
 #include <symmetric.hpp>
 #include <wrench.hpp>
 
-#include "outputs/setting.hpp"
+#include "own_outputs/setting.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/mirror.hpp"
 #include "pinnquad/exported/loaded_model.hpp"
@@ -49,7 +49,7 @@ Commands<double> by_plain_loops(const typename Model::Scalar* x) {
   using Net = typename Model::Network;
   std::vector<double> v;
   for (std::size_t i = 0; i < Net::inputs; ++i) {
-    v.push_back((double(x[i]) - double(Model::input.mean[i])) / double(Model::input.spread[i]));
+    v.push_back((double(x[i]) - double(Model::input.mean[i])) / double(Model::input.standard_deviation[i]));
   }
   std::size_t at = 0;
   const std::size_t widths[] = {20, 20, Net::outputs};
@@ -65,7 +65,7 @@ Commands<double> by_plain_loops(const typename Model::Scalar* x) {
   }
   REQUIRE(at == Model::parameters.size());
   for (std::size_t i = 0; i < v.size(); ++i)
-    v[i] = v[i] * double(Model::output.spread[i]) + double(Model::output.mean[i]);
+    v[i] = v[i] * double(Model::output.standard_deviation[i]) + double(Model::output.mean[i]);
   const auto airframe = PaperQuadrotor::value<double>();
   const Rotors<double> rotors(airframe);
   Wrench<double> wrench;
@@ -376,9 +376,8 @@ struct Named : Relu {
 TEST_CASE("what a model is made of is written, whichever compiler reads it") {
   CHECK(written<Network<float, InputSize<16>, Dense<25>, Named, Dense<4>>>() ==
         "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, mine/leaky 0.1, pinnquad::Dense<4>>");
-  CHECK(
-      written<EnsembleModel::Network>() ==
-      "pinnquad::Ensemble<2><pinnquad::Sum<pinnquad::Analytic<16><float, pinnquad::LinearizedInverse>paper_quadrotor, "
-      "pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<20>, pinnquad::Tanh, "
-      "pinnquad::Dense<20>, pinnquad::Tanh, pinnquad::Dense<4>>>>>");
+  CHECK(written<EnsembleModel::Network>() ==
+        "pinnquad::Ensemble<2><pinnquad::Sum<pinnquad::Analytic<16><float, pinnquad::LinearizedBase>paper_quadrotor, "
+        "pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<20>, pinnquad::Tanh, "
+        "pinnquad::Dense<20>, pinnquad::Tanh, pinnquad::Dense<4>>>>>");
 }

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "outputs/setting.hpp"
+#include "own_outputs/setting.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/evaluation/linear_regression.hpp"
 #include "pinnquad/features/motion_parts.hpp"
@@ -74,9 +74,9 @@ std::vector<float> scaled(const Trained& model) {
   std::vector<float> numbers;
   const auto add = [&numbers](const auto& values) { numbers.insert(numbers.end(), values.begin(), values.end()); };
   add(model.input.mean);
-  add(model.input.spread);
+  add(model.input.standard_deviation);
   add(model.output.mean);
-  add(model.output.spread);
+  add(model.output.standard_deviation);
   add(model.network.parameters);
   return numbers;
 }
@@ -127,7 +127,7 @@ void write_heads(const Flight& flight, const Trained& from, const std::string& f
   compose<Whole>(joined<Whole>({cut}), from, flight, file, "HeadsModel");
 }
 
-using Structured = Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>;
+using Structured = Context<PhysicsFeatures, PaperQuadrotor, AxisCommandOutputs>;
 
 ResidualTraining short_training() {
   ResidualTraining how;
@@ -188,13 +188,13 @@ int main(int count, char** arguments) {
     train<AccelerationOutputs>(recorded.flight, folder, "accelerations.hpp", "AccelerationsModel");
     train<WrenchOutputs>(recorded.flight, folder, "wrench.hpp", "WrenchModel");
     const auto residual =
-        train<ResidualOutputs<LinearizedInverse>>(recorded.flight, folder, "residual.hpp", "ResidualModel");
+        train<ResidualOutputs<LinearizedBase>>(recorded.flight, folder, "residual.hpp", "ResidualModel");
     const auto direct = train<CommandOutputs>(recorded.flight, folder, "direct.hpp", "DirectModel");
     write_structured(recorded.flight, folder);
     write_ridge(recorded.flight, residual, folder + "/ridge.hpp");
     write_heads(recorded.flight, direct, folder + "/heads.hpp");
     using Part = Scaled<std::decay_t<decltype(residual.network)>>;
-    using Formula = Analytic<float, 16, LinearizedInverse, PaperQuadrotor>;
+    using Formula = Analytic<float, 16, LinearizedBase, PaperQuadrotor>;
     using Whole = Sum<Formula, Part>;
     compose<Whole>(joined<Whole>({{1.0f}, scaled(residual)}), residual, recorded.flight, folder + "/sum.hpp",
                    "SumModel");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Recorded flights: repeatable, within bounds, and true to the dynamics that made them.
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 
 #include <doctest/doctest.h>
 

@@ -15,7 +15,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/evaluation/correlation.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 #include "support/long_flight.hpp"
 
 namespace {

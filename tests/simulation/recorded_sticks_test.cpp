@@ -9,9 +9,9 @@
 #include <random>
 #include <string>
 
-#include "data/temporary_folder.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/flights.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 
 namespace {
 

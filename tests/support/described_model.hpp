@@ -35,7 +35,7 @@ constexpr std::array<double, Size> widened(const std::array<float, Size>& from) 
 }
 template <int Size>
 constexpr Scaler<double, Size> widened(const Scaler<float, Size>& from) {
-  return {widened(from.mean), widened(from.spread)};
+  return {widened(from.mean), widened(from.standard_deviation)};
 }
 template <std::size_t Rows, std::size_t Columns>
 constexpr std::array<std::array<double, Columns>, Rows> widened(

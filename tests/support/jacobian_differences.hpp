@@ -16,7 +16,7 @@
 
 namespace pinnquad::test {
 
-/// An answer (model/answer.hpp) in double.
+/// An answer (model/predictor.hpp) in double.
 template <class Answer>
 struct InDouble {
   using type = typename Answer::template Rebind<double>;
@@ -57,12 +57,12 @@ struct InDouble<PathBounded<Inner>> {
   using type = InDoubleOf<Inner>;
 };
 template <class Inner, int FeatureCount, int... First>
-struct InDouble<Withheld<Inner, FeatureCount, First...>> {
-  using type = Withheld<InDoubleOf<Inner>, FeatureCount, First...>;
+struct InDouble<Masked<Inner, FeatureCount, First...>> {
+  using type = Masked<InDoubleOf<Inner>, FeatureCount, First...>;
 };
 template <class Inner>
-struct InDouble<Bounded<Inner>> {
-  using type = Bounded<InDoubleOf<Inner>>;
+struct InDouble<Saturated<Inner>> {
+  using type = Saturated<InDoubleOf<Inner>>;
 };
 template <class Scalar, int InputCount, class Formula, class Vehicle>
 struct InDouble<Analytic<Scalar, InputCount, Formula, Vehicle>> {
@@ -93,9 +93,9 @@ struct DoubleInstance {
     };
     widen(Header::parameters, parameters);
     widen(Header::input.mean, input.mean);
-    widen(Header::input.spread, input.spread);
+    widen(Header::input.standard_deviation, input.standard_deviation);
     widen(Header::output.mean, output.mean);
-    widen(Header::output.spread, output.spread);
+    widen(Header::output.standard_deviation, output.standard_deviation);
   }
   void forward(const double* x, double* y) const noexcept { Network::forward(parameters.data(), x, y); }
 };
@@ -110,7 +110,7 @@ std::vector<double> jacobian_by_differences(const typename Header::Scalar* x) {
   for (std::size_t k = 0; k < size; ++k) moved[k] = static_cast<double>(x[k]);
   for (std::size_t k = 0; k < size; ++k) {
     // of a standardised value: truncation is its square, rounding 1e-16 over it
-    const double step = 1e-5 * static_cast<double>(Header::input.spread[k]), at = moved[k];
+    const double step = 1e-5 * static_cast<double>(Header::input.standard_deviation[k]), at = moved[k];
     double above[rotor_count], below[rotor_count];
     moved[k] = at + step;
     inverse.evaluate(moved.data(), above);

@@ -56,7 +56,7 @@ ContextType flight_context() {
   Map::from_commands(level.data(), above.data(), setting, outputs_above.data());
   for (std::size_t i = 0; i < outputs_above.size(); ++i) {
     const double spread = std::abs(outputs_above[i] - context.output.mean[i]);
-    context.output.spread[i] = spread > 1e-9 ? spread : 1.0;  // what does not move but by rounding
+    context.output.standard_deviation[i] = spread > 1e-9 ? spread : 1.0;  // what does not move but by rounding
   }
   context.signed_sum_spread = {0.11, 0.07, 0.05};
   return context;

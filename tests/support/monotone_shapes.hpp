@@ -19,7 +19,7 @@ struct MonotoneShape {
   using Scalar = typename Answer::Scalar;
   using Network = Answer;
   using Features = FeatureSet;
-  using Outputs = SignedSumOutputs;
+  using Outputs = AxisCommandOutputs;
   using Vehicle = PaperQuadrotor;
 };
 
@@ -32,9 +32,10 @@ using SmallResidual = pinnquad::Network<Scalar, InputSize<residual_inputs<Featur
                                         Activation, Dense<4>>;
 
 using BaseAlone = MonotoneShape<PhysicsFeatures, MonotoneBase<PhysicsFeatures>>;
-using WithResidual = MonotoneShape<PhysicsFeatures, MonotoneAnswer<PhysicsFeatures, SmallResidual<PhysicsFeatures>>>;
-using WindowedModel = MonotoneShape<PhysicsWindow, MonotoneAnswer<PhysicsWindow, SmallResidual<PhysicsWindow, Tanh>>>;
-using ForceWindowedModel = MonotoneShape<ForceWindow, MonotoneAnswer<ForceWindow, SmallResidual<ForceWindow>>>;
+using WithResidual = MonotoneShape<PhysicsFeatures, MonotonePredictor<PhysicsFeatures, SmallResidual<PhysicsFeatures>>>;
+using WindowedModel =
+    MonotoneShape<PhysicsWindow, MonotonePredictor<PhysicsWindow, SmallResidual<PhysicsWindow, Tanh>>>;
+using ForceWindowedModel = MonotoneShape<ForceWindow, MonotonePredictor<ForceWindow, SmallResidual<ForceWindow>>>;
 
 /// Numbers of a model of a shape, as an exported header's, in an instance.
 template <class Shape>
@@ -61,17 +62,17 @@ struct MonotoneModel {
     std::mt19937_64 engine(seed);
     fill_uniform(parameters, engine, 0.6);
     fill_uniform(input.mean, engine, 2);
-    for (Scalar& v : input.spread) v = static_cast<Scalar>(uniform(engine, 0.5, 4));
+    for (Scalar& v : input.standard_deviation) v = static_cast<Scalar>(uniform(engine, 0.5, 4));
     for (Scalar& v : output.mean) v = static_cast<Scalar>(uniform(engine, -0.1, 0.1));
-    for (Scalar& v : output.spread) v = static_cast<Scalar>(uniform(engine, 0.05, 0.3));
+    for (Scalar& v : output.standard_deviation) v = static_cast<Scalar>(uniform(engine, 0.05, 0.3));
     for (int i = 0; i < 3 * Base::taps; ++i) slope(i) = static_cast<Scalar>(uniform(engine, 0.1, 1));
     for (int k = 0; Structure::has_residual && k < 4; ++k) {
       bound(k) = static_cast<Scalar>(uniform(engine, -0.5, -0.1));
       bound(4 + k) = static_cast<Scalar>(uniform(engine, 0.1, 0.5));
     }
     for (std::size_t i = 0; i < inputs; ++i) {
-      envelope_lower[i] = input.mean[i] - 4 * input.spread[i];
-      envelope_upper[i] = input.mean[i] + 4 * input.spread[i];
+      envelope_lower[i] = input.mean[i] - 4 * input.standard_deviation[i];
+      envelope_upper[i] = input.mean[i] + 4 * input.standard_deviation[i];
     }
     golden_features[0] = input.mean;
   }
@@ -86,8 +87,8 @@ struct MonotoneModel {
   /// For another vehicle than the shape's.
   Certificate certificate(const Airframe<Scalar>& airframe) const {
     return certificate_of<Shape>(certified_vehicle<Outputs>(airframe), parameters.data(),
-                                 {input.mean.data(), input.spread.data(), output.mean.data(), output.spread.data(),
-                                  envelope_lower.data(), envelope_upper.data()});
+                                 {input.mean.data(), input.standard_deviation.data(), output.mean.data(),
+                                  output.standard_deviation.data(), envelope_lower.data(), envelope_upper.data()});
   }
   Certificate certificate() const { return certificate(airframe_value<Vehicle, Scalar>()); }
 };

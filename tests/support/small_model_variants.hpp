@@ -30,9 +30,9 @@ struct SmallDoubleModel {
   static constexpr int format_version = SmallModel::format_version;
   static constexpr auto parameters = detail::widened(SmallModel::parameters);
   static constexpr Scaler<double, 16> input{detail::widened(SmallModel::input.mean),
-                                            detail::widened(SmallModel::input.spread)};
+                                            detail::widened(SmallModel::input.standard_deviation)};
   static constexpr Scaler<double, 4> output{detail::widened(SmallModel::output.mean),
-                                            detail::widened(SmallModel::output.spread)};
+                                            detail::widened(SmallModel::output.standard_deviation)};
   static constexpr auto envelope_lower = detail::widened(SmallModel::envelope_lower);
   static constexpr auto envelope_upper = detail::widened(SmallModel::envelope_upper);
   static constexpr auto golden_features = detail::widened(SmallModel::golden_features);

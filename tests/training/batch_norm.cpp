@@ -305,7 +305,7 @@ TEST_CASE("training lowers the loss, and the running statistics come to serve: v
   const auto unseen = pinnquad::test::known_map<float>(101, 168);
   std::mt19937_64 engine(169);
   PaperContext context;
-  context.output.spread = {0.5, 2.0, 3.0, 0.25};
+  context.output.standard_deviation = {0.5, 2.0, 3.0, 0.25};
   const auto net = pinnquad::initialised<Small::Rebind<float>>(engine);
   auto trainer = std::make_unique<Type>(net, Mse{}, Adam{}, context);
   const double before = trainer->validate(unseen).mean_squared;
@@ -320,7 +320,7 @@ TEST_CASE("training lowers the loss, and the running statistics come to serve: v
     for (int k = 0; k < 4; ++k) {
       const double difference = static_cast<double>(y[k]) - static_cast<double>(unseen.outputs_of(row)[k]);
       squared += difference * difference;
-      absolute += std::fabs(difference) * context.output.spread[static_cast<std::size_t>(k)];
+      absolute += std::fabs(difference) * context.output.standard_deviation[static_cast<std::size_t>(k)];
     }
   }
   CHECK(errors.mean_squared == doctest::Approx(squared / (4 * 101)).epsilon(1e-5));

@@ -73,7 +73,7 @@ TEST_CASE_TEMPLATE("a given airframe trains what its type does, bit for bit", Sc
   const auto given = trained<Given>(flight, given_crazyflie());
   CHECK(given.network.parameters == known.network.parameters);
   CHECK(given.input.mean == known.input.mean);
-  CHECK(given.output.spread == known.output.spread);
+  CHECK(given.output.standard_deviation == known.output.standard_deviation);
   CHECK(given.envelope_upper == known.envelope_upper);
   CHECK(given.airframe_name() == std::string("crazyflie_2_1"));
   for (std::size_t i = 0; i < 400; i += 50) {

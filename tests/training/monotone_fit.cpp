@@ -12,7 +12,7 @@
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/outputs/rigid_body_inverse.hpp"
+#include "pinnquad/outputs/rigid_body_base.hpp"
 
 using namespace pinnquad;
 
@@ -20,7 +20,7 @@ namespace {
 
 using Window = PartlyWindowed<PhysicsFeatures, AccelerationFeatures, 3, PeriodMicroseconds<20000>>;
 template <class Features>
-using Setting = Context<Features, PaperQuadrotor, SignedSumOutputs>;
+using Setting = Context<Features, PaperQuadrotor, AxisCommandOutputs>;
 using Residual = Network<float, InputSize<residual_inputs<PhysicsFeatures>>, Dense<16>, Relu, Dense<4>>;
 
 constexpr double own_slope = 0.004;  ///< s^2/rad of each rotor: a signed sum's is four times that
@@ -74,7 +74,7 @@ Certificate certificate_of_base(const Setting<Features>& context, const AffineMa
 }  // namespace
 
 // a residual of a model on a formula is not shown what the formula reads, and does not ask for it
-static_assert(sizeof(ResidualContext<Context<PhysicsFeatures, PaperQuadrotor, SignedSumsOn<RigidBodyInverse>>>) > 0);
+static_assert(sizeof(ResidualContext<Context<PhysicsFeatures, PaperQuadrotor, SignedSumsOn<RigidBodyBase>>>) > 0);
 
 TEST_CASE("hover slopes are the inertias over what the commands do: closed form of an X") {
   const auto airframe = PaperQuadrotor::value<double>();

@@ -20,7 +20,7 @@ using namespace pinnquad;
 
 namespace {
 
-using Setting = Context<PhysicsFeatures, PaperQuadrotor, SignedSumOutputs>;
+using Setting = Context<PhysicsFeatures, PaperQuadrotor, AxisCommandOutputs>;
 using Seeing = Network<float, InputSize<PhysicsFeatures::size>, Dense<16>, Relu, Dense<4>>;
 using Blind = Network<float, InputSize<residual_inputs<PhysicsFeatures>>, Dense<16>, Relu, Dense<4>>;
 
@@ -120,7 +120,7 @@ TEST_CASE("without a projection the same rows do turn it; with one a network tha
   CHECK(network.parameters == projected);
 
   const auto answer_of = [&](const Seeing& trained) {
-    PathBoundedAnswer<PhysicsFeatures, Seeing> answer;
+    PathBoundedPredictor<PhysicsFeatures, Seeing> answer;
     const auto base = monotone_base<Setting>(map);
     auto* to = std::copy(base.parameters.begin(), base.parameters.end(), answer.parameters.begin());
     std::fill_n(to, 4, -1.0F);
@@ -174,8 +174,8 @@ TEST_CASE("tangent rows: each is a row moved along the angular acceleration, its
     CHECK(std::sqrt(length) == doctest::Approx(0.5).epsilon(1e-9));
     CHECK(other[0] == y[0]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double change = (other[1 + axis] - y[1 + axis]) * context.output.spread[1 + axis];
-      const double step = (moved[3 + axis] - x[3 + axis]) * context.input.spread[3 + axis];
+      const double change = (other[1 + axis] - y[1 + axis]) * context.output.standard_deviation[1 + axis];
+      const double step = (moved[3 + axis] - x[3 + axis]) * context.input.standard_deviation[3 + axis];
       CHECK(change == doctest::Approx(4 * own_slope * step).epsilon(1e-9).scale(1e-3));
     }
   }

@@ -57,7 +57,7 @@ TEST_CASE("a known unit's spread is never below a float's rounding of the value"
 TEST_CASE("still or not: scale and margin") {
   const auto moving = statistics(column({1, 3}));
   CHECK(moving.mean == 2);
-  CHECK(moving.spread == 1);
+  CHECK(moving.standard_deviation == 1);
   CHECK_FALSE(moving.still());
   CHECK(moving.scale() == 1);
   CHECK(moving.margin() == doctest::Approx(0.2));  // a tenth of the range

@@ -52,11 +52,11 @@ TEST_CASE_TEMPLATE("predict() is scale, plain forward pass, scale back", Context
   for (const auto& sample : flight) {
     const auto x = pinnquad::sample_features<PaperFeatures, double>(sample);
     std::vector<double> z(16);
-    for (std::size_t i = 0; i < 16; ++i) z[i] = (x[i] - context.input.mean[i]) / context.input.spread[i];
+    for (std::size_t i = 0; i < 16; ++i) z[i] = (x[i] - context.input.mean[i]) / context.input.standard_deviation[i];
     const auto y = plain::forward({{16, 7, 4}, plain::Activation::relu}, net.parameters, z).outputs;
     const auto commands = model.predict(sample);
     for (std::size_t i = 0; i < 4; ++i) {
-      double expected = y[i] * context.output.spread[i] + context.output.mean[i];
+      double expected = y[i] * context.output.standard_deviation[i] + context.output.mean[i];
       if constexpr (std::is_same_v<typename ContextType::Outputs, RotorSpeedOutputs>) {
         const double n_max_rev_s = 8500.0 / 60.0;
         expected = std::copysign(expected * expected / (n_max_rev_s * n_max_rev_s), expected);
@@ -150,7 +150,8 @@ TEST_CASE("batch norm is folded: the model holds plain layers and predicts what 
     net.forward(z.data(), y.data());
     const auto commands = model.predict(sample);
     for (std::size_t i = 0; i < 4; ++i) {
-      CHECK(std::fabs(commands[i] - (y[i] * model.output.spread[i] + model.output.mean[i])) <= float(float_tolerance));
+      CHECK(std::fabs(commands[i] - (y[i] * model.output.standard_deviation[i] + model.output.mean[i])) <=
+            float(float_tolerance));
     }
   }
 }

@@ -387,7 +387,7 @@ TEST_CASE("a loss whose numbers make no sense does not begin a training") {
   }
   SUBCASE("a context of rows with a NaN") {
     PaperContext context;
-    context.input.mean[5] = context.input.spread[5] = std::numeric_limits<double>::quiet_NaN();
+    context.input.mean[5] = context.input.standard_deviation[5] = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, context),
                          "Context::input: expected a finite number, found nan", std::invalid_argument);
   }

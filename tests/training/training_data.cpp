@@ -54,7 +54,7 @@ TEST_CASE("the training rows have mean 0 and spread 1; other rows are scaled ali
   for (int k = 0; k < 4; ++k) {
     CHECK(rest.outputs_of(3)[k] == data.outputs_of(93)[k]);
     const auto i = static_cast<std::size_t>(k);
-    CHECK(rest.outputs_of(59)[k] * context.output.spread[i] + context.output.mean[i] ==
+    CHECK(rest.outputs_of(59)[k] * context.output.standard_deviation[i] + context.output.mean[i] ==
           doctest::Approx(flight[149].commands[i]).epsilon(1e-12));
   }
 }
@@ -74,7 +74,7 @@ TEST_CASE("features are those of X in physical units") {
   const auto context = make_context<PaperContext>(flight, {0, 30});
   const auto data = standardised<double>(context, flight, IndexRange{0, 30});
   const auto physical = [&](int row, std::size_t i) {
-    return data.features_of(row)[i] * context.input.spread[i] + context.input.mean[i];
+    return data.features_of(row)[i] * context.input.standard_deviation[i] + context.input.mean[i];
   };
   for (int row = 0; row < 30; ++row) {
     const pinnquad::Sample& s = flight[static_cast<std::size_t>(row)];
@@ -116,7 +116,8 @@ TEST_CASE("rotor speeds: outputs in rev/s") {
   const auto data = standardised<double>(context, flight, IndexRange{0, 20});
   for (int row = 0; row < 20; ++row) {
     for (std::size_t k = 0; k < 4; ++k) {
-      const double speed_rev_s = data.outputs_of(row)[k] * context.output.spread[k] + context.output.mean[k];
+      const double speed_rev_s =
+          data.outputs_of(row)[k] * context.output.standard_deviation[k] + context.output.mean[k];
       const double n_max_rev_s = 8500.0 / 60.0;
       CHECK(speed_rev_s == doctest::Approx(n_max_rev_s * std::sqrt(flight[static_cast<std::size_t>(row)].commands[k])));
     }
@@ -129,12 +130,12 @@ TEST_CASE("a column that varies only by rounding or noise gets the spread 1, one
     CAPTURE(noise);
     Flight flight = random_flight_rows(60, 146);
     for (std::size_t i = 0; i < 60; ++i) flight[i].velocity_m_s[1] = 2.5 + (i % 2 == 0 ? noise : -noise);
-    CHECK(make_context<PaperContext>(flight, {0, 60}).input.spread[7] == 1.0);
+    CHECK(make_context<PaperContext>(flight, {0, 60}).input.standard_deviation[7] == 1.0);
     CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}) == std::vector<std::string>{"v_by"});
   }
   Flight flight = random_flight_rows(60, 146);
   for (std::size_t i = 0; i < 60; ++i) flight[i].velocity_m_s[1] = 2.5 + (i % 2 == 0 ? 0.02 : -0.02);
-  CHECK(make_context<PaperContext>(flight, {0, 60}).input.spread[7] == doctest::Approx(0.02));
+  CHECK(make_context<PaperContext>(flight, {0, 60}).input.standard_deviation[7] == doctest::Approx(0.02));
   CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}).empty());
 }
 
@@ -144,8 +145,8 @@ TEST_CASE("yaw 0 all flight: sine and cosine stand still, and so does a yaw that
     for (auto& sample : flight) sample.yaw_rad = yaw;
     CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}) == std::vector<std::string>{"sin_yaw", "cos_yaw"});
     const auto context = make_context<PaperContext>(flight, {0, 60});
-    CHECK(context.input.spread[14] == 1.0);
-    CHECK(context.input.spread[15] == 1.0);
+    CHECK(context.input.standard_deviation[14] == 1.0);
+    CHECK(context.input.standard_deviation[15] == 1.0);
   }
 }
 
@@ -155,7 +156,7 @@ TEST_CASE("a column that does not vary gets the spread 1, whatever its value") {
     Flight flight = random_flight_rows(77, 145);
     for (auto& sample : flight) sample.velocity_m_s[1] = still;
     const auto context = make_context<PaperContext>(flight, {0, 77});
-    CHECK(context.input.spread[7] == 1.0);
+    CHECK(context.input.standard_deviation[7] == 1.0);
     const auto data = standardised<double>(context, flight, IndexRange{0, 77});
     CHECK(std::fabs(data.features_of(5)[7]) <= 1e-9);  // the mean's rounding
   }
@@ -178,7 +179,7 @@ TEST_CASE("rows of many flights are one set: as if they had been flown in one, w
   const auto context = make_context<PaperContext>(rows);
   const auto expected = make_context<PaperContext>(whole, {0, 120});
   CHECK(context.input.mean == expected.input.mean);
-  CHECK(context.input.spread == expected.input.spread);
+  CHECK(context.input.standard_deviation == expected.input.standard_deviation);
   CHECK(context.output.mean == expected.output.mean);
   CHECK(context.signed_sum_spread == expected.signed_sum_spread);
   const auto data = standardised<float>(context, rows);

@@ -16,7 +16,7 @@
 #include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/io/csv_table.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 
 namespace programs {
 

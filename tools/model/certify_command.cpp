@@ -121,7 +121,7 @@ Findings findings_of(const CertifyOptions& options, const programs::Block& block
     const std::vector<double>& anywhere = searched.starts.front();
     findings.slope = model->derivatives(anywhere, false);
     findings.held_slope = model->derivatives(anywhere, true);
-    const auto vehicle = certified_vehicle<SignedSumOutputs>(identity.airframe.value);
+    const auto vehicle = certified_vehicle<AxisCommandOutputs>(identity.airframe.value);
     bool above = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double floor = std::max(vehicle.least_slope[axis], 0.0);

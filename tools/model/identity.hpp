@@ -15,7 +15,7 @@
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/features/inverse_features.hpp"
 #include "pinnquad/model/symmetrised.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {
@@ -28,9 +28,9 @@ void each_schema(const Function& function) {
   function(PaperFeatures{}, RotorSpeedOutputs{});
   function(PaperFeaturesWithAltitude{}, CommandOutputs{});
   function(PaperFeaturesWithAltitude{}, RotorSpeedOutputs{});
-  function(PhysicsFeatures{}, SignedSumOutputs{});
-  function(InverseFeatures{}, SignedSumOutputs{});
-  function(InverseFeaturesWithAltitude{}, SignedSumOutputs{});
+  function(PhysicsFeatures{}, AxisCommandOutputs{});
+  function(InverseFeatures{}, AxisCommandOutputs{});
+  function(InverseFeaturesWithAltitude{}, AxisCommandOutputs{});
 }
 
 /// What a user and an exported header say of a model, to narrow what is tried; empty: all that is known.
@@ -102,7 +102,7 @@ inline std::vector<std::string> uniform_networks(bool is_double, long long in, l
 /// Monotone models of `Features`, by themselves or with a uniform network, that have as many parameters as the block.
 template <class Features>
 void add_monotone_answers(const Block& block, std::vector<std::string>& all) {
-  if (block.inputs != Features::size || block.outputs != pinnquad::SignedSumOutputs::size) return;
+  if (block.inputs != Features::size || block.outputs != pinnquad::AxisCommandOutputs::size) return;
   const auto wanted = static_cast<long long>(block.parameter_count);
   const std::string places =
       ", " + std::to_string(Features::size) + ", " + std::to_string(Features::angular_acceleration) + ">";

@@ -3,10 +3,10 @@
 // they have; and those of monotone models on a formula.
 #pragma once
 
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
-#include "pinnquad/outputs/rigid_body_inverse.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/rigid_body_base.hpp"
 #include "training/log_features.hpp"
 
 namespace programs {
@@ -20,19 +20,19 @@ void each_log_schema(const Function& function) {
     function(Present{}, CommandOutputs{});
     function(LogCausalWindow<Present>{}, CommandOutputs{});
     function(LogCentredWindow<Present>{}, CommandOutputs{});
-    function(LogCausalWindow<Present>{}, SignedSumOutputs{});
-    function(LogCentredWindow<Present>{}, SignedSumOutputs{});
+    function(LogCausalWindow<Present>{}, AxisCommandOutputs{});
+    function(LogCentredWindow<Present>{}, AxisCommandOutputs{});
   };
   reaches(PhysicsFeatures{});
   reaches(PhysicsFeaturesWithoutVelocity{});
   reaches(WithColumns<PhysicsFeatures, BatteryVoltage>{});
   reaches(WithColumns<PhysicsFeaturesWithoutVelocity, BatteryVoltage>{});
   function(WithColumns<PaperFeatures, BatteryVoltage>{}, CommandOutputs{});
-  function(PaperFeatures{}, ResidualOutputs<LinearizedInverse>{});
-  function(PhysicsFeatures{}, SignedSumsOn<RigidBodyInverse>{});
-  function(PhysicsFeaturesWithoutVelocity{}, SignedSumOutputs{});  // each_schema() has PhysicsFeatures
-  function(WithColumns<PhysicsFeatures, BatteryVoltage>{}, SignedSumOutputs{});
-  function(WithColumns<PhysicsFeaturesWithoutVelocity, BatteryVoltage>{}, SignedSumOutputs{});
+  function(PaperFeatures{}, ResidualOutputs<LinearizedBase>{});
+  function(PhysicsFeatures{}, SignedSumsOn<RigidBodyBase>{});
+  function(PhysicsFeaturesWithoutVelocity{}, AxisCommandOutputs{});  // each_schema() has PhysicsFeatures
+  function(WithColumns<PhysicsFeatures, BatteryVoltage>{}, AxisCommandOutputs{});
+  function(WithColumns<PhysicsFeaturesWithoutVelocity, BatteryVoltage>{}, AxisCommandOutputs{});
 }
 
 }  // namespace programs

@@ -10,7 +10,7 @@
 #include "model/block.hpp"
 #include "model/identity.hpp"
 #include "pinnquad/exported/certificate.hpp"
-#include "pinnquad/outputs/rigid_body_inverse.hpp"
+#include "pinnquad/outputs/rigid_body_base.hpp"
 
 namespace programs {
 
@@ -56,8 +56,8 @@ template <class Scalar>
 pinnquad::CertifiedVehicle<Scalar> certified_vehicle_of(const Block& block, const Identity& identity) {
   using namespace pinnquad;
   const Airframe<Scalar> airframe = airframe_in<Scalar>(identity.airframe.value);
-  return block.base.empty() ? certified_vehicle<SignedSumOutputs>(airframe)
-                            : certified_vehicle<SignedSumsOn<RigidBodyInverse>>(airframe);
+  return block.base.empty() ? certified_vehicle<AxisCommandOutputs>(airframe)
+                            : certified_vehicle<SignedSumsOn<RigidBodyBase>>(airframe);
 }
 
 namespace detail {
@@ -69,7 +69,7 @@ std::optional<pinnquad::Certificate> certificate_in(const Block& block, const Id
   const std::vector<NetworkSpec>& parts = identity.networks;
   const NetworkSpec& base = parts.front();
   if (!base.axis_aligned || base.threes != taps || parts.size() > 2) return {};
-  if (!block.base.empty() && block.base != pinnquad::RigidBodyInverse::description) return {};
+  if (!block.base.empty() && block.base != pinnquad::RigidBodyBase::description) return {};
   const auto in_scalar = [](const std::vector<double>& values) {
     std::vector<Scalar> result;
     for (const double value : values) result.push_back(static_cast<Scalar>(value));

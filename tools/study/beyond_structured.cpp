@@ -5,7 +5,7 @@
 
 #include "pinnquad/features/inverse_features.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/outputs/rigid_body_inverse.hpp"
+#include "pinnquad/outputs/rigid_body_base.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
 #include "pinnquad/training/path_bounded_fit.hpp"
 #include "study/beyond_models.hpp"
@@ -56,17 +56,17 @@ BeyondTraining train_monotone(const BeyondTask& task, Slopes slopes) {
 }  // namespace
 
 BeyondTraining train_structured_on_physics(const BeyondTask& task) {
-  return train_monotone<pinnquad::SignedSumOutputs>(task, Slopes::learnt);
+  return train_monotone<pinnquad::AxisCommandOutputs>(task, Slopes::learnt);
 }
 
 BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slopes) {
-  return train_monotone<pinnquad::SignedSumsOn<pinnquad::RigidBodyInverse>>(task, slopes);
+  return train_monotone<pinnquad::SignedSumsOn<pinnquad::RigidBodyBase>>(task, slopes);
 }
 
 BeyondTraining train_path_bounded(const BeyondTask& task) {
   using Features = pinnquad::InverseFeatures;
   using Network = Residual<Features::size>;
-  return train_structured<Features, pinnquad::SignedSumOutputs, pinnquad::Bounded<pinnquad::PathBounded<Network>>>(
+  return train_structured<Features, pinnquad::AxisCommandOutputs, pinnquad::Saturated<pinnquad::PathBounded<Network>>>(
       task, Slopes::learnt,
       [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
         return pinnquad::fit_path_bounded<Network>(context, task.split.train, task.split.validation, map, how, engine,

@@ -65,7 +65,7 @@ Scaler scaler_of(const Numbers& mean, const Numbers& spread) {
   Scaler result;
   for (std::size_t i = 0; i < result.mean.size(); ++i) {
     result.mean[i] = static_cast<Scalar>(mean[i]);
-    result.spread[i] = static_cast<Scalar>(spread[i]);
+    result.standard_deviation[i] = static_cast<Scalar>(spread[i]);
   }
   return result;
 }
@@ -104,8 +104,9 @@ class NetworkDerivatives {
     input_.standardise(features.data(), standardised.data());
     std::vector<std::array<double, 4>> x(standardised.size());  // a value, and its derivatives by three features
     for (std::size_t i = 0; i < x.size(); ++i) x[i][0] = standardised[i];
-    each_angular_acceleration(
-        last_tap, [&](std::size_t axis, std::size_t feature) { x[feature][axis + 1] = 1 / input_.spread[feature]; });
+    each_angular_acceleration(last_tap, [&](std::size_t axis, std::size_t feature) {
+      x[feature][axis + 1] = 1 / input_.standard_deviation[feature];
+    });
     std::vector<std::array<double, 4>> y = summands_.front().pushed_forward(x);
     for (std::size_t part = 1; part < summands_.size(); ++part) {
       const std::vector<std::array<double, 4>> more = summands_[part].pushed_forward(x);
@@ -124,7 +125,7 @@ class NetworkDerivatives {
         for (int k = Map::first_output(rotor); k < Map::last_output(rotor); ++k) {
           const auto output = static_cast<std::size_t>(k);
           by_acceleration[axis][static_cast<std::size_t>(rotor)] +=
-              slopes[static_cast<std::size_t>(Map::slope_index(rotor, k))] * output_.spread[output] *
+              slopes[static_cast<std::size_t>(Map::slope_index(rotor, k))] * output_.standard_deviation[output] *
               y[output][axis + 1];
         }
       }
@@ -202,8 +203,8 @@ auto derivatives_of(const Model& model) {
   std::vector<RunTimeNetwork<double>> summands;
   detail::Summands<typename Model::Network>::add(summands, parameters);
   return Derivatives(std::move(summands),
-                     scaler_of<typename Derivatives::InputScaler>(model.input.mean, model.input.spread),
-                     scaler_of<typename Derivatives::OutputScaler>(model.output.mean, model.output.spread),
+                     scaler_of<typename Derivatives::InputScaler>(model.input.mean, model.input.standard_deviation),
+                     scaler_of<typename Derivatives::OutputScaler>(model.output.mean, model.output.standard_deviation),
                      pinnquad::ContextAirframe<pinnquad::GivenAirframe>(std::string(model.airframe_name()),
                                                                         model.template airframe<double>()));
 }

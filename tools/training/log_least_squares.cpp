@@ -62,9 +62,9 @@ pinnquad::AffineMap solved_physics(const pinnquad::RegressionSums& sums, const s
   const auto inputs = static_cast<std::size_t>(map.inputs);
   map.weights.assign(inputs * pinnquad::rotor_count, 0.0);
   for (std::size_t rotor = 0; rotor < pinnquad::rotor_count; ++rotor) {
-    map.intercept.push_back(-commands.mean[rotor] / commands.spread[rotor]);
+    map.intercept.push_back(-commands.mean[rotor] / commands.standard_deviation[rotor]);
     for (std::size_t part = 0; part < wrench.size(); ++part) {
-      const double share = inverse[rotor][part] / commands.spread[rotor];
+      const double share = inverse[rotor][part] / commands.standard_deviation[rotor];
       map.intercept[rotor] += share * wrench[part].intercept[part];
       for (std::size_t i = 0; i < inputs; ++i) {
         map.weights[rotor * inputs + i] += share * wrench[part].weights[part * inputs + i];

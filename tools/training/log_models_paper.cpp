@@ -19,7 +19,7 @@ std::shared_ptr<const TrainedNetwork> fit_linear(const LogFit& fit) {
 
 /// A residual of 0 on Eq. (3) inverted.
 std::shared_ptr<const TrainedNetwork> fit_linearized(const LogFit& fit) {
-  using Context = LogContext<pinnquad::PaperFeatures, pinnquad::ResidualOutputs<pinnquad::LinearizedInverse>>;
+  using Context = LogContext<pinnquad::PaperFeatures, pinnquad::ResidualOutputs<pinnquad::LinearizedBase>>;
   const pinnquad::RowSet rows = rows_not_held_out(fit);
   Context context = log_context<Context>(fit, rows);
   context.output.mean = {};

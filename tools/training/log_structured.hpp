@@ -33,7 +33,7 @@ inline constexpr int residual_epochs = 12;
 /// Of one feature set.
 template <class FeatureSet>
 class LogStructured {
-  using Context = LogContext<FeatureSet, pinnquad::SignedSumOutputs>;
+  using Context = LogContext<FeatureSet, pinnquad::AxisCommandOutputs>;
   using Network =
       pinnquad::Network<float, pinnquad::InputSize<pinnquad::residual_inputs<FeatureSet>>, pinnquad::Clip,
                         pinnquad::Dense<48>, pinnquad::Silu, pinnquad::Dense<48>, pinnquad::Silu, pinnquad::Dense<4>>;
@@ -41,7 +41,7 @@ class LogStructured {
   using Trainer = pinnquad::Trainer<Network, pinnquad::Mse, Optimizer, pinnquad::ResidualContext<Context>,
                                     pinnquad::ShuffledBatches, 128>;
   using Data = typename Trainer::Data;
-  using Answer = pinnquad::MonotoneAnswer<FeatureSet, Network>;
+  using Answer = pinnquad::MonotonePredictor<FeatureSet, Network>;
 
  public:
   explicit LogStructured(const LogFit& fit)
@@ -192,7 +192,7 @@ class LogStructured {
         float answer[Network::outputs] = {};
         averaged.forward(unseen.features_of(row), answer);
         for (int k = 0; k < Network::outputs; ++k) {
-          const double unit = context_.output.spread[static_cast<std::size_t>(k)];
+          const double unit = context_.output.standard_deviation[static_cast<std::size_t>(k)];
           agreement.add(k, unit * static_cast<double>(answer[k]),
                         unit * static_cast<double>(unseen.outputs_of(row)[k]));
         }

@@ -63,7 +63,7 @@ using Fit = std::function<std::optional<Fitted>(std::uint64_t seed, const std::f
 
 template <class Features>
 Fit fit_with(const TrainingPlan& plan) {
-  using Context = pinnquad::Context<Features, pinnquad::GivenAirframe, pinnquad::SignedSumOutputs>;
+  using Context = pinnquad::Context<Features, pinnquad::GivenAirframe, pinnquad::AxisCommandOutputs>;
   const auto context = pinnquad::make_context<Context>(plan.split.train, plan.airframe);
   pinnquad::SlopeRule slopes;
   if (plan.pinned_slopes) slopes.pinned = pinnquad::hover_slopes(plan.airframe.airframe<double>());

@@ -73,7 +73,7 @@ struct NetworkSpec {
   std::vector<LayerSpec> layers;
   std::vector<int> threes;    ///< where features in threes begin that it is not shown, or one per axis
   bool axis_aligned = false;  ///< of each three an output sees its own: pinnquad::AxisAligned
-  bool bounded = false;       ///< lower and upper bounds of the outputs are its first parameters: pinnquad::Bounded
+  bool bounded = false;       ///< lower and upper bounds of the outputs are its first parameters: pinnquad::Saturated
   bool path_bounded = false;  ///< it says that its path bound is to be asked: pinnquad::PathBounded
   std::vector<int> turned;    ///< features that a mirror turns, where it is its own image: pinnquad::Symmetrised
 

@@ -193,7 +193,7 @@ class ConstantWriter {
     out_ << "  static constexpr pinnquad::Scaler<" << type << ", " << Size << "> " << name << " = {{";
     write_braced(out_, value.mean, "  ");
     out_ << "}, {";
-    write_braced(out_, value.spread, "  ");
+    write_braced(out_, value.standard_deviation, "  ");
     out_ << "}};\n";
     count(name, value);
   }

@@ -43,9 +43,9 @@ std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& go
   using Scalar = typename Shape::Scalar;
   LittleEndianBytes scalars;
   scalars.add(model.input.mean);
-  scalars.add(model.input.spread);
+  scalars.add(model.input.standard_deviation);
   scalars.add(model.output.mean);
-  scalars.add(model.output.spread);
+  scalars.add(model.output.standard_deviation);
   scalars.add(model.envelope_lower);
   scalars.add(model.envelope_upper);
   scalars.add_rows(golden_features);

@@ -191,7 +191,7 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// Of the structure u = A [base + residual], wherever it is known from: base and residual as AxisAligned and
-/// Bounded<Withheld>.
+/// Saturated<Masked>.
 template <class Scalar>
 constexpr Certificate certificate_of(const CertifiedNumbers<Scalar>& from) noexcept {
   Certificate certificate;
@@ -256,8 +256,8 @@ Certificate certificate_of_trained(const Model& model) noexcept {
   return certificate_of<Model>(
       certified_vehicle<typename Model::Outputs>(model.template airframe<typename Model::Scalar>()),
       model.network.parameters.data(),
-      {model.input.mean.data(), model.input.spread.data(), model.output.mean.data(), model.output.spread.data(),
-       model.envelope_lower.data(), model.envelope_upper.data()});
+      {model.input.mean.data(), model.input.standard_deviation.data(), model.output.mean.data(),
+       model.output.standard_deviation.data(), model.envelope_lower.data(), model.envelope_upper.data()});
 }
 
 /// Of an exported header.
@@ -267,8 +267,8 @@ constexpr Certificate certificate_of() noexcept {
       certified_vehicle<typename Model::Outputs>(airframe_value<typename Model::Vehicle, typename Model::Scalar>());
   return certificate_of<Model>(
       vehicle, Model::parameters.data(),
-      {Model::input.mean.data(), Model::input.spread.data(), Model::output.mean.data(), Model::output.spread.data(),
-       Model::envelope_lower.data(), Model::envelope_upper.data()});
+      {Model::input.mean.data(), Model::input.standard_deviation.data(), Model::output.mean.data(),
+       Model::output.standard_deviation.data(), Model::envelope_lower.data(), Model::envelope_upper.data()});
 }
 
 /// Refuses, at compile time and by rule, a model whose monotony is not proven. The headers of such models ask for it.

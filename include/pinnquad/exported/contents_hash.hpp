@@ -108,7 +108,7 @@ class ConstantHash {
   template <class Scalar, int Size>
   constexpr void add(const Scaler<Scalar, Size>& scaler) noexcept {
     add(scaler.mean);
-    add(scaler.spread);
+    add(scaler.standard_deviation);
   }
   constexpr void add(const Airframe<double>& airframe) noexcept {
     add(airframe.mass_kg);

@@ -12,7 +12,7 @@
 #include "pinnquad/exported/model_records.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/features/read_features.hpp"
-#include "pinnquad/model/answer.hpp"
+#include "pinnquad/model/predictor.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
@@ -160,16 +160,16 @@ constexpr void require_description() noexcept {
         "pinnquad: the model was trained with another motor order than its Vehicle now has: a rotor sits or turns "
         "elsewhere (motor_torque_signs)");
     static_assert(all_finite_constants(M::parameters), "pinnquad: a weight of the model is NaN or infinite");
-    static_assert(all_finite_constants(M::input.mean) && all_finite_constants(M::input.spread) &&
-                      all_finite_constants(M::output.mean) && all_finite_constants(M::output.spread),
+    static_assert(all_finite_constants(M::input.mean) && all_finite_constants(M::input.standard_deviation) &&
+                      all_finite_constants(M::output.mean) && all_finite_constants(M::output.standard_deviation),
                   "pinnquad: a scaler's number is NaN or infinite");
     static_assert(all_finite_constants(M::envelope_lower) && all_finite_constants(M::envelope_upper),
                   "pinnquad: a border of the model's envelope is NaN or infinite");
-    static_assert(all_positive(M::input.spread) && all_positive(M::output.spread),
+    static_assert(all_positive(M::input.standard_deviation) && all_positive(M::output.standard_deviation),
                   "pinnquad: a scaler's spread is not positive");
     static_assert(
-        is_envelope(M::input.mean.data(), M::input.spread.data(), M::envelope_lower.data(), M::envelope_upper.data(),
-                    M::envelope_lower.size()),
+        is_envelope(M::input.mean.data(), M::input.standard_deviation.data(), M::envelope_lower.data(),
+                    M::envelope_upper.data(), M::envelope_lower.size()),
         "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
         "spread can have been (envelope_lower, envelope_upper, input)");
     static_assert(golden_commands_finite<M>(), "pinnquad: a golden command is NaN or infinite");
@@ -191,8 +191,9 @@ constexpr bool require_shape() noexcept {
   static_assert(detail::HasShape<S>::value,
                 "pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle (exported/model.hpp)");
   if constexpr (detail::HasShape<S>::value) {
-    static_assert(is_answer<typename S::Network>,
-                  "pinnquad: the model's Network is neither a pinnquad::Network nor another answer (model/answer.hpp)");
+    static_assert(
+        is_predictor<typename S::Network>,
+        "pinnquad: the model's Network is neither a pinnquad::Network nor another answer (model/predictor.hpp)");
     static_assert(is_feature_set<typename S::Features>, "pinnquad: the model's Features are not a feature set");
     static_assert(is_output_schema<typename S::Outputs>, "pinnquad: the model's Outputs are not an output schema");
     if constexpr (is_feature_set<typename S::Features>) {
@@ -214,7 +215,7 @@ constexpr bool require_shape() noexcept {
                     "pinnquad: the network's output count differs from the output schema's size");
       static_assert(base_reads<typename S::Features, typename S::Outputs>(),
                     "pinnquad: the outputs' base reads a feature that the feature set has not, or not there: "
-                    "LinearizedInverse is of what begins as PaperFeatures, RigidBodyInverse as PhysicsFeatures "
+                    "LinearizedBase is of what begins as PaperFeatures, RigidBodyBase as PhysicsFeatures "
                     "(features/read_features.hpp)");
     }
     static_assert(formulas_read<typename S::Features, typename S::Network>(),

@@ -60,7 +60,7 @@ struct StatedStructure<AxisAligned<Scalar, FeatureCount, First...>> {
   static constexpr int at = -1;
 };
 template <class Scalar, int FeatureCount, int... First, class Residual>
-struct StatedStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Bounded<Residual>>> {
+struct StatedStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<Residual>>> {
   static constexpr bool known = true;
   static constexpr int at = AxisAligned<Scalar, FeatureCount, First...>::parameter_count;
   using Inner = Residual;  ///< its parameters follow the bounds

@@ -253,7 +253,7 @@ constexpr bool true_residual_range() noexcept {
     const typename M::Scalar* bounds = nullptr;
     if constexpr (Structure::at >= 0) bounds = M::parameters.data() + Structure::at;
     return same_residual_range(M::residual_lower.data(), M::residual_upper.data(), Structure::at >= 0, bounds,
-                               M::output.spread.data(), M::residual_lower.size());
+                               M::output.standard_deviation.data(), M::residual_lower.size());
   } else {
     return true;
   }

@@ -114,9 +114,9 @@ class ModelView : public ModelScales<ShapeType> {
     if (!sound(scalars, golden, records)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
-    copy(scalars + Layout::input_spread, view.input.spread);
+    copy(scalars + Layout::input_spread, view.input.standard_deviation);
     copy(scalars + Layout::output_mean, view.output.mean);
-    copy(scalars + Layout::output_spread, view.output.spread);
+    copy(scalars + Layout::output_spread, view.output.standard_deviation);
     copy(scalars + Layout::envelope_lower, view.envelope_lower);
     copy(scalars + Layout::envelope_upper, view.envelope_upper);
     view.golden_features = {scalars + Layout::golden_features, golden};

@@ -78,8 +78,8 @@ struct ModelNumbers {
     return first_of<Scalar>(model.envelope_upper);
   }
   static PINNQUAD_ALWAYS_INLINE Scales<Scalar> scales(const Model& model) noexcept {
-    return {first_of<Scalar>(model.input.mean), first_of<Scalar>(model.input.spread),
-            first_of<Scalar>(model.output.mean), first_of<Scalar>(model.output.spread)};
+    return {first_of<Scalar>(model.input.mean), first_of<Scalar>(model.input.standard_deviation),
+            first_of<Scalar>(model.output.mean), first_of<Scalar>(model.output.standard_deviation)};
   }
 };
 
@@ -96,8 +96,8 @@ struct ModelNumbers<Model, true> {
     return first;
   }
   static PINNQUAD_ALWAYS_INLINE Scales<typename Model::Scalar> scales(const Model&) noexcept {
-    constexpr Pointer input_mean = Model::input.mean.data(), input_spread = Model::input.spread.data();
-    constexpr Pointer output_mean = Model::output.mean.data(), output_spread = Model::output.spread.data();
+    constexpr Pointer input_mean = Model::input.mean.data(), input_spread = Model::input.standard_deviation.data();
+    constexpr Pointer output_mean = Model::output.mean.data(), output_spread = Model::output.standard_deviation.data();
     return {input_mean, input_spread, output_mean, output_spread};
   }
 };

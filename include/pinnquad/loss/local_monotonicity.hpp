@@ -187,7 +187,8 @@ struct LocalMonotonicity {
     Series series(context, batch, Form::physical_units ? Scalar(1) : Scalar(context.signed_sum_spread[axis]));
     if constexpr (Form::physical_units) {
       constexpr auto feature = static_cast<std::size_t>(Context::Features::angular_acceleration) + axis;
-      series.angular_acceleration *= Scalar(context.input.spread[feature]);  // differences: the mean drops out
+      series.angular_acceleration *=
+          Scalar(context.input.standard_deviation[feature]);  // differences: the mean drops out
     }
     typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
     const Scalar value = Form::compare(step, series.commands, series.angular_acceleration, weight, by_commands);

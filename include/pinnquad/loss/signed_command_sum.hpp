@@ -32,8 +32,8 @@ struct SignedCommandSum {
       if constexpr (Map::takes_features) {
         for (int k = 0; k < Context::Features::size; ++k) {
           const auto feature = static_cast<std::size_t>(k);
-          x[k] =
-              batch.features(k, sample) * Scalar(context.input.spread[feature]) + Scalar(context.input.mean[feature]);
+          x[k] = batch.features(k, sample) * Scalar(context.input.standard_deviation[feature]) +
+                 Scalar(context.input.mean[feature]);
         }
       }
       for (int k = 0; k < Map::size; ++k)
@@ -60,7 +60,7 @@ struct SignedCommandSum {
 
  private:
   static Scalar scale(const Context& context, int output) {
-    return Scalar(context.output.spread[static_cast<std::size_t>(output)]);
+    return Scalar(context.output.standard_deviation[static_cast<std::size_t>(output)]);
   }
   static Scalar mean(const Context& context, int output) {
     return Scalar(context.output.mean[static_cast<std::size_t>(output)]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An affine map to signed sums (outputs/signed_sum_outputs.hpp) in which the sum about an axis sees the angular
+// An affine map to signed sums (outputs/axis_command_outputs.hpp) in which the sum about an axis sees the angular
 // acceleration about that axis and no other one, and the sum of all commands sees none. With a slope above 0 it follows
 // what it is asked.
 //   y_0 = b_0 + w_0 r,  y_axis = b_axis + w_axis r + sum over taps of slope_(tap,axis) wdot_(tap,axis)
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "pinnquad/features/windowed.hpp"
-#include "pinnquad/model/bounded.hpp"
-#include "pinnquad/model/withheld.hpp"
+#include "pinnquad/model/masked.hpp"
+#include "pinnquad/model/saturated.hpp"
 
 namespace pinnquad {
 
@@ -19,13 +19,13 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// `First...`: where the angular acceleration of each tap begins, that of the present first. Parameters: slopes tap by
 /// tap, axis by axis; weights of the other features row by row; intercepts.
 template <class ScalarType, int FeatureCount, int... First>
-struct AxisAligned : AnswerBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
-                                3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {
+struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
+                                   3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {
   using Threes = detail::Triples<FeatureCount, First...>;
   static_assert(Threes::fit() && Threes::count > 0 && Threes::others > 0,
                 "pinnquad: the angular accelerations of AxisAligned are features in threes, ascending, and not all");
   using Scalar = ScalarType;
-  using AxisAligned::AnswerBase::forward;
+  using AxisAligned::PredictorBase::forward;
   static constexpr int taps = Threes::count;
   static constexpr int slopes = 0;  ///< where they stand among the parameters
   static constexpr int weights = 3 * taps;
@@ -94,7 +94,7 @@ struct MonotoneParts<Features, std::integer_sequence<int, Tap...>> {
   template <class Scalar>
   using Base = AxisAligned<Scalar, Features::size, angular_acceleration_at<Features>(Tap)...>;
   template <class Residual>
-  using Bound = Bounded<Withheld<Residual, Features::size, angular_acceleration_at<Features>(Tap)...>>;
+  using Bound = Saturated<Masked<Residual, Features::size, angular_acceleration_at<Features>(Tap)...>>;
   /// Features that are no angular acceleration.
   static constexpr int others = Features::size - 3 * int(sizeof...(Tap));
 };
@@ -114,8 +114,8 @@ template <class Features, class Residual>
 using MonotoneResidual = typename detail::MonotoneParts<Features>::template Bound<Residual>;
 
 /// The base and a residual: monotone in each axis' angular acceleration where the slopes are above 0, whatever else its
-/// weights are. Its schema is SignedSumOutputs; exported/certificate.hpp says what is proven of it.
+/// weights are. Its schema is AxisCommandOutputs; exported/certificate.hpp says what is proven of it.
 template <class Features, class Residual>
-using MonotoneAnswer = Sum<MonotoneBase<Features, typename Residual::Scalar>, MonotoneResidual<Features, Residual>>;
+using MonotonePredictor = Sum<MonotoneBase<Features, typename Residual::Scalar>, MonotoneResidual<Features, Residual>>;
 
 }  // namespace pinnquad

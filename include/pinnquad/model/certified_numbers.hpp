@@ -9,8 +9,8 @@
 #include "pinnquad/features/read_features.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/model/path_bound.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/rotor_map.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
 
 namespace pinnquad {
 
@@ -51,14 +51,14 @@ struct ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
 };
 template <class Scalar, int FeatureCount, int... First, class Residual, class Features>
 struct ProvenStructure<
-    Sum<AxisAligned<Scalar, FeatureCount, First...>, Bounded<Withheld<Residual, FeatureCount, First...>>>, Features> {
+    Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<Masked<Residual, FeatureCount, First...>>>, Features> {
   using Base = std::conditional_t<covers_angular_acceleration<Features, First...>(),
                                   AxisAligned<Scalar, FeatureCount, First...>, void>;
   static constexpr bool has_residual = true;
   static constexpr bool has_paths = false;
 };
 template <class Scalar, int FeatureCount, int... First, class Residual, class Features>
-struct ProvenStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Bounded<PathBounded<Residual>>>, Features> {
+struct ProvenStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<PathBounded<Residual>>>, Features> {
   using Base = std::conditional_t<covers_angular_acceleration<Features, First...>(),
                                   AxisAligned<Scalar, FeatureCount, First...>, void>;
   static constexpr bool has_residual = true;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Answers made of answers (model/answer.hpp): a model that is not one network exports, flies and tests itself as one that is.
+// Answers made of answers (model/predictor.hpp): a model that is not one network exports, flies and tests itself as one that is.
 // A ridge or any other affine map is Network<Scalar, InputSize<n>, Dense<m>>. Parameters of the parts stand one after the other.
 #pragma once
 
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/features/read_features.hpp"
-#include "pinnquad/model/answer.hpp"
 #include "pinnquad/model/description.hpp"
+#include "pinnquad/model/predictor.hpp"
 #include "pinnquad/nn/jacobian.hpp"
 
 namespace pinnquad {
@@ -27,7 +27,7 @@ PINNQUAD_ALWAYS_INLINE void answer_jacobian(const typename Answer::Scalar* param
 
 /// What the compositions have in common: sizes, and parameters of their own.
 template <class Derived, class ScalarType, int InputCount, int OutputCount, int ParameterCount>
-struct AnswerBase {
+struct PredictorBase {
   using Scalar = ScalarType;
   static constexpr int inputs = InputCount;
   static constexpr int outputs = OutputCount;
@@ -43,14 +43,14 @@ struct AnswerBase {
 
 /// The sum of two answers: an affine map and a network, a formula and its residual.
 template <class First, class Second>
-struct Sum : AnswerBase<Sum<First, Second>, typename First::Scalar, First::inputs, First::outputs,
-                        First::parameter_count + Second::parameter_count> {
-  static_assert(is_answer<First> && is_answer<Second>, "pinnquad: a Sum is of two answers (model/answer.hpp)");
+struct Sum : PredictorBase<Sum<First, Second>, typename First::Scalar, First::inputs, First::outputs,
+                           First::parameter_count + Second::parameter_count> {
+  static_assert(is_predictor<First> && is_predictor<Second>, "pinnquad: a Sum is of two answers (model/predictor.hpp)");
   static_assert(First::inputs == Second::inputs && First::outputs == Second::outputs &&
                     std::is_same_v<typename First::Scalar, typename Second::Scalar>,
                 "pinnquad: the two answers of a Sum differ in inputs, outputs or Scalar");
   using Scalar = typename First::Scalar;
-  using Sum::AnswerBase::forward;
+  using Sum::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Second::forward(parameters + First::parameter_count, x, y);
@@ -76,11 +76,12 @@ struct Sum : AnswerBase<Sum<First, Second>, typename First::Scalar, First::input
 
 /// The mean of `Count` answers of one kind.
 template <class Member, int Count>
-struct Ensemble : AnswerBase<Ensemble<Member, Count>, typename Member::Scalar, Member::inputs, Member::outputs,
-                             Count * Member::parameter_count> {
-  static_assert(is_answer<Member> && Count > 0, "pinnquad: an Ensemble is of one answer or more (model/answer.hpp)");
+struct Ensemble : PredictorBase<Ensemble<Member, Count>, typename Member::Scalar, Member::inputs, Member::outputs,
+                                Count * Member::parameter_count> {
+  static_assert(is_predictor<Member> && Count > 0,
+                "pinnquad: an Ensemble is of one answer or more (model/predictor.hpp)");
   using Scalar = typename Member::Scalar;
-  using Ensemble::AnswerBase::forward;
+  using Ensemble::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     for (int i = 0; i < Member::outputs; ++i) y[i] = Scalar(0);
@@ -109,13 +110,14 @@ template <class... Part>
 struct Heads;
 template <class First, class... More>
 struct Heads<First, More...>
-    : AnswerBase<Heads<First, More...>, typename First::Scalar, First::inputs, (First::outputs + ... + More::outputs),
-                 (First::parameter_count + ... + More::parameter_count)> {
-  static_assert((is_answer<First> && ... && is_answer<More>), "pinnquad: Heads are answers (model/answer.hpp)");
+    : PredictorBase<Heads<First, More...>, typename First::Scalar, First::inputs,
+                    (First::outputs + ... + More::outputs), (First::parameter_count + ... + More::parameter_count)> {
+  static_assert((is_predictor<First> && ... && is_predictor<More>),
+                "pinnquad: Heads are answers (model/predictor.hpp)");
   static_assert(((First::inputs == More::inputs && std::is_same_v<typename First::Scalar, typename More::Scalar>)&&...),
                 "pinnquad: Heads differ in inputs or Scalar");
   using Scalar = typename First::Scalar;
-  using Heads::AnswerBase::forward;
+  using Heads::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     First::forward(parameters, x, y);
@@ -134,13 +136,13 @@ struct Heads<First, More...>
 
 /// `Second` of what `First` gave: a network of several heads is Then<Network<...>, Heads<...>>, a trunk and what grows on it.
 template <class First, class Second>
-struct Then : AnswerBase<Then<First, Second>, typename First::Scalar, First::inputs, Second::outputs,
-                         First::parameter_count + Second::parameter_count> {
-  static_assert(is_answer<First> && is_answer<Second>, "pinnquad: Then is of two answers (model/answer.hpp)");
+struct Then : PredictorBase<Then<First, Second>, typename First::Scalar, First::inputs, Second::outputs,
+                            First::parameter_count + Second::parameter_count> {
+  static_assert(is_predictor<First> && is_predictor<Second>, "pinnquad: Then is of two answers (model/predictor.hpp)");
   static_assert(First::outputs == Second::inputs && std::is_same_v<typename First::Scalar, typename Second::Scalar>,
                 "pinnquad: the second answer of a Then takes what the first one gives, in the same Scalar");
   using Scalar = typename First::Scalar;
-  using Then::AnswerBase::forward;
+  using Then::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Scalar between[First::outputs];
@@ -165,11 +167,11 @@ struct Then : AnswerBase<Then<First, Second>, typename First::Scalar, First::inp
 /// An answer that takes and gives physical units as a part of one: its scalers are parameters before its own, as means and
 /// spreads of inputs, then of outputs.
 template <class Inner>
-struct Scaled : AnswerBase<Scaled<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
-                           2 * (Inner::inputs + Inner::outputs) + Inner::parameter_count> {
-  static_assert(is_answer<Inner>, "pinnquad: Scaled is of an answer (model/answer.hpp)");
+struct Scaled : PredictorBase<Scaled<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
+                              2 * (Inner::inputs + Inner::outputs) + Inner::parameter_count> {
+  static_assert(is_predictor<Inner>, "pinnquad: Scaled is of an answer (model/predictor.hpp)");
   using Scalar = typename Inner::Scalar;
-  using Scaled::AnswerBase::forward;
+  using Scaled::PredictorBase::forward;
   static constexpr int input_mean = 0;  ///< where they stand among the parameters
   static constexpr int input_spread = Inner::inputs;
   static constexpr int output_mean = 2 * Inner::inputs;
@@ -199,11 +201,11 @@ struct Scaled : AnswerBase<Scaled<Inner>, typename Inner::Scalar, Inner::inputs,
 /// outputs/residual_outputs.hpp with a `description`. One parameter: the share of it that counts.
 template <class ScalarType, int InputCount, class Formula, class Vehicle>
 struct Analytic
-    : AnswerBase<Analytic<ScalarType, InputCount, Formula, Vehicle>, ScalarType, InputCount, rotor_count, 1> {
+    : PredictorBase<Analytic<ScalarType, InputCount, Formula, Vehicle>, ScalarType, InputCount, rotor_count, 1> {
   static_assert(detail::SaysWhatItReads<Formula>::value,
                 "pinnquad: a base says which features it reads, by name: `reads` (outputs/residual_outputs.hpp)");
   using Scalar = ScalarType;
-  using Analytic::AnswerBase::forward;
+  using Analytic::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     constexpr auto prepared = Formula::prepare(airframe_value<Vehicle, Scalar>());

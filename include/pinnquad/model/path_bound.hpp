@@ -135,8 +135,8 @@ constexpr void path_bound_along(const Scalar* parameters, int inputs, const int*
 /// network does, until nothing is left of what it is shown. A float network: products of few of its weights are no
 /// subnormal double.
 template <class NetworkType>
-struct PathBounded : AnswerBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
-                                NetworkType::outputs, NetworkType::parameter_count> {
+struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
+                                   NetworkType::outputs, NetworkType::parameter_count> {
   using Inner = NetworkType;
   using Shape = detail::PathShape<NetworkType>;
   static_assert(std::is_same_v<typename NetworkType::Scalar, float>, "pinnquad: a PathBounded network is of floats");
@@ -146,7 +146,7 @@ struct PathBounded : AnswerBase<PathBounded<NetworkType>, typename NetworkType::
                 "pinnquad: a PathBounded network has at most 3 Dense layers: of more the bound "
                 "says nothing (docs/certificate.md)");
   using Scalar = typename NetworkType::Scalar;
-  using PathBounded::AnswerBase::forward;
+  using PathBounded::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     NetworkType::forward(parameters, x, y);
@@ -180,6 +180,6 @@ struct Description<PathBounded<NetworkType>> {
 /// The base of these features and a network that is shown all of them, the angular accelerations too: where its path
 /// bound leaves the slopes above 0 each signed sum rises with the angular acceleration about its axis.
 template <class Features, class Residual>
-using PathBoundedAnswer = Sum<MonotoneBase<Features, typename Residual::Scalar>, Bounded<PathBounded<Residual>>>;
+using PathBoundedPredictor = Sum<MonotoneBase<Features, typename Residual::Scalar>, Saturated<PathBounded<Residual>>>;
 
 }  // namespace pinnquad

@@ -7,24 +7,24 @@
 #include <string_view>
 
 #include "pinnquad/model/composition.hpp"
-#include "pinnquad/model/withheld.hpp"
+#include "pinnquad/model/masked.hpp"
 
 namespace pinnquad {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// y(x) = (Inner(x) + S Inner(P x)) / 2 of signed sums (outputs/signed_sum_outputs.hpp): S turns the sums about roll and
+/// y(x) = (Inner(x) + S Inner(P x)) / 2 of signed sums (outputs/axis_command_outputs.hpp): S turns the sums about roll and
 /// yaw, P the features `Odd...` (see is_odd). Standardised by means of 0 of what is turned, as context_of_mirror_images()
 /// makes them: then the commands of the mirrored motion are the mirrored commands. Costs two of `Inner`.
 template <class Inner, int... Odd>
-struct Symmetrised : AnswerBase<Symmetrised<Inner, Odd...>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
-                                Inner::parameter_count> {
-  static_assert(is_answer<Inner> && Inner::outputs == 4,
-                "pinnquad: Symmetrised is of an answer of signed sums (outputs/signed_sum_outputs.hpp)");
+struct Symmetrised : PredictorBase<Symmetrised<Inner, Odd...>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
+                                   Inner::parameter_count> {
+  static_assert(is_predictor<Inner> && Inner::outputs == 4,
+                "pinnquad: Symmetrised is of an answer of signed sums (outputs/axis_command_outputs.hpp)");
   static_assert(sizeof...(Odd) > 0 && (... && (Odd >= 0 && Odd < Inner::inputs)),
                 "pinnquad: what a mirror turns are features of the answer");
   using Scalar = typename Inner::Scalar;
-  using Symmetrised::AnswerBase::forward;
+  using Symmetrised::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Scalar image[Inner::inputs], said[Inner::outputs];
@@ -134,6 +134,6 @@ struct SymmetrisedOn<Inner, Features, std::integer_sequence<int, N...>> {
 
 /// `Inner`, an answer of these features.
 template <class Features, class Inner>
-using SymmetricAnswer = typename detail::SymmetrisedOn<Inner, Features>::type;
+using SymmetricPredictor = typename detail::SymmetrisedOn<Inner, Features>::type;
 
 }  // namespace pinnquad

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Standardisation by a training set: z = (v - mean) / spread, part of every model on both ends.
+// Standardisation by a training set: z = (v - mean) / standard_deviation, part of every model on both ends.
 #pragma once
 
 #include <array>
@@ -20,21 +20,22 @@ template <class Scalar, int Size>
 inline constexpr std::array<Scalar, Size> ones = all_ones<Scalar, Size>();
 }  // namespace detail
 
-/// Mean and spread (standard deviation) per entry. A spread is never zero.
+/// Mean and standard deviation per entry. No standard deviation is zero.
 template <class Scalar, int Size>
 struct Scaler {
   static constexpr int size = Size;
   std::array<Scalar, Size> mean{};
-  std::array<Scalar, Size> spread = detail::ones<Scalar, Size>;
+  std::array<Scalar, Size> standard_deviation = detail::ones<Scalar, Size>;
 
   PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* values, Scalar* standardised) const noexcept {
     for (int i = 0; i < Size; ++i) {
-      standardised[i] = (values[i] - mean[static_cast<std::size_t>(i)]) / spread[static_cast<std::size_t>(i)];
+      standardised[i] =
+          (values[i] - mean[static_cast<std::size_t>(i)]) / standard_deviation[static_cast<std::size_t>(i)];
     }
   }
   PINNQUAD_ALWAYS_INLINE void restore(const Scalar* standardised, Scalar* values) const noexcept {
     for (int i = 0; i < Size; ++i) {
-      values[i] = standardised[i] * spread[static_cast<std::size_t>(i)] + mean[static_cast<std::size_t>(i)];
+      values[i] = standardised[i] * standard_deviation[static_cast<std::size_t>(i)] + mean[static_cast<std::size_t>(i)];
     }
   }
 

@@ -21,8 +21,8 @@ struct HoverMap {
 
   explicit HoverMap(const Airframe<double>& airframe) noexcept {
     const double hovering[features] = {};
-    LinearizedInverse::slopes<features>(static_cast<const double*>(hovering), LinearizedInverse::prepare(airframe),
-                                        static_cast<double*>(by_x));
+    LinearizedBase::slopes<features>(static_cast<const double*>(hovering), LinearizedBase::prepare(airframe),
+                                     static_cast<double*>(by_x));
   }
   double operator()(std::size_t rotor, std::size_t feature) const noexcept { return by_x[rotor * features + feature]; }
 };

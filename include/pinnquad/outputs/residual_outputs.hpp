@@ -3,7 +3,7 @@
 // Contract of a Base, static and noexcept, Scalar deduced: `reads`, which features of X it reads (features/read_features.hpp);
 // `prepare(airframe)`, constexpr; commands(x, prepared, u) of features in physical units;
 // `slopes<FeatureCount>(x, prepared, by_x)` = du/dx, rotor_count x FeatureCount, row-major, into zeros;
-// optional `least_thrust_slope(airframe)`, which a certificate asks (outputs/rigid_body_inverse.hpp).
+// optional `least_thrust_slope(airframe)`, which a certificate asks (outputs/rigid_body_base.hpp).
 #pragma once
 
 #include "pinnquad/features/features.hpp"
@@ -15,7 +15,7 @@ namespace pinnquad {
 
 /// Eq. (3) inverted ("Model 1" of Table 2), of PaperFeatures and what begins as they do, in air of the rated density: thrust
 /// from v_dot_z, torques from omega_dot, nothing else.
-struct LinearizedInverse {
+struct LinearizedBase {
   static constexpr const char* description = "pinnquad::LinearizedInverse";
   static constexpr std::array<ReadFeature, 4> reads = {
       {{2, "vdot_bz", "m/s^2"}, {3, "wdot_x", "rad/s^2"}, {4, "wdot_y", "rad/s^2"}, {5, "wdot_z", "rad/s^2"}}};
@@ -32,7 +32,7 @@ struct LinearizedInverse {
   template <int FeatureCount, class Scalar>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar* x, const detail::RotorMap<Scalar>& map,
                                             Scalar* by_x) noexcept {
-    static_assert(FeatureCount >= 6, "pinnquad: LinearizedInverse needs the accelerations as the first six features");
+    static_assert(FeatureCount >= 6, "pinnquad: LinearizedBase needs the accelerations as the first six features");
     map.slopes(x + 2, by_x + 2, FeatureCount);
   }
 };

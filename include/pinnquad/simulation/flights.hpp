@@ -9,7 +9,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/aero/wind.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 #include "pinnquad/simulation/near_ground_pilot.hpp"
 #include "pinnquad/simulation/random_pilot.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A running simulation: vehicle, pilot, flight controller, analytic inverse and recorder, one control tick at a time.
-// Flights of a known length are simulation/flight.hpp's fly(), a loop on this.
+// Flights of a known length are simulation/fly.hpp's fly(), a loop on this.
 #pragma once
 
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/simulation/pilot.hpp"
 #include "pinnquad/simulation/recorder.hpp"

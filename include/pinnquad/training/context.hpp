@@ -38,8 +38,8 @@ struct Context : ContextAirframe<VehicleType> {
   /// Throws std::invalid_argument unless every mean is finite and every spread a finite number above 0. What a flight with a NaN
   /// leaves here would make every weight NaN.
   constexpr void check() const {
-    check_scaler("Context::input", input.mean, input.spread);
-    check_scaler("Context::output", output.mean, output.spread);
+    check_scaler("Context::input", input.mean, input.standard_deviation);
+    check_scaler("Context::output", output.mean, output.standard_deviation);
     check_scaler("Context::signed_sum_spread", std::array<double, 3>{}, signed_sum_spread);
   }
 

@@ -104,7 +104,7 @@ typename FoldNetwork<NetworkType>::type without_batch_norm(const NetworkType& ne
 }  // namespace detail
 
 /// The network without its BatchNorms: Dense, DenseWithoutBias and a BatchNorm behind either become one Dense. A network that
-/// has none of them, and an answer that is no network (model/answer.hpp), is its own folded type.
+/// has none of them, and an answer that is no network (model/predictor.hpp), is its own folded type.
 template <class NetworkType>
 using Folded = typename detail::FoldNetwork<NetworkType>::type;
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
 #include "pinnquad/regression/bounded_ridge.hpp"
 #include "pinnquad/training/closed_form.hpp"
 
@@ -35,12 +35,12 @@ template <class ContextType>
 MonotoneShape monotone_shape(const ContextType& context) {
   using Features = typename ContextType::Features;
   static_assert(is_signed_sums<typename ContextType::Outputs>,
-                "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, SignedSumOutputs>");
+                "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, AxisCommandOutputs>");
   MonotoneShape shape;
   shape.inputs = Features::size;
   MonotoneBase<Features>::Threes::each([&](int place, int) { shape.places.push_back(place); });
-  shape.input_spread.assign(context.input.spread.begin(), context.input.spread.end());
-  shape.output_spread.assign(context.output.spread.begin(), context.output.spread.end());
+  shape.input_spread.assign(context.input.standard_deviation.begin(), context.input.standard_deviation.end());
+  shape.output_spread.assign(context.output.standard_deviation.begin(), context.output.standard_deviation.end());
   shape.airframe_slopes = hover_slopes(context.template airframe<double>());
   return shape;
 }
@@ -53,7 +53,7 @@ inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector
   if (groups.empty()) throw std::invalid_argument("monotone base: expected rows with all features, found none");
   AffineMap all;
   all.inputs = shape.inputs;
-  all.outputs = SignedSumOutputs::size;
+  all.outputs = AxisCommandOutputs::size;
   for (int output = 0; output < all.outputs; ++output) {
     std::vector<bool> taken(static_cast<std::size_t>(shape.inputs), true);
     std::vector<WeightBound> bounds;

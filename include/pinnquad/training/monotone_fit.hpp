@@ -10,7 +10,7 @@ namespace pinnquad {
 
 /// What comes of fit_monotone().
 template <class FeatureSet, class Residual>
-using MonotoneFit = StructuredFit<FeatureSet, MonotoneAnswer<FeatureSet, Residual>>;
+using MonotoneFit = StructuredFit<FeatureSet, MonotonePredictor<FeatureSet, Residual>>;
 
 /// `Residual`: a Network of residual_inputs<Features> features and 4 outputs, float. `goes_on(epoch)` is asked before
 /// each epoch. The residual is bounded to what it says on the training rows. Throws std::invalid_argument for rows that

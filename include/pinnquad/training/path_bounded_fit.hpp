@@ -11,7 +11,7 @@ namespace pinnquad {
 
 /// What comes of fit_path_bounded().
 template <class FeatureSet, class Residual>
-using PathBoundedFit = StructuredFit<FeatureSet, PathBoundedAnswer<FeatureSet, Residual>>;
+using PathBoundedFit = StructuredFit<FeatureSet, PathBoundedPredictor<FeatureSet, Residual>>;
 
 /// As fit_monotone(), but that `Residual` is a Network of all the features: Dense layers, at most 3, with Relu, Tanh or
 /// Softplus between them. `share`: of a slope that it may take away.
@@ -20,7 +20,7 @@ PathBoundedFit<typename ContextType::Features, Residual> fit_path_bounded(
     const ContextType& context, const RowSet& training, const RowSet& validation, const AffineMap& map,
     const ResidualTraining& how, Engine& engine, const GoesOn& goes_on, double share = 0.9) {
   const PathProjection<ContextType, Residual> projection(context, map, share);
-  return detail::fit_residual<Residual, Bounded<PathBounded<Residual>>,
+  return detail::fit_residual<Residual, Saturated<PathBounded<Residual>>,
                               PathBoundedFit<typename ContextType::Features, Residual>>(
       context, context, [](auto rows) { return rows; }, [&](auto& trained) { trained.project(projection); }, training,
       validation, map, how, engine, goes_on);

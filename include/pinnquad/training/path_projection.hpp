@@ -28,12 +28,12 @@ class PathProjection {
   PathProjection(const ContextType& context, const AffineMap& map, double share = 0.9) {
     if (!(share >= 0 && share < 1)) throw std::invalid_argument("path projection: expected a share from 0 to below 1");
     Base::Threes::each([&](int place, int tap) { places_[static_cast<std::size_t>(tap)] = place; });
-    for (std::size_t k = 0; k < 4; ++k) output_spread_[k] = context.output.spread[k];
+    for (std::size_t k = 0; k < 4; ++k) output_spread_[k] = context.output.standard_deviation[k];
     for (int axis = 0; axis < 3; ++axis) {
       double present = 0, held = 0;
       for (int tap = 0; tap < Base::taps; ++tap) {
         const int place = places_[static_cast<std::size_t>(tap)] + axis;
-        const double spread = context.input.spread[static_cast<std::size_t>(place)];
+        const double spread = context.input.standard_deviation[static_cast<std::size_t>(place)];
         spread_[static_cast<std::size_t>(3 * tap + axis)] = spread;
         const double slope = map.weights.at(static_cast<std::size_t>((1 + axis) * Features::size + place)) *
                              output_spread_[static_cast<std::size_t>(1 + axis)] / spread;

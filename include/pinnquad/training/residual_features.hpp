@@ -5,7 +5,7 @@
 #include <array>
 
 #include "pinnquad/model/axis_aligned.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
@@ -50,14 +50,15 @@ struct ResidualFeatures {
 /// that the model's are added to would not find its features here.
 template <class ContextType>
 using ResidualContext =
-    Context<ResidualFeatures<typename ContextType::Features>, typename ContextType::Vehicle, SignedSumOutputs>;
+    Context<ResidualFeatures<typename ContextType::Features>, typename ContextType::Vehicle, AxisCommandOutputs>;
 
 template <class ContextType>
 ResidualContext<ContextType> residual_context(const ContextType& context) {
   ResidualContext<ContextType> residual{static_cast<const ContextAirframe<typename ContextType::Vehicle>&>(context)};
   ResidualContext<ContextType>::Features::Threes::each_other([&](int feature, int n) {
     residual.input.mean[static_cast<std::size_t>(n)] = context.input.mean[static_cast<std::size_t>(feature)];
-    residual.input.spread[static_cast<std::size_t>(n)] = context.input.spread[static_cast<std::size_t>(feature)];
+    residual.input.standard_deviation[static_cast<std::size_t>(n)] =
+        context.input.standard_deviation[static_cast<std::size_t>(feature)];
   });
   residual.output = context.output;
   residual.signed_sum_spread = context.signed_sum_spread;

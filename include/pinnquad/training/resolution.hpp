@@ -54,15 +54,15 @@ inline constexpr double envelope_margin = 0.1;
 /// What a column of training rows does.
 struct ColumnStatistics {
   double mean = 0;
-  double spread = 0;  ///< standard deviation, divisor n
+  double standard_deviation = 0;  ///< divisor n
   double lowest = 0;
   double highest = 0;
   Resolution resolution{0, 0};
 
-  bool still() const noexcept { return !(spread >= resolution.smallest_spread); }
+  bool still() const noexcept { return !(standard_deviation >= resolution.smallest_spread); }
 
   /// What the column is divided by: 1 if it stands still.
-  double scale() const noexcept { return still() ? 1.0 : spread; }
+  double scale() const noexcept { return still() ? 1.0 : standard_deviation; }
 
   /// By how much the envelope is wider than the range, on both sides: envelope_margin of the range, no less than the
   /// smallest spread, or than the still margin if the column stands still.
@@ -99,7 +99,7 @@ std::array<ColumnStatistics, Size> column_statistics(const EachRow& each_row, co
     first = false;
   });
   for (std::size_t i = 0; i < Size; ++i) {
-    columns[i].spread = std::sqrt(squares[i] / count);
+    columns[i].standard_deviation = std::sqrt(squares[i] / count);
     columns[i].resolution = resolution_of(unit_of(i), columns[i].mean);
   }
   return columns;

@@ -45,18 +45,18 @@ namespace detail {
 /// Mean absolute error of the commands over standardised rows.
 template <class Answer, class ContextType, class Data>
 double command_error(const ContextType& context, const Answer& answer, const Data& data) {
-  const auto mix = context.template output_setting<SignedSumOutputs, double>();
+  const auto mix = context.template output_setting<AxisCommandOutputs, double>();
   double sum = 0;
   for (int row = 0; row < data.size(); ++row) {
     float said[Answer::outputs] = {};
     answer.forward(data.features_of(row), said);
     double difference[4], commands[rotor_count];
     for (std::size_t k = 0; k < 4; ++k) {
-      difference[k] =
-          (static_cast<double>(said[k]) - static_cast<double>(data.outputs_of(row)[k])) * context.output.spread[k];
+      difference[k] = (static_cast<double>(said[k]) - static_cast<double>(data.outputs_of(row)[k])) *
+                      context.output.standard_deviation[k];
     }
-    SignedSumOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(difference), mix,
-                               static_cast<double*>(commands));
+    AxisCommandOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(difference), mix,
+                                 static_cast<double*>(commands));
     for (const double command : commands) sum += std::abs(command);
   }
   return sum / (static_cast<double>(data.size()) * rotor_count);

@@ -10,18 +10,19 @@
 
 namespace pinnquad {
 
-/// MonotoneAnswer with a residual that is symmetrised: as many parameters, at the same places.
+/// MonotonePredictor with a residual that is symmetrised: as many parameters, at the same places.
 template <class Features, class Residual>
-using SymmetricMonotoneAnswer = MonotoneAnswer<Features, SymmetricAnswer<ResidualFeatures<Features>, Residual>>;
+using SymmetricMonotonePredictor =
+    MonotonePredictor<Features, SymmetricPredictor<ResidualFeatures<Features>, Residual>>;
 
 /// The answer without what differs between left and right: weights of the base from features that a mirror turns to sums
 /// that it leaves, and the other way round, are 0, bounds of a sum that it turns are as far on both sides. Fitted to rows
 /// and their mirror images (training/symmetric_rows.hpp), standardised by context_of_mirror_images(), little is taken.
 template <class Features, class Residual>
-SymmetricMonotoneAnswer<Features, Residual> own_mirror_image(const MonotoneAnswer<Features, Residual>& fitted) {
+SymmetricMonotonePredictor<Features, Residual> own_mirror_image(const MonotonePredictor<Features, Residual>& fitted) {
   using Base = MonotoneBase<Features, typename Residual::Scalar>;
   constexpr auto turned = [](int sum) { return sum % 2 == 1; };  // those about roll and yaw
-  SymmetricMonotoneAnswer<Features, Residual> answer;
+  SymmetricMonotonePredictor<Features, Residual> answer;
   answer.parameters = fitted.parameters;
   auto* const base = answer.parameters.data();
   auto* const lower = base + Base::parameter_count;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Scalers that a mirror leaves as they are: what SymmetricAnswer (model/symmetrised.hpp) is standardised by.
+// Scalers that a mirror leaves as they are: what SymmetricPredictor (model/symmetrised.hpp) is standardised by.
 #pragma once
 
 #include "pinnquad/model/symmetrised.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 
 namespace pinnquad {
 
@@ -12,7 +12,7 @@ namespace pinnquad {
 template <class ContextType>
 ContextType context_of_mirror_images(ContextType context) {
   static_assert(is_signed_sums<typename ContextType::Outputs>,
-                "pinnquad: a symmetric model answers signed sums: Context<Features, Vehicle, SignedSumOutputs>");
+                "pinnquad: a symmetric model answers signed sums: Context<Features, Vehicle, AxisCommandOutputs>");
   for (int i = 0; i < ContextType::Features::size; ++i) {
     if (is_odd<typename ContextType::Features>(i)) context.input.mean[static_cast<std::size_t>(i)] = 0;
   }

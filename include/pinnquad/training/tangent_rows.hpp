@@ -6,8 +6,8 @@
 
 #include <cmath>
 
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
@@ -19,7 +19,7 @@ Data with_tangent_rows(const ContextType& context, const Data& data, const AxisS
                        Engine& engine) {
   using Features = typename ContextType::Features;
   static_assert(Features::angular_acceleration >= 0 && is_signed_sums<typename ContextType::Outputs>,
-                "pinnquad: tangent rows need angular accelerations and SignedSumOutputs");
+                "pinnquad: tangent rows need angular accelerations and AxisCommandOutputs");
   Data both = data;
   both.features.insert(both.features.end(), data.features.begin(), data.features.end());
   both.outputs.insert(both.outputs.end(), data.outputs.begin(), data.outputs.end());
@@ -36,7 +36,8 @@ Data with_tangent_rows(const ContextType& context, const Data& data, const AxisS
       using Scalar = typename std::decay_t<decltype(both.features)>::value_type;
       both.features[static_cast<std::size_t>(row) * Features::size + feature] += static_cast<Scalar>(move);
       both.outputs[static_cast<std::size_t>(row) * 4 + 1 + axis] +=
-          static_cast<Scalar>(slopes[axis] * move * context.input.spread[feature] / context.output.spread[1 + axis]);
+          static_cast<Scalar>(slopes[axis] * move * context.input.standard_deviation[feature] /
+                              context.output.standard_deviation[1 + axis]);
     }
   }
   return both;

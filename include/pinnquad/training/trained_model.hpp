@@ -37,8 +37,8 @@ struct TrainedModel : ContextAirframe<typename ContextType::Vehicle> {
   Commands<Scalar> predict(const FeatureVector& x) const noexcept {
     Scalar outputs[Network::outputs] = {};
     Commands<Scalar> commands{};
-    const detail::Scales<Scalar> scales{input.mean.data(), input.spread.data(), output.mean.data(),
-                                        output.spread.data()};
+    const detail::Scales<Scalar> scales{input.mean.data(), input.standard_deviation.data(), output.mean.data(),
+                                        output.standard_deviation.data()};
     detail::Pipeline<Features, Outputs, Vehicle>::template ask<1>(
         scales, x.data(), 1, 1, outputs,
         [this](const Scalar* standardised, Scalar* made) { network.forward(standardised, made); });
@@ -71,7 +71,7 @@ TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkT
   const auto cast = [](const auto& from, auto& to) {
     for (std::size_t i = 0; i < from.mean.size(); ++i) {
       to.mean[i] = static_cast<Scalar>(from.mean[i]);
-      to.spread[i] = static_cast<Scalar>(from.spread[i]);
+      to.standard_deviation[i] = static_cast<Scalar>(from.standard_deviation[i]);
     }
   };
   cast(context.input, model.input);

@@ -187,7 +187,7 @@ class Trainer {
         for (std::size_t k = 0; k < std::size_t(Network::outputs); ++k) {
           const double difference = static_cast<double>(output[k]) - static_cast<double>(y[k]);
           squared += difference * difference;
-          absolute += std::abs(difference) * context_.output.spread[k];
+          absolute += std::abs(difference) * context_.output.standard_deviation[k];
         }
       }
     }

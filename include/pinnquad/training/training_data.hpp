@@ -99,11 +99,11 @@ ContextType make_context(const RowSet& rows, const ContextAirframe<typename Cont
   ContextType context{airframe};
   for (std::size_t i = 0; i < inputs; ++i) {
     context.input.mean[i] = columns[i].mean;
-    context.input.spread[i] = columns[i].scale();
+    context.input.standard_deviation[i] = columns[i].scale();
   }
   for (std::size_t i = 0; i < outputs; ++i) {
     context.output.mean[i] = columns[inputs + i].mean;
-    context.output.spread[i] = columns[inputs + i].scale();
+    context.output.standard_deviation[i] = columns[inputs + i].scale();
   }
   for (std::size_t i = 0; i < axes; ++i) context.signed_sum_spread[i] = columns[inputs + outputs + i].scale();
   return context;

@@ -9,9 +9,9 @@
 
 #include "airframe/file.hpp"
 #include "airframe/names.hpp"
-#include "data/temporary_folder.hpp"
 #include "model/header_airframe.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/uneven_airframe.hpp"
 #include "written_airframes.hpp"
 

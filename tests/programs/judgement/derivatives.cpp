@@ -57,11 +57,11 @@ void check_against_differences(const char* what) {
     same = static_cast<double>(value);
   };
   for (std::size_t i = 0; i < model.input.mean.size(); ++i) {
-    set(model.input.spread[i], wide.input.spread[i], spread(engine));
+    set(model.input.standard_deviation[i], wide.input.standard_deviation[i], spread(engine));
     set(model.input.mean[i], wide.input.mean[i], spread(engine) - 1);
   }
   for (std::size_t i = 0; i < model.output.mean.size(); ++i) {
-    set(model.output.spread[i], wide.output.spread[i], spread(engine));
+    set(model.output.standard_deviation[i], wide.output.standard_deviation[i], spread(engine));
     set(model.output.mean[i], wide.output.mean[i], 3 + spread(engine));
   }
   for (std::size_t i = 0; i < model.network.parameters.size(); ++i) {
@@ -111,8 +111,8 @@ TEST_CASE("derivatives of a sum through a window: by an angular acceleration tha
   std::uniform_real_distribution<double> any(-1, 1);
   Model model{ContextAirframe<GivenAirframe>("paper", airframe_value<PaperQuadrotor, double>())};
   for (double& parameter : model.network.parameters) parameter = any(engine);
-  for (double& spread : model.input.spread) spread = 1.5 + any(engine);
-  for (double& spread : model.output.spread) spread = 1.5 + any(engine);
+  for (double& spread : model.input.standard_deviation) spread = 1.5 + any(engine);
+  for (double& spread : model.output.standard_deviation) spread = 1.5 + any(engine);
   for (double& mean : model.input.mean) mean = any(engine);
   const auto derivatives = programs::derivatives_of(model);
   const std::array<std::array<double, rotor_count>, 3> signs = {
@@ -137,11 +137,11 @@ TEST_CASE("derivatives of a sum through a window: by an angular acceleration tha
 
 TEST_CASE("derivatives of a residual are its base's too") {
   using Net = Network<double, InputSize<16>, Dense<4>>;
-  using Model = TrainedModel<Net, Context<PaperFeatures, GivenAirframe, ResidualOutputs<LinearizedInverse>>>;
+  using Model = TrainedModel<Net, Context<PaperFeatures, GivenAirframe, ResidualOutputs<LinearizedBase>>>;
   const Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
   Model model{ContextAirframe<GivenAirframe>("paper", airframe)};
-  model.input.spread.fill(1);
-  model.output.spread.fill(1);
+  model.input.standard_deviation.fill(1);
+  model.output.standard_deviation.fill(1);
   const auto derivatives = programs::derivatives_of(model);
   std::mt19937_64 engine(3);
   for (const Sample& row : samples(3, engine)) {
@@ -157,8 +157,8 @@ TEST_CASE("rows that a window leaves without an answer are told by NaN, the othe
   using Window = PartlyWindowed<PhysicsFeatures, AccelerationFeatures, 3, PeriodMicroseconds<20000>, Centred>;
   using Model = TrainedModel<Network<float, InputSize<Window::size>, Dense<4>>, Context<Window, GivenAirframe>>;
   Model model{ContextAirframe<GivenAirframe>("paper", airframe_value<PaperQuadrotor, double>())};
-  model.input.spread.fill(1);
-  model.output.spread.fill(1);
+  model.input.standard_deviation.fill(1);
+  model.output.standard_deviation.fill(1);
   model.network.parameters[3] = 1;  // u1: the present angular acceleration about x
   std::mt19937_64 engine(4);
   Flight flights[2];

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "data/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "training/export_choice.hpp"
 #include "training/judgement.hpp"
 #include "training/training_report.hpp"

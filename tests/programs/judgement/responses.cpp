@@ -24,9 +24,9 @@ using CentredWindow = PartlyWindowed<InverseFeatures, AccelerationFeatures, 3, P
 template <class Features>
 using Plain = MonotoneShape<Features, MonotoneBase<Features>>;
 template <class Features>
-using Learnt = MonotoneShape<Features, MonotoneAnswer<Features, SmallResidual<Features, Tanh>>>;
+using Learnt = MonotoneShape<Features, MonotonePredictor<Features, SmallResidual<Features, Tanh>>>;
 using Residual = SmallResidual<PhysicsFeatures>;
-using OwnImage = MonotoneShape<PhysicsFeatures, MonotoneAnswer<PhysicsFeatures, Symmetrised<Residual, 1, 3, 5>>>;
+using OwnImage = MonotoneShape<PhysicsFeatures, MonotonePredictor<PhysicsFeatures, Symmetrised<Residual, 1, 3, 5>>>;
 
 constexpr double fastest = 3;  ///< body rates, rad/s
 
@@ -38,8 +38,8 @@ programs::Response response_of(const Model& model, const programs::Direction& di
     parts.push_back(*programs::parse_network(detail::description_text<typename Model::Added>()));
   }
   const auto wide = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
-  return programs::response_along(direction, parts, wide(model.parameters), wide(model.input.spread),
-                                  wide(model.output.spread));
+  return programs::response_along(direction, parts, wide(model.parameters), wide(model.input.standard_deviation),
+                                  wide(model.output.standard_deviation));
 }
 
 template <class Answer>
@@ -195,8 +195,8 @@ TEST_CASE_TEMPLATE("more thrust at all instants: the base's slope exactly, with 
 TEST_CASE("a body rate's weight can take a held acceleration's whole slope: it is seen") {
   Model<Plain<PhysicsWindow>> model(1);
   using Base = Model<Plain<PhysicsWindow>>::Base;
-  model.input.spread.fill(1);
-  model.output.spread.fill(1);
+  model.input.standard_deviation.fill(1);
+  model.output.standard_deviation.fill(1);
   model.slope(2) = 0.0375F;
   model.slope(5) = model.slope(8) = 0;
   const int yaw_rate = 8 - 3;  // among the features that are no angular acceleration

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "complaint.hpp"
-#include "data/temporary_folder.hpp"
 #include "logs/csv_log.hpp"
+#include "support/temporary_folder.hpp"
 
 using pinnquad_test::TemporaryFolder;
 using programs::LogSelection;

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "complaint.hpp"
-#include "data/temporary_folder.hpp"
 #include "logs/read_log.hpp"
+#include "support/temporary_folder.hpp"
 #include "ulog_bytes.hpp"
 
 using pinnquad_test::Bytes;

@@ -11,7 +11,7 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/flight.hpp"
+#include "pinnquad/simulation/fly.hpp"
 #include "replay/page.hpp"
 
 namespace {

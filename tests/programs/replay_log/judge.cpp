@@ -95,7 +95,7 @@ void fill(Model& model, const std::vector<std::array<typename Model::Scalar, std
     for (const auto& x : all) squares += (double(x[i]) - mean) * (double(x[i]) - mean);
     const double spread = std::sqrt(squares / double(all.size())) + 1e-3;
     model.input.mean[i] = Scalar(mean);
-    model.input.spread[i] = Scalar(spread);
+    model.input.standard_deviation[i] = Scalar(spread);
     model.envelope_lower[i] = Scalar(mean - spreads * spread);
     model.envelope_upper[i] = Scalar(mean + spreads * spread);
   }
@@ -140,7 +140,7 @@ std::vector<unsigned char> physics_block(const std::vector<Row>& rows) {
     if (!finite(all.back())) all.pop_back();
   });
   fill<decltype(model), Physics::Features>(model, all, 4);
-  for (std::size_t i = 0; i < 4; ++i) model.output.mean[i] = 0.5f, model.output.spread[i] = 0.05f;
+  for (std::size_t i = 0; i < 4; ++i) model.output.mean[i] = 0.5f, model.output.standard_deviation[i] = 0.05f;
   return model_block(model, {model.input.mean}, {});
 }
 
@@ -176,7 +176,7 @@ std::vector<unsigned char> speeds_block(const std::vector<Row>& rows) {
     if (finite(x)) all.push_back(x);
   }
   fill<decltype(model), Speeds::Features>(model, all, 2.2);
-  for (std::size_t i = 0; i < 4; ++i) model.output.mean[i] = 140, model.output.spread[i] = 25;
+  for (std::size_t i = 0; i < 4; ++i) model.output.mean[i] = 140, model.output.standard_deviation[i] = 25;
   return model_block(model, {model.input.mean}, {});
 }
 

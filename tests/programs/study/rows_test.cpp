@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <random>
 
-#include "data/temporary_folder.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "study/campaign.hpp"
+#include "support/temporary_folder.hpp"
 
 using pinnquad::Flight;
 
@@ -51,9 +51,9 @@ void check_no_leak() {
   const auto same = [&](const Flight& changed) {
     const study::Material<DataSet> other(changed);
     return other.context.input.mean == material.context.input.mean &&
-           other.context.input.spread == material.context.input.spread &&
+           other.context.input.standard_deviation == material.context.input.standard_deviation &&
            other.context.output.mean == material.context.output.mean &&
-           other.context.output.spread == material.context.output.spread &&
+           other.context.output.standard_deviation == material.context.output.standard_deviation &&
            other.data.features == material.data.features && other.data.outputs == material.data.outputs;
   };
   CHECK(same(replaced(flight, split.validation.begin, split.test.end)));

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
-#include "data/temporary_folder.hpp"
 #include "judged_run.hpp"
+#include "support/temporary_folder.hpp"
 #include "training/log_export.hpp"
 #include "training/log_fit_store.hpp"
 #include "training/log_report.hpp"

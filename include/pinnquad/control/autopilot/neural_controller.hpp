@@ -16,6 +16,7 @@
 #include "pinnquad/control/autopilot/situation.hpp"
 #include "pinnquad/control/autopilot/step_report.hpp"
 #include "pinnquad/control/autopilot/take_off.hpp"
+#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/guard.hpp"
@@ -263,7 +264,7 @@ class NeuralController {
 
   static FlightLimits<float> flight_limits(const Vehicle& vehicle, const FlightGains<float>& gains,
                                            const SpeedLimits& speeds) noexcept {
-    FlightLimits<float> limits = flight_limits(vehicle.airframe(), 1.0f, gains);
+    FlightLimits<float> limits = pinnquad::flight_limits(vehicle.airframe(), 1.0f, gains);
     limits.max_horizontal_speed_m_s = speeds.horizontal_m_s;
     limits.max_climb_m_s = speeds.climb_m_s;
     limits.max_descent_m_s = speeds.descent_m_s;

@@ -44,7 +44,7 @@ struct RigidBody {
 
 /// Thrust from the specific force along z, torque from w x J w; air of the rated density, no drag. Of PhysicsFeatures
 /// and what begins as they do: specific force, angular acceleration, body rates.
-struct RigidBodyInverse {
+struct RigidBodyBase {
   static constexpr const char* description = "pinnquad::RigidBodyInverse";
   static constexpr int force_z = 2;  ///< where it stands among the features
   static constexpr int body_rates = 6;
@@ -88,7 +88,7 @@ struct RigidBodyInverse {
                                             Scalar* by_x) noexcept {
     static_assert(
         FeatureCount >= body_rates + 3,
-        "pinnquad: RigidBodyInverse needs specific force, angular acceleration and body rates as the first nine "
+        "pinnquad: RigidBodyBase needs specific force, angular acceleration and body rates as the first nine "
         "features");
     const Scalar* w = x + body_rates;
     Scalar wrench[4], momentum[3], by_wrench[rotor_count * 4];

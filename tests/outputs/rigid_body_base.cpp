@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rigid body's inverse without the angular acceleration, on an airframe whose inertia has products and whose rotors
 // have curves: against the rotors' own inverse, slopes against differences; and signed sums on it, there and back.
-#include "pinnquad/outputs/rigid_body_inverse.hpp"
+#include "pinnquad/outputs/rigid_body_base.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,17 +10,17 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/inertia.hpp"
 #include "pinnquad/features/motion_parts.hpp"
-#include "pinnquad/outputs/signed_sum_outputs.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 
 using namespace pinnquad;
 
 namespace {
 
-using Sums = SignedSumsOn<RigidBodyInverse>;
+using Sums = SignedSumsOn<RigidBodyBase>;
 constexpr int features = PhysicsFeatures::size;
-static_assert(PhysicsFeatures::names[RigidBodyInverse::force_z][2] == 'z' &&
-              PhysicsFeatures::names[RigidBodyInverse::body_rates][0] == 'w' &&
-              PhysicsFeatures::names[RigidBodyInverse::body_rates][2] == 'x');
+static_assert(PhysicsFeatures::names[RigidBodyBase::force_z][2] == 'z' &&
+              PhysicsFeatures::names[RigidBodyBase::body_rates][0] == 'w' &&
+              PhysicsFeatures::names[RigidBodyBase::body_rates][2] == 'x');
 
 Airframe<double> crooked() {
   Airframe<double> airframe = PaperQuadrotor::value<double>();
@@ -45,7 +45,7 @@ TEST_CASE("its commands make the thrust and the torque that hold the body rates"
   const Airframe<double> airframe = crooked();
   const Point at;
   double u[rotor_count];
-  RigidBodyInverse::commands(static_cast<const double*>(at.x), RigidBodyInverse::prepare(airframe),
+  RigidBodyBase::commands(static_cast<const double*>(at.x), RigidBodyBase::prepare(airframe),
                              static_cast<double*>(u));
   const Vector3<double> rates(at.x[6], at.x[7], at.x[8]);
   Wrench<double> wrench;
@@ -57,24 +57,24 @@ TEST_CASE("its commands make the thrust and the torque that hold the body rates"
   Point turning;
   for (int axis = 0; axis < 3; ++axis) turning.x[3 + axis] += 100;
   double same[rotor_count];
-  RigidBodyInverse::commands(static_cast<const double*>(turning.x), RigidBodyInverse::prepare(airframe),
+  RigidBodyBase::commands(static_cast<const double*>(turning.x), RigidBodyBase::prepare(airframe),
                              static_cast<double*>(same));
   for (int i = 0; i < rotor_count; ++i) CHECK(same[i] == u[i]);
 }
 
 TEST_CASE("its slopes are central differences, and none is by the angular acceleration") {
-  const auto body = RigidBodyInverse::prepare(crooked());
+  const auto body = RigidBodyBase::prepare(crooked());
   Point at;
   double slopes[rotor_count * features] = {};
-  RigidBodyInverse::slopes<features>(static_cast<const double*>(at.x), body, static_cast<double*>(slopes));
+  RigidBodyBase::slopes<features>(static_cast<const double*>(at.x), body, static_cast<double*>(slopes));
   constexpr double step = 1e-6;
   for (int k = 0; k < features; ++k) {
     double above[rotor_count], below[rotor_count];
     const double kept = at.x[k];
     at.x[k] = kept + step;
-    RigidBodyInverse::commands(static_cast<const double*>(at.x), body, static_cast<double*>(above));
+    RigidBodyBase::commands(static_cast<const double*>(at.x), body, static_cast<double*>(above));
     at.x[k] = kept - step;
-    RigidBodyInverse::commands(static_cast<const double*>(at.x), body, static_cast<double*>(below));
+    RigidBodyBase::commands(static_cast<const double*>(at.x), body, static_cast<double*>(below));
     at.x[k] = kept;
     for (int i = 0; i < rotor_count; ++i) {
       CAPTURE(i);
@@ -97,6 +97,6 @@ TEST_CASE("signed sums on it: there and back; 0 are its own commands") {
   for (int i = 0; i < rotor_count; ++i) CHECK(again[i] == doctest::Approx(u[i]).epsilon(1e-14));
   const double nothing[4] = {};
   Sums::commands(x, static_cast<const double*>(nothing), body, static_cast<double*>(again));
-  RigidBodyInverse::commands(x, body.base, static_cast<double*>(base));
+  RigidBodyBase::commands(x, body.base, static_cast<double*>(base));
   for (int i = 0; i < rotor_count; ++i) CHECK(again[i] == base[i]);
 }

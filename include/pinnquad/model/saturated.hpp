@@ -12,11 +12,11 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// y = clip(Inner(x)), output by output. Parameters: lower bounds, upper bounds, then those of `Inner`. NaN goes
 /// through.
 template <class Inner>
-struct Bounded : AnswerBase<Bounded<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
+struct Saturated : PredictorBase<Saturated<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
                             2 * Inner::outputs + Inner::parameter_count> {
-  static_assert(is_answer<Inner>, "pinnquad: Bounded is of an answer (model/answer.hpp)");
+  static_assert(is_predictor<Inner>, "pinnquad: Saturated is of an answer (model/predictor.hpp)");
   using Scalar = typename Inner::Scalar;
-  using Bounded::AnswerBase::forward;
+  using Saturated::PredictorBase::forward;
   static constexpr int lower = 0;  ///< where they stand among the parameters
   static constexpr int upper = Inner::outputs;
   static constexpr int own = 2 * Inner::outputs;
@@ -48,11 +48,11 @@ struct Bounded : AnswerBase<Bounded<Inner>, typename Inner::Scalar, Inner::input
 
 namespace detail {
 template <class Inner>
-struct FormulasOf<Bounded<Inner>> : FormulasOf<Inner> {};
+struct FormulasOf<Saturated<Inner>> : FormulasOf<Inner> {};
 }  // namespace detail
 
 template <class Inner>
-struct Description<Bounded<Inner>> {
+struct Description<Saturated<Inner>> {
   template <class Sink>
   static constexpr void add(Sink& sink) {
     detail::describe_list<Inner>(sink, "pinnquad::Bounded");

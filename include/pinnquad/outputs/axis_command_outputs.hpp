@@ -44,7 +44,7 @@ constexpr SignedMix<Scalar> signed_mix(const Airframe<Scalar>& airframe) noexcep
 }  // namespace detail
 
 /// y = (u_1 + u_2 + u_3 + u_4, signed sums about roll, pitch, yaw), in units of commands.
-struct SignedSumOutputs {
+struct AxisCommandOutputs {
   static constexpr int size = 4;
   static constexpr bool takes_features = false;
   static constexpr std::array<const char*, size> names = {"sum", "roll_sum", "pitch_sum", "yaw_sum"};
@@ -85,7 +85,7 @@ struct SignedSumsOn {
   static_assert(!detail::reads_angular_acceleration<BaseInverse>(),
                 "pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration: its slope is "
                 "replaced, not added "
-                "to (outputs/rigid_body_inverse.hpp)");
+                "to (outputs/rigid_body_base.hpp)");
   using Base = BaseInverse;  ///< a header and a block name it by its description
   static constexpr int size = 4;
   static constexpr std::array<const char*, size> names = {"dsum", "droll_sum", "dpitch_sum", "dyaw_sum"};
@@ -105,20 +105,20 @@ struct SignedSumsOn {
                                               Scalar* u) noexcept {
     Scalar base[rotor_count];
     Base::commands(x, body.base, static_cast<Scalar*>(base));
-    SignedSumOutputs::commands(x, y, body.mix, u);
+    AxisCommandOutputs::commands(x, y, body.mix, u);
     for (int i = 0; i < rotor_count; ++i) u[i] += base[i];
   }
   template <class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar* x, const Scalar* y, const Setting& body,
                                             Scalar* by_outputs) noexcept {
-    SignedSumOutputs::slopes(x, y, body.mix, by_outputs);
+    AxisCommandOutputs::slopes(x, y, body.mix, by_outputs);
   }
   template <class Scalar, class Setting>
   static void from_commands(const Scalar* x, const Scalar* u, const Setting& body, Scalar* y) noexcept {
     Scalar left[rotor_count];
     Base::commands(x, body.base, static_cast<Scalar*>(left));
     for (int i = 0; i < rotor_count; ++i) left[i] = u[i] - left[i];
-    SignedSumOutputs::from_commands(x, static_cast<const Scalar*>(left), body.mix, y);
+    AxisCommandOutputs::from_commands(x, static_cast<const Scalar*>(left), body.mix, y);
   }
   template <int FeatureCount, class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void feature_slopes(const Scalar* x, const Scalar*, const Setting& body,
@@ -129,7 +129,7 @@ struct SignedSumsOn {
 
 namespace detail {
 template <class T>
-struct IsSignedSums : std::is_same<T, SignedSumOutputs> {};
+struct IsSignedSums : std::is_same<T, AxisCommandOutputs> {};
 template <class Base>
 struct IsSignedSums<SignedSumsOn<Base>> : std::true_type {};
 }  // namespace detail

@@ -65,15 +65,15 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// `Inner` of all features but the threes from `First...` on.
 template <class Inner, int FeatureCount, int... First>
-struct Withheld : AnswerBase<Withheld<Inner, FeatureCount, First...>, typename Inner::Scalar, FeatureCount,
+struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename Inner::Scalar, FeatureCount,
                              Inner::outputs, Inner::parameter_count> {
   using Threes = detail::Triples<FeatureCount, First...>;
-  static_assert(is_answer<Inner>, "pinnquad: features are Withheld of an answer (model/answer.hpp)");
-  static_assert(Threes::fit(), "pinnquad: what is Withheld are features in threes, ascending, that do not overlap");
+  static_assert(is_predictor<Inner>, "pinnquad: features are Masked of an answer (model/predictor.hpp)");
+  static_assert(Threes::fit(), "pinnquad: what is Masked are features in threes, ascending, that do not overlap");
   static_assert(Inner::inputs == Threes::others,
-                "pinnquad: an answer from which features are Withheld takes all the others");
+                "pinnquad: an answer from which features are Masked takes all the others");
   using Scalar = typename Inner::Scalar;
-  using Withheld::AnswerBase::forward;
+  using Masked::PredictorBase::forward;
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     if constexpr (is_network<Inner>) {
@@ -101,7 +101,7 @@ namespace detail {
 
 /// Asked of the features that are left.
 template <class Inner, int FeatureCount, int... First>
-struct FormulasOf<Withheld<Inner, FeatureCount, First...>> {
+struct FormulasOf<Masked<Inner, FeatureCount, First...>> {
   static constexpr bool read(const NamedFeatures& features) noexcept {
     using Threes = Triples<FeatureCount, First...>;
     const char* names[Threes::others]{};
@@ -123,7 +123,7 @@ constexpr void describe_numbers(Sink& sink, Number... number) {
 }  // namespace detail
 
 template <class Inner, int FeatureCount, int... First>
-struct Description<Withheld<Inner, FeatureCount, First...>> {
+struct Description<Masked<Inner, FeatureCount, First...>> {
   template <class Sink>
   static constexpr void add(Sink& sink) {
     sink.add(std::string_view("pinnquad::Withheld<"));

@@ -17,9 +17,9 @@ namespace pinnquad {
 
 namespace detail {
 template <class T, class = void>
-struct IsAnswer : std::false_type {};
+struct IsPredictor : std::false_type {};
 template <class T>
-struct IsAnswer<T, std::void_t<typename T::Scalar, typename T::Parameters, decltype(T::inputs), decltype(T::outputs),
+struct IsPredictor<T, std::void_t<typename T::Scalar, typename T::Parameters, decltype(T::inputs), decltype(T::outputs),
                                decltype(T::parameter_count), decltype(std::declval<T&>().parameters)>>
     : std::bool_constant<noexcept(T::forward(static_cast<const typename T::Scalar*>(nullptr),
                                              static_cast<const typename T::Scalar*>(nullptr),
@@ -28,6 +28,6 @@ struct IsAnswer<T, std::void_t<typename T::Scalar, typename T::Parameters, declt
 
 /// True for a type that fulfils the contract at the head of this file, but for its Jacobian.
 template <class T>
-inline constexpr bool is_answer = detail::IsAnswer<T>::value;
+inline constexpr bool is_predictor = detail::IsPredictor<T>::value;
 
 }  // namespace pinnquad
