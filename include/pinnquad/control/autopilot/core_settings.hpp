@@ -46,4 +46,20 @@ inline void add_effects(const FlownEffects& effects, CoreSettings& to) noexcept 
   to.rate_damping_n_m_s = effects.rate_damping_N_m_s;
 }
 
+/// Limits of the outer loop, of the vehicle and of the speeds that its stack allows.
+inline FlightLimits<float> flown_limits(const Airframe<float>& airframe, const FlightGains<float>& gains,
+                                        const SpeedLimits& speeds) noexcept {
+  FlightLimits<float> limits = flight_limits(airframe, 1.0f, gains);
+  limits.max_horizontal_speed_m_s = speeds.horizontal_m_s;
+  limits.max_climb_m_s = speeds.climb_m_s;
+  limits.max_descent_m_s = speeds.descent_m_s;
+  return limits;
+}
+
+/// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.
+struct AbsurdCommands {
+  static constexpr double lower = -0.5;
+  static constexpr double upper = 1.5;
+};
+
 }  // namespace pinnquad::autopilot

@@ -7,13 +7,10 @@
 #include <cmath>
 
 #include "pinnquad/control/autopilot/bias_alarm.hpp"
-#include "pinnquad/control/autopilot/core_record.hpp"
 #include "pinnquad/control/autopilot/core_settings.hpp"
-#include "pinnquad/control/autopilot/flown_effects.hpp"
 #include "pinnquad/control/autopilot/flown_motion.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/control/autopilot/model_slots.hpp"
-#include "pinnquad/control/autopilot/situation.hpp"
 #include "pinnquad/control/autopilot/step_report.hpp"
 #include "pinnquad/control/autopilot/take_off.hpp"
 #include "pinnquad/control/desaturate.hpp"
@@ -23,12 +20,6 @@
 #include "pinnquad/inference/monitored_inverse.hpp"
 
 namespace pinnquad::autopilot {
-
-/// What neither rotor nor sound network asks for: the formula is asked instead.
-struct AbsurdCommands {
-  static constexpr double lower = -0.5;
-  static constexpr double upper = 1.5;
-};
 
 /// `Shape` says what a model block must hold: an exported header. `View` opens the block; on the ground it may be one whose
 /// network is known at run time alone (tools/model/replay_core.hpp). `VehicleType`: airframe and effects that the formula knows,
@@ -70,7 +61,7 @@ class NeuralController {
         outputs_(outputs),
         vehicle_(vehicle),
         formula_(vehicle_),
-        outer_loop_(gains, flight_limits(vehicle_, gains, speeds), vehicle_.site().gravity_m_s2),
+        outer_loop_(gains, flown_limits(vehicle_.airframe(), gains, speeds), vehicle_.site().gravity_m_s2),
         models_(NetworkGuard{}),
         bias_(bias),
         take_off_(speeds.take_off_s),
@@ -260,15 +251,6 @@ class NeuralController {
 
   State<float> state() const noexcept {
     return {local_.value().position_m, local_.value().velocity_m_s, attitude_.value(), rates_.value()};
-  }
-
-  static FlightLimits<float> flight_limits(const Vehicle& vehicle, const FlightGains<float>& gains,
-                                           const SpeedLimits& speeds) noexcept {
-    FlightLimits<float> limits = pinnquad::flight_limits(vehicle.airframe(), 1.0f, gains);
-    limits.max_horizontal_speed_m_s = speeds.horizontal_m_s;
-    limits.max_climb_m_s = speeds.climb_m_s;
-    limits.max_descent_m_s = speeds.descent_m_s;
-    return limits;
   }
 
   bool at_an_end(const Commands<float>& commands) const noexcept {
