@@ -4,6 +4,7 @@
 #   - "#pragma once", the SPDX line, at most 400 lines
 #   - imports point up the list of rooms, never down, never in a circle; no room includes an umbrella header
 #   - core/types.hpp alone includes Eigen, but for its decompositions: regression/symmetric_system.hpp
+#   - every header is reached from the umbrella pinnquad/pinnquad.hpp
 #   - a room that flies includes only rooms that fly, no header of the standard library that allocates, throws, prints,
 #     locks or keeps time, and has no word that throws, allocates, asserts or dispatches at run time
 #
@@ -84,8 +85,10 @@ foreach(header IN LISTS headers)
       fault("${header}" "includes <${name}>, which does not fly")
     endif()
 
-    if(name MATCHES "^pinnquad/([^/]+)/")
+    if(name MATCHES "^pinnquad/")
       list(APPEND own_includes "${name}")
+    endif()
+    if(name MATCHES "^pinnquad/([^/]+)/")
       set(other "${CMAKE_MATCH_1}")
       list(FIND PINNQUAD_ROOMS "${other}" other_place)
       if(flies AND NOT other IN_LIST PINNQUAD_FLIGHT_ROOMS)
@@ -137,6 +140,22 @@ if(left)
   list(JOIN left " " circle)
   fault("${circle}" "include each other in a circle (or include one that does)")
 endif()
+
+# Everything is what pinnquad.hpp says that it includes.
+set(reached "")
+set(open "pinnquad/pinnquad.hpp")
+while(open)
+  list(POP_FRONT open header)
+  if(NOT header IN_LIST reached)
+    list(APPEND reached "${header}")
+    list(APPEND open ${includes_of_${header}})
+  endif()
+endwhile()
+foreach(header IN LISTS headers)
+  if(NOT header IN_LIST reached)
+    fault("${header}" "is not reached from pinnquad/pinnquad.hpp")
+  endif()
+endforeach()
 
 list(LENGTH headers count)
 if(faults GREATER 0)
