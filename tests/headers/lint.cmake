@@ -120,6 +120,7 @@ endforeach()
 
 # A circle is what is left when headers without includes are taken away again and again.
 set(left ${headers})
+list(REMOVE_ITEM left "pinnquad/pinnquad.hpp") # no room includes it
 set(progress TRUE)
 while(progress)
   set(progress FALSE)
