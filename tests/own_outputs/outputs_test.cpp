@@ -377,7 +377,7 @@ TEST_CASE("what a model is made of is written, whichever compiler reads it") {
   CHECK(written<Network<float, InputSize<16>, Dense<25>, Named, Dense<4>>>() ==
         "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, mine/leaky 0.1, pinnquad::Dense<4>>");
   CHECK(written<EnsembleModel::Network>() ==
-        "pinnquad::Ensemble<2><pinnquad::Sum<pinnquad::Analytic<16><float, pinnquad::LinearizedBase>paper_quadrotor, "
+        "pinnquad::Ensemble<2><pinnquad::Sum<pinnquad::Analytic<16><float, pinnquad::LinearizedInverse>paper_quadrotor, "
         "pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<20>, pinnquad::Tanh, "
         "pinnquad::Dense<20>, pinnquad::Tanh, pinnquad::Dense<4>>>>>");
 }

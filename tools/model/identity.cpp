@@ -2,6 +2,9 @@
 // Which model a block is, of all kinds that `train` exports.
 #include "model/identity.hpp"
 
+#include <string>
+#include <utility>
+
 #include "model/log_schemas.hpp"
 #include "model/model_file.hpp"
 #include "pinnquad/deploy/type_name.hpp"
@@ -15,6 +18,20 @@ std::optional<Identity> find_identity(const Block& block, const ModelHints& hint
   });
 }
 
+namespace {
+/// A type as a header states it, by the names of today (exported/renamed.hpp).
+std::string by_todays_names(std::string type) {
+  for (const auto& [before, now] : {std::pair<std::string, std::string>{"SignedSumOutputs", "AxisCommandOutputs"},
+                                    {"LinearizedInverse", "LinearizedBase"},
+                                    {"RigidBodyInverse", "RigidBodyBase"}}) {
+    for (std::size_t at = type.find(before); at != std::string::npos; at = type.find(before, at)) {
+      type.replace(at, before.size(), now);
+    }
+  }
+  return type;
+}
+}  // namespace
+
 void require_names(const HeaderFile& header) {
   const auto same = [&header](const std::string& entry, const auto& texts) {
     const std::vector<std::string> said = header.texts(entry);
@@ -24,7 +41,8 @@ void require_names(const HeaderFile& header) {
     using Features = decltype(features);
     using Outputs = decltype(outputs);
     using Map = pinnquad::OutputMap<Outputs>;
-    const std::string &features_text = header.text("Features"), &outputs_text = header.text("Outputs");
+    const std::string& features_text = header.text("Features");
+    const std::string outputs_text = by_todays_names(header.text("Outputs"));
     if (features_text == pinnquad::type_name<Features>() &&
         !(same("feature_names", Features::names) && same("feature_units", Features::units))) {
       header.refuse("feature_names", "the names and units of " + features_text, "others");
