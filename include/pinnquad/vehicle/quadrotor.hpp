@@ -16,6 +16,23 @@
 
 namespace pinnquad {
 
+/// The place of a flight on earth.
+template <class Scalar>
+struct Site {
+  Scalar elevation_m{0};  ///< of the NED origin above sea level
+  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre when the rotors' height above ground counts as zero
+  Scalar gravity_m_s2{standard_gravity_m_s2<Scalar>};
+};
+
+/// The site of the paper's simulator: home at 122 m, ground 0.877 m below the origin.
+template <class Scalar>
+constexpr Site<Scalar> paper_site() noexcept {
+  Site<Scalar> site{};
+  site.elevation_m = Scalar(122);
+  site.ground_z_m = Scalar(0.877);
+  return site;
+}
+
 /// Everything that evolves in time.
 template <class Scalar>
 struct VehicleState {
@@ -34,14 +51,19 @@ struct Evaluation {
 };
 
 namespace detail {
-/// What an effect as it is by default says, while compiling, of an airframe known then; ok for one that can't be asked
-/// before it flies.
-template <class Effect, class Vehicle, class = void>
-struct DefaultStatus : std::integral_constant<Status, Status::ok> {};
 template <class Effect, class Vehicle>
-struct DefaultStatus<Effect, Vehicle,
-                     std::void_t<std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())>>>
-    : std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())> {};
+using StatusWhenCompiled = std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())>;
+
+/// The status that an effect as it is by default gives an airframe known when compiled; ok for one that can be asked in
+/// flight only.
+template <class Effect, class Vehicle>
+constexpr Status default_status() noexcept {
+  if constexpr (is_detected<StatusWhenCompiled, Effect, Vehicle>) {
+    return StatusWhenCompiled<Effect, Vehicle>::value;
+  } else {
+    return Status::ok;
+  }
+}
 }  // namespace detail
 
 /// Eqs. (1) and (2) with effects. An effect that is not named costs nothing.
@@ -53,18 +75,15 @@ class Quadrotor {
   static_assert((is_whole_effect<Effects, Scalar>() && ...),
                 "pinnquad: an effect's surroundings(), wrench(), wrench_on(), bound() or status() can't be called as "
                 "the contract says, or returns something else: it would be passed over (aero/effect.hpp)");
-  static_assert((is_noexcept_effect<Effects, Scalar> && ...),
+  static_assert((is_noexcept_effect<Effects, Scalar>() && ...),
                 "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on(), bound() and status() must be "
                 "noexcept (aero/effect.hpp)");
   static_assert(
       ((is_effect<BoundEffect<Effects, Scalar>> && is_whole_effect<BoundEffect<Effects, Scalar>, Scalar>() &&
-        is_noexcept_effect<BoundEffect<Effects, Scalar>, Scalar>)&&...),
+        is_noexcept_effect<BoundEffect<Effects, Scalar>, Scalar>()) &&
+       ...),
       "pinnquad: what an effect's bound() returns flies in its place: it must be an effect whose functions are "
       "as the contract says and noexcept (aero/effect.hpp)");
-  static_assert(((!uses_place<BoundEffect<Effects, Scalar>> || varies_with<Effects> == VariesWith::place_and_time) &&
-                 ...),
-                "pinnquad: an effect that takes a PlaceCondition depends on the place: its varies_with can't say less "
-                "(aero/effect.hpp)");
 
  public:
   /// The vehicle of an airframe known when compiled, `Quadrotor<double, QuadraticDrag>::of<Crazyflie>(site)`: what
@@ -77,7 +96,7 @@ class Quadrotor {
   template <class Vehicle, std::size_t Count = sizeof...(Effects), std::enable_if_t<(Count > 0), int> = 0>
   static Quadrotor of(const Site<Scalar>& site = {}) noexcept {
     static_assert(
-        ((detail::DefaultStatus<Effects, Vehicle>::value == Status::ok) && ...),
+        ((detail::default_status<Effects, Vehicle>() == Status::ok) && ...),
         "pinnquad: an effect, as it is by default, refuses this airframe (its status()): a ground effect's fit "
         "that has a pole or an implausible ratio at its motor spacing and propeller radius, for example "
         "(aero/ground_effect.hpp)");
@@ -280,12 +299,7 @@ class Quadrotor {
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                        const ThrustFractions<Scalar>& thrusts,
                                                        const WrenchOf& wrench_of) const noexcept {
-    constexpr bool at_a_place = (uses_place<BoundEffect<Effects, Scalar>> || ...);
-    std::conditional_t<at_a_place, PlaceAndRotorCondition<Scalar>, RotorCondition<Scalar>> condition;
-    if constexpr (at_a_place) {
-      condition.position_m = state.position_m;
-      condition.ground_velocity_m_s = state.velocity_m_s;
-    }
+    RotorCondition<Scalar> condition;
     condition.air_relative_velocity_m_s =
         Axes(state.attitude)
             .to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
@@ -301,9 +315,6 @@ class Quadrotor {
         condition.rotors = rotors_.template wrench_of<build>(thrusts, rotor_scale(air));
         condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
-      } else if constexpr (uses_place<Effect>) {
-        const PlaceCondition<Scalar> at_place{condition, state.position_m, state.velocity_m_s};
-        condition.aerodynamic = condition.aerodynamic + wrench_of(effect, at_place);
       } else if constexpr (makes_wrench<Effect>) {
         const AeroCondition<Scalar>& without_rotors = condition;
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, without_rotors);
