@@ -7,6 +7,7 @@
 // CASE IMPOSSIBLE_INERTIA: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
 // CASE ROTORS_IN_A_LINE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
 // CASE ALL_SPIN_ALIKE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
+// CASE FIFTH_ROTOR: pinnquad: this airframe.s value.. can.t be computed when compiled. An airframe has four rotors
 // CASE READS_THE_ROTORS_WRENCH: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
 // CASE READS_THE_ROTORS_THRUSTS: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
 // CASE SURROUNDINGS_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
@@ -142,6 +143,8 @@ struct Changed {
     for (auto& rotor : airframe.rotors) rotor.y_m = Scalar(0);
 #elif defined(ALL_SPIN_ALIKE)
     for (auto& rotor : airframe.rotors) rotor.spin = pinnquad::Spin::clockwise;
+#elif defined(FIFTH_ROTOR)
+    airframe.rotors[4] = {Scalar(0), Scalar(0), pinnquad::Spin::clockwise};
 #elif defined(GROUND_EFFECT_WITH_A_POLE)
     for (auto& rotor : airframe.rotors) {  // a 450 mm frame on 10 inch propellers
       rotor.x_m *= Scalar(450.0 / 690.0);

@@ -16,8 +16,13 @@
 
 namespace pinnquad {
 
-/// Number of rotors of a quadrotor.
+/// Number of rotors. Four make allocation square: thrust and three torques have one set of commands. With more, a motion has many,
+/// and an inverse learnt from flights would mix them: another number is not a template parameter, but another problem.
 inline constexpr int rotor_count = 4;
+static_assert(
+    rotor_count == 4,
+    "pinnquad: allocation and its inverse, desaturation, the motor diagonal of the ground effect, motor orders, model "
+    "blocks and the names u1 .. u4 are of four rotors (core/types.hpp)");
 
 /// Fixed-size matrix without alignment demands (row vectors must be row-major in Eigen).
 template <class Scalar, int Rows, int Columns = 1>

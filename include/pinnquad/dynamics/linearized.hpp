@@ -4,7 +4,7 @@
 // clipped.
 #pragma once
 
-#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {

@@ -12,7 +12,7 @@
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/dynamics/rotor_lag.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 
 namespace pinnquad {
 
