@@ -5,7 +5,7 @@
 #include <array>
 
 #include "pinnquad/aero/effect.hpp"
-#include "pinnquad/core/sine.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 
 namespace pinnquad {
 

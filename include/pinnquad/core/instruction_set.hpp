@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the compiler may emit in this translation unit, decided here and nowhere else: the vector unit that kernels use, whether
-// a product and a sum are rounded once, and a name for all of it. The name is that of an inline namespace: prediction code that
-// can be emitted out of line lives in it, so that the linker never takes a copy compiled for another machine or for another
-// arithmetic.
+// The instruction set of this translation unit, decided here alone: the vector unit of kernels, whether a product and a sum are
+// rounded once, and a name for all of it. The name is that of an inline namespace, for prediction code that can be emitted out
+// of line: the linker then never takes a copy compiled for another machine or another arithmetic.
 //   namespace pinnquad { inline namespace PINNQUAD_INSTRUCTION_SET { ... } }
 // A new instruction set: a branch below, a value of VectorUnit, a pack (nn/kernel/pack_contract.hpp) and a line in
 // nn/kernel/pack.hpp, which asserts that the three agree.
@@ -10,9 +9,8 @@
 
 #include <string_view>
 
-// For x86 and Arm: a family, then a letter for each extension that a compiler uses in code without intrinsics, then
-// "fast_math" where it was told that there is no NaN: sse2_, avx2_7812lpm65s3fast_math. Equal names: what one unit was
-// compiled for runs in the other.
+// A family, a letter for each extension that a compiler uses in code without intrinsics, "fast_math" where it may assume that
+// there is no NaN: sse2_, avx2_7812lpm65s3fast_math. Units of one name may share code.
 #if defined(__AVX512F__)
 #define PINNQUAD_SET_FAMILY avx512_
 #define PINNQUAD_UNIT_AVX512
@@ -80,35 +78,38 @@
 
 namespace pinnquad {
 
-/// What kernels of float compute with.
+/// The registers that kernels of float compute in.
 enum class VectorUnit { none, sse2, avx2, avx512, neon };
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
+inline constexpr VectorUnit vector_unit =
 #if defined(PINNQUAD_UNIT_AVX512)
-inline constexpr VectorUnit vector_unit = VectorUnit::avx512;
+    VectorUnit::avx512;
 #elif defined(PINNQUAD_UNIT_AVX2)
-inline constexpr VectorUnit vector_unit = VectorUnit::avx2;
+    VectorUnit::avx2;
 #elif defined(PINNQUAD_UNIT_SSE2)
-inline constexpr VectorUnit vector_unit = VectorUnit::sse2;
+    VectorUnit::sse2;
 #elif defined(PINNQUAD_UNIT_NEON)
-inline constexpr VectorUnit vector_unit = VectorUnit::neon;
+    VectorUnit::neon;
 #else
-inline constexpr VectorUnit vector_unit = VectorUnit::none;
+    VectorUnit::none;
 #endif
 
 /// True where the hardware rounds a * b + c once. Elsewhere it would take a library call, and is rounded twice.
+inline constexpr bool fuses_float =
 #if defined(__FP_FAST_FMAF) || defined(__FMA__) || defined(__FMA4__) || defined(__ARM_FEATURE_FMA) || \
     defined(__AVX512F__)
-inline constexpr bool fuses_float = true;
+    true;
 #else
-inline constexpr bool fuses_float = false;
+    false;
 #endif
+inline constexpr bool fuses_double =
 #if defined(__FP_FAST_FMA) || defined(__FMA__) || (defined(__ARM_FEATURE_FMA) && defined(__aarch64__))
-inline constexpr bool fuses_double = true;
+    true;
 #else
-inline constexpr bool fuses_double = false;
+    false;
 #endif
 
 #define PINNQUAD_SET_TEXT_OF(name) #name
