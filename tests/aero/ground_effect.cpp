@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "pinnquad/aero/rotor_ground_effect.hpp"
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/aero/rotor_ground_effect.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
 
 #include <doctest/doctest.h>
 
