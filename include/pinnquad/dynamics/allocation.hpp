@@ -11,7 +11,7 @@
 
 namespace pinnquad {
 
-/// The three rows of Eq. (2) that make torque.
+/// The torque rows of Eq. (2): their axis and its name.
 struct Roll {
   static constexpr int axis = 0;
   static constexpr const char* name = "roll";
@@ -64,7 +64,7 @@ constexpr AllocationMatrix<Scalar> allocation(const Airframe<Scalar>& airframe) 
   return matrix;
 }
 
-/// Sign with which each command enters the torque about an axis (0 roll, 1 pitch, 2 yaw): the rows of Eq. (2).
+/// The sign of each command in the torque about an axis (0 roll, 1 pitch, 2 yaw): the rows of Eq. (2).
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> allocation_signs(const Airframe<Scalar>& airframe, int axis) noexcept {
   const AllocationMatrix<Scalar> matrix = allocation(airframe);
@@ -95,47 +95,38 @@ constexpr std::array<Scalar, 4> product(const AllocationMatrix<Scalar>& m, const
 /// Inverse of a 4 x 4 matrix by Gauss-Jordan with partial pivoting, rows scaled to a largest entry of 1. `no_solution` if it
 /// is singular to the scalar's precision (a pivot below 1000 epsilon); the output stays untouched then.
 template <class Scalar>
-constexpr Status invert_allocation(AllocationMatrix<Scalar> matrix, AllocationMatrix<Scalar>& inverse) noexcept {
-  AllocationMatrix<Scalar> result{};
+constexpr Status invert_allocation(const AllocationMatrix<Scalar>& matrix, AllocationMatrix<Scalar>& inverse) noexcept {
+  std::array<std::array<Scalar, 8>, 4> rows{};  // the matrix, and beside it the identity, which becomes the inverse
   const auto magnitude = [](Scalar v) { return v < Scalar(0) ? -v : v; };
   for (std::size_t row = 0; row < 4; ++row) {
     Scalar largest(0);
     for (const Scalar entry : matrix[row]) largest = magnitude(entry) > largest ? magnitude(entry) : largest;
     if (!(largest > Scalar(0))) return Status::no_solution;
-    for (Scalar& entry : matrix[row]) entry /= largest;
-    result[row][row] = Scalar(1) / largest;
+    for (std::size_t k = 0; k < 4; ++k) rows[row][k] = matrix[row][k] / largest;
+    rows[row][row + 4] = Scalar(1) / largest;
   }
   for (std::size_t column = 0; column < 4; ++column) {
     std::size_t pivot = column;
     for (std::size_t row = column + 1; row < 4; ++row) {
-      if (magnitude(matrix[row][column]) > magnitude(matrix[pivot][column])) pivot = row;
+      if (magnitude(rows[row][column]) > magnitude(rows[pivot][column])) pivot = row;
     }
-    if (!(magnitude(matrix[pivot][column]) > Scalar(1000) * std::numeric_limits<Scalar>::epsilon())) {
+    if (!(magnitude(rows[pivot][column]) > Scalar(1000) * std::numeric_limits<Scalar>::epsilon())) {
       return Status::no_solution;
     }
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Scalar a = matrix[column][k];
-      matrix[column][k] = matrix[pivot][k];
-      matrix[pivot][k] = a;
-      const Scalar b = result[column][k];
-      result[column][k] = result[pivot][k];
-      result[pivot][k] = b;
-    }
-    const Scalar scale = Scalar(1) / matrix[column][column];
-    for (std::size_t k = 0; k < 4; ++k) {
-      matrix[column][k] *= scale;
-      result[column][k] *= scale;
-    }
+    const std::array<Scalar, 8> chosen = rows[pivot];
+    rows[pivot] = rows[column];
+    rows[column] = chosen;
+    const Scalar scale = Scalar(1) / rows[column][column];
+    for (Scalar& entry : rows[column]) entry *= scale;
     for (std::size_t row = 0; row < 4; ++row) {
       if (row == column) continue;
-      const Scalar factor = matrix[row][column];
-      for (std::size_t k = 0; k < 4; ++k) {
-        matrix[row][k] -= factor * matrix[column][k];
-        result[row][k] -= factor * result[column][k];
-      }
+      const Scalar factor = rows[row][column];
+      for (std::size_t k = 0; k < 8; ++k) rows[row][k] -= factor * rows[column][k];
     }
   }
-  inverse = result;
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t k = 0; k < 4; ++k) inverse[row][k] = rows[row][k + 4];
+  }
   return Status::ok;
 }
 
