@@ -27,8 +27,9 @@ struct QuadraticDrag {
   }
 };
 
-/// F = -k v, tau = -c omega: v the air-relative velocity, body axes, k the same along each of them. PX4's simulation in hardware
-/// has both (SIH_KDV and SIH_KDW, whose values are the default here; it has no wind); near hover it stands for a slow vehicle's drag.
+/// F = -k v, tau = -c omega: v the air-relative velocity, body axes, k the same along each of them. PX4's simulation in
+/// hardware has both (SIH_KDV and SIH_KDW, whose values are the default here; it has no wind); near hover it stands for
+/// a slow vehicle's drag.
 struct LinearDamping {
   static constexpr VariesWith varies_with = VariesWith::motion;
   double drag_N_s_m{1.0};
@@ -52,11 +53,11 @@ struct LinearDamping {
   }
 };
 
-/// F = -k sum_i T_i (v_i - a_i (a_i . v_i)), v_i = v + omega x r_i the hub's air-relative velocity, body axes, a_i the rotor's
-/// axis: of an upright rotor -k T_i (v_i,x, v_i,y, 0). The force acts at the hub, so a turning vehicle feels a torque
-/// r_i x F_i too.
-/// k [s/m] is the H-force coefficient over thrust, about 0.01 to 0.05 for small propellers. Proportional to thrust, as in
-/// Martin and Salaun, The true role of accelerometer feedback in quadrotor control (2010), near hover.
+/// F = -k sum_i T_i (v_i - a_i (a_i . v_i)), v_i = v + omega x r_i the hub's air-relative velocity, body axes, a_i the
+/// rotor's axis: of an upright rotor -k T_i (v_i,x, v_i,y, 0). The force acts at the hub, so a turning vehicle feels a
+/// torque r_i x F_i too.
+/// k [s/m] is the H-force coefficient over thrust, about 0.01 to 0.05 for small propellers. Proportional to thrust, as
+/// in Martin and Salaun, The true role of accelerometer feedback in quadrotor control (2010), near hover.
 struct RotorDrag {
   static constexpr VariesWith varies_with = VariesWith::motion;
   double coefficient_s_m{0.02};

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The contract of an aerodynamic effect: a small value with one or both of two pure functions.
-//   template <class Scalar> void surroundings(Surroundings<Scalar>&) const noexcept;      wind, density, battery
-//   template <class Scalar> Wrench<Scalar> wrench(const AeroCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
+// The contract of an aerodynamic effect: a small value with one or both of two pure functions, each a
+// `template <class Scalar>` and `const noexcept`.
+//   void surroundings(Surroundings<Scalar>&)                                      wind, density, battery
+//   Wrench<Scalar> wrench(const AeroCondition<Scalar>&, const Airframe<Scalar>&)  a force and a torque
 // All `surroundings` run first, then the rotors, then each `wrench` in the order of the vehicle's effects.
-// A wrench() that reads the rotors takes a RotorCondition instead. It should be affine in the rotors' thrusts: then the inverse
-// (vehicle/inverse.hpp) is exact in one round. One that is affine on each of two branches only also has
-//   template <class Scalar>
-//   Wrench<Scalar> wrench_on(ThrustBranch, const RotorCondition<Scalar>&, const Airframe<Scalar>&) const noexcept;
-// its wrench as if the condition lay on that branch.
+// A wrench() that reads the rotors takes a RotorCondition instead. It should be affine in the rotors' thrusts: then the
+// inverse (vehicle/inverse.hpp) is exact in one round. One that is affine on each of two branches has besides
+//   Wrench<Scalar> wrench_on(ThrustBranch, const RotorCondition<Scalar>&, const Airframe<Scalar>&)
+// which is its wrench as if the condition lay on that branch.
 // Optional:
-//   static constexpr VariesWith varies_with = VariesWith::motion;    an inverse then needs neither place nor time
-//   template <class Scalar> auto bound(const Airframe<Scalar>&) const noexcept;    the effect that a vehicle keeps in its place,
-//       with its values for the airframe worked out once
-//   template <class Scalar> constexpr Status status(const Airframe<Scalar>&) const noexcept;    whether the effect's values make
-//       sense and its model holds for the airframe: a vehicle whose effect is not ok neither steps nor inverts
+//   static constexpr VariesWith varies_with    less than place_and_time lets an inverse go without them
+//   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, worked out for the airframe
+//   Status status(const Airframe<Scalar>&)     whether its values make sense and its model holds for the airframe: a
+//                                              vehicle whose effect is not ok neither steps nor inverts
 #pragma once
 
 #include <cstdint>
@@ -27,13 +26,13 @@
 
 namespace pinnquad {
 
-/// Sea-level density of the standard atmosphere, p / (R T) = 101325 / (287.053 * 288.15), kg/m^3: the rho_0 by which rotor
-/// thrust scales.
+/// Sea-level density of the standard atmosphere, p / (R T) = 101325 / (287.053 * 288.15), kg/m^3: the rho_0 by which
+/// rotor thrust scales.
 template <class Scalar>
 inline constexpr Scalar standard_air_density_kg_m3 = Scalar(101325.0 / (287.053 * 288.15));
 
-/// The air around the vehicle, and the battery in it. Time, position and altitude are given; effects set the rest. An effect
-/// without an answer for a place or time sets `status`: a step or an inverse in this air is refused with it.
+/// The air around the vehicle, and the battery in it. Time, position and altitude are given; effects set the rest. An
+/// effect without an answer for a place or time sets `status`: a step or an inverse in this air is refused with it.
 template <class Scalar>
 struct Surroundings {
   Scalar time_s{0};
@@ -78,7 +77,7 @@ struct RotorCondition : AeroCondition<Scalar> {
   std::array<Scalar, rotor_count> rotor_thrust_N{};  ///< of each, along its axis (body -z unless tilted)
 };
 
-/// Where an effect takes the absolute value of a force that the thrust can turn round, its wrench has two branches.
+/// The two branches of an effect that takes the absolute value of a force whose sign the thrust can turn.
 enum class ThrustBranch : std::uint8_t {
   upper,  ///< more thrust makes more of the force: the branch of ordinary flight
   lower,  ///< more thrust makes less of it, until the force is zero and the upper branch begins
@@ -122,7 +121,8 @@ using NoexceptBound = std::enable_if_t<noexcept(some<Effect>().bound(some<Airfra
 template <class Effect, class Scalar>
 using NoexceptStatus = std::enable_if_t<noexcept(some<Effect>().status(some<Airframe<Scalar>>()))>;
 
-/// A name is found here unless the effect has one like it, whatever it is: two of one name can't be told apart.
+/// Finds an effect's member by name, whatever its type: `&WithNames<Effect>::name` is ambiguous, and no type, where the
+/// effect has one.
 struct ContractNames {
   void surroundings();
   void wrench();

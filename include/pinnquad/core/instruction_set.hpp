@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The instruction set of this translation unit, decided here alone: the vector unit of kernels, whether a product and a sum are
-// rounded once, and a name for all of it. The name is that of an inline namespace, for prediction code that can be emitted out
-// of line: the linker then never takes a copy compiled for another machine or another arithmetic.
+// The instruction set of this translation unit, decided here alone: the vector unit of kernels, whether a product and a
+// sum are rounded once, and a name for all of it. The name is that of an inline namespace, for prediction code that can
+// be emitted out of line: the linker then never takes a copy compiled for another machine or another arithmetic.
 //   namespace pinnquad { inline namespace PINNQUAD_INSTRUCTION_SET { ... } }
 // A new instruction set: a branch below, a value of VectorUnit, a pack (nn/kernel/pack_contract.hpp) and a line in
 // nn/kernel/pack.hpp, which asserts that the three agree.
@@ -9,8 +9,8 @@
 
 #include <string_view>
 
-// A family, a letter for each extension that a compiler uses in code without intrinsics, "fast_math" where it may assume that
-// there is no NaN: sse2_, avx2_7812lpm65s3fast_math. Units of one name may share code.
+// A family, a letter for each extension that a compiler uses in code without intrinsics, "fast_math" where it may
+// assume that there is no NaN: sse2_, avx2_7812lpm65s3fast_math. Units of one name may share code.
 #if defined(__AVX512F__)
 #define PINNQUAD_SET_FAMILY avx512_
 #define PINNQUAD_UNIT_AVX512
@@ -40,8 +40,8 @@
 #define PINNQUAD_SET_DOUBLE 1
 #endif
 
-// The name is put together where it is used, so these helpers stay defined. PINNQUAD_SET_LETTER(flag, letter) is the letter
-// where the compiler defines the flag as 1, and nothing elsewhere.
+// The name is put together where it is used, so these helpers stay defined. PINNQUAD_SET_LETTER(flag, letter) is the
+// letter where the compiler defines the flag as 1, and nothing elsewhere.
 #define PINNQUAD_SET_GIVEN_1 ,
 #define PINNQUAD_SET_SECOND(first, second, ...) second
 #define PINNQUAD_SET_CHOOSE(...) PINNQUAD_SET_SECOND(__VA_ARGS__)

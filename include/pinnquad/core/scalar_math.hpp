@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Functions of one scalar: the C library's, absolute value, positive part, sine of a phase in turns. Builtins stand where the
-// standard library has float overloads: in unoptimised code those are functions, of which the linker keeps one copy for all
-// instruction sets.
+// Functions of one scalar: the C library's, absolute value, positive part, sine of a phase in turns. Builtins stand
+// where the standard library has float overloads: in unoptimised code those are functions, of which the linker keeps
+// one copy for all instruction sets.
 #pragma once
 
 #include <array>
@@ -93,7 +93,7 @@ constexpr std::array<double, 10> sine_series() noexcept {
 }  // namespace detail
 
 /// sin(2 pi turns) inline and without libm: the same bits everywhere, and no call that would spill every register of a
-/// simulation step. Within 4 units in the last place of 1. NaN for NaN and Inf. A whole number of turns gives exactly 0.
+/// simulation step. Within 4 units in the last place of 1; exactly 0 for whole turns; NaN for NaN and Inf.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar sine_of_turns(Scalar turns) noexcept {
   using std::floor;

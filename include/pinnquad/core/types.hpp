@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Matrix and vector aliases: the vocabulary of every interface.
-// The only file that includes Eigen. Its vectors and matrices are not over-aligned, and what is made of them may be copied into
-// any buffer; the weights for a vector unit are (PackedNetwork, LoadedModel: 64 bytes).
-// Without exceptions, as firmware is built, Eigen's asserts are off: they print and abort, and flight code has neither. Who wants
-// them defines eigen_assert, or includes Eigen first.
+// The only file that includes Eigen. Its vectors and matrices are not over-aligned, and what is made of them may be
+// copied into any buffer; the weights for a vector unit are (PackedNetwork, LoadedModel: 64 bytes).
+// Without exceptions, as firmware is built, Eigen's asserts are off: they print and abort, and flight code has neither.
+// To have them, define eigen_assert or include Eigen first.
 #pragma once
 
 #if !defined(__cpp_exceptions) && !defined(EIGEN_NO_DEBUG) && !defined(eigen_assert)
@@ -16,8 +16,8 @@
 
 namespace pinnquad {
 
-/// Number of rotors. Four make allocation square: thrust and three torques have one set of commands. With more, a motion has many,
-/// and an inverse learnt from flights would mix them: another number is not a template parameter, but another problem.
+/// Number of rotors. With four, thrust and three torques have one set of commands. With more they have many, and an
+/// inverse learnt from flights would mix these: another number is another problem, not a template parameter.
 inline constexpr int rotor_count = 4;
 static_assert(
     rotor_count == 4,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The answer of a rotor with its motor: command <-> thrust and speed by its curve, clipped, with a first-order lag.
+// One rotor with its motor: command <-> thrust and speed by its curve, clipped; thrust follows with a first-order lag,
+// exact for commands held over a step.
 #pragma once
 
 #include <array>
@@ -12,14 +13,14 @@
 
 namespace pinnquad {
 
-/// Thrust of each rotor over its thrust at command 1, in the air and at the battery of the moment. A command is one where
-/// all curves are straight (RotorMount::thrust_curve 0).
+/// Thrust of each rotor over its thrust at command 1, in the air and at the battery of the moment. A command is one
+/// where all curves are straight (RotorMount::thrust_curve 0).
 template <class Scalar>
 using ThrustFractions = std::array<Scalar, rotor_count>;
 
-/// Thrust over that at command 1: s(u) = u ((1 - k) + k |u|), rising for k in 0..1, odd, so that an error keeps its direction.
-/// The model of PX4's THR_MDL_FAC; k = 0 is a command that is (n / n_max)^2, k = 1 one that is a speed fraction n / n_max, and
-/// a throttle of an electronic speed controller lies between.
+/// Thrust over that at command 1: s(u) = u ((1 - k) + k |u|), rising for k in 0..1, odd, so that an error keeps its
+/// direction. The model of PX4's THR_MDL_FAC; k = 0 is a command that is (n / n_max)^2, k = 1 one that is a speed
+/// fraction n / n_max, and a throttle of an electronic speed controller lies between.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction(Scalar curve, Scalar command) noexcept {
   const Scalar magnitude = command < Scalar(0) ? -command : command;
@@ -33,7 +34,8 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction_slope(Scalar curve, Scal
   return (Scalar(1) - curve) + Scalar(2) * curve * magnitude;
 }
 
-/// The command of a thrust fraction: u = 2 s / (1 - k + sqrt((1 - k)^2 + 4 k |s|)), which subtracts nothing and is s for k = 0.
+/// The command of a thrust fraction: u = 2 s / (1 - k + sqrt((1 - k)^2 + 4 k |s|)), s for k = 0; subtracts
+/// no near numbers.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_of_fraction(Scalar curve, Scalar fraction) noexcept {
   if (detail::equal(curve, Scalar(0))) return fraction;
@@ -51,8 +53,8 @@ PINNQUAD_ALWAYS_INLINE const RotorMount<Scalar>& rotor_of(const Airframe<Scalar>
 }
 }  // namespace detail
 
-/// Command of a rotor speed where thrust is proportional to the command, u = (n / n_max)^2 (docs/paper.md, deviation 6): the
-/// thrust fraction of a speed, of any rotor.
+/// Command of a rotor speed where thrust is proportional to the command, u = (n / n_max)^2 (docs/paper.md, deviation
+/// 6): the thrust fraction of a speed, of any rotor.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar command_from_speed(const Airframe<Scalar>& airframe,
                                                            Scalar speed_rev_s) noexcept {
@@ -75,7 +77,7 @@ PINNQUAD_ALWAYS_INLINE Scalar command_from_speed(const Airframe<Scalar>& airfram
                              speed_rev_s < Scalar(0) ? -fraction : fraction);
 }
 
-/// ... its slope: du/dn = 2 r / (n_max sqrt((1 - k)^2 + 4 k r^2)) with r = |n| / n_max; 1 / n_max everywhere for k = 1 ...
+/// ... its slope: du/dn = 2 r / (n_max sqrt((1 - k)^2 + 4 k r^2)) with r = |n| / n_max; 1 / n_max for k = 1 ...
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_slope_of_speed(const Airframe<Scalar>& airframe, std::size_t rotor,
                                                      Scalar speed_rev_s) noexcept {
@@ -96,7 +98,7 @@ PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airfram
   return speed_from_command(airframe, thrust_fraction(detail::rotor_of(airframe, rotor).thrust_curve, command));
 }
 
-/// A rotor gives no less than nothing and no more than its limit. NaN stays NaN.
+/// The command held between 0 and 1. NaN stays NaN.
 template <class Scalar>
 constexpr Scalar clip_command(Scalar command) noexcept {
   return command < Scalar(0) ? Scalar(0) : (command > Scalar(1) ? Scalar(1) : command);
@@ -139,8 +141,8 @@ constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered
   return result;
 }
 
-/// The time constant of each rotor's way from `before` to the fraction wanted: thrust approaches what is held from one side, a
-/// rotor rises or falls all the step long.
+/// The time constant of each rotor's way from `before` to the fraction wanted: thrust approaches what is held from one
+/// side, a rotor rises or falls all the step long.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar>& airframe,
                                                            const ThrustFractions<Scalar>& before,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The values of a quadrotor, with SI names: its body, four rotors with their motors, its drag. Each file of airframes/ fills in
-// one quadrotor with its source.
+// The values of a quadrotor, with SI names: its body, four rotors with their motors, its drag. Each file of airframes/
+// fills in one quadrotor with its source.
 // Contract: `struct Vehicle { static constexpr const char* name; template <class Scalar> static constexpr
 // Airframe<Scalar> value(); };`
 #pragma once
@@ -16,16 +16,17 @@
 
 namespace pinnquad {
 
-/// Sense of rotation seen from the side to which the rotor pulls, from above for an upright one. The reaction torque on the
-/// body has the opposite sense: a counter-clockwise upright rotor yaws the body clockwise, which is positive about FRD z.
+/// Sense of rotation seen from the side to which the rotor pulls, from above for an upright one. The reaction torque on
+/// the body has the opposite sense: a counter-clockwise upright rotor yaws the body clockwise, which is positive about
+/// FRD z.
 enum class Spin : int { counter_clockwise = 1, clockwise = -1 };
 
-/// In place of a rotor's time constant: the airframe's `rotor_time_constant_s` holds.
+/// Stands for a rotor's own time constant where the airframe's `rotor_time_constant_s` holds.
 template <class Scalar>
 inline constexpr Scalar as_airframe = Scalar(-1);
 
-/// Place, axis and answer of one rotor, body frame. `{x, y, spin}` is an upright rotor in the plane of the centre of gravity
-/// whose thrust is proportional to its command, as all of Eq. (2) are.
+/// Place, axis, thrust and lag of one rotor, body frame. `{x, y, spin}` is one of Eq. (2): upright, in the plane of the
+/// centre of gravity, its thrust proportional to its command.
 template <class Scalar>
 struct RotorMount {
   Scalar x_m{};  ///< forward of the centre of gravity
@@ -74,7 +75,7 @@ struct Airframe {
   Scalar power_coefficient{};                            ///< C_P = 2 pi torque / (rho n^2 D^5)
   Scalar propeller_diameter_m{};                         ///< D
   Scalar max_rotor_speed_rev_s{};                        ///< n at command 1
-  Scalar rotor_time_constant_s{};                        ///< first-order lag of the thrust, of rotors that say nothing
+  Scalar rotor_time_constant_s{};                        ///< first-order lag of the thrust, of rotors without their own
   std::array<Scalar, 3> drag_area_m2{};                  ///< k_i of F_i = -k_i rho |v_i| v_i
   Scalar drag_deadband_m_s{};                            ///< no drag along an axis at or below this speed
 
@@ -163,8 +164,8 @@ constexpr bool all_bounded(const std::array<Scalar, Size>& values) noexcept {
   return true;
 }
 
-/// What products of inertia demand beyond a plausible diagonal: S = tr(J) / 2 - J, the second moments of the mass, must have
-/// no negative eigenvalue (the triangle inequality of the principal moments), and J must be invertible.
+/// True for products of inertia that a body can have: S = tr(J) / 2 - J, the second moments of the mass, has no
+/// negative eigenvalue (the triangle inequality of the principal moments), and J is invertible.
 template <class Scalar>
 constexpr bool plausible_products(const Airframe<Scalar>& a) noexcept {
   if (has_diagonal_inertia(a)) return true;
@@ -194,9 +195,9 @@ constexpr bool plausible_rotor(const RotorMount<Scalar>& r) noexcept {
 }
 }  // namespace detail
 
-/// Ok if such a body can exist and hover: positive mass, inertia that meets the triangle inequality about its principal axes,
-/// positive rotor values, rotors at a place with an axis and a rising curve, thrust-to-weight above 1. The allocation is
-/// checked where it is built (rotor.hpp).
+/// Ok if such a body can exist and hover: positive mass, inertia that meets the triangle inequality about its principal
+/// axes, positive rotor values, rotors at a place with an axis and a rising curve, thrust-to-weight above 1. Rotors
+/// checks the allocation (rotor.hpp).
 template <class Scalar>
 constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
   using detail::plausible;

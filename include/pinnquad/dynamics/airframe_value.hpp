@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From an airframe's type to its value, refused at compile time where it can't be that of a quadrotor that flies.
+// The value of an airframe's type. An airframe that can't be that of a flying quadrotor is a compile error.
 #pragma once
 
 #include "pinnquad/dynamics/rotor.hpp"
@@ -11,8 +11,8 @@ template <class Vehicle>
 using CompiledAirframe = std::bool_constant<(static_cast<void>(Vehicle::template value<double>()), true)>;
 }  // namespace detail
 
-/// The airframe's value. A type that is no airframe, reaches past the fourth rotor, cannot hover or cannot be steered is a compile
-/// error.
+/// The airframe's value. A type that is no airframe, reaches past the fourth rotor, cannot hover or cannot be steered
+/// is a compile error.
 template <class Vehicle, class Scalar>
 constexpr Airframe<Scalar> airframe_value() noexcept {
   static_assert(is_airframe<Vehicle>,

@@ -30,7 +30,7 @@ template <class Scalar>
 using AllocationMatrix = std::array<std::array<Scalar, rotor_count>, 4>;
 
 namespace detail {
-/// The torque at thrust fraction 1 of a rotor anywhere: r x t a - spin q a, with thrust t, reaction torque q and axis a.
+/// The torque of a rotor anywhere at thrust fraction 1: r x t a - spin q a, thrust t, reaction torque q, axis a.
 template <class Scalar>
 constexpr std::array<Scalar, 3> rotor_torque_N_m(const RotorMount<Scalar>& r, Scalar thrust, Scalar torque) noexcept {
   const Scalar x = thrust * r.axis[0], y = thrust * r.axis[1], z = thrust * r.axis[2];
@@ -40,9 +40,9 @@ constexpr std::array<Scalar, 3> rotor_torque_N_m(const RotorMount<Scalar>& r, Sc
 }
 }  // namespace detail
 
-/// Eq. (2) in thrust fractions at the rated density: rows thrust along -z [N], roll, pitch and yaw torque [N m] at fraction 1.
-/// A thrust T up at (x, y) makes the torque (-y T, x T); the reaction torque has the sign of `Spin`. Of a tilted rotor this
-/// is all but its lateral force, see Rotors::wrench().
+/// Eq. (2) in thrust fractions at the rated density: rows thrust along -z [N], roll, pitch and yaw torque [N m] at
+/// fraction 1. A thrust T up at (x, y) makes the torque (-y T, x T); the reaction torque has the sign of `Spin`. Of a
+/// tilted rotor this is all but its lateral force, see Rotors::wrench().
 template <class Scalar>
 constexpr AllocationMatrix<Scalar> allocation(const Airframe<Scalar>& airframe) noexcept {
   AllocationMatrix<Scalar> matrix{};
@@ -92,8 +92,8 @@ constexpr std::array<Scalar, 4> product(const AllocationMatrix<Scalar>& m, const
   return result;
 }
 
-/// Inverse of a 4 x 4 matrix by Gauss-Jordan with partial pivoting, rows scaled to a largest entry of 1. `no_solution` if it
-/// is singular to the scalar's precision (a pivot below 1000 epsilon); the output stays untouched then.
+/// Inverse of a 4 x 4 matrix by Gauss-Jordan with partial pivoting, rows scaled to a largest entry of 1. `no_solution`
+/// if it is singular to the scalar's precision (a pivot below 1000 epsilon); the output stays untouched then.
 template <class Scalar>
 constexpr Status invert_allocation(const AllocationMatrix<Scalar>& matrix, AllocationMatrix<Scalar>& inverse) noexcept {
   std::array<std::array<Scalar, 8>, 4> rows{};  // the matrix, and beside it the identity, which becomes the inverse

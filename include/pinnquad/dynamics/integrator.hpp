@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One step of the rigid-body state by classical Runge-Kutta of fourth order.
-// Positions and velocities are integrated in the world frame, the quaternion is normalised after the step: where it grew
-// past what a scalar can square, to zero. Quadrotor::step checks what comes out.
+// Positions and velocities are integrated in the world frame, the quaternion is normalised after the step: where it
+// grew past what a scalar can square, to zero. Quadrotor::step checks what comes out.
 #pragma once
 
 #include "pinnquad/dynamics/state.hpp"

@@ -9,8 +9,8 @@
 
 namespace pinnquad {
 
-/// Eq. (3): v_dot = (-theta T / m, phi T / m, g - T / m), omega_dot = J^-1 tau. `wrench.force_N` is (F_x, F_y, -T); F_x / m and
-/// F_y / m of tilted rotors are added, upright ones have none.
+/// Eq. (3): v_dot = (-theta T / m, phi T / m, g - T / m), omega_dot = J^-1 tau. `wrench.force_N` is (F_x, F_y, -T);
+/// F_x / m and F_y / m of tilted rotors are added, upright ones have none.
 template <class Scalar>
 Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe, Scalar roll_rad, Scalar pitch_rad,
                                                const Wrench<Scalar>& wrench, Scalar gravity_m_s2) noexcept {
@@ -24,8 +24,8 @@ Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe,
   return result;
 }
 
-/// Eq. (3) inverted: T = m (g - v_dot_z), tau = J omega_dot. v_dot_x and v_dot_y are not used: four rotors command no lateral
-/// force, a tilted rotor's comes with its thrust.
+/// Eq. (3) inverted: T = m (g - v_dot_z), tau = J omega_dot. v_dot_x and v_dot_y are not used: four rotors command no
+/// lateral force, a tilted rotor's comes with its thrust.
 template <class Scalar>
 Wrench<Scalar> linearized_wrench(const Airframe<Scalar>& airframe, const Accelerations<Scalar>& motion,
                                  Scalar gravity_m_s2) noexcept {

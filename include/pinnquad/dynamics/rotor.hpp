@@ -13,8 +13,8 @@
 
 namespace pinnquad {
 
-/// Eq. (2) ready to use: the four rotors as one actuator. `scale` is by what thrust and torque differ from those at the rated
-/// density and a full battery: rho / rho_0 times the surroundings' thrust scale (Quadrotor::rotor_scale).
+/// Eq. (2) ready to use: the four rotors as one actuator. `scale` is by what thrust and torque differ from those at the
+/// rated density and a full battery: rho / rho_0 times the surroundings' thrust scale (Quadrotor::rotor_scale).
 template <class Scalar>
 class Rotors {
  public:
@@ -78,8 +78,8 @@ class Rotors {
     return result;
   }
 
-  /// Thrust fractions (not clipped) that make a thrust and a torque; the lateral force of a wrench can't be commanded and is
-  /// ignored.
+  /// Thrust fractions (not clipped) that make a thrust and a torque; the lateral force of a wrench can't be commanded
+  /// and is ignored.
   ThrustFractions<Scalar> fractions_for(const Wrench<Scalar>& wrench, Scalar scale) const noexcept {
     const Scalar inverse_scale = Scalar(1) / scale;
     return product(inverse_, {-wrench.force_N[2] * inverse_scale, wrench.torque_N_m[0] * inverse_scale,
@@ -95,8 +95,8 @@ class Rotors {
     return {inverse_[0][0], inverse_[1][0], inverse_[2][0], inverse_[3][0]};
   }
 
-  /// True where equal thrust fractions make thrust and no torque, to rounding: rotors of equal strength that lie symmetric about
-  /// the centre of gravity.
+  /// True where equal thrust fractions make thrust and no torque, to rounding: rotors of equal strength that lie
+  /// symmetric about the centre of gravity.
   constexpr bool balanced() const noexcept {
     constexpr Scalar rounding = Scalar(5000) * std::numeric_limits<Scalar>::epsilon();
     const ThrustFractions<Scalar> along = fractions_of_pure_thrust_1_N();

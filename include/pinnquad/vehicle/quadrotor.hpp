@@ -8,11 +8,11 @@
 
 #include "pinnquad/aero/effect.hpp"
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/dynamics/actuator.hpp"
 
 namespace pinnquad {
 
@@ -66,7 +66,7 @@ constexpr Status default_status() noexcept {
 }
 }  // namespace detail
 
-/// Eqs. (1) and (2) with effects. An effect that is not named costs nothing.
+/// Eqs. (1) and (2) with effects.
 template <class Scalar, class... Effects>
 class Quadrotor {
   static_assert(
@@ -124,11 +124,11 @@ class Quadrotor {
   /// In their order, bound to the airframe.
   const std::tuple<BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
 
-  /// Not ok, and neither step() nor the inverse has an answer: `invalid_airframe`, `no_solution` for an allocation that
-  /// can't be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
+  /// Unless ok, step() and the inverse refuse with it: `invalid_airframe`, `no_solution` for an allocation that can't
+  /// be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
   Status status() const noexcept { return status_; }
 
-  /// The air at a place and time: density, wind and thrust scale as the effects set them, and whether they have an answer there.
+  /// The air at a place and time: density, wind, thrust scale and status as the effects set them.
   PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
     Surroundings<Scalar> air;
     air.time_s = time_s;
@@ -168,8 +168,8 @@ class Quadrotor {
     });
   }
 
-  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Checks nothing: they mean
-  /// something where status() and the surroundings' status are ok.
+  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid where
+  /// status() and the surroundings' status are ok.
   Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                               Scalar time_s) const noexcept {
     Evaluation<Scalar> result = loads(state, rotors_.fractions(rotor_commands), time_s);
@@ -177,11 +177,11 @@ class Quadrotor {
     return result;
   }
 
-  /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly.
-  /// What status() says; `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of
-  /// the body in one step, a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a
-  /// battery that is less than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is
-  /// untouched unless the Status is ok.
+  /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly. Errors: status();
+  /// `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of the body in one step,
+  /// a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a battery that is less
+  /// than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the
+  /// Status is ok.
   Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
     const Status input = check_input(state, commands, step_s);
     if (input != Status::ok) return input;
@@ -189,15 +189,11 @@ class Quadrotor {
                                   : advance<Build::any>(state, commands, step_s);
   }
 
-  /// By what thrust and torque of the rotors differ from those in the standard atmosphere with a full battery.
+  /// Thrust and torque of the rotors over those in the standard atmosphere with a full battery: rho / rho_0 times the
+  /// thrust scale.
   static constexpr Scalar rotor_scale(const Surroundings<Scalar>& air) noexcept {
-    return density_ratio(air) * air.thrust_scale;
-  }
-
-  /// rho / rho_0.
-  static constexpr Scalar density_ratio(const Surroundings<Scalar>& air) noexcept {
     constexpr Scalar inverse = Scalar(1) / standard_air_density_kg_m3<Scalar>;
-    return air.air_density_kg_m3 * inverse;
+    return air.air_density_kg_m3 * inverse * air.thrust_scale;
   }
 
  private:
@@ -273,8 +269,8 @@ class Quadrotor {
     return is_unit(state.body.attitude) ? Status::ok : Status::not_unit_quaternion;
   }
 
-  /// The rotation worked out once for the two vectors that an evaluation turns: less than half the work of turning each by
-  /// the quaternion, and written in scalars because Eigen would split a vector of three into two and one.
+  /// The rotation worked out once for the two vectors that an evaluation turns: less than half the work of turning each
+  /// by the quaternion, and written in scalars because Eigen would split a vector of three into two and one.
   struct Axes {
     Scalar xx, xy, xz, yx, yy, yz, zx, zy, zz;  ///< R, row (world) by row
 
@@ -352,7 +348,7 @@ class Quadrotor {
                                                                 Status& air) const noexcept {
     const Evaluation<Scalar> e = loads<build>(state, thrusts, time_s);
     if (e.surroundings.status != Status::ok) air = e.surroundings.status;
-    if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery pulls nobody down
+    if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery can't reverse thrust
     const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
