@@ -198,6 +198,7 @@ constexpr bool is_noexcept_effect() noexcept {
                                                                            is_detected<NoexceptStatus, Effect, Scalar>);
 }
 
+namespace detail {
 /// The effect as a vehicle keeps it.
 template <class Effect, class Scalar>
 auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
@@ -211,6 +212,7 @@ auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexce
 /// Its type: an effect too.
 template <class Effect, class Scalar>
 using BoundEffect = decltype(bound_effect(std::declval<const Effect&>(), std::declval<const Airframe<Scalar>&>()));
+}  // namespace detail
 
 /// Status of an effect for an airframe; ok for an effect that has no `status`.
 template <class Effect, class Scalar>

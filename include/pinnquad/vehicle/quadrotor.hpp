@@ -79,8 +79,9 @@ class Quadrotor {
                 "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on(), bound() and status() must be "
                 "noexcept (aero/effect.hpp)");
   static_assert(
-      ((is_effect<BoundEffect<Effects, Scalar>> && is_whole_effect<BoundEffect<Effects, Scalar>, Scalar>() &&
-        is_noexcept_effect<BoundEffect<Effects, Scalar>, Scalar>()) &&
+      ((is_effect<detail::BoundEffect<Effects, Scalar>> &&
+        is_whole_effect<detail::BoundEffect<Effects, Scalar>, Scalar>() &&
+        is_noexcept_effect<detail::BoundEffect<Effects, Scalar>, Scalar>()) &&
        ...),
       "pinnquad: what an effect's bound() returns flies in its place: it must be an effect whose functions are "
       "as the contract says and noexcept (aero/effect.hpp)");
@@ -113,7 +114,7 @@ class Quadrotor {
       : airframe_(airframe),
         inverse_mass_(Scalar(1) / airframe.mass_kg),
         site_(site),
-        effects_(bound_effect(effects, airframe)...),
+        effects_(detail::bound_effect(effects, airframe)...),
         rotors_(airframe),
         build_(build_of(airframe)),
         status_(first_fault(effects...)) {}
@@ -122,7 +123,7 @@ class Quadrotor {
   const Site<Scalar>& site() const noexcept { return site_; }
   const Rotors<Scalar>& rotors() const noexcept { return rotors_; }
   /// In their order, bound to the airframe.
-  const std::tuple<BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
+  const std::tuple<detail::BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
 
   /// Unless ok, step() and the inverse refuse with it: `invalid_airframe`, `no_solution` for an allocation that can't
   /// be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
@@ -373,7 +374,7 @@ class Quadrotor {
   Airframe<Scalar> airframe_;
   Scalar inverse_mass_;
   Site<Scalar> site_;
-  std::tuple<BoundEffect<Effects, Scalar>...> effects_;
+  std::tuple<detail::BoundEffect<Effects, Scalar>...> effects_;
   Rotors<Scalar> rotors_;
   Build build_;
   Status status_;
