@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "pinnquad/aero/rotor_ground_effect.hpp"
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
@@ -238,7 +237,7 @@ TEST_CASE_TEMPLATE("upside down the force still acts along body -z: the absolute
 
 TEST_CASE_TEMPLATE("bound to an airframe the effect gives the same force, bit by bit", Scalar, float, double) {
   const pinnquad::Airframe<Scalar> airframe = airframe_690<Scalar>();
-  const auto bound = pinnquad::bound_effect(pinnquad::ConyersGroundEffect{}, airframe);
+  const auto bound = pinnquad::detail::bound_effect(pinnquad::ConyersGroundEffect{}, airframe);
   pinnquad::test::RandomStates random(81);
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
     RotorCondition<Scalar> condition;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/aero/linear_damping.hpp"
+#include "pinnquad/aero/drag.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/aero/rotor_drag.hpp"
+#include "pinnquad/aero/drag.hpp"
 
 #include <doctest/doctest.h>
 

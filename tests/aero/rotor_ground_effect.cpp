@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/aero/rotor_ground_effect.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
 
 #include <doctest/doctest.h>
 
@@ -114,7 +114,7 @@ TEST_CASE_TEMPLATE("a rotor above or below the centre of gravity, and one that i
 
 TEST_CASE("bound to an airframe it gives the same wrench, bit by bit, and tells the inverse that it uses the rotors") {
   const auto airframe = pinnquad::PaperQuadrotor::value<double>();
-  const auto bound = pinnquad::bound_effect(ConyersRotorGroundEffect{}, airframe);
+  const auto bound = pinnquad::detail::bound_effect(ConyersRotorGroundEffect{}, airframe);
   const auto c = hovering<double>(0.3, 4.0);
   CHECK(bound.wrench(c, airframe).force_N == ConyersRotorGroundEffect{}.wrench(c, airframe).force_N);
   static_assert(pinnquad::uses_rotor_wrench<std::decay_t<decltype(bound)>>);

@@ -7,10 +7,9 @@
 // CASE IMPOSSIBLE_INERTIA: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
 // CASE ROTORS_IN_A_LINE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
 // CASE ALL_SPIN_ALIKE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
+// CASE FIFTH_ROTOR: pinnquad: this airframe.s value.. can.t be computed when compiled. An airframe has four rotors
 // CASE READS_THE_ROTORS_WRENCH: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
 // CASE READS_THE_ROTORS_THRUSTS: pinnquad: this effect reads the rotors' wrench or thrusts without declaring it
-// CASE READS_THE_POSITION: pinnquad: this effect reads the position or the ground velocity without declaring it
-// CASE PLACE_IS_MOTION: pinnquad: an effect that takes a PlaceCondition depends on the place
 // CASE SURROUNDINGS_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
 // CASE WRENCH_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
 // CASE BOUND_MAY_THROW: pinnquad: an effect flies: its surroundings.., wrench.., wrench_on.., bound.. and status.. must be noexcept
@@ -66,10 +65,6 @@ struct Whole {
 #if defined(READS_THE_ROTORS_WRENCH) || defined(READS_THE_ROTORS_THRUSTS)
   template <class Scalar>
   using Condition = pinnquad::AeroCondition<Scalar>;
-#elif defined(PLACE_IS_MOTION)
-  static constexpr pinnquad::VariesWith varies_with = pinnquad::VariesWith::motion;
-  template <class Scalar>
-  using Condition = pinnquad::PlaceAndRotorCondition<Scalar>;
 #else
   template <class Scalar>
   using Condition = pinnquad::RotorCondition<Scalar>;
@@ -85,9 +80,6 @@ struct Whole {
 #endif
   {
     pinnquad::Wrench<Scalar> result;
-#if defined(READS_THE_POSITION)
-    result.force_N[0] = condition.position_m[0];
-#endif
 #if !defined(READS_THE_ROTORS_THRUSTS)
     result.force_N = Scalar(-0.01) * condition.rotors.force_N;
 #endif
@@ -151,6 +143,8 @@ struct Changed {
     for (auto& rotor : airframe.rotors) rotor.y_m = Scalar(0);
 #elif defined(ALL_SPIN_ALIKE)
     for (auto& rotor : airframe.rotors) rotor.spin = pinnquad::Spin::clockwise;
+#elif defined(FIFTH_ROTOR)
+    airframe.rotors[4] = {Scalar(0), Scalar(0), pinnquad::Spin::clockwise};
 #elif defined(GROUND_EFFECT_WITH_A_POLE)
     for (auto& rotor : airframe.rotors) {  // a 450 mm frame on 10 inch propellers
       rotor.x_m *= Scalar(450.0 / 690.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/core/sine.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 
 #include <doctest/doctest.h>
 

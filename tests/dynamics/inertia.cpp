@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 
 #include <doctest/doctest.h>
 
@@ -77,7 +77,10 @@ TEST_CASE("torque-free motion keeps angular momentum (world) and energy over man
     const Vector3<double> l0 = momentum(state);
     const double e0 = energy(state);
     const auto rate = [&a](const State<double>& s, double) {
-      return pinnquad::derivative(s, pinnquad::accelerations(a, s, pinnquad::Wrench<double>{}, 0.0));
+      const auto motion = pinnquad::accelerations(a, s, pinnquad::Wrench<double>{}, 0.0);
+      return pinnquad::StateDerivative<double>{s.velocity_m_s, pinnquad::world_acceleration(s, motion.linear_m_s2),
+                                               pinnquad::attitude_rate(s.attitude, s.body_rates_rad_s),
+                                               motion.angular_rad_s2};
     };
     for (int i = 0; i < 4000; ++i) state = pinnquad::rk4_step(state, 0.0005, rate);
     const double fourth_order = 1e-8;  // (6 rad/s x 0.5 ms)^5 x 4000 steps, with room

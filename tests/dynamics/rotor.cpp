@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pinnquad/dynamics/rotor.hpp"
 
-#include "pinnquad/dynamics/rotor_lag.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 
 #include <doctest/doctest.h>
 

@@ -314,16 +314,6 @@ void pinnquad_flight_linearized(const float* wanted, float density_ratio, float*
   u[0] += made.linear_m_s2[2];
 }
 
-void pinnquad_flight_euler_step(float* state, const float* u, float time_s, float step_s) {
-  auto vehicle = read(state);
-  const auto quadrotor = everything<float>();
-  vehicle.body = pinnquad::semi_implicit_euler_step(
-      vehicle.body, step_s, [&](const pinnquad::State<float>& body, float offset_s) noexcept {
-        return pinnquad::derivative(body, quadrotor.evaluate(body, {u[0], u[1], u[2], u[3]}, time_s + offset_s).motion);
-      });
-  write(vehicle, state);
-}
-
 void pinnquad_flight_frames(float* v) {
   const auto q = pinnquad::normalized(Quaternion<float>{v[0], v[1], v[2], v[3]});
   const auto euler = pinnquad::to_euler(pinnquad::swap_enu_flu_ned_frd(q));

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "models/structured_quadrotor.hpp"
-#include "pinnquad/aero/linear_damping.hpp"
+#include "pinnquad/aero/drag.hpp"
 #include "stacks.hpp"
 #include "structured_trust.hpp"
 

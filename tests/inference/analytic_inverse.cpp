@@ -10,7 +10,6 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/dryden.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
-#include "pinnquad/aero/rotor_drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
-#include "pinnquad/dynamics/rotor_lag.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "reference/reference_rows.hpp"
 #include "support/compare_with_plain.hpp"
 

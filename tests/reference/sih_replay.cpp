@@ -8,7 +8,7 @@
 #include <fstream>
 #include <map>
 
-#include "pinnquad/aero/linear_damping.hpp"
+#include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/px4_sih.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 #include "reference/reference_rows.hpp"

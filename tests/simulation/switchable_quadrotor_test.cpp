@@ -56,7 +56,7 @@ Flight flown_on(const Vehicle& quadrotor, Pilot pilot, VehicleState<double> vehi
   const SimulationSettings settings = low_start();
   State<double> hover;
   hover.position_m = settings.start_m;
-  const double density_ratio = quadrotor.density_ratio(quadrotor.surroundings(hover, 0.0));
+  const double density_ratio = quadrotor.rotor_scale(quadrotor.surroundings(hover, 0.0));
   const FlightController<double> controller(
       settings.gains, flight_limits(quadrotor.airframe(), density_ratio, settings.gains), site.gravity_m_s2);
   Flight flight;

@@ -7,8 +7,6 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
-#include "pinnquad/aero/rotor_drag.hpp"
-#include "pinnquad/aero/rotor_ground_effect.hpp"
 #include "pinnquad/vehicle/inverse.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"

@@ -9,8 +9,6 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
-#include "pinnquad/aero/rotor_drag.hpp"
-#include "pinnquad/aero/rotor_ground_effect.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "support/random_states.hpp"

@@ -11,7 +11,6 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
-#include "pinnquad/aero/rotor_drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
@@ -76,7 +75,7 @@ TEST_CASE_TEMPLATE("hover balances weight: level, any heading, any place", Scala
     State<Scalar> state;
     state.position_m = random.vector<Scalar>(100.0);
     state.attitude = pinnquad::from_euler<Scalar>({Scalar(0), Scalar(0), random.scalar<Scalar>(-3.1, 3.1)});
-    const Scalar ratio = vehicle.density_ratio(vehicle.surroundings(state, Scalar(0)));
+    const Scalar ratio = vehicle.rotor_scale(vehicle.surroundings(state, Scalar(0)));
     const Evaluation<Scalar> result = vehicle.evaluate(state, hover_commands(airframe, ratio), Scalar(0));
     CHECK(pinnquad::test::norm(result.motion.linear_m_s2) <= 10.0 * evaluation_tolerance<Scalar>);
     CHECK(pinnquad::test::norm(result.motion.angular_rad_s2) <= largest_acceleration * evaluation_tolerance<Scalar>);
@@ -452,7 +451,7 @@ TEST_CASE_TEMPLATE("coasting: 8 m/s becomes 7.0244 m/s after 4 s, as 1 / (1 / v 
   state.body.position_m[2] = Scalar(-10);
   state.body.velocity_m_s[0] = Scalar(8);
   const Commands<Scalar> hover =
-      hover_commands(airframe, vehicle.density_ratio(vehicle.surroundings(state.body, Scalar(0))));
+      hover_commands(airframe, vehicle.rotor_scale(vehicle.surroundings(state.body, Scalar(0))));
   state.rotors = hover;
   for (int i = 0; i < 1000; ++i) REQUIRE(vehicle.step(state, hover, Scalar(0.004)) == Status::ok);
   const double speed = static_cast<double>(state.body.velocity_m_s[0]);

@@ -5,7 +5,7 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
-#include "pinnquad/dynamics/site.hpp"
+#include "pinnquad/vehicle/quadrotor.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {

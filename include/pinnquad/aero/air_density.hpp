@@ -27,8 +27,8 @@ constexpr std::array<double, 16> standard_atmosphere_series() noexcept {
   return c;
 }
 
-/// Neighbours first, then pairs, then fours (Estrin): a simulator waits for this sum four times a step, and a plain chain
-/// of fifteen multiply-adds takes as long as pow.
+/// Neighbours first, then pairs, then fours (Estrin): a simulator waits for this sum four times a step, and a plain
+/// chain of fifteen multiply-adds takes as long as pow.
 template <class Scalar>
 constexpr Scalar polynomial(const std::array<double, 16>& c, Scalar x) noexcept {
   const Scalar x2 = x * x, x4 = x2 * x2;
@@ -38,7 +38,7 @@ constexpr Scalar polynomial(const std::array<double, 16>& c, Scalar x) noexcept 
   return (four(0) + four(4) * x4) + (four(8) + four(12) * x4) * (x4 * x4);
 }
 
-/// The formula of standard_atmosphere_density_kg_m3() where it holds.
+/// standard_atmosphere_density_kg_m3() between the two altitudes below.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar troposphere_density_kg_m3(Scalar altitude_m) noexcept {
   constexpr std::array<double, 16> series = standard_atmosphere_series();
@@ -46,7 +46,7 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar troposphere_density_kg_m3(Scalar altitud
 }
 }  // namespace detail
 
-/// Where the formula below holds, m above sea level: from where the standard's tables begin to the tropopause.
+/// The range of the standard's troposphere, m above sea level: from the first row of its tables to the tropopause.
 inline constexpr double lowest_standard_altitude_m = -5000.0;
 inline constexpr double highest_standard_altitude_m = detail::troposphere_m;
 
@@ -56,10 +56,9 @@ PINNQUAD_ALWAYS_INLINE constexpr bool in_standard_troposphere(Scalar altitude_m)
   return altitude_m >= Scalar(lowest_standard_altitude_m) && altitude_m <= Scalar(highest_standard_altitude_m);
 }
 
-/// Density at an altitude above sea level, kg/m^3, from -5 to 11 km; beyond, that of the nearer end; NaN for NaN.
-/// H = 6378.137 h / (6378.137 + h) km geopotential, T = 288.15 - 6.5 H, P = 101325 (288.15 / T)^-5.255877 Pa,
-/// rho = P / (287.053 T), by its power series in h. Source: US Standard Atmosphere 1976 as the paper's simulator evaluates
-/// it.
+/// Density at an altitude above sea level, kg/m^3, from -5 to 11 km; beyond, that of the nearer end; NaN for NaN. H =
+/// 6378.137 h / (6378.137 + h) km geopotential, T = 288.15 - 6.5 H, P = 101325 (288.15 / T)^-5.255877 Pa, rho = P /
+/// (287.053 T), by its power series in h. Source: US Standard Atmosphere 1976 as the paper's simulator evaluates it.
 template <class Scalar>
 Scalar standard_atmosphere_density_kg_m3(Scalar altitude_m) noexcept {
   constexpr Scalar lowest(lowest_standard_altitude_m), highest(highest_standard_altitude_m);

@@ -10,9 +10,9 @@
 
 namespace pinnquad {
 
-/// Scale lengths and intensities of MIL-F-8785C below 1000 ft, from the wind speed at 20 ft and the height above ground:
-/// L_w = h, L_u = L_v = h / (0.177 + 0.000823 h)^1.2, sigma_w = 0.1 W_20, sigma_u = sigma_v = sigma_w / (0.177 + 0.000823
-/// h)^0.4, with h in feet, held between 10 and 1000.
+/// Scale lengths and intensities of MIL-F-8785C below 1000 ft, from the wind speed at 20 ft and the height above
+/// ground: L_w = h, L_u = L_v = h / (0.177 + 0.000823 h)^1.2, sigma_w = 0.1 W_20, sigma_u = sigma_v = sigma_w / (0.177
+/// + 0.000823 h)^0.4, with h in feet, held between 10 and 1000.
 struct DrydenParameters {
   std::array<double, 3> length_m{};       ///< along the wind, across, vertical
   std::array<double, 3> intensity_m_s{};  ///< standard deviation of each component
@@ -28,12 +28,12 @@ struct DrydenParameters {
   }
 };
 
-/// Gusts u(s), v(s), w(s) over s = d . (x - W d t), the distance from the air that the mean wind W carries along d (Taylor's
-/// hypothesis): hovering in wind and flying through it both meet the spectra
+/// Gusts u(s), v(s), w(s) over s = d . (x - W d t), the distance from the air that the mean wind W carries along d
+/// (Taylor's hypothesis): hovering in wind and flying through it both meet the spectra
 ///   Phi_u = sigma^2 (2 L / pi) / (1 + (L k)^2),  Phi_v,w = sigma^2 (L / pi) (1 + 3 (L k)^2) / (1 + (L k)^2)^2,
 /// k in rad/m. Each component is a sum of `Waves` cosines of equal energy whose wave numbers are drawn one from each
-/// equal-energy slice of the spectrum, so a vehicle and a place give the same air every time: no filter state.
-/// Adds gusts and nothing else: put ConstantWind beside it for the mean.
+/// equal-energy slice of the spectrum, so a vehicle and a place give the same air every time: no filter state. Adds
+/// gusts alone: the mean wind is a ConstantWind beside it.
 template <int Waves = 24>
 class DrydenTurbulence {
   static_assert(Waves >= 1, "pinnquad: Dryden turbulence needs at least one wave per component (aero/dryden.hpp)");
@@ -70,7 +70,8 @@ class DrydenTurbulence {
     air.wind_m_s[2] += Scalar(w);
   }
 
-  /// `out_of_range` for parameters that are negative or no numbers, lengths of 0, or a direction that isn't a unit vector.
+  /// `out_of_range` for parameters that are negative or no numbers, lengths of 0, or a direction that isn't a unit
+  /// vector.
   template <class Scalar>
   Status status(const Airframe<Scalar>&) const noexcept {
     return holds_ ? Status::ok : Status::out_of_range;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ground effect: near the ground the rotors lift more. Two models of the thrust ratio r(Z / R), applied as the paper's
-// authors do in their simulator.
+// Ground effect: near the ground the rotors lift more. Two models of the thrust ratio r(Z / R), applied to the vehicle
+// as the paper's authors do in their simulator, or rotor by rotor.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace pinnquad {
 
-/// Cheeseman and Bennett (1955): r = 1 / (1 - (R / 4Z)^2) from Z/R = `least_height` up; below, 4/3, which the formula has
-/// there: also below the ground, where the low side of a tilted vehicle may reach. NaN stays NaN.
-/// The formula puts a mirrored source under the ground and holds from Z/R of about 0.5; at Z/R = 0.25 it has a pole.
-/// The paper's simulator computes it down to the pole and 1 below; rows of it between 0.25 and 0.5 differ from this.
+/// Cheeseman and Bennett (1955): r = 1 / (1 - (R / 4Z)^2) from Z/R = `least_height` up; below, its value there, 4/3,
+/// also below the ground, where the low side of a tilted vehicle may reach. NaN stays NaN. The model puts a mirrored
+/// source under the ground and holds from Z/R of about 0.5; at Z/R = 0.25 it has a pole. The paper's simulator computes
+/// it down to the pole and 1 below; rows of it between 0.25 and 0.5 differ from this.
 struct CheesemanBennett {
   static constexpr double least_height = 0.5;
   static constexpr double most_ratio = 4.0 / 3.0;
@@ -35,8 +35,8 @@ constexpr double compiled_root(double value) noexcept {
   return root;
 }
 
-/// Length of the diagonals between motors, the mean of both, in whatever order the rotors come: of the three ways to pair
-/// four corners the diagonals are the one with the greatest sum. `root` is the square root.
+/// Length of the diagonals between motors, the mean of both, in whatever order the rotors come: of the three ways to
+/// pair four corners the diagonals are the one with the greatest sum. `root` is the square root.
 template <class Scalar, class Root>
 constexpr Scalar motor_diagonal_m(const Airframe<Scalar>& airframe, const Root& root) noexcept {
   const auto distance = [&airframe, &root](std::size_t i, std::size_t j) {
@@ -54,8 +54,8 @@ constexpr Scalar motor_diagonal_m(const Airframe<Scalar>& airframe, const Root& 
 }
 }  // namespace detail
 
-/// Conyers (2019): a ratio of polynomials in Z/R whose coefficients are quadratic in the motor spacing L (diagonal) and the
-/// propeller radius R, both in mm; 1 outside 0.25 <= Z/R <= 10.
+/// Conyers (2019): a ratio of polynomials in Z/R whose coefficients are quadratic in the motor spacing L (diagonal) and
+/// the propeller radius R, both in mm; 1 outside 0.25 <= Z/R <= 10.
 /// A fit to vehicles near L = 690, R = 114.3: for others, ordinary ones among them (L = 450, R = 127), it has a pole in
 /// that range. `status` is `out_of_range` for an airframe whose ratio leaves `least_ratio`..`most_ratio` there.
 struct Conyers {
@@ -73,8 +73,8 @@ struct Conyers {
       return above(x) / below(x);
     }
 
-    /// No pole in the range and no ratio out of its bounds. The polynomials bend slowly: between two points looked at, a
-    /// denominator that touches zero is so small at both that the ratio there is out of bounds.
+    /// No pole in the range and no ratio out of its bounds. The polynomials bend slowly: between two points looked at,
+    /// a denominator that touches zero is so small at both that the ratio there is out of bounds.
     constexpr bool plausible() const noexcept {
       constexpr int intervals = 195;
       for (int i = 0; i <= intervals; ++i) {
@@ -141,8 +141,8 @@ struct Conyers {
 
 /// dT = (r - 1) |F_z|, F_z the world-vertical part of rotor and previous aerodynamic force, along body -z; no torque.
 /// As the paper's authors apply it: one ratio for the vehicle, from the height of its centre.
-/// `ThrustRatio`: `thrust_ratio(Z / R, airframe)`; where its coefficients follow from the airframe, `bound(airframe)` gives
-/// a ratio that has them worked out, and `status(airframe)` says whether it holds for the airframe.
+/// `ThrustRatio`: `thrust_ratio(Z / R, airframe)`; where its coefficients follow from the airframe, `bound(airframe)`
+/// gives a ratio that has them worked out, and `status(airframe)` says whether it holds for the airframe.
 template <class ThrustRatio>
 struct GroundEffect {
   static constexpr VariesWith varies_with = VariesWith::height;
@@ -200,7 +200,72 @@ struct GroundEffect {
   }
 };
 
+/// dT_i = (r(Z_i / R) - 1) |R_zz| T_i along the axis of rotor i (body -z unless tilted), at its hub, with Z_i the
+/// height of the hub above ground and |R_zz| the vertical share of its thrust: an alternative to GroundEffect, which
+/// applies one ratio at the vehicle's centre and makes no torque. Level and without drag both give the same force.
+/// `ThrustRatio` as in GroundEffect: a hub below its range, as one that a tilt brings under the ground, has the ratio
+/// that it states there.
+template <class ThrustRatio>
+struct RotorGroundEffect {
+  static constexpr VariesWith varies_with = VariesWith::height;
+  ThrustRatio ratio{};
+
+  template <class Scalar>
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
+                                               const Airframe<Scalar>& airframe) const noexcept {
+    const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
+    const Vector3<Scalar> down = world_down_axis(condition.attitude);
+    const Scalar share = down[2] < Scalar(0) ? -down[2] : down[2];
+    Wrench<Scalar> result;
+    for (std::size_t i = 0; i < rotor_count; ++i) {
+      const RotorMount<Scalar>& hub = airframe.rotors[i];
+      if (!is_upright(hub) || !detail::equal(hub.z_m, Scalar(0))) {
+        add_anywhere(hub, condition, airframe, condition.rotor_thrust_N[i], result);
+        continue;
+      }
+      const Scalar height_m = condition.height_above_ground_m - (down[0] * hub.x_m + down[1] * hub.y_m);
+      const Scalar r = ratio.thrust_ratio(height_m * per_radius_1_m, airframe);
+      const Scalar lift = (r - Scalar(1)) * share * condition.rotor_thrust_N[i];
+      result.force_N[2] -= lift;
+      result.torque_N_m[0] -= hub.y_m * lift;
+      result.torque_N_m[1] += hub.x_m * lift;
+    }
+    return result;
+  }
+
+  template <class Scalar>
+  auto bound(const Airframe<Scalar>& airframe) const noexcept {
+    if constexpr (is_bindable<ThrustRatio, Scalar>) {
+      return RotorGroundEffect<decltype(ratio.bound(airframe))>{ratio.bound(airframe)};
+    } else {
+      return *this;
+    }
+  }
+
+  template <class Scalar>
+  constexpr Status status(const Airframe<Scalar>& airframe) const noexcept {
+    return effect_status(ratio, airframe);
+  }
+
+ private:
+  /// One tilted rotor, or one above or below the centre of gravity.
+  template <class Scalar>
+  void add_anywhere(const RotorMount<Scalar>& hub, const RotorCondition<Scalar>& condition,
+                    const Airframe<Scalar>& airframe, Scalar thrust_N, Wrench<Scalar>& sum) const noexcept {
+    const Vector3<Scalar> down = world_down_axis(condition.attitude);
+    const Vector3<Scalar> arm(hub.x_m, hub.y_m, hub.z_m), axis = to_vector(hub.axis);
+    const Scalar upright = down.dot(axis), share = upright < Scalar(0) ? -upright : upright;
+    const Scalar height_m = condition.height_above_ground_m - down.dot(arm);
+    const Scalar r = ratio.thrust_ratio(height_m * (Scalar(2) / airframe.propeller_diameter_m), airframe);
+    const Vector3<Scalar> force = axis * ((r - Scalar(1)) * share * thrust_N);
+    sum.force_N += force;
+    sum.torque_N_m += cross<Scalar>(arm, force);
+  }
+};
+
 using CheesemanBennettGroundEffect = GroundEffect<CheesemanBennett>;
 using ConyersGroundEffect = GroundEffect<Conyers>;
+using CheesemanBennettRotorGroundEffect = RotorGroundEffect<CheesemanBennett>;
+using ConyersRotorGroundEffect = RotorGroundEffect<Conyers>;
 
 }  // namespace pinnquad

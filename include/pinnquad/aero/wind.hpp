@@ -5,7 +5,7 @@
 #include <array>
 
 #include "pinnquad/aero/effect.hpp"
-#include "pinnquad/core/sine.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 
 namespace pinnquad {
 
@@ -51,7 +51,8 @@ struct PeriodicWind {
     for (int i = 0; i < 3; ++i) air.wind_m_s[i] += speed * Scalar(direction[static_cast<std::size_t>(i)]);
   }
 
-  /// `out_of_range` for a period that isn't positive, a direction that isn't a unit vector, or speeds that are no numbers.
+  /// `out_of_range` for a period that isn't positive, a direction that isn't a unit vector, or speeds that are no
+  /// numbers.
   template <class Scalar>
   constexpr Status status(const Airframe<Scalar>&) const noexcept {
     const bool holds = detail::is_direction(direction) && detail::plausible(period_s) &&

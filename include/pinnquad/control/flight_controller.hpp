@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "pinnquad/control/flatness.hpp"
-#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/dynamics/state.hpp"
 

@@ -7,7 +7,7 @@
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// NaN and Inf test on the bits: `x == x` and std::isfinite are deleted by -ffast-math, this is not.
-// Works for float and double; constant time. A value is taken by reference: as an argument, a compiler could take it for finite.
+// NaN and Inf are found on the bits: -ffast-math deletes `x == x` and std::isfinite, and keeps this. Float and double,
+// constant time. A value is taken by reference: as an argument, a compiler could take it for finite.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace pinnquad {
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
-/// True where the compiler was told that there is no NaN (-ffast-math): it may then lose one in `v < 0 ? 0 : v`.
+/// True where the compiler may assume that there is no NaN (-ffast-math): it may then lose one in `v < 0 ? 0 : v`.
 inline constexpr bool finite_math_only = __FINITE_MATH_ONLY__ != 0;
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The entries of a std::array as a plain pointer: its own functions are emitted out of line in an unoptimised build, where the
-// linker could pick a copy compiled for another instruction set.
+// The entries of a std::array as a plain pointer: its own functions are emitted out of line in an unoptimised build,
+// where the linker could pick a copy compiled for another instruction set.
 #pragma once
 
 #include <type_traits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A value kept as a base class, which takes no room if its type has nothing to keep: what makes an InverseDynamics of an
-// exported model empty. Such a type needs no value to be given, any other does.
+// A value kept as a base class. One of an empty type takes no room and need not be given: the InverseDynamics of an
+// exported model is empty.
 #pragma once
 
 #include <type_traits>

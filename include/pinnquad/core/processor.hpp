@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Does this processor, under this operating system, run code compiled for an instruction set? Asked once, when a program that
-// holds several starts; not part of flight code.
+// Whether this processor, under this operating system, runs code compiled for an instruction set. A program that holds
+// several asks once, at its start; flight code does not.
 #pragma once
 
 #include <string_view>
@@ -29,7 +29,7 @@ struct InstructionSetName {
 
 #if defined(__x86_64__) || defined(__i386__)
 
-/// Where the processor tells of an extension.
+/// The bit of an extension among what the processor tells of itself.
 struct CpuidBit {
   enum Register : unsigned char { eax, ebx, ecx, edx };
   char letter;
@@ -83,7 +83,7 @@ inline bool runs_letter(char letter) noexcept {
   for (const CpuidBit& known : letters_of_x86) {
     if (known.letter == letter) return processor_has(known);
   }
-  return false;  // nobody here knows how to ask
+  return false;  // an unknown letter
 }
 
 #endif
@@ -93,8 +93,8 @@ inline bool runs_letter(char letter) noexcept {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// True if code whose namespace has this name (core/instruction_set.hpp) runs here. On x86 every letter of the name is looked up;
-/// elsewhere only the instruction set of the caller is known to run.
+/// True if code whose namespace has this name (core/instruction_set.hpp) runs here. On x86 every letter of the name is
+/// looked up; elsewhere only the instruction set of the caller is known to run.
 inline bool runs_on_this_processor(std::string_view instruction_set) noexcept {
   if (instruction_set == detail::instruction_set) return true;
 #if defined(__x86_64__) || defined(__i386__)

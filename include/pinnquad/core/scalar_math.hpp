@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Functions of one scalar: the C library's, absolute value, positive part. The standard library's float overloads are
-// functions of their own in unoptimised code, compiled for the instruction set of whoever comes first; the compiler's builtins
-// are not.
+// Functions of one scalar: the C library's, absolute value, positive part, sine of a phase in turns. Builtins stand
+// where the standard library has float overloads: in unoptimised code those are functions, of which the linker keeps
+// one copy for all instruction sets.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -14,76 +16,30 @@
 namespace pinnquad {
 namespace detail {
 
-/// a == b, meant as it is written: firmware is compiled with -Wfloat-equal. False for NaN.
+/// a == b for scalars, false for NaN: firmware is compiled with -Wfloat-equal.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr bool equal(const Scalar& a, const Scalar& b) noexcept {
   return a <= b && a >= b;
 }
 
-PINNQUAD_ALWAYS_INLINE float hyperbolic_tangent(float v) noexcept { return __builtin_tanhf(v); }
-PINNQUAD_ALWAYS_INLINE double hyperbolic_tangent(double v) noexcept { return __builtin_tanh(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar hyperbolic_tangent(const Scalar& v) noexcept {
-  using std::tanh;
-  return tanh(v);
-}
-
-PINNQUAD_ALWAYS_INLINE float sine(float v) noexcept { return __builtin_sinf(v); }
-PINNQUAD_ALWAYS_INLINE double sine(double v) noexcept { return __builtin_sin(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar sine(const Scalar& v) noexcept {
-  using std::sin;
-  return sin(v);
-}
-
-PINNQUAD_ALWAYS_INLINE float cosine(float v) noexcept { return __builtin_cosf(v); }
-PINNQUAD_ALWAYS_INLINE double cosine(double v) noexcept { return __builtin_cos(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar cosine(const Scalar& v) noexcept {
-  using std::cos;
-  return cos(v);
-}
-
-PINNQUAD_ALWAYS_INLINE float exponential(float v) noexcept { return __builtin_expf(v); }
-PINNQUAD_ALWAYS_INLINE double exponential(double v) noexcept { return __builtin_exp(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar exponential(const Scalar& v) noexcept {
-  using std::exp;
-  return exp(v);
-}
-
-PINNQUAD_ALWAYS_INLINE float exponential_minus_one(float v) noexcept { return __builtin_expm1f(v); }
-PINNQUAD_ALWAYS_INLINE double exponential_minus_one(double v) noexcept { return __builtin_expm1(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar exponential_minus_one(const Scalar& v) noexcept {
-  using std::expm1;
-  return expm1(v);
-}
-
-PINNQUAD_ALWAYS_INLINE float log_of_one_plus(float v) noexcept { return __builtin_log1pf(v); }
-PINNQUAD_ALWAYS_INLINE double log_of_one_plus(double v) noexcept { return __builtin_log1p(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar log_of_one_plus(const Scalar& v) noexcept {
-  using std::log1p;
-  return log1p(v);
-}
-
-/// 1 - erf(v), without cancellation where erf(v) is near 1.
-PINNQUAD_ALWAYS_INLINE float complementary_error_function(float v) noexcept { return __builtin_erfcf(v); }
-PINNQUAD_ALWAYS_INLINE double complementary_error_function(double v) noexcept { return __builtin_erfc(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar complementary_error_function(const Scalar& v) noexcept {
-  using std::erfc;
-  return erfc(v);
-}
-
-PINNQUAD_ALWAYS_INLINE float square_root(float v) noexcept { return __builtin_sqrtf(v); }
-PINNQUAD_ALWAYS_INLINE double square_root(double v) noexcept { return __builtin_sqrt(v); }
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Scalar square_root(const Scalar& v) noexcept {
-  using std::sqrt;
-  return sqrt(v);
-}
+// One function: the builtin for float and double, the scalar type's own otherwise (autodiff).
+#define PINNQUAD_SCALAR_FUNCTION(name, own)                                             \
+  PINNQUAD_ALWAYS_INLINE float name(float v) noexcept { return __builtin_##own##f(v); } \
+  PINNQUAD_ALWAYS_INLINE double name(double v) noexcept { return __builtin_##own(v); }  \
+  template <class Scalar>                                                               \
+  PINNQUAD_ALWAYS_INLINE Scalar name(const Scalar& v) noexcept {                        \
+    using std::own;                                                                     \
+    return own(v);                                                                      \
+  }
+PINNQUAD_SCALAR_FUNCTION(hyperbolic_tangent, tanh)
+PINNQUAD_SCALAR_FUNCTION(sine, sin)
+PINNQUAD_SCALAR_FUNCTION(cosine, cos)
+PINNQUAD_SCALAR_FUNCTION(exponential, exp)
+PINNQUAD_SCALAR_FUNCTION(exponential_minus_one, expm1)
+PINNQUAD_SCALAR_FUNCTION(log_of_one_plus, log1p)
+PINNQUAD_SCALAR_FUNCTION(complementary_error_function, erfc)  // 1 - erf(v), without cancellation where erf(v) is near 1
+PINNQUAD_SCALAR_FUNCTION(square_root, sqrt)
+#undef PINNQUAD_SCALAR_FUNCTION
 
 PINNQUAD_ALWAYS_INLINE float absolute(float v) noexcept { return __builtin_fabsf(v); }
 PINNQUAD_ALWAYS_INLINE double absolute(double v) noexcept { return __builtin_fabs(v); }
@@ -125,5 +81,29 @@ PINNQUAD_ALWAYS_INLINE double positive_part(double v) noexcept {
   }
 }
 
+/// Taylor coefficients of sin(2 pi r) / r in r^2; ten terms leave 3e-16 at a quarter turn.
+constexpr std::array<double, 10> sine_series() noexcept {
+  constexpr double two_pi = 6.283185307179586;
+  std::array<double, 10> c{two_pi};
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    c[k] = -c[k - 1] * two_pi * two_pi / double(2 * k * (2 * k + 1));
+  }
+  return c;
+}
 }  // namespace detail
+
+/// sin(2 pi turns) inline and without libm: the same bits everywhere, and no call that would spill every register of a
+/// simulation step. Within 4 units in the last place of 1; exactly 0 for whole turns; NaN for NaN and Inf.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar sine_of_turns(Scalar turns) noexcept {
+  using std::floor;
+  constexpr std::array<double, 10> c = detail::sine_series();
+  const Scalar half(0.5), quarter(0.25);
+  Scalar r = turns - floor(turns + half);  // -1/2 .. 1/2, exact
+  r = r > quarter ? half - r : (r < -quarter ? -half - r : r);
+  const Scalar x = r * r, x2 = x * x, x4 = x2 * x2;
+  const auto pair = [&](std::size_t k) noexcept { return Scalar(c[k]) + Scalar(c[k + 1]) * x; };
+  return r * ((pair(0) + pair(2) * x2) + ((pair(4) + pair(6) * x2) + pair(8) * x4) * x4);
+}
+
 }  // namespace pinnquad

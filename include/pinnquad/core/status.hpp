@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What can be wrong with an input of flight code, which has no exceptions.
+// The outcome of a call in flight code, which has no exceptions.
 // Every function that returns a Status leaves its output untouched unless has_output(status).
 #pragma once
 

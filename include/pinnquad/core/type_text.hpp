@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The fully qualified C++ name of a type, as the compiler prints it, at compile time, without the inline namespace that names
-// an instruction set: another compiler flag must not make it another name.
+// The fully qualified C++ name of a type, as the compiler prints it, at compile time, without the inline namespace that
+// names an instruction set: another compiler flag must not make it another name.
 // gcc closes two lists as "> >", clang as ">>"; otherwise both print the same.
 #pragma once
 
@@ -47,8 +47,8 @@ constexpr auto without_instruction_set() noexcept {
 template <class T>
 inline constexpr auto type_letters = without_instruction_set<T>();
 
-/// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>". Types in anonymous namespaces and in functions have no name
-/// that another translation unit could use.
+/// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>". Types in anonymous namespaces and in functions have no
+/// name that another translation unit could use.
 template <class T>
 constexpr std::string_view type_text() noexcept {
   return {type_letters<T>.letter.data(), type_letters<T>.size};

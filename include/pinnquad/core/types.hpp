@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Matrix and vector aliases: the vocabulary of every interface.
-// The only file that includes Eigen. Its vectors and matrices are not over-aligned, and what is made of them may be copied into
-// any buffer; the weights for a vector unit are (PackedNetwork, LoadedModel: 64 bytes).
-// Without exceptions, as firmware is built, Eigen's asserts are off: they print and abort, and flight code has neither. Who wants
-// them defines eigen_assert, or includes Eigen first.
+// The only file that includes Eigen. Its vectors and matrices are not over-aligned, and what is made of them may be
+// copied into any buffer; the weights for a vector unit are (PackedNetwork, LoadedModel: 64 bytes).
+// Without exceptions, as firmware is built, Eigen's asserts are off: they print and abort, and flight code has neither.
+// To have them, define eigen_assert or include Eigen first.
 #pragma once
 
 #if !defined(__cpp_exceptions) && !defined(EIGEN_NO_DEBUG) && !defined(eigen_assert)
@@ -16,8 +16,13 @@
 
 namespace pinnquad {
 
-/// Number of rotors of a quadrotor.
+/// Number of rotors. With four, thrust and three torques have one set of commands. With more they have many, and an
+/// inverse learnt from flights would mix these: another number is another problem, not a template parameter.
 inline constexpr int rotor_count = 4;
+static_assert(
+    rotor_count == 4,
+    "pinnquad: allocation and its inverse, desaturation, the motor diagonal of the ground effect, motor orders, model "
+    "blocks and the names u1 .. u4 are of four rotors (core/types.hpp)");
 
 /// Fixed-size matrix without alignment demands (row vectors must be row-major in Eigen).
 template <class Scalar, int Rows, int Columns = 1>

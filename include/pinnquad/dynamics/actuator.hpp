@@ -1,56 +1,26 @@
 // SPDX-License-Identifier: MIT
-// One rotor with its motor: where it sits, which way it pulls, how its thrust answers a command.
-// Four of them make an airframe (dynamics/airframe.hpp); allocation and inverse are in dynamics/rotor.hpp.
+// One rotor with its motor: command <-> thrust and speed by its curve, clipped; thrust follows with a first-order lag,
+// exact for commands held over a step.
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/scalar_math.hpp"
-#include "pinnquad/core/types.hpp"
+#include "pinnquad/dynamics/airframe.hpp"
 
 namespace pinnquad {
 
-/// Sense of rotation seen from the side to which the rotor pulls, from above for an upright one. The reaction torque on the
-/// body has the opposite sense: a counter-clockwise upright rotor yaws the body clockwise, which is positive about FRD z.
-enum class Spin : int { counter_clockwise = 1, clockwise = -1 };
-
-/// In place of a rotor's time constant: the airframe's `rotor_time_constant_s` holds.
+/// Thrust of each rotor over its thrust at command 1, in the air and at the battery of the moment. A command is one
+/// where all curves are straight (RotorMount::thrust_curve 0).
 template <class Scalar>
-inline constexpr Scalar as_airframe = Scalar(-1);
+using ThrustFractions = std::array<Scalar, rotor_count>;
 
-/// Place, axis and answer of one rotor, body frame. `{x, y, spin}` is an upright rotor in the plane of the centre of gravity
-/// whose thrust is proportional to its command, as all of Eq. (2) are.
-template <class Scalar>
-struct RotorMount {
-  Scalar x_m{};  ///< forward of the centre of gravity
-  Scalar y_m{};  ///< right of the centre of gravity
-  Spin spin{Spin::counter_clockwise};
-  Scalar z_m{};                                                  ///< below the centre of gravity
-  std::array<Scalar, 3> axis{Scalar(0), Scalar(0), Scalar(-1)};  ///< unit vector along the thrust, FRD
-  Scalar thrust_scale{1};  ///< its thrust and torque over those of the airframe's coefficients
-  Scalar thrust_curve{0};  ///< k of thrust_fraction(): 0 thrust proportional to the command, 1 to its square
-  Scalar rise_time_constant_s{as_airframe<Scalar>};  ///< first-order lag of growing thrust
-  Scalar fall_time_constant_s{as_airframe<Scalar>};  ///< and of falling thrust: propellers slow down by drag alone
-};
-
-/// True for thrust along -z, without lateral force.
-template <class Scalar>
-constexpr bool is_upright(const RotorMount<Scalar>& rotor) noexcept {
-  return detail::equal(rotor.axis[0], Scalar(0)) && detail::equal(rotor.axis[1], Scalar(0)) &&
-         detail::equal(rotor.axis[2], Scalar(-1));
-}
-
-/// True for an axis of length 1, to 0.001.
-template <class Scalar>
-constexpr bool has_unit_axis(const RotorMount<Scalar>& rotor) noexcept {
-  const Scalar square = rotor.axis[0] * rotor.axis[0] + rotor.axis[1] * rotor.axis[1] + rotor.axis[2] * rotor.axis[2];
-  return square >= Scalar(0.998) && square <= Scalar(1.002);
-}
-
-/// Thrust over that at command 1: s(u) = u ((1 - k) + k |u|), rising for k in 0..1, odd, so that an error keeps its direction.
-/// The model of PX4's THR_MDL_FAC; k = 0 is a command that is (n / n_max)^2, k = 1 one that is a speed fraction n / n_max, and
-/// a throttle of an electronic speed controller lies between.
+/// Thrust over that at command 1: s(u) = u ((1 - k) + k |u|), rising for k in 0..1, odd, so that an error keeps its
+/// direction. The model of PX4's THR_MDL_FAC; k = 0 is a command that is (n / n_max)^2, k = 1 one that is a speed
+/// fraction n / n_max, and a throttle of an electronic speed controller lies between.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction(Scalar curve, Scalar command) noexcept {
   const Scalar magnitude = command < Scalar(0) ? -command : command;
@@ -64,7 +34,8 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction_slope(Scalar curve, Scal
   return (Scalar(1) - curve) + Scalar(2) * curve * magnitude;
 }
 
-/// The command of a thrust fraction: u = 2 s / (1 - k + sqrt((1 - k)^2 + 4 k |s|)), which subtracts nothing and is s for k = 0.
+/// The command of a thrust fraction: u = 2 s / (1 - k + sqrt((1 - k)^2 + 4 k |s|)), s for k = 0; subtracts
+/// no near numbers.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_of_fraction(Scalar curve, Scalar fraction) noexcept {
   if (detail::equal(curve, Scalar(0))) return fraction;
@@ -72,6 +43,139 @@ PINNQUAD_ALWAYS_INLINE Scalar command_of_fraction(Scalar curve, Scalar fraction)
   const Scalar magnitude = fraction < Scalar(0) ? -fraction : fraction;
   const Scalar divisor = linear + detail::square_root(linear * linear + Scalar(4) * curve * magnitude);
   return divisor > Scalar(0) ? Scalar(2) * fraction / divisor : fraction;  // 0 / 0 at k = 1, s = 0; NaN stays NaN
+}
+
+namespace detail {
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE const RotorMount<Scalar>& rotor_of(const Airframe<Scalar>& airframe,
+                                                          std::size_t rotor) noexcept {
+  return first_of<RotorMount<Scalar>>(airframe.rotors)[rotor];
+}
+}  // namespace detail
+
+/// Command of a rotor speed where thrust is proportional to the command, u = (n / n_max)^2 (docs/paper.md, deviation
+/// 6): the thrust fraction of a speed, of any rotor.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE constexpr Scalar command_from_speed(const Airframe<Scalar>& airframe,
+                                                           Scalar speed_rev_s) noexcept {
+  const Scalar ratio = speed_rev_s / airframe.max_rotor_speed_rev_s;
+  return ratio * ratio;
+}
+
+/// Rotor speed of a command in 0..1 where thrust is proportional to it, rev/s.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airframe, Scalar command) noexcept {
+  return airframe.max_rotor_speed_rev_s * detail::square_root(command);
+}
+
+/// The same of one rotor by its own curve: the command of a speed, which has the speed's sign ...
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar command_from_speed(const Airframe<Scalar>& airframe, std::size_t rotor,
+                                                 Scalar speed_rev_s) noexcept {
+  const Scalar fraction = command_from_speed(airframe, speed_rev_s);
+  return command_of_fraction(detail::rotor_of(airframe, rotor).thrust_curve,
+                             speed_rev_s < Scalar(0) ? -fraction : fraction);
+}
+
+/// ... its slope: du/dn = 2 r / (n_max sqrt((1 - k)^2 + 4 k r^2)) with r = |n| / n_max; 1 / n_max for k = 1 ...
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar command_slope_of_speed(const Airframe<Scalar>& airframe, std::size_t rotor,
+                                                     Scalar speed_rev_s) noexcept {
+  const Scalar curve = detail::rotor_of(airframe, rotor).thrust_curve;
+  const Scalar n_max = airframe.max_rotor_speed_rev_s;
+  const Scalar magnitude = speed_rev_s < Scalar(0) ? -speed_rev_s : speed_rev_s;
+  const Scalar straight = Scalar(2) * magnitude / (n_max * n_max);
+  if (detail::equal(curve, Scalar(0))) return straight;
+  const Scalar ratio = magnitude / n_max, linear = Scalar(1) - curve;
+  const Scalar bend = detail::square_root(linear * linear + Scalar(4) * curve * (ratio * ratio));
+  return detail::equal(bend, Scalar(0)) ? Scalar(1) / n_max : straight / bend;  // 0 / 0 at k = 1, n = 0; NaN stays NaN
+}
+
+/// ... and the speed of a command in 0..1, rev/s.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airframe, std::size_t rotor,
+                                                 Scalar command) noexcept {
+  return speed_from_command(airframe, thrust_fraction(detail::rotor_of(airframe, rotor).thrust_curve, command));
+}
+
+/// The command held between 0 and 1. NaN stays NaN.
+template <class Scalar>
+constexpr Scalar clip_command(Scalar command) noexcept {
+  return command < Scalar(0) ? Scalar(0) : (command > Scalar(1) ? Scalar(1) : command);
+}
+
+/// All four.
+template <class Scalar>
+constexpr Commands<Scalar> clipped(const Commands<Scalar>& commands) noexcept {
+  return {clip_command(commands[0]), clip_command(commands[1]), clip_command(commands[2]), clip_command(commands[3])};
+}
+
+/// a = exp(-dt / tau) of u_f <- a u_f + (1 - a) u. A time constant of zero means no lag.
+template <class Scalar>
+Scalar lag_factor(Scalar time_constant_s, Scalar step_s) noexcept {
+  using std::exp;
+  return time_constant_s > Scalar(0) ? Scalar(exp(-step_s / time_constant_s)) : Scalar(0);
+}
+
+/// Each rotor's thrust fraction on its way from `filtered` to the fraction wanted, which is clipped.
+template <class Scalar>
+constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered, const ThrustFractions<Scalar>& wanted,
+                                         Scalar factor) noexcept {
+  ThrustFractions<Scalar> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    const Scalar target = clip_command(wanted[i]);
+    result[i] = target + factor * (filtered[i] - target);
+  }
+  return result;
+}
+
+/// The same with a factor for each rotor.
+template <class Scalar>
+constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered, const ThrustFractions<Scalar>& wanted,
+                                         const std::array<Scalar, rotor_count>& factors) noexcept {
+  ThrustFractions<Scalar> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    const Scalar target = clip_command(wanted[i]);
+    result[i] = target + factors[i] * (filtered[i] - target);
+  }
+  return result;
+}
+
+/// The time constant of each rotor's way from `before` to the fraction wanted: thrust approaches what is held from one
+/// side, a rotor rises or falls all the step long.
+template <class Scalar>
+constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar>& airframe,
+                                                           const ThrustFractions<Scalar>& before,
+                                                           const ThrustFractions<Scalar>& wanted) noexcept {
+  std::array<Scalar, rotor_count> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    result[i] =
+        clip_command(wanted[i]) >= before[i] ? airframe.rise_time_constant_s(i) : airframe.fall_time_constant_s(i);
+  }
+  return result;
+}
+
+/// lag_factor() of each.
+template <class Scalar>
+std::array<Scalar, rotor_count> lag_factor(const std::array<Scalar, rotor_count>& time_constants_s,
+                                           Scalar step_s) noexcept {
+  std::array<Scalar, rotor_count> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = lag_factor(time_constants_s[i], step_s);
+  return result;
+}
+
+/// The fractions at the start of a step: a rotor without lag has what it has at the end at once.
+template <class Scalar>
+constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
+                                           Scalar time_constant_s) noexcept {
+  return time_constant_s > Scalar(0) ? before : end;
+}
+template <class Scalar>
+constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
+                                           const std::array<Scalar, rotor_count>& time_constants_s) noexcept {
+  ThrustFractions<Scalar> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = time_constants_s[i] > Scalar(0) ? before[i] : end[i];
+  return result;
 }
 
 }  // namespace pinnquad

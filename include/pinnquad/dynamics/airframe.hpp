@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a quadrotor is made of: literal values with SI names, each filled in by one file of airframes/ with its source.
+// The values of a quadrotor, with SI names: its body, four rotors with their motors, its drag. Each file of airframes/
+// fills in one quadrotor with its source.
 // Contract: `struct Vehicle { static constexpr const char* name; template <class Scalar> static constexpr
 // Airframe<Scalar> value(); };`
 #pragma once
@@ -8,11 +9,50 @@
 #include <limits>
 #include <type_traits>
 
+#include "pinnquad/core/detected.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
-#include "pinnquad/dynamics/actuator.hpp"
 
 namespace pinnquad {
+
+/// Sense of rotation seen from the side to which the rotor pulls, from above for an upright one. The reaction torque on
+/// the body has the opposite sense: a counter-clockwise upright rotor yaws the body clockwise, which is positive about
+/// FRD z.
+enum class Spin : int { counter_clockwise = 1, clockwise = -1 };
+
+/// Stands for a rotor's own time constant where the airframe's `rotor_time_constant_s` holds.
+template <class Scalar>
+inline constexpr Scalar as_airframe = Scalar(-1);
+
+/// Place, axis, thrust and lag of one rotor, body frame. `{x, y, spin}` is one of Eq. (2): upright, in the plane of the
+/// centre of gravity, its thrust proportional to its command.
+template <class Scalar>
+struct RotorMount {
+  Scalar x_m{};  ///< forward of the centre of gravity
+  Scalar y_m{};  ///< right of the centre of gravity
+  Spin spin{Spin::counter_clockwise};
+  Scalar z_m{};                                                  ///< below the centre of gravity
+  std::array<Scalar, 3> axis{Scalar(0), Scalar(0), Scalar(-1)};  ///< unit vector along the thrust, FRD
+  Scalar thrust_scale{1};  ///< its thrust and torque over those of the airframe's coefficients
+  Scalar thrust_curve{0};  ///< k of thrust_fraction(): 0 thrust proportional to the command, 1 to its square
+  Scalar rise_time_constant_s{as_airframe<Scalar>};  ///< first-order lag of growing thrust
+  Scalar fall_time_constant_s{as_airframe<Scalar>};  ///< and of falling thrust: propellers slow down by drag alone
+};
+
+/// True for thrust along -z, without lateral force.
+template <class Scalar>
+constexpr bool is_upright(const RotorMount<Scalar>& rotor) noexcept {
+  return detail::equal(rotor.axis[0], Scalar(0)) && detail::equal(rotor.axis[1], Scalar(0)) &&
+         detail::equal(rotor.axis[2], Scalar(-1));
+}
+
+/// True for an axis of length 1, to 0.001.
+template <class Scalar>
+constexpr bool has_unit_axis(const RotorMount<Scalar>& rotor) noexcept {
+  const Scalar square = rotor.axis[0] * rotor.axis[0] + rotor.axis[1] * rotor.axis[1] + rotor.axis[2] * rotor.axis[2];
+  return square >= Scalar(0.998) && square <= Scalar(1.002);
+}
 
 /// Air density at which thrust coefficients are rated.
 template <class Scalar>
@@ -23,9 +63,7 @@ template <class Scalar>
 inline constexpr Scalar standard_gravity_m_s2 = Scalar(9.80665);
 
 /// The values of Table 1 and what Table 1 leaves out. A literal type: usable in static_assert and in flash.
-/// There are four rotors. That is assumed by `rotor_count` (core/types.hpp), by the 4 x 4 allocation and its inverse
-/// (dynamics/rotor.hpp: thrust and three torques determine four commands) and by the motor diagonal of the ground effect
-/// (aero/ground_effect.hpp); everything else asks for them there.
+/// There are four rotors (core/types.hpp says why).
 template <class Scalar>
 struct Airframe {
   Scalar mass_kg{};
@@ -37,7 +75,7 @@ struct Airframe {
   Scalar power_coefficient{};                            ///< C_P = 2 pi torque / (rho n^2 D^5)
   Scalar propeller_diameter_m{};                         ///< D
   Scalar max_rotor_speed_rev_s{};                        ///< n at command 1
-  Scalar rotor_time_constant_s{};                        ///< first-order lag of the thrust, of rotors that say nothing
+  Scalar rotor_time_constant_s{};                        ///< first-order lag of the thrust, of rotors without their own
   std::array<Scalar, 3> drag_area_m2{};                  ///< k_i of F_i = -k_i rho |v_i| v_i
   Scalar drag_deadband_m_s{};                            ///< no drag along an axis at or below this speed
 
@@ -126,8 +164,8 @@ constexpr bool all_bounded(const std::array<Scalar, Size>& values) noexcept {
   return true;
 }
 
-/// What products of inertia demand beyond a plausible diagonal: S = tr(J) / 2 - J, the second moments of the mass, must have
-/// no negative eigenvalue (the triangle inequality of the principal moments), and J must be invertible.
+/// True for products of inertia that a body can have: S = tr(J) / 2 - J, the second moments of the mass, has no
+/// negative eigenvalue (the triangle inequality of the principal moments), and J is invertible.
 template <class Scalar>
 constexpr bool plausible_products(const Airframe<Scalar>& a) noexcept {
   if (has_diagonal_inertia(a)) return true;
@@ -157,9 +195,9 @@ constexpr bool plausible_rotor(const RotorMount<Scalar>& r) noexcept {
 }
 }  // namespace detail
 
-/// Ok if such a body can exist and hover: positive mass, inertia that meets the triangle inequality about its principal axes,
-/// positive rotor values, rotors at a place with an axis and a rising curve, thrust-to-weight above 1. The allocation is
-/// checked where it is built (rotor.hpp).
+/// Ok if such a body can exist and hover: positive mass, inertia that meets the triangle inequality about its principal
+/// axes, positive rotor values, rotors at a place with an axis and a rising curve, thrust-to-weight above 1. Rotors
+/// checks the allocation (rotor.hpp).
 template <class Scalar>
 constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
   using detail::plausible;
@@ -179,15 +217,13 @@ constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
 }
 
 namespace detail {
-template <class T, class = void>
-struct IsAirframe : std::false_type {};
-template <class T>
-struct IsAirframe<T, std::void_t<decltype(T::name), decltype(T::template value<double>())>>
-    : std::is_same<decltype(T::template value<double>()), Airframe<double>> {};
+template <class Vehicle>
+using AirframeOf = std::enable_if_t<(static_cast<void>(Vehicle::name),
+                                     std::is_same_v<decltype(Vehicle::template value<double>()), Airframe<double>>)>;
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_airframe = detail::IsAirframe<T>::value;
+inline constexpr bool is_airframe = detail::is_detected<detail::AirframeOf, T>;
 
 }  // namespace pinnquad

@@ -1,29 +1,40 @@
 // SPDX-License-Identifier: MIT
-// From an airframe's type to its value, refused at compile time where it can't be that of a quadrotor that flies.
+// The value of an airframe's type. An airframe that can't be that of a flying quadrotor is a compile error.
 #pragma once
 
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
 
-/// The airframe's value; refuses, at compile time and by rule, what is no airframe, cannot hover or cannot be steered.
+namespace detail {
+template <class Vehicle>
+using CompiledAirframe = std::bool_constant<(static_cast<void>(Vehicle::template value<double>()), true)>;
+}  // namespace detail
+
+/// The airframe's value. A type that is no airframe, reaches past the fourth rotor, cannot hover or cannot be steered
+/// is a compile error.
 template <class Vehicle, class Scalar>
 constexpr Airframe<Scalar> airframe_value() noexcept {
   static_assert(is_airframe<Vehicle>,
                 "pinnquad: an airframe needs `static constexpr const char* name` and `template <class Scalar> static "
                 "constexpr Airframe<Scalar> value()` (dynamics/airframe.hpp)");
   if constexpr (is_airframe<Vehicle>) {
-    constexpr Airframe<double> airframe = Vehicle::template value<double>();
-    static_assert(check_airframe(airframe) == Status::ok,
-                  "pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover "
-                  "(dynamics/airframe.hpp)");
-    static_assert(Rotors<double>(airframe).status() == Status::ok,
-                  "pinnquad: this airframe's rotors can't make thrust and the three torques independently: its "
-                  "allocation can't be inverted (dynamics/rotor.hpp)");
-    return Vehicle::template value<Scalar>();
-  } else {
-    return {};
+    constexpr bool compiled = detail::is_detected<detail::CompiledAirframe, Vehicle>;
+    static_assert(compiled,
+                  "pinnquad: this airframe's value() can't be computed when compiled. An airframe has four rotors, "
+                  "rotors[0] to rotors[3]: does it reach for a fifth? (dynamics/airframe.hpp)");
+    if constexpr (compiled) {
+      constexpr Airframe<double> airframe = Vehicle::template value<double>();
+      static_assert(check_airframe(airframe) == Status::ok,
+                    "pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover "
+                    "(dynamics/airframe.hpp)");
+      static_assert(Rotors<double>(airframe).status() == Status::ok,
+                    "pinnquad: this airframe's rotors can't make thrust and the three torques independently: its "
+                    "allocation can't be inverted (dynamics/allocation.hpp)");
+      return Vehicle::template value<Scalar>();
+    }
   }
+  return {};
 }
 
 /// The same airframe, every number rounded to `To`: what a struct written by deploy/airframe_writer.hpp has.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the number is that a motor is commanded by: of what a model was trained towards and of what a vehicle takes, the same
-// or neither may fly.
+// The meaning of a motor command. A model flies a vehicle only where both mean the same.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +18,7 @@ enum class CommandMeaning : std::uint8_t {
 /// Number of meanings; values from here on are none.
 inline constexpr unsigned command_meaning_count = 3;
 
-/// By an airframe's curves (thrust_fraction() in dynamics/actuator.hpp): all straight, all squares, or anything between.
+/// By an airframe's curves (thrust_fraction(), dynamics/actuator.hpp): all straight, all squares, or between.
 template <class Scalar>
 constexpr CommandMeaning command_meaning_of(const Airframe<Scalar>& airframe) noexcept {
   bool thrust = true, speed = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One step of the rigid-body state: classical Runge-Kutta of fourth order, and semi-implicit Euler.
-// Positions and velocities are integrated in the world frame, the quaternion is normalised after the step: where it grew
-// past what a scalar can square, to zero. Quadrotor::step checks what comes out.
+// One step of the rigid-body state by classical Runge-Kutta of fourth order.
+// Positions and velocities are integrated in the world frame, the quaternion is normalised after the step: where it
+// grew past what a scalar can square, to zero. Quadrotor::step checks what comes out.
 #pragma once
 
 #include "pinnquad/dynamics/state.hpp"
@@ -16,13 +16,6 @@ struct StateDerivative {
   Quaternion<Scalar> attitude_rate;
   Vector3<Scalar> angular_acceleration_rad_s2;
 };
-
-/// The derivative that belongs to body-frame accelerations.
-template <class Scalar>
-StateDerivative<Scalar> derivative(const State<Scalar>& state, const Accelerations<Scalar>& motion) noexcept {
-  return {state.velocity_m_s, world_acceleration(state, motion.linear_m_s2),
-          attitude_rate(state.attitude, state.body_rates_rad_s), motion.angular_rad_s2};
-}
 
 /// state + step * derivative, quaternion not normalised.
 template <class Scalar>
@@ -65,19 +58,6 @@ State<Scalar> rk4_step(const State<Scalar>& state, Scalar step_s, const Rate& ra
                                                   k3.angular_acceleration_rad_s2, k4.angular_acceleration_rad_s2);
   State<Scalar> result = advanced(state, k, step_s);
   result.attitude = normalized(result.attitude);
-  return result;
-}
-
-/// Semi-implicit Euler: velocities first, then positions with the new velocities. First order, cheap, stable.
-template <class Scalar, class Rate>
-State<Scalar> semi_implicit_euler_step(const State<Scalar>& state, Scalar step_s, const Rate& rate) noexcept {
-  const StateDerivative<Scalar> k = rate(state, Scalar(0));
-  State<Scalar> result = advanced(state, k, step_s);
-  result.position_m = state.position_m + result.velocity_m_s * step_s;
-  const Quaternion<Scalar> d = attitude_rate(state.attitude, result.body_rates_rad_s);
-  const Quaternion<Scalar>& q = state.attitude;
-  result.attitude =
-      normalized(Quaternion<Scalar>{q.w + d.w * step_s, q.x + d.x * step_s, q.y + d.y * step_s, q.z + d.z * step_s});
   return result;
 }
 

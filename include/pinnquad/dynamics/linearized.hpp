@@ -4,13 +4,13 @@
 // clipped.
 #pragma once
 
-#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
 
-/// Eq. (3): v_dot = (-theta T / m, phi T / m, g - T / m), omega_dot = J^-1 tau. `wrench.force_N` is (F_x, F_y, -T); F_x / m and
-/// F_y / m of tilted rotors are added, upright ones have none.
+/// Eq. (3): v_dot = (-theta T / m, phi T / m, g - T / m), omega_dot = J^-1 tau. `wrench.force_N` is (F_x, F_y, -T);
+/// F_x / m and F_y / m of tilted rotors are added, upright ones have none.
 template <class Scalar>
 Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe, Scalar roll_rad, Scalar pitch_rad,
                                                const Wrench<Scalar>& wrench, Scalar gravity_m_s2) noexcept {
@@ -24,23 +24,17 @@ Accelerations<Scalar> linearized_accelerations(const Airframe<Scalar>& airframe,
   return result;
 }
 
-/// Eq. (3) inverted: T = m (g - v_dot_z), tau = J omega_dot. v_dot_x and v_dot_y are not used: four rotors command no lateral
-/// force, a tilted rotor's comes with its thrust.
-template <class Scalar>
-Wrench<Scalar> linearized_wrench(const Airframe<Scalar>& airframe, const Accelerations<Scalar>& motion,
-                                 Scalar gravity_m_s2) noexcept {
-  Wrench<Scalar> result;
-  result.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), airframe.mass_kg * (motion.linear_m_s2[2] - gravity_m_s2));
-  result.torque_N_m = inertia_times(airframe, motion.angular_rad_s2);
-  return result;
-}
-
-/// Model 1: accelerations -> commands, where the rotors' thrust has this scale (Quadrotor::rotor_scale).
+/// Model 1, Eq. (3) inverted: T = m (g - v_dot_z), tau = J omega_dot, to commands of rotors whose thrust has this scale
+/// (Quadrotor::rotor_scale). v_dot_x and v_dot_y are not used: four rotors command no lateral force, a tilted rotor's
+/// comes with its thrust.
 template <class Scalar>
 Commands<Scalar> linearized_commands(const Airframe<Scalar>& airframe, const Rotors<Scalar>& rotors,
                                      const Accelerations<Scalar>& motion, Scalar gravity_m_s2,
                                      Scalar rotor_scale) noexcept {
-  return rotors.commands(linearized_wrench(airframe, motion, gravity_m_s2), rotor_scale);
+  Wrench<Scalar> wrench;
+  wrench.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), airframe.mass_kg * (motion.linear_m_s2[2] - gravity_m_s2));
+  wrench.torque_N_m = inertia_times(airframe, motion.angular_rad_s2);
+  return rotors.commands(wrench, rotor_scale);
 }
 
 }  // namespace pinnquad

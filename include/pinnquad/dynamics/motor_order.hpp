@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In which order motors are numbered: by the convention of a flight stack, or by where an airframe's rotors sit.
-// Only the place counts; which way a motor turns is the airframe's own.
+// The numbering of motors: by the convention of a flight stack, or by the places of an airframe's rotors, whatever their spin.
 #pragma once
 
 #include <array>
@@ -21,8 +20,8 @@ struct MotorOrder {
   std::array<Corner, rotor_count> corners{};
 };
 
-/// PX4, "Quadrotor x" of its airframe reference: 1 front right, 2 rear left, 3 front left, 4 rear right. The paper's Eq. (2) and
-/// the airframes here have it too.
+/// PX4, "Quadrotor x" of its airframe reference: 1 front right, 2 rear left, 3 front left, 4 rear right. The paper's
+/// Eq. (2) and the airframes here have it too.
 inline constexpr MotorOrder px4_motor_order = {
     "px4", {Corner::front_right, Corner::rear_left, Corner::front_left, Corner::rear_right}};
 
@@ -30,7 +29,7 @@ inline constexpr MotorOrder px4_motor_order = {
 inline constexpr MotorOrder betaflight_motor_order = {
     "betaflight", {Corner::rear_right, Corner::front_right, Corner::rear_left, Corner::front_left}};
 
-/// Crazyflie 2.x, Bitcraze's documentation, M1..M4 clockwise from the front right: front right, rear right, rear left, front left.
+/// Crazyflie 2.x, Bitcraze's documentation: M1..M4 clockwise from the front right.
 inline constexpr MotorOrder crazyflie_motor_order = {
     "crazyflie", {Corner::front_right, Corner::rear_right, Corner::rear_left, Corner::front_left}};
 
@@ -78,20 +77,6 @@ constexpr Status motor_order_of(const Airframe<Scalar>& airframe, MotorOrder& or
   }
   order = found;
   return Status::ok;
-}
-
-/// Values by motor (commands, speeds) given in one order, in another: each stays at its corner. Both must be is_motor_order();
-/// a corner that `from` lacks keeps the value at its index.
-template <class Value>
-constexpr std::array<Value, rotor_count> reordered(const std::array<Value, rotor_count>& values, const MotorOrder& from,
-                                                   const MotorOrder& to) noexcept {
-  std::array<Value, rotor_count> result = values;
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    for (std::size_t k = 0; k < rotor_count; ++k) {
-      if (from.corners[k] == to.corners[i]) result[i] = values[k];
-    }
-  }
-  return result;
 }
 
 }  // namespace pinnquad

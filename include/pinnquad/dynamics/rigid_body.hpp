@@ -1,12 +1,54 @@
 // SPDX-License-Identifier: MIT
-// Eq. (1): wrench <-> accelerations, both ways.
+// Eq. (1): wrench <-> accelerations, both ways, with the full inertia tensor about the centre of gravity, FRD:
+// J = ((Jx, Jxy, Jxz), (Jxy, Jy, Jyz), (Jxz, Jyz, Jz)).
 // Signs corrected as in docs/paper.md, deviation 2: gravity is (R_B^I)^T m g, thrust acts along -z.
 #pragma once
 
-#include "pinnquad/dynamics/inertia.hpp"
+#include "pinnquad/core/attributes.hpp"
+#include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/dynamics/state.hpp"
 
 namespace pinnquad {
+
+/// J w: angular momentum of body rates, torque of an angular acceleration.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_times(const Airframe<Scalar>& airframe,
+                                                     const Vector3<Scalar>& w) noexcept {
+  Vector3<Scalar> result = to_vector(airframe.inertia_kg_m2).cwiseProduct(w);
+  if (!has_diagonal_inertia(airframe)) {
+    const auto& [xy, xz, yz] = airframe.inertia_products_kg_m2;
+    result[0] += xy * w[1] + xz * w[2];
+    result[1] += xy * w[0] + yz * w[2];
+    result[2] += xz * w[0] + yz * w[1];
+  }
+  return result;
+}
+
+namespace detail {
+/// J^-1 t by the adjugate: exact up to rounding for a tensor that check_airframe() has passed.
+template <class Scalar>
+PINNQUAD_NOINLINE Vector3<Scalar> full_inertia_solved(const Airframe<Scalar>& airframe,
+                                                      const Vector3<Scalar>& t) noexcept {
+  const auto& [x, y, z] = airframe.inertia_kg_m2;
+  const auto& [xy, xz, yz] = airframe.inertia_products_kg_m2;
+  const Scalar a = y * z - yz * yz, b = xz * yz - xy * z, c = xy * yz - y * xz;
+  const Scalar d = x * z - xz * xz, e = xy * xz - x * yz, f = x * y - xy * xy;
+  const Scalar determinant = x * a + xy * b + xz * c;
+  return Vector3<Scalar>(a * t[0] + b * t[1] + c * t[2], b * t[0] + d * t[1] + e * t[2],
+                         c * t[0] + e * t[1] + f * t[2]) /
+         determinant;
+}
+}  // namespace detail
+
+/// J^-1 t: the angular acceleration of a torque.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_solved(const Airframe<Scalar>& airframe,
+                                                      const Vector3<Scalar>& t) noexcept {
+  if (has_diagonal_inertia(airframe)) {
+    return t.cwiseQuotient(to_vector(airframe.inertia_kg_m2));
+  }
+  return detail::full_inertia_solved(airframe, t);
+}
 
 /// Euler's equation: omega_dot = J^-1 (J omega x omega + tau).
 template <Build build = Build::any, class Scalar>

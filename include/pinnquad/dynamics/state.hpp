@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the vehicle is and how it moves; which force and torque act on it.
+// Place and motion of the vehicle; force and torque on it.
 // World NED, body FRD, SI units.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Inverse dynamics by formula: motion -> wrench -> commands, through the same effects that fly.
+// The analytic inverse: motion -> wrench -> commands, through the same effects that fly.
 #pragma once
 
 #include "pinnquad/vehicle/rotor_equation.hpp"
@@ -9,9 +9,9 @@ namespace pinnquad {
 /// Commands (not clipped) that make the motion in this state at this time.
 /// The wrench of Eq. (1) less the aerodynamic one, through the inverted Eq. (2); where an effect depends on the rotors
 /// (ground effect), both are solved together (rotor_equation.hpp). Lateral force can't be made by the rotors; what the
-/// motion demands of it is ignored. Where two solutions exist, the one with the greater thrust; `no_solution` where none.
-/// `not_finite` for NaN or Inf in state or motion, `not_unit_quaternion`, `out_of_range` where the air has no answer
-/// (Surroundings), and what Quadrotor::status() says; the commands are untouched unless the Status is ok.
+/// motion demands of it is ignored. Where two solutions exist, the one with the greater thrust; `no_solution` where
+/// none. `not_finite` for NaN or Inf in state or motion, `not_unit_quaternion`, `out_of_range` where the air has no
+/// answer (Surroundings), and what Quadrotor::status() says; the commands are untouched unless the Status is ok.
 template <class Scalar, class... Effects>
 Status inverse_commands(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
                         const Accelerations<Scalar>& motion, Scalar time_s, Commands<Scalar>& commands) noexcept {

@@ -8,13 +8,30 @@
 
 #include "pinnquad/aero/effect.hpp"
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/dynamics/rotor_lag.hpp"
 
 namespace pinnquad {
+
+/// The place of a flight on earth.
+template <class Scalar>
+struct Site {
+  Scalar elevation_m{0};  ///< of the NED origin above sea level
+  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre when the rotors' height above ground counts as zero
+  Scalar gravity_m_s2{standard_gravity_m_s2<Scalar>};
+};
+
+/// The site of the paper's simulator: home at 122 m, ground 0.877 m below the origin.
+template <class Scalar>
+constexpr Site<Scalar> paper_site() noexcept {
+  Site<Scalar> site{};
+  site.elevation_m = Scalar(122);
+  site.ground_z_m = Scalar(0.877);
+  return site;
+}
 
 /// Everything that evolves in time.
 template <class Scalar>
@@ -34,17 +51,22 @@ struct Evaluation {
 };
 
 namespace detail {
-/// What an effect as it is by default says, while compiling, of an airframe known then; ok for one that can't be asked
-/// before it flies.
-template <class Effect, class Vehicle, class = void>
-struct DefaultStatus : std::integral_constant<Status, Status::ok> {};
 template <class Effect, class Vehicle>
-struct DefaultStatus<Effect, Vehicle,
-                     std::void_t<std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())>>>
-    : std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())> {};
+using StatusWhenCompiled = std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())>;
+
+/// The status that an effect as it is by default gives an airframe known when compiled; ok for one that can be asked in
+/// flight only.
+template <class Effect, class Vehicle>
+constexpr Status default_status() noexcept {
+  if constexpr (is_detected<StatusWhenCompiled, Effect, Vehicle>) {
+    return StatusWhenCompiled<Effect, Vehicle>::value;
+  } else {
+    return Status::ok;
+  }
+}
 }  // namespace detail
 
-/// Eqs. (1) and (2) with effects. An effect that is not named costs nothing.
+/// Eqs. (1) and (2) with effects.
 template <class Scalar, class... Effects>
 class Quadrotor {
   static_assert(
@@ -53,18 +75,16 @@ class Quadrotor {
   static_assert((is_whole_effect<Effects, Scalar>() && ...),
                 "pinnquad: an effect's surroundings(), wrench(), wrench_on(), bound() or status() can't be called as "
                 "the contract says, or returns something else: it would be passed over (aero/effect.hpp)");
-  static_assert((is_noexcept_effect<Effects, Scalar> && ...),
+  static_assert((is_noexcept_effect<Effects, Scalar>() && ...),
                 "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on(), bound() and status() must be "
                 "noexcept (aero/effect.hpp)");
   static_assert(
-      ((is_effect<BoundEffect<Effects, Scalar>> && is_whole_effect<BoundEffect<Effects, Scalar>, Scalar>() &&
-        is_noexcept_effect<BoundEffect<Effects, Scalar>, Scalar>)&&...),
+      ((is_effect<detail::BoundEffect<Effects, Scalar>> &&
+        is_whole_effect<detail::BoundEffect<Effects, Scalar>, Scalar>() &&
+        is_noexcept_effect<detail::BoundEffect<Effects, Scalar>, Scalar>()) &&
+       ...),
       "pinnquad: what an effect's bound() returns flies in its place: it must be an effect whose functions are "
       "as the contract says and noexcept (aero/effect.hpp)");
-  static_assert(((!uses_place<BoundEffect<Effects, Scalar>> || varies_with<Effects> == VariesWith::place_and_time) &&
-                 ...),
-                "pinnquad: an effect that takes a PlaceCondition depends on the place: its varies_with can't say less "
-                "(aero/effect.hpp)");
 
  public:
   /// The vehicle of an airframe known when compiled, `Quadrotor<double, QuadraticDrag>::of<Crazyflie>(site)`: what
@@ -77,7 +97,7 @@ class Quadrotor {
   template <class Vehicle, std::size_t Count = sizeof...(Effects), std::enable_if_t<(Count > 0), int> = 0>
   static Quadrotor of(const Site<Scalar>& site = {}) noexcept {
     static_assert(
-        ((detail::DefaultStatus<Effects, Vehicle>::value == Status::ok) && ...),
+        ((detail::default_status<Effects, Vehicle>() == Status::ok) && ...),
         "pinnquad: an effect, as it is by default, refuses this airframe (its status()): a ground effect's fit "
         "that has a pole or an implausible ratio at its motor spacing and propeller radius, for example "
         "(aero/ground_effect.hpp)");
@@ -94,7 +114,7 @@ class Quadrotor {
       : airframe_(airframe),
         inverse_mass_(Scalar(1) / airframe.mass_kg),
         site_(site),
-        effects_(bound_effect(effects, airframe)...),
+        effects_(detail::bound_effect(effects, airframe)...),
         rotors_(airframe),
         build_(build_of(airframe)),
         status_(first_fault(effects...)) {}
@@ -103,13 +123,13 @@ class Quadrotor {
   const Site<Scalar>& site() const noexcept { return site_; }
   const Rotors<Scalar>& rotors() const noexcept { return rotors_; }
   /// In their order, bound to the airframe.
-  const std::tuple<BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
+  const std::tuple<detail::BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
 
-  /// Not ok, and neither step() nor the inverse has an answer: `invalid_airframe`, `no_solution` for an allocation that
-  /// can't be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
+  /// Unless ok, step() and the inverse refuse with it: `invalid_airframe`, `no_solution` for an allocation that can't
+  /// be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
   Status status() const noexcept { return status_; }
 
-  /// The air at a place and time: density, wind and thrust scale as the effects set them, and whether they have an answer there.
+  /// The air at a place and time: density, wind, thrust scale and status as the effects set them.
   PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
     Surroundings<Scalar> air;
     air.time_s = time_s;
@@ -149,8 +169,8 @@ class Quadrotor {
     });
   }
 
-  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Checks nothing: they mean
-  /// something where status() and the surroundings' status are ok.
+  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid where
+  /// status() and the surroundings' status are ok.
   Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                               Scalar time_s) const noexcept {
     Evaluation<Scalar> result = loads(state, rotors_.fractions(rotor_commands), time_s);
@@ -158,11 +178,11 @@ class Quadrotor {
     return result;
   }
 
-  /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly.
-  /// What status() says; `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of
-  /// the body in one step, a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a
-  /// battery that is less than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is
-  /// untouched unless the Status is ok.
+  /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly. Errors: status();
+  /// `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of the body in one step,
+  /// a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a battery that is less
+  /// than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the
+  /// Status is ok.
   Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
     const Status input = check_input(state, commands, step_s);
     if (input != Status::ok) return input;
@@ -170,15 +190,11 @@ class Quadrotor {
                                   : advance<Build::any>(state, commands, step_s);
   }
 
-  /// By what thrust and torque of the rotors differ from those in the standard atmosphere with a full battery.
+  /// Thrust and torque of the rotors over those in the standard atmosphere with a full battery: rho / rho_0 times the
+  /// thrust scale.
   static constexpr Scalar rotor_scale(const Surroundings<Scalar>& air) noexcept {
-    return density_ratio(air) * air.thrust_scale;
-  }
-
-  /// rho / rho_0.
-  static constexpr Scalar density_ratio(const Surroundings<Scalar>& air) noexcept {
     constexpr Scalar inverse = Scalar(1) / standard_air_density_kg_m3<Scalar>;
-    return air.air_density_kg_m3 * inverse;
+    return air.air_density_kg_m3 * inverse * air.thrust_scale;
   }
 
  private:
@@ -254,8 +270,8 @@ class Quadrotor {
     return is_unit(state.body.attitude) ? Status::ok : Status::not_unit_quaternion;
   }
 
-  /// The rotation worked out once for the two vectors that an evaluation turns: less than half the work of turning each by
-  /// the quaternion, and written in scalars because Eigen would split a vector of three into two and one.
+  /// The rotation worked out once for the two vectors that an evaluation turns: less than half the work of turning each
+  /// by the quaternion, and written in scalars because Eigen would split a vector of three into two and one.
   struct Axes {
     Scalar xx, xy, xz, yx, yy, yz, zx, zy, zz;  ///< R, row (world) by row
 
@@ -280,12 +296,7 @@ class Quadrotor {
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                        const ThrustFractions<Scalar>& thrusts,
                                                        const WrenchOf& wrench_of) const noexcept {
-    constexpr bool at_a_place = (uses_place<BoundEffect<Effects, Scalar>> || ...);
-    std::conditional_t<at_a_place, PlaceAndRotorCondition<Scalar>, RotorCondition<Scalar>> condition;
-    if constexpr (at_a_place) {
-      condition.position_m = state.position_m;
-      condition.ground_velocity_m_s = state.velocity_m_s;
-    }
+    RotorCondition<Scalar> condition;
     condition.air_relative_velocity_m_s =
         Axes(state.attitude)
             .to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
@@ -301,9 +312,6 @@ class Quadrotor {
         condition.rotors = rotors_.template wrench_of<build>(thrusts, rotor_scale(air));
         condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
-      } else if constexpr (uses_place<Effect>) {
-        const PlaceCondition<Scalar> at_place{condition, state.position_m, state.velocity_m_s};
-        condition.aerodynamic = condition.aerodynamic + wrench_of(effect, at_place);
       } else if constexpr (makes_wrench<Effect>) {
         const AeroCondition<Scalar>& without_rotors = condition;
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, without_rotors);
@@ -341,7 +349,7 @@ class Quadrotor {
                                                                 Status& air) const noexcept {
     const Evaluation<Scalar> e = loads<build>(state, thrusts, time_s);
     if (e.surroundings.status != Status::ok) air = e.surroundings.status;
-    if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery pulls nobody down
+    if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery can't reverse thrust
     const Wrench<Scalar> wrench = total(e);
     StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
@@ -366,7 +374,7 @@ class Quadrotor {
   Airframe<Scalar> airframe_;
   Scalar inverse_mass_;
   Site<Scalar> site_;
-  std::tuple<BoundEffect<Effects, Scalar>...> effects_;
+  std::tuple<detail::BoundEffect<Effects, Scalar>...> effects_;
   Rotors<Scalar> rotors_;
   Build build_;
   Status status_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The commands whose rotors, together with the effects that depend on them, make a wanted thrust and torque.
+// The commands for a thrust and torque, made by the rotors and by the effects that depend on them.
 #pragma once
 
 #include "pinnquad/vehicle/quadrotor.hpp"
@@ -25,7 +25,7 @@ Scalar largest_magnitude(const ThrustFractions<Scalar>& values) noexcept {
   return largest;
 }
 
-/// The rounding of one evaluation in commands: some thousand operations' worth, as torque is a small difference of thrusts.
+/// The rounding of one evaluation in commands: that of some thousand operations, as torque is a small difference.
 template <class Scalar>
 inline constexpr Scalar settled = Scalar(5000) * std::numeric_limits<Scalar>::epsilon();
 
@@ -33,7 +33,7 @@ inline constexpr Scalar settled = Scalar(5000) * std::numeric_limits<Scalar>::ep
 template <class Scalar>
 inline constexpr Scalar certainly_met = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
 
-/// What rotors and effects make of thrust fractions on one branch, and the fractions that make a given wrench.
+/// The wrench of rotors and effects from thrust fractions on one branch, and the fractions of a given wrench.
 template <class Scalar, class... Effects>
 class RotorEquation {
  public:
@@ -41,12 +41,12 @@ class RotorEquation {
                 const Surroundings<Scalar>& air) noexcept
       : quadrotor_(quadrotor), state_(state), air_(air), scale_(quadrotor.rotor_scale(air)) {}
 
-  /// A solution on one branch, and how far the true equation, with the branch as it lies, is from met there: in fractions.
+  /// A solution on one branch, and by how much it misses the true equation, each effect on the branch where it lies.
   struct Solution {
     Status status{Status::no_solution};
     ThrustFractions<Scalar> thrusts{};
-    Scalar mismatch{0};
-    Scalar size{1};  ///< 1 + largest fraction, by which mismatch is to be judged
+    Scalar mismatch{0};  ///< in thrust fractions
+    Scalar size{1};      ///< 1 + largest fraction, by which mismatch is to be judged
   };
 
   Solution solve(ThrustBranch branch, const std::array<Scalar, 4>& wanted) const noexcept {
@@ -95,14 +95,14 @@ class RotorEquation {
 
 /// Commands (not clipped) with rotors(u) + effects(u) = required in thrust and torque.
 /// It is solved in thrust fractions s and turned into commands by the rotors' curves.
-/// Without effects that use the rotors' wrench: s = A^-1 (required - effects). With them the equation is affine in s on each
-/// ThrustBranch: its matrix is read off at s = 0 and at the four unit fractions and inverted, so that one round is exact.
-/// Ground effect by |F_z|: with k = (r - 1) |R_zz|, more thrust always lifts more while k < 1 and there is one solution.
-/// Beyond (an effect of one's own with a ratio above 2) a wanted force has two solutions, of which the upper
+/// Without effects that use the rotors' wrench: s = A^-1 (required - effects). With them the equation is affine in s on
+/// each ThrustBranch: its matrix is read off at s = 0 and at the four unit fractions and inverted, so that one round is
+/// exact. Ground effect by |F_z|: with k = (r - 1) |R_zz|, more thrust always lifts more while k < 1 and there is one
+/// solution. Beyond (an effect of one's own with a ratio above 2) a wanted force has two solutions, of which the upper
 /// branch's, with the greater thrust, is returned, or none (`no_solution`).
-/// An effect that is only nearly affine is iterated, at most 40 rounds; `no_solution` if they don't settle.
-/// The air's own status, `out_of_range` where there is none (density 0 or less) or no power (thrust scale 0 or less).
-/// `commands` is untouched unless ok.
+/// An effect that is only nearly affine is iterated, at most 40 rounds; `no_solution` if they don't settle. The air's
+/// own status, `out_of_range` where there is none (density 0 or less) or no power (thrust scale 0 or less). `commands`
+/// is untouched unless ok.
 template <class Scalar, class... Effects>
 Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
                            const Surroundings<Scalar>& air, const Wrench<Scalar>& required,

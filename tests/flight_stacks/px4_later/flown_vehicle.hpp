@@ -2,7 +2,7 @@
 // A vehicle with other effects than those that the module assumes.
 #pragma once
 
-#include "pinnquad/aero/linear_damping.hpp"
+#include "pinnquad/aero/drag.hpp"
 #include "pinnquad/flight.hpp"
 
 using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::LinearDamping>;

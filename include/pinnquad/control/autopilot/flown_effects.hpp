@@ -8,7 +8,6 @@
 #include <type_traits>
 
 #include "pinnquad/aero/drag.hpp"
-#include "pinnquad/aero/linear_damping.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad::autopilot {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Crazyflie 2.1, the 27 g nano quadrotor, bare.
-// Sources: [B] Bitcraze, Crazyflie 2.1 data sheet; [P] Bitcraze blog, Measuring propeller RPM part 3 (2015); [L] Landry,
-// Planning and control for quadrotor flight through cluttered environments (MIT, 2015); [U] Luis and Le Ny, Design of a
-// trajectory tracking controller for a nanoquadcopter (2016); [F] Foerster, System identification of the Crazyflie 2.0 nano
-// quadrocopter (ETH Zurich, 2015), drag as used by Panerati et al., Learning to fly (2021), with its thrust-to-weight ratio.
+// Sources: [B] Bitcraze, Crazyflie 2.1 data sheet; [P] Bitcraze blog, Measuring propeller RPM part 3 (2015); [L]
+// Landry, Planning and control for quadrotor flight through cluttered environments (MIT, 2015); [U] Luis and Le Ny,
+// Design of a trajectory tracking controller for a nanoquadcopter (2016); [F] Foerster, System identification of the
+// Crazyflie 2.0 nano quadrocopter (ETH Zurich, 2015), drag as used by Panerati et al., Learning to fly (2021), with its
+// thrust-to-weight ratio.
 #pragma once
 
 #include "pinnquad/dynamics/airframe_value.hpp"

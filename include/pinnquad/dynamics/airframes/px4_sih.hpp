@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The quadrotor of PX4's simulation in hardware (SIH, airframe 10040) with its default parameters. Its drag is the effect
-// LinearDamping (aero/linear_damping.hpp): Quadrotor<double, LinearDamping>::of<Px4Sih>().
+// The quadrotor of PX4's simulation in hardware (SIH, airframe 10040) with its default parameters. Its drag is the
+// effect LinearDamping (aero/drag.hpp): Quadrotor<double, LinearDamping>::of<Px4Sih>().
 // Source: [P] PX4 v1.16.0, parameters SIH_* as a flight's log has them; thrust is linear in the command.
 #pragma once
 
