@@ -133,8 +133,7 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
   using Window = typename Features::Window;
   static_assert(
       Window::causal,
-      "pinnquad: a centred window looks ahead, and no loop can: planned_window() makes it of a motion that is "
-      "known (features/input_history.hpp)");
+      "pinnquad: a centred window looks ahead, and no loop can (features/windowed.hpp)");
   static_assert(MostSamples >= 4, "pinnquad: an InputHistory keeps four samples or more");
 
  public:
@@ -209,21 +208,5 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
   int count_{0};
   Inputs inputs_{};
 };
-
-/// A window, causal or centred, of a motion that is known ahead: `plan(time_s, inputs)` gives the inputs of an instant, a Status,
-/// and does not throw.
-/// The first Status of the plan that is not ok, and then `window` is untouched.
-template <class Tap, class Scalar, class Window, class Plan>
-Status planned_window(const Plan& plan, double present_s, WindowInputs<Tap, Scalar, Window>& window) noexcept {
-  WindowInputs<Tap, Scalar, Window> filled;
-  Status status = plan(present_s, static_cast<Tap&>(filled));
-  for (int tap = 0; tap < Window::taps - 1 && status == Status::ok; ++tap) {
-    status = plan(present_s + Window::offset_s(tap), filled.others[std::size_t(tap)]);
-  }
-  if (status != Status::ok) return status;
-  filled.complete = true;
-  window = filled;
-  return Status::ok;
-}
 
 }  // namespace pinnquad
