@@ -28,7 +28,6 @@
 #include "pinnquad/exported/renamed.hpp"
 #include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/features/input_history.hpp"
-#include "pinnquad/features/inverse_features.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/features/windowed.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"

@@ -13,7 +13,7 @@
 #include "model/run_time_answer.hpp"
 #include "pinnquad/deploy/record_writer.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 

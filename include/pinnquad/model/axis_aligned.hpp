@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The affine part of a monotone model. Outputs are axis commands (outputs/axis_command_outputs.hpp). The command about an
-// axis depends on the angular acceleration about that axis and on no other one; the collective depends on none. With slopes
-// above 0 each axis command rises with the acceleration that is asked about its axis.
+// The affine part of a monotone model. Outputs are axis commands (outputs/axis_command_outputs.hpp). The command about
+// an axis depends on the angular acceleration about that axis and on no other one; the collective depends on none. With
+// slopes above 0 each axis command rises with the acceleration that is asked about its axis.
 //   y_0 = b_0 + w_0 r,  y_axis = b_axis + w_axis r + sum over taps of slope_(tap,axis) wdot_(tap,axis)
 // r: all features but the angular accelerations.
 #pragma once
@@ -16,8 +16,8 @@ namespace pinnquad {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// `First...`: place of the angular acceleration of each tap, that of the present first. Parameters: slopes tap by tap, axis
-/// by axis; weights of the other features row by row; intercepts.
+/// `First...`: place of the angular acceleration of each tap, that of the present first. Parameters: slopes tap by tap,
+/// axis by axis; weights of the other features row by row; intercepts.
 template <class ScalarType, int FeatureCount, int... First>
 struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
                                    3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {

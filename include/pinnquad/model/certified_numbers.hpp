@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The arguments of a certificate (exported/certificate.hpp): which structure of a model is proven, numbers of the vehicle, and
-// the stored numbers of a model, in a header, a block or a trainer.
+// The arguments of a certificate (exported/certificate.hpp): which structure of a model is proven, numbers of the
+// vehicle, and the stored numbers of a model, in a header, a block or a trainer.
 #pragma once
 
 #include <limits>
@@ -13,8 +13,9 @@
 
 namespace pinnquad {
 
-/// A proven slope is above this share of the airframe's own at full command. Training leaves a hundredth at least (SlopeRule);
-/// a network that is shown the angular acceleration may take nine tenths of it, rounding and rotors' curves half of the rest.
+/// A proven slope is above this share of the airframe's own at full command. Training leaves a hundredth at least
+/// (SlopeRule); a network that is shown the angular acceleration may take nine tenths of it, rounding and rotors'
+/// curves half of the rest.
 inline constexpr double least_slope_share = 0.0005;
 
 namespace detail {
@@ -35,7 +36,8 @@ constexpr bool covers_angular_acceleration() noexcept {
   }
 }
 
-/// The structure of a predictor that a certificate proves. `Base`: its affine part, void where there is no such structure.
+/// The structure of a predictor that a certificate proves. `Base`: its affine part, void where there is no such
+/// structure.
 template <class Predictor, class Features>
 struct ProvenStructure {
   using Base = void;
@@ -61,8 +63,8 @@ struct ProvenStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturate
   using Seeing = PathBounded<Residual>;
 };
 
-/// True where the mix times its inverse is the identity without rounding (entries are quarters), and each rotor has the same
-/// sign in an axis command and in its inverse.
+/// True where the mix times its inverse is the identity without rounding (entries are quarters), and each rotor has the
+/// same sign in an axis command and in its inverse.
 template <class Scalar>
 constexpr bool exact_mix(const SignedMix<Scalar>& mix) noexcept {
   for (std::size_t row = 0; row < 4; ++row) {
@@ -97,7 +99,8 @@ constexpr bool even_mix(const SignedMix<Scalar>& mix) noexcept {
 constexpr double magnitude(double value) noexcept { return value < 0 ? -value : value; }
 constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
 
-/// Places of the features that more thrust makes smaller, those of the present instant first, then of a window's other taps.
+/// Places of the features that more thrust makes smaller, those of the present instant first, then of a window's other
+/// taps.
 template <int Size>
 struct ThrustPlaces {
   int place[Size]{};
@@ -135,8 +138,8 @@ constexpr double base_thrust_slope([[maybe_unused]] const Airframe<Scalar>& airf
   }
 }
 
-/// At or above the exact result of fewer than 64 sums and products of doubles of one sign that were worked out as `value`: each
-/// operation errs by at most 2^-53 of its result.
+/// At or above the exact result of fewer than 64 sums and products of doubles of one sign that were worked out as
+/// `value`: each operation errs by at most 2^-53 of its result.
 constexpr double rounded_up(double value) noexcept {
   return value + magnitude(value) * 64 * std::numeric_limits<double>::epsilon();
 }
@@ -191,8 +194,8 @@ struct CertifiedScales {
   const Scalar* envelope_upper;
 };
 
-/// The stored numbers that a certificate reads. No pointer is null: to compare a pointer into an array with null is no constant
-/// expression under g++ -fsanitize=undefined.
+/// The stored numbers that a certificate reads. No pointer is null: to compare a pointer into an array with null is no
+/// constant expression under g++ -fsanitize=undefined.
 template <class Scalar>
 struct CertifiedNumbers {
   int inputs;                 ///< features

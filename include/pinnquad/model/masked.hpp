@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A predictor that is not shown the angular accelerations: three features in a row from each place of a list, one place per
-// tap. Its outputs cannot depend on them, whatever its weights are.
+// A predictor that is not shown the angular accelerations: three features in a row from each place of a list, one place
+// per tap. Its outputs cannot depend on them, whatever its weights are.
 #pragma once
 
 #include "pinnquad/model/predictor.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Bounds of d(output)/d(input) of a network, valid for every input: the products of the weights along each path from the
-// input to the output are added up, each activation's slope anywhere from 0 to 1 (docs/certificate.md). For a network that is
-// shown the angular acceleration and must not turn the sign of a slope.
+// Bounds of d(output)/d(input) of a network, valid for every input: the products of the weights along each path from
+// the input to the output are added up, each activation's slope anywhere from 0 to 1 (docs/certificate.md). For a
+// network that is shown the angular acceleration and must not turn the sign of a slope.
 #pragma once
 
 #include <limits>
@@ -27,8 +27,8 @@ inline constexpr bool slopes_from_0_to_1<SoftplusLayer<Scalar, Size>> = true;
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The intervals of `outputs` weighted sums of `inputs` intervals, weights row by row. Intervals that hold 0 add up numbers of
-/// one sign at each end: rounding errs by less than (inputs + 1) 2^-53 of it.
+/// The intervals of `outputs` weighted sums of `inputs` intervals, weights row by row. Intervals that hold 0 add up
+/// numbers of one sign at each end: rounding errs by less than (inputs + 1) 2^-53 of it.
 template <class Scalar>
 constexpr void weigh_intervals(const Scalar* weights, int inputs, int outputs, const double* lower, const double* upper,
                                double* sum_lower, double* sum_upper) noexcept {
@@ -70,9 +70,9 @@ struct PathBound {
   double upper[Outputs]{};
 };
 
-/// From the first layer's outputs to the network's. `widths`: outputs of each of the `layers` dense layers; parameters in the
-/// order of a Network. `work`: 4 x `widest` numbers; the intervals of the first layer's outputs, each holding 0, stand there:
-/// lower ends from 0 on, upper ends from `widest` on.
+/// From the first layer's outputs to the network's. `widths`: outputs of each of the `layers` dense layers; parameters
+/// in the order of a Network. `work`: 4 x `widest` numbers; the intervals of the first layer's outputs, each holding 0,
+/// stand there: lower ends from 0 on, upper ends from `widest` on.
 template <class Scalar>
 constexpr void path_bound_behind_first(const Scalar* parameters, int inputs, const int* widths, int layers,
                                        double* work, int widest, double* lower, double* upper) noexcept {
@@ -109,7 +109,8 @@ constexpr void path_bound(const Scalar* parameters, int inputs, const int* width
   path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
 }
 
-/// Bounds along a direction, of which each entry is from least[i] to most[i]: tighter than the sum of the bounds by each input.
+/// Bounds along a direction, of which each entry is from least[i] to most[i]: tighter than the sum of the bounds by
+/// each input.
 template <class Scalar>
 constexpr void path_bound_along(const Scalar* parameters, int inputs, const int* widths, int layers,
                                 const double* least, const double* most, double* work, int widest, double* lower,
@@ -129,10 +130,10 @@ constexpr void path_bound_along(const Scalar* parameters, int inputs, const int*
   path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
 }
 
-/// A network that is shown the angular acceleration: a predictor like `NetworkType`, of which a certificate asks the path bound;
-/// PathProjection keeps its weights small in training. At most 3 dense layers: the bound adds up the worst of all units, and
-/// with each layer more it is further above what the network does, until nothing is left of what it is shown. A float network:
-/// a product of a few of its weights is no subnormal double.
+/// A network that is shown the angular acceleration: a predictor like `NetworkType`, of which a certificate asks the
+/// path bound; PathProjection keeps its weights small in training. At most 3 dense layers: the bound adds up the worst
+/// of all units, and with each layer more it is further above what the network does, until nothing is left of what it
+/// is shown. A float network: a product of a few of its weights is no subnormal double.
 template <class NetworkType>
 struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
                                    NetworkType::outputs, NetworkType::parameter_count> {
@@ -176,8 +177,8 @@ struct Description<PathBounded<NetworkType>> {
   }
 };
 
-/// The affine part and a network that is shown all features. Where its path bound is below the slopes, each axis command rises
-/// with the angular acceleration about its axis.
+/// The affine part and a network that is shown all features. Where its path bound is below the slopes, each axis
+/// command rises with the angular acceleration about its axis.
 template <class Features, class Residual>
 using PathBoundedPredictor = Sum<MonotoneBase<Features, typename Residual::Scalar>, Saturated<PathBounded<Residual>>>;
 

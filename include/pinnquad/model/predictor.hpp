@@ -3,9 +3,9 @@
 // Contract of a predictor: `Scalar`, `inputs`, `outputs`, `parameter_count`, `Parameters` (one flat array), a member
 // `parameters`, a Description (model/description.hpp), and
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept
-//   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept   outputs x inputs,
-//     row-major; a Network's is JacobianPass (nn/jacobian.hpp)
-// A Network runs on the vector unit, any other predictor as it is written.
+//   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept
+// by_x: outputs x inputs, row-major. A Network's Jacobian is JacobianPass (nn/jacobian.hpp). A Network runs on the
+// vector unit, any other predictor as it is written.
 #pragma once
 
 #include <array>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Outputs as axis commands: the rows of Eq. (2) with their signs alone, which are the sum of all commands (collective) and
-// the signed sums about roll, pitch and yaw, as LocalMonotonicity compares them. u = A y, A the inverse of the signs, +-1/4 for
-// an X. Where each axis command follows its own angular acceleration and no other one, so does each rotor's command.
+// Outputs as axis commands: the rows of Eq. (2) with their signs alone, which are the sum of all commands (collective)
+// and the signed sums about roll, pitch and yaw, as LocalMonotonicity compares them. u = A y, A the inverse of the
+// signs, +-1/4 for an X. Where each axis command follows its own angular acceleration and no other one, so does each
+// rotor's command.
 #pragma once
 
 #include <array>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A base: an analytic inverse that a model's outputs are added to, so that the network learns what it leaves.
 // Contract, all static and noexcept, Scalar deduced, x: features in physical units:
-//   reads                                     constexpr array of ReadFeature: the compiler refuses a feature set without them
-//   prepare(airframe)                         constexpr: all that needs the airframe alone
-//   commands(x, prepared, u)                  the commands of the rotors
-//   slopes<FeatureCount>(x, prepared, by_x)   du/dx, rotor_count x FeatureCount, row-major, into zeros
-//   least_thrust_slope(airframe)              optional, for a certificate (outputs/rigid_body_base.hpp)
-//   description                               optional text for headers and blocks (model/description.hpp)
+//   reads                                constexpr array of ReadFeature; the compiler refuses a feature set without them
+//   prepare(airframe)                    constexpr: all that needs the airframe alone
+//   commands(x, prepared, u)             the commands of the rotors
+//   slopes<FeatureCount>(x, prepared, by_x)  du/dx, rotor_count x FeatureCount, row-major, into zeros
+//   least_thrust_slope(airframe)         optional, for a certificate (outputs/rigid_body_base.hpp)
+//   description                          optional text for headers and blocks (model/description.hpp)
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Slopes of an airframe's axis commands by the angular acceleration, in hover: a model's slopes are compared with them, or
-// pinned to them.
+// Slopes of an airframe's axis commands by the angular acceleration, in hover: a model's slopes are compared with them,
+// or pinned to them.
 #pragma once
 
 #include <array>

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The meaning of a model's outputs, as a type: how they become commands of the rotors (docs/paper.md, deviation 20).
-// Contract, all static and noexcept, Scalar deduced; x: features in physical units, y: `size` outputs in theirs, u: commands:
-//   size, names, units                      count, and of each output its name and unit
-//   commands(x, y, setting, u)              u = g(x, y). `setting`: the airframe, or the result of `prepare(airframe)`
-//   from_commands(x, u, setting, y)         outputs with g(x, y) = u: the targets of a training
-//   slopes(x, y, setting, by_outputs)       du/dy, rotor_count x size, row-major; not needed where the schema says
-//                                           `linear = true`: g is affine in y, and its values give the slopes
+// Contract, all static and noexcept, Scalar deduced; x: features, y: `size` outputs, both in physical units, u: commands:
+//   size, names, units                   count, and of each output its name and unit
+//   commands(x, y, setting, u)           u = g(x, y). `setting`: the airframe, or the result of `prepare(airframe)`
+//   from_commands(x, u, setting, y)      outputs with g(x, y) = u: the targets of a training
+//   slopes(x, y, setting, by_outputs)    du/dy, rotor_count x size, row-major; not needed where the schema says
+//                                        `linear = true`: g is affine in y, and its values give the slopes
 //   feature_slopes<FeatureCount>(x, y, setting, by_x)
-//                                           du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
-//   prepare(airframe)                       optional, constexpr: worked out by the compiler
-//   takes_features                          optional, false: no function reads x, which may be null
-// Short form for one output per rotor and one unit: `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)`,
-// `command_slope(y, airframe)`, or these three with the rotor's index as last argument, for rotors that differ.
-// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets, and plain
-// arrays then, no Eigen (docs/guide.md, Reproducibility).
+//                                        du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
+//   prepare(airframe)                    optional, constexpr: worked out by the compiler
+//   takes_features                       optional, false: no function reads x, which may be null
+// Short form for one output per rotor and one unit: `names`, `unit`, from_command(u, airframe), command(y, airframe),
+// command_slope(y, airframe), or these three with the rotor's index as last argument, for rotors that differ.
+// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets,
+// and plain arrays then, no Eigen (docs/guide.md, Reproducibility).
 #pragma once
 
 #include <array>
@@ -44,8 +44,8 @@ struct CommandOutputs {
   }
 };
 
-/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2, or the command at
-/// which the rotor's thrust_curve gives that speed. `rotor`: its index, where the curves differ.
+/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2, or the
+/// command at which the rotor's thrust_curve gives that speed. `rotor`: its index, where the curves differ.
 struct RotorSpeedOutputs {
   static constexpr std::array<const char*, rotor_count> names = {"n1", "n2", "n3", "n4"};
   static constexpr const char* unit = "rev/s";
@@ -170,7 +170,7 @@ inline constexpr bool reads_features<T, true> = T::takes_features;
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The short form as a schema of the full form, but that its slopes are those of each rotor's command by its own output alone.
+/// The short form as a schema of the full form; slopes() writes du_i/dy_i alone.
 template <class Schema, class... Index>
 struct EachRotor {
   static constexpr int size = rotor_count;
@@ -231,7 +231,8 @@ struct OutputMap {
   static constexpr bool has_feature_slopes = detail::VectorCalls<Form>::has_feature_slopes;
   static constexpr int slope_count = rotor_by_rotor ? size : rotor_count * size;  ///< numbers that slopes() writes
 
-  /// Command i depends on the outputs from first_output(i) to before last_output(i); du_i/dy_k is slopes[slope_index(i, k)].
+  /// Command i depends on the outputs from first_output(i) to before last_output(i). du_i/dy_k stands at
+  /// slope_index(i, k) of the slopes.
   static constexpr int first_output(int command) noexcept { return rotor_by_rotor ? command : 0; }
   static constexpr int last_output(int command) noexcept { return rotor_by_rotor ? command + 1 : size; }
   static constexpr int slope_index(int command, int output) noexcept {

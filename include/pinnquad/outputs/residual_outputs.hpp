@@ -9,8 +9,8 @@
 
 namespace pinnquad {
 
-/// Eq. (3) inverted ("Model 1" of Table 2), of PaperFeatures and what begins as they do, in air of the rated density: thrust
-/// from v_dot_z, torques from omega_dot, nothing else.
+/// Eq. (3) inverted ("Model 1" of Table 2), of PaperFeatures and what begins as they do, in air of the rated density:
+/// thrust from v_dot_z, torques from omega_dot, nothing else.
 struct LinearizedBase {
   static constexpr const char* description = "pinnquad::LinearizedInverse";
   static constexpr std::array<ReadFeature, 4> reads = {

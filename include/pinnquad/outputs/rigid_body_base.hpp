@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rigid body's inverse of motion features (features/motion_parts.hpp) as a base, without the angular acceleration: the slope by
-// it is the model's own (model/axis_aligned.hpp).
+// The rigid body's inverse of motion features (features/motion_parts.hpp) as a base, without the angular acceleration:
+// the slope by it is the model's own (model/axis_aligned.hpp).
 #pragma once
 
 #include <limits>
@@ -41,8 +41,8 @@ struct RigidBody {
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
-/// Thrust from the specific force along z, torque from w x J w; air of the rated density, no drag. For PhysicsFeatures and
-/// feature sets that begin with specific force, angular acceleration, body rates.
+/// Thrust from the specific force along z, torque from w x J w; air of the rated density, no drag. For PhysicsFeatures
+/// and feature sets that begin with specific force, angular acceleration, body rates.
 struct RigidBodyBase {
   static constexpr const char* description = "pinnquad::RigidBodyInverse";
   static constexpr int force_z = 2;  ///< place among the features

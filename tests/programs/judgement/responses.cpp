@@ -9,7 +9,7 @@
 #include <random>
 
 #include "pinnquad/deploy/record_writer.hpp"
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "support/monotone_shapes.hpp"
 
