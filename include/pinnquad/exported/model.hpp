@@ -12,9 +12,9 @@
 #include "pinnquad/exported/model_records.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/model/predictor.hpp"
-#include "pinnquad/outputs/base.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 
 namespace pinnquad {

@@ -13,18 +13,10 @@
 
 namespace pinnquad {
 
-/// Of the pack, under load.
+/// Of the pack, under load: a column of your own is written the same way.
 struct BatteryVoltage {
   static constexpr const char* name = "battery_voltage";
   static constexpr const char* unit = "V";
-};
-
-/// Of one rotor, as its speed controller reports it. Rotor 1 to 4 in the order of Eq. (2), as u1 to u4.
-template <int Rotor>
-struct RotorSpeed {
-  static_assert(Rotor >= 1 && Rotor <= 4, "pinnquad: rotors count from 1 to 4");
-  static constexpr const char* name = Rotor == 1 ? "n1" : Rotor == 2 ? "n2" : Rotor == 3 ? "n3" : "n4";
-  static constexpr const char* unit = "rev/s";
 };
 
 namespace detail {

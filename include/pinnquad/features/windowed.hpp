@@ -39,6 +39,15 @@ struct Centred {
   }
 };
 
+/// The inputs of the present instant, and of the window's other taps. A guard's fallback sees the present alone.
+template <class Tap, class Scalar, class Window>
+struct WindowInputs : Tap {
+  std::array<Tap, static_cast<std::size_t>(Window::taps - 1)> others{};  ///< in the order of Window::offset_s
+  bool complete{false};  ///< all taps are set: else check() says `warming_up`
+};
+
+namespace detail {
+
 /// The instants of a window.
 template <int Taps, class Period, class Reach>
 struct TapWindow {
@@ -56,15 +65,6 @@ struct TapWindow {
   /// A sample this close to a tap is the tap: times are sums of steps, or counts since 1970 in a double.
   static constexpr double tolerance_s = 1e-4 * period_s;
 };
-
-/// The inputs of the present instant, and of the window's other taps. A guard's fallback sees the present alone.
-template <class Tap, class Scalar, class Window>
-struct WindowInputs : Tap {
-  std::array<Tap, static_cast<std::size_t>(Window::taps - 1)> others{};  ///< in the order of Window::offset_s
-  bool complete{false};  ///< all taps are set: else check() says `warming_up`
-};
-
-namespace detail {
 
 template <class FeatureSet, int Offset, int Index>
 constexpr std::size_t tap_name_length() noexcept {

@@ -7,7 +7,6 @@
 
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/features/features.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
