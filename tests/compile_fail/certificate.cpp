@@ -5,16 +5,14 @@
 // CASE SLOPE_HARDLY_ABOVE_ZERO: pinnquad: a slope of the model is not above 0 by its floor
 // CASE SLOPE_BELOW_ROUNDING: pinnquad: a slope of the model is not above 0 by its floor, or by what its network or rounding
 // CASE BOUNDS_UPSIDE_DOWN: pinnquad: the bounds of the model's residual are none
-// CASE RESIDUAL_SEES_TOO_MUCH: pinnquad: an answer from which features are Masked takes all the others
-// CASE WITHHELD_TWICE: pinnquad: what is Masked are features in threes, ascending, that do not overlap
+// CASE RESIDUAL_SEES_TOO_MUCH: pinnquad: a predictor inside Masked takes all features that are not masked
+// CASE WITHHELD_TWICE: pinnquad: Masked features are in threes, ascending, and do not overlap
 // CASE BASE_SEES_THE_TURNING: pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration
 // CASE BASE_SAYS_NOTHING: pinnquad: a base says which features it reads, by name
 // CASE RIGID_BODY_OF_INVERSE_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
 // CASE RIGID_BODY_OF_PAPER_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
 // CASE RIGID_BODY_OF_OTHER_UNITS: pinnquad: the outputs' base reads a feature that the feature set has not
 // CASE LINEARIZED_OF_PHYSICS_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
-// CASE FORMULA_OF_PHYSICS_FEATURES: pinnquad: a formula in the model's Network reads a feature that the feature set has not
-// CASE FORMULA_OF_WITHHELD_FEATURES: pinnquad: a formula in the model's Network reads a feature that the feature set has not
 // CASE NO_ANGULAR_ACCELERATION: pinnquad: a model that is monotone in the angular acceleration needs a feature set
 #include "pinnquad/flight.hpp"
 
@@ -25,15 +23,15 @@ using namespace pinnquad;
 using Features = PhysicsFeatures;
 constexpr int inputs = Features::size;
 using Residual = Network<float, InputSize<residual_inputs<Features>>, Dense<4>>;
-using Answer = MonotonePredictor<Features, Residual>;
+using Predictor = MonotonePredictor<Features, Residual>;
 
 constexpr auto all_at(float value) {
   std::array<float, std::size_t(inputs)> values{};
   for (float& each : values) each = value;
   return values;
 }
-constexpr Answer::Parameters numbers() {
-  Answer::Parameters parameters{};
+constexpr Predictor::Parameters numbers() {
+  Predictor::Parameters parameters{};
   for (std::size_t i = 0; i < 3; ++i) parameters[i] = 0.5f;
 #ifdef SLOPE_BELOW_ZERO
   parameters[1] = -0.5f;
@@ -61,7 +59,7 @@ constexpr Answer::Parameters numbers() {
 
 struct Certified {
   using Scalar = float;
-  using Network = Answer;
+  using Network = Predictor;
   using Features = PhysicsFeatures;
 #ifdef NO_STRUCTURE
   using Outputs = CommandOutputs;
@@ -69,7 +67,7 @@ struct Certified {
   using Outputs = AxisCommandOutputs;
 #endif
   using Vehicle = PaperQuadrotor;
-  static constexpr Answer::Parameters parameters = numbers();
+  static constexpr Predictor::Parameters parameters = numbers();
   static constexpr Scaler<float, inputs> input{};
   static constexpr Scaler<float, 4> output{};
   static constexpr auto envelope_lower = all_at(-10);
@@ -78,11 +76,11 @@ struct Certified {
 static_assert(require_certificate<Certified>());
 static_assert(certificate_of<Certified>().slope[0] > 0.49 && certificate_of<Certified>().command_bound[3] < 0.11);
 
-/// Models on a formula: of what the formula reads, and of what it does not.
-template <class FeatureSet, class Schema, class Answer = MonotoneBase<FeatureSet>>
-struct OnFormula {
+/// Models on a base: of features that it reads, and of others.
+template <class FeatureSet, class Schema, class Predictor = MonotoneBase<FeatureSet>>
+struct OnBase {
   using Scalar = float;
-  using Network = Answer;
+  using Network = Predictor;
   using Features = FeatureSet;
   using Outputs = Schema;
   using Vehicle = PaperQuadrotor;
@@ -96,27 +94,17 @@ struct OtherUnits : PhysicsFeatures {
 };
 template <class FeatureSet>
 using FourOf = Network<float, InputSize<FeatureSet::size>, Dense<4>>;
-template <class FeatureSet>
-using FormulaAnd =
-    Sum<Ensemble<Analytic<float, FeatureSet::size, LinearizedBase, PaperQuadrotor>, 2>, FourOf<FeatureSet>>;
-using Behind = Masked<Analytic<float, 13, LinearizedBase, PaperQuadrotor>, 16, 3>;
-static_assert(require_shape<OnFormula<PhysicsFeatures, SignedSumsOn<RigidBodyBase>>>() &&
-              require_shape<OnFormula<WithColumns<PhysicsFeatures, BatteryVoltage>, SignedSumsOn<RigidBodyBase>>>());
-static_assert(
-    require_shape<OnFormula<PaperFeatures, ResidualOutputs<LinearizedBase>, FourOf<PaperFeatures>>>() &&
-    require_shape<OnFormula<PaperFeaturesWithAltitude, CommandOutputs, FormulaAnd<PaperFeaturesWithAltitude>>>());
+static_assert(require_shape<OnBase<PhysicsFeatures, SignedSumsOn<RigidBodyBase>>>() &&
+              require_shape<OnBase<WithColumns<PhysicsFeatures, BatteryVoltage>, SignedSumsOn<RigidBodyBase>>>());
+static_assert(require_shape<OnBase<PaperFeatures, ResidualOutputs<LinearizedBase>, FourOf<PaperFeatures>>>());
 #if defined(RIGID_BODY_OF_INVERSE_FEATURES)
-static_assert(require_shape<OnFormula<InverseFeatures, SignedSumsOn<RigidBodyBase>>>());
+static_assert(require_shape<OnBase<InverseFeatures, SignedSumsOn<RigidBodyBase>>>());
 #elif defined(RIGID_BODY_OF_PAPER_FEATURES)
-static_assert(require_shape<OnFormula<PaperFeatures, SignedSumsOn<RigidBodyBase>>>());
+static_assert(require_shape<OnBase<PaperFeatures, SignedSumsOn<RigidBodyBase>>>());
 #elif defined(RIGID_BODY_OF_OTHER_UNITS)
-static_assert(require_shape<OnFormula<OtherUnits, SignedSumsOn<RigidBodyBase>>>());
+static_assert(require_shape<OnBase<OtherUnits, SignedSumsOn<RigidBodyBase>>>());
 #elif defined(LINEARIZED_OF_PHYSICS_FEATURES)
-static_assert(require_shape<OnFormula<PhysicsFeatures, ResidualOutputs<LinearizedBase>, FourOf<PhysicsFeatures>>>());
-#elif defined(FORMULA_OF_PHYSICS_FEATURES)
-static_assert(require_shape<OnFormula<PhysicsFeatures, CommandOutputs, FormulaAnd<PhysicsFeatures>>>());
-#elif defined(FORMULA_OF_WITHHELD_FEATURES)
-static_assert(require_shape<OnFormula<PaperFeatures, CommandOutputs, Behind>>());
+static_assert(require_shape<OnBase<PhysicsFeatures, ResidualOutputs<LinearizedBase>, FourOf<PhysicsFeatures>>>());
 #endif
 
 #ifdef RESIDUAL_SEES_TOO_MUCH

@@ -7,7 +7,7 @@
 // CASE NO_SUCH_COLUMN: pinnquad: these inputs have no such column
 // CASE WINDOW_OF_NO_FEATURES: pinnquad: Windowed's first argument is not a feature set
 // CASE EVEN_CENTRED_WINDOW: pinnquad: a window has one tap or more, a centred one an odd number
-// CASE PART_OF_OTHER_INPUTS: pinnquad: what PartlyWindowed asks of the other taps is made of the same inputs
+// CASE PART_OF_OTHER_INPUTS: pinnquad: the part of PartlyWindowed has the same inputs as its feature set
 // CASE CENTRED_PART: pinnquad: a centred window looks ahead, and no loop can
 // CASE JOINED_TWICE: pinnquad: feature sets that are Joined have a feature in common
 // CASE JOINED_INPUTS: pinnquad: feature sets that are Joined have the same Inputs

@@ -7,7 +7,7 @@
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"

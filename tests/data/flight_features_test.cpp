@@ -18,7 +18,11 @@ using namespace pinnquad;
 namespace {
 
 using Period = PeriodMicroseconds<50000>;
-using Voltage = WithColumns<PaperFeatures, BatteryVoltage, RotorSpeed<3>>;
+struct ThirdRotor {
+  static constexpr const char* name = "n3";
+  static constexpr const char* unit = "rev/s";
+};
+using Voltage = WithColumns<PaperFeatures, BatteryVoltage, ThirdRotor>;
 using Past = Windowed<Voltage, 3, Period>;
 using About = Windowed<PaperFeaturesWithAltitude, 3, Period, Centred>;
 

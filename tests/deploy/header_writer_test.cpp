@@ -16,7 +16,7 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/model/composition.hpp"
+#include "pinnquad/model/saturated.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
@@ -103,8 +103,8 @@ TEST_CASE("type names are those that another translation unit can write") {
                               "pinnquad::Dense<4>>") == 0);  // with every compiler
   // nor of its flags: a type of an inline namespace that names an instruction set, in another such
   using Small = Network<float, InputSize<2>, Dense<1>>;
-  CHECK(type_name<pinnquad::Sum<pinnquad::Scaled<Small>, Small>>() ==
-        "pinnquad::Sum<pinnquad::Scaled<pinnquad::Network<float, pinnquad::InputSize<2>, pinnquad::Dense<1>>>, "
+  CHECK(type_name<pinnquad::Sum<pinnquad::Saturated<Small>, Small>>() ==
+        "pinnquad::Sum<pinnquad::Saturated<pinnquad::Network<float, pinnquad::InputSize<2>, pinnquad::Dense<1>>>, "
         "pinnquad::Network<float, pinnquad::InputSize<2>, pinnquad::Dense<1>>>");
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
 #include "support/monotone_shapes.hpp"
 

@@ -15,11 +15,15 @@ using pinnquad::test::RandomStates;
 
 namespace {
 
+struct SecondRotor {
+  static constexpr const char* name = "n2";
+  static constexpr const char* unit = "rev/s";
+};
 struct PackCurrent {
   static constexpr const char* name = "pack_current";
   static constexpr const char* unit = "A";
 };
-using Measured = WithColumns<PaperFeaturesWithAltitude, BatteryVoltage, RotorSpeed<2>, PackCurrent>;
+using Measured = WithColumns<PaperFeaturesWithAltitude, BatteryVoltage, SecondRotor, PackCurrent>;
 using MeasuredInputs = Measured::Inputs<float>;
 
 MeasuredInputs sound_inputs(std::uint64_t seed) {
@@ -28,7 +32,7 @@ MeasuredInputs sound_inputs(std::uint64_t seed) {
   static_cast<MotionInputs<float>&>(inputs) = motion_inputs(random.state<float>(), random.motion<float>());
   inputs.altitude_m = 3;
   inputs.column<BatteryVoltage>() = 15.5F;
-  inputs.column<RotorSpeed<2>>() = 101;
+  inputs.column<SecondRotor>() = 101;
   inputs.column<PackCurrent>() = 22;
   return inputs;
 }

@@ -281,20 +281,3 @@ TEST_CASE("altitude and columns are interpolated too, attitudes the shorter way"
   CHECK(half.w == doctest::Approx(std::cos(std::acos(-1.0) / 8)));
   CHECK(half.z == doctest::Approx(std::sin(std::acos(-1.0) / 8)));
 }
-
-TEST_CASE("a motion that is planned fills a centred window; its first bad Status is handed on") {
-  About::Inputs<double> window;
-  const auto plan = [](double time_s, MotionInputs<double>& inputs) {
-    if (time_s > 5) return Status::out_of_range;
-    inputs = line<double>(time_s);
-    return Status::ok;
-  };
-  REQUIRE(planned_window(plan, 2.0, window) == Status::ok);
-  CHECK(About::check(window) == Status::ok);
-  const double offsets[] = {-0.02, -0.04, 0.02, 0.04};
-  for (std::size_t tap = 0; tap < 4; ++tap) {
-    CHECK(apart<double>(window.others[tap], line<double>(2.0 + offsets[tap])) < 1e-12);
-  }
-  CHECK(planned_window(plan, 4.99, window) == Status::out_of_range);
-  CHECK(same<double>(window, line<double>(2.0)));
-}

@@ -93,7 +93,7 @@ TEST_CASE_TEMPLATE("no derivative of the network leaves its path bound, whatever
       for (int trial = 0; trial < 200; ++trial) {
         float x[NetworkType::inputs], y[4], by_x[4 * NetworkType::inputs];
         for (float& v : x) v = float(uniform(engine, -1, 1) * std::pow(10.0, uniform(engine, -1, 2)));
-        answer_jacobian<PathBounded<NetworkType>>(network.parameters.data(), x, y, by_x);
+        predictor_jacobian<PathBounded<NetworkType>>(network.parameters.data(), x, y, by_x);
         for (int k = 0; k < 4; ++k) {
           const double slope = double(by_x[k * NetworkType::inputs + input]);
           const double rounding = 1e-5 * (1 + std::abs(slope));
@@ -135,7 +135,7 @@ TEST_CASE("the bound is reached where all paths agree: weights above 0, all unit
   for (float& v : network.parameters) v = float(uniform(engine, 0.1, 1));
   float x[6], y[4], by_x[24];
   for (float& v : x) v = 1;
-  answer_jacobian<Three<Relu>>(network.parameters.data(), x, y, by_x);
+  predictor_jacobian<Three<Relu>>(network.parameters.data(), x, y, by_x);
   for (int input = 0; input < 6; ++input) {
     const auto bound = PathBounded<Three<Relu>>::bound(network.parameters.data(), input);
     for (int k = 0; k < 4; ++k) {
@@ -162,7 +162,7 @@ TEST_CASE_TEMPLATE("a certified model rises everywhere by at least its slope, an
     for (int sample = 0; sample < 100; ++sample) {
       float x[size], y[4], by_x[4 * size];
       for (int i = 0; i < size; ++i) x[i] = float(uniform(engine, -4, 4) * (sample % 4 == 0 ? 20 : 1));
-      answer_jacobian<typename Shape::Network>(model.parameters.data(), x, y, by_x);
+      predictor_jacobian<typename Shape::Network>(model.parameters.data(), x, y, by_x);
       for (int axis = 0; axis < 3; ++axis) {
         const int place = Shape::Features::angular_acceleration + axis;
         double sums[4], others = 0;

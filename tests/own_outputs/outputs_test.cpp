@@ -6,20 +6,15 @@
 #include <accelerations.hpp>
 #include <cmath>
 #include <direct.hpp>
-#include <ensemble.hpp>
-#include <heads.hpp>
 #include <memory>
 #include <path_bounded.hpp>
 #include <residual.hpp>
 #include <ridge.hpp>
 #include <structured.hpp>
-#include <sum.hpp>
-#include <symmetric.hpp>
 #include <wrench.hpp>
 
 #include "own_outputs/setting.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/dynamics/mirror.hpp"
 #include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
@@ -222,8 +217,7 @@ TEST_CASE("a block of one meaning is none of another: six accelerations, a wrenc
   CHECK(ModelView<ResidualModel>::open(bytes.data(), bytes.size(), view) == Status::block_incompatible);
 }
 
-TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, SumModel, EnsembleModel, HeadsModel,
-                   StructuredModel, PathBoundedModel, SymmetricModel) {
+TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, StructuredModel, PathBoundedModel) {
   const test::BlockBytes bytes(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
@@ -274,72 +268,16 @@ TEST_CASE("a structured model brings its certificate, and its block none that it
   CHECK(opened_with(bounds, 1e3F) == Status::block_corrupt);
 }
 
-TEST_CASE("one whose network is shown the angular acceleration, and one that is its own mirror image, are proven too") {
-  constexpr Certificate seeing = certificate_of<PathBoundedModel>(), symmetric = certificate_of<SymmetricModel>();
-  static_assert(seeing.proven() && symmetric.proven());
+TEST_CASE("one whose network is shown the angular acceleration is proven too") {
+  constexpr Certificate seeing = certificate_of<PathBoundedModel>();
+  static_assert(seeing.proven());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK(seeing.other_sums[axis] > 0);
     CHECK(seeing.other_sums[axis] < seeing.slope[axis]);
-    CHECK(symmetric.other_sums[axis] == 0);
-  }
-  for (const std::size_t turned : {std::size_t(1), std::size_t(3)}) {
-    CHECK(SymmetricModel::residual_lower[turned] == -SymmetricModel::residual_upper[turned]);
   }
 }
 
-TEST_CASE("the mirror image of a motion asks for the mirror image of the commands") {
-  const RotorMirror mirror = mirror_of(PaperQuadrotor::value<double>());
-  const InverseDynamics<SymmetricModel> symmetric;
-  const InverseDynamics<StructuredModel> other;
-  float difference = 0;
-  for (const auto& x : SymmetricModel::golden_features) {
-    auto image = x;
-    for (int i = 0; i < SymmetricModel::Features::size; ++i) {
-      if (is_odd<SymmetricModel::Features>(i)) image[std::size_t(i)] = -image[std::size_t(i)];
-    }
-    Commands<float> u{}, of_image{}, v{}, v_of_image{};
-    REQUIRE(symmetric.predict_features(x.data(), u) == Status::ok);
-    REQUIRE(symmetric.predict_features(image.data(), of_image) == Status::ok);
-    REQUIRE(other.predict_features(x.data(), v) == Status::ok);
-    REQUIRE(other.predict_features(image.data(), v_of_image) == Status::ok);
-    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
-      CHECK(of_image[rotor] == doctest::Approx(u[mirror.partner[rotor]]).epsilon(1e-6));
-      difference = std::fmax(difference, std::abs(v_of_image[rotor] - v[mirror.partner[rotor]]));
-    }
-  }
-  CHECK(difference > 1e-4F);  // one that was only trained to it differs
-}
-
-TEST_CASE("a formula and a network as a sum are that network's outputs on that formula; an ensemble is the mean") {
-  const InverseDynamics<SumModel> sum;
-  const InverseDynamics<ResidualModel> residual;
-  const InverseDynamics<DirectModel> direct;
-  const InverseDynamics<EnsembleModel> ensemble;
-  for (const auto& x : SumModel::golden_features) {
-    Commands<float> u{}, expected{}, other{}, mean{};
-    REQUIRE(sum.predict_features(x.data(), u) == Status::ok);
-    REQUIRE(residual.predict_features(x.data(), expected) == Status::ok);
-    REQUIRE(direct.predict_features(x.data(), other) == Status::ok);
-    REQUIRE(ensemble.predict_features(x.data(), mean) == Status::ok);
-    for (std::size_t i = 0; i < 4; ++i) {
-      CHECK(std::abs(u[i] - expected[i]) <= rounding);
-      CHECK(std::abs(mean[i] - (expected[i] + other[i]) / 2) <= rounding);
-    }
-  }
-}
-
-TEST_CASE("a trunk with two heads gives what the network gave that it was cut from") {
-  const InverseDynamics<HeadsModel> heads;
-  const InverseDynamics<DirectModel> direct;
-  for (const auto& x : HeadsModel::golden_features) {
-    Commands<float> u{}, expected{};
-    REQUIRE(heads.predict_features(x.data(), u) == Status::ok);
-    REQUIRE(direct.predict_features(x.data(), expected) == Status::ok);
-    for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(u[i] - expected[i]) <= rounding);
-  }
-}
-
-TEST_CASE("an affine map is told from its header alone") {
+TEST_CASE("an affine map: its header has all that its commands need") {
   const InverseDynamics<RidgeModel> ridge;
   for (const auto& x : RidgeModel::golden_features) {
     Commands<float> u{};
@@ -376,8 +314,4 @@ struct Named : Relu {
 TEST_CASE("what a model is made of is written, whichever compiler reads it") {
   CHECK(written<Network<float, InputSize<16>, Dense<25>, Named, Dense<4>>>() ==
         "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, mine/leaky 0.1, pinnquad::Dense<4>>");
-  CHECK(written<EnsembleModel::Network>() ==
-        "pinnquad::Ensemble<2><pinnquad::Sum<pinnquad::Analytic<16><float, pinnquad::LinearizedInverse>paper_quadrotor, "
-        "pinnquad::Scaled<pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<20>, pinnquad::Tanh, "
-        "pinnquad::Dense<20>, pinnquad::Tanh, pinnquad::Dense<4>>>>>");
 }

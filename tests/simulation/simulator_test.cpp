@@ -281,7 +281,9 @@ TEST_CASE("a recorder is told the commands of each tick, and asked for a row aft
 namespace {
 
 /// What the first rotor's speed controller says: its thrust grows with the square of its speed.
-struct FirstRotor : pinnquad::RotorSpeed<1> {
+struct FirstRotor {
+  static constexpr const char* name = "n1";
+  static constexpr const char* unit = "rev/s";
   template <class Quadrotor>
   double operator()(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state) const {
     return 100 * std::sqrt(state.rotors[0]);

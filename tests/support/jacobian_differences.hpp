@@ -10,13 +10,11 @@
 
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
-#include "pinnquad/model/composition.hpp"
 #include "pinnquad/model/path_bound.hpp"
-#include "pinnquad/model/symmetrised.hpp"
 
 namespace pinnquad::test {
 
-/// An answer (model/predictor.hpp) in double.
+/// A predictor (model/predictor.hpp) in double.
 template <class Answer>
 struct InDouble {
   using type = typename Answer::template Rebind<double>;
@@ -27,29 +25,9 @@ template <class First, class Second>
 struct InDouble<Sum<First, Second>> {
   using type = Sum<InDoubleOf<First>, InDoubleOf<Second>>;
 };
-template <class First, class Second>
-struct InDouble<Then<First, Second>> {
-  using type = Then<InDoubleOf<First>, InDoubleOf<Second>>;
-};
-template <class Member, int Count>
-struct InDouble<Ensemble<Member, Count>> {
-  using type = Ensemble<InDoubleOf<Member>, Count>;
-};
-template <class... Part>
-struct InDouble<Heads<Part...>> {
-  using type = Heads<InDoubleOf<Part>...>;
-};
-template <class Inner>
-struct InDouble<Scaled<Inner>> {
-  using type = Scaled<InDoubleOf<Inner>>;
-};
 template <class Scalar, int FeatureCount, int... First>
 struct InDouble<AxisAligned<Scalar, FeatureCount, First...>> {
   using type = AxisAligned<double, FeatureCount, First...>;
-};
-template <class Inner, int... Odd>
-struct InDouble<Symmetrised<Inner, Odd...>> {
-  using type = Symmetrised<InDoubleOf<Inner>, Odd...>;
 };
 /// It is Inner that it says; the bound of its paths is of floats.
 template <class Inner>
@@ -63,10 +41,6 @@ struct InDouble<Masked<Inner, FeatureCount, First...>> {
 template <class Inner>
 struct InDouble<Saturated<Inner>> {
   using type = Saturated<InDoubleOf<Inner>>;
-};
-template <class Scalar, int InputCount, class Formula, class Vehicle>
-struct InDouble<Analytic<Scalar, InputCount, Formula, Vehicle>> {
-  using type = Analytic<double, InputCount, Formula, Vehicle>;
 };
 
 /// A header's numbers in double, in an instance.

@@ -14,7 +14,6 @@
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/monotone_fit.hpp"
-#include "pinnquad/training/tangent_rows.hpp"
 
 using namespace pinnquad;
 
@@ -152,31 +151,4 @@ TEST_CASE("project() changes the trainer's network and nothing else") {
   CHECK(one->network().parameters == other->network().parameters);
   one->project([](auto& parameters) { parameters[7] = 0.25F; });
   CHECK(one->network().parameters[7] == 0.25F);
-}
-
-TEST_CASE("tangent rows: each is a row moved along the angular acceleration, its sums by the slopes") {
-  const Flight flight = flight_of([](double a) { return own_slope * a; }, 5);
-  const RowSet rows(flight, {0, 200});
-  const auto context = make_context<Setting>(rows);
-  const auto data = standardised<double>(context, rows);
-  std::mt19937_64 engine(6);
-  const AxisSlopes slopes = {4 * own_slope, 4 * own_slope, 4 * own_slope};  // the law's own
-  const auto both = with_tangent_rows(context, data, slopes, 0.5, engine);
-  REQUIRE(both.size() == 2 * data.size());
-  for (int row = 0; row < data.size(); ++row) {
-    const double *x = both.features_of(row), *moved = both.features_of(data.size() + row), *y = both.outputs_of(row),
-                 *other = both.outputs_of(data.size() + row);
-    double length = 0;
-    for (int i = 0; i < PhysicsFeatures::size; ++i) {
-      if (i < 3 || i > 5) CHECK(moved[i] == x[i]);
-      length += (moved[i] - x[i]) * (moved[i] - x[i]);
-    }
-    CHECK(std::sqrt(length) == doctest::Approx(0.5).epsilon(1e-9));
-    CHECK(other[0] == y[0]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double change = (other[1 + axis] - y[1 + axis]) * context.output.standard_deviation[1 + axis];
-      const double step = (moved[3 + axis] - x[3 + axis]) * context.input.standard_deviation[3 + axis];
-      CHECK(change == doctest::Approx(4 * own_slope * step).epsilon(1e-9).scale(1e-3));
-    }
-  }
 }

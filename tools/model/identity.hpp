@@ -13,8 +13,7 @@
 #include "model/run_time_answer.hpp"
 #include "pinnquad/deploy/record_writer.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/features/inverse_features.hpp"
-#include "pinnquad/model/symmetrised.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
@@ -109,17 +108,9 @@ void add_monotone_answers(const Block& block, std::vector<std::string>& all) {
   const std::string base = std::string("pinnquad::AxisAligned<") + (block.is_double ? "double" : "float") + places;
   const long long left = wanted - parse_network(base)->parameter_count();
   if (left == 0) all.push_back(base);
-  std::string turned;
-  for (int i = 0, shown = 0; i < Features::size; ++i) {
-    if (i >= Features::angular_acceleration && i < Features::angular_acceleration + 3) continue;
-    if (pinnquad::is_odd<Features>(i)) turned += ", " + std::to_string(shown);
-    ++shown;
-  }
   for (const std::string& residual :
        uniform_networks(block.is_double, block.inputs - 3, block.outputs, left - 2 * block.outputs)) {
-    for (const std::string& shown : {residual, "pinnquad::Symmetrised<" + residual + turned + ">"}) {
-      all.push_back("pinnquad::Sum<" + base + ", pinnquad::Bounded<pinnquad::Withheld<" + shown + places + ">>");
-    }
+    all.push_back("pinnquad::Sum<" + base + ", pinnquad::Bounded<pinnquad::Withheld<" + residual + places + ">>");
   }
   for (const std::string& residual :
        uniform_networks(block.is_double, block.inputs, block.outputs, left - 2 * block.outputs)) {

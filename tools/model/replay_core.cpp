@@ -3,7 +3,7 @@
 // alone.
 #include "model/replay_core.hpp"
 
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 
 namespace programs {
 

@@ -26,7 +26,7 @@ namespace detail {
 /// "window of 4 instants, 60 ms: ..." is what warming_up says in words.
 template <class Features>
 std::string warming_up() {
-  if constexpr (pinnquad::detail::HasWindow<Features>::value) {
+  if constexpr (pinnquad::is_windowed<Features>) {
     using Window = typename Features::Window;
     std::string span = in_words("%.0f ms before", -1e3 * Window::earliest_s);
     if (Window::latest_s > 0) span += in_words(" to %.0f ms after", 1e3 * Window::latest_s);

@@ -141,20 +141,6 @@ inline Response response_along(const Direction& direction, const std::vector<Net
   bound(scaled);
   response.residual_least = lower;
   response.residual_most = upper;
-  if (!residual.turned.empty()) {  // half of its own, half of its mirror image's
-    Direction image = scaled;
-    for (const int place : residual.turned) {
-      const auto i = static_cast<std::size_t>(place);
-      image.least[i] = -scaled.most[i];
-      image.most[i] = -scaled.least[i];
-    }
-    bound(image);
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool turned = k % 2 == 1;
-      response.residual_least[k] = 0.5 * (response.residual_least[k] + (turned ? -upper[k] : lower[k]));
-      response.residual_most[k] = 0.5 * (response.residual_most[k] + (turned ? -lower[k] : upper[k]));
-    }
-  }
   for (std::size_t k = 0; k < 4; ++k) {  // a bound that clips has a slope from 0 to 1
     response.residual_least[k] = std::min(0.0, response.residual_least[k]) * output_spread[k];
     response.residual_most[k] = std::max(0.0, response.residual_most[k]) * output_spread[k];

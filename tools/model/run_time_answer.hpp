@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An answer that is known at run time alone: a network, or a sum of some (model/composition.hpp), from its description.
+// An answer that is known at run time alone: a network, or a sum of some (model/predictor.hpp), from its description.
 #pragma once
 
 #include <cstddef>

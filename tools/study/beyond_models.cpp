@@ -10,7 +10,7 @@
 #include "command_line/listed.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/simulation/flights.hpp"
-#include "pinnquad/training/symmetric_rows.hpp"
+#include "study/mirrored_rows.hpp"
 #include "training/recipe.hpp"
 
 namespace study {
@@ -125,10 +125,10 @@ Train by_recipe(programs::Recipe (*recipe)(), const programs::LossName& loss,
 }
 
 /// The same on rows and their images, as many steps of the optimiser as without them.
-Train on_images(const Train& train, const pinnquad::Symmetries& which) {
+Train on_images(const Train& train, const Symmetries& which) {
   return [train, which](const BeyondTask& task) {
     std::mt19937_64 engine(task.seed);
-    const pinnquad::SymmetricRows images(task.split.train, task.airframe.airframe<double>(), which, engine);
+    const SymmetricRows images(task.split.train, task.airframe.airframe<double>(), which, engine);
     const pinnquad::RowSplit split{images.rows(), task.split.validation, task.split.test};
     const auto times = static_cast<int>(images.rows().size() / task.split.train.size());
     return train({split, task.airframe, task.seed, std::max(1, task.epochs / times), task.goes_on});
@@ -148,7 +148,7 @@ std::vector<BeyondModel> beyond_models() {
     return by_recipe(structured_recipe, programs::structured, altitude, pinned_slopes);
   };
   const Train shipped = structured(AltitudeRule::by_validation);
-  constexpr pinnquad::Symmetries mirrored{true, false}, turned{true, true};
+  constexpr Symmetries mirrored{true, false}, turned{true, true};
   return {
       {"none", "commands of the hover, whatever is asked", true, false, evaluate_none},
       {"formula", "Eq. (3) inverted", true, false, evaluate_formula},

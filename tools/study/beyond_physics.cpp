@@ -2,7 +2,7 @@
 // Unconstrained models: the paper's network on other features and under another loss, and an affine map.
 #include <random>
 
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/regression/ridge.hpp"

@@ -3,7 +3,7 @@
 // body's inverse, with a network that is shown the angular acceleration.
 #include <random>
 
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
 #include "pinnquad/training/monotone_fit.hpp"

@@ -13,7 +13,7 @@
 
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/deploy/record_writer.hpp"
-#include "pinnquad/model/composition.hpp"
+#include "pinnquad/model/predictor.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "training/model_predictions.hpp"

@@ -14,7 +14,7 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
 #include "pinnquad/deploy/trust_writer.hpp"
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/monotone_fit.hpp"

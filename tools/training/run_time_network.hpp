@@ -75,7 +75,6 @@ struct NetworkSpec {
   bool axis_aligned = false;  ///< of each three an output sees its own: pinnquad::AxisAligned
   bool bounded = false;       ///< lower and upper bounds of the outputs are its first parameters: pinnquad::Saturated
   bool path_bounded = false;  ///< it says that its path bound is to be asked: pinnquad::PathBounded
-  std::vector<int> turned;    ///< features that a mirror turns, where it is its own image: pinnquad::Symmetrised
 
   /// Features that all of it is shown.
   int shown() const { return inputs - 3 * static_cast<int>(threes.size()); }
@@ -153,16 +152,6 @@ inline bool take_threes(std::string_view numbers, NetworkSpec& spec) {
   return !spec.threes.empty() && free_from <= spec.inputs && spec.shown() > 0;
 }
 
-/// The features that a mirror turns, of those that a network is shown, as places among all of them.
-inline std::vector<int> places_of_shown(const std::vector<int>& shown, const NetworkSpec& spec) {
-  std::vector<int> places;
-  for (int place : shown) {
-    for (const int three : spec.threes) place += place >= three ? 3 : 0;
-    places.push_back(place);
-  }
-  return places;
-}
-
 /// "Network<...>,number,..." : what it holds and the numbers; nothing where the text is something else.
 inline std::optional<std::pair<std::string_view, std::string_view>> network_and_numbers(std::string_view text) {
   const std::size_t network = text.rfind('>');
@@ -206,7 +195,7 @@ inline std::optional<NetworkSpec> parse_network(const std::string& description) 
   }
   if (const auto inside = detail::inside_of(text, "pinnquad::PathBounded")) {
     std::optional<NetworkSpec> spec = parse_network(std::string(*inside));
-    if (!spec || spec->bounded || !spec->threes.empty() || spec->path_bounded || !spec->turned.empty() ||
+    if (!spec || spec->bounded || !spec->threes.empty() || spec->path_bounded ||
         !detail::has_path_bound(*spec)) {
       return {};
     }
@@ -219,19 +208,6 @@ inline std::optional<NetworkSpec> parse_network(const std::string& description) 
     if (!spec || spec->bounded || spec->path_bounded || !spec->threes.empty()) return {};
     const int shown = spec->inputs;
     if (!detail::take_threes(parts->second, *spec) || spec->shown() != shown) return {};
-    spec->turned = detail::places_of_shown(spec->turned, *spec);
-    return spec;
-  }
-  if (const auto inside = detail::inside_of(text, "pinnquad::Symmetrised")) {
-    const auto parts = detail::network_and_numbers(*inside);
-    std::optional<NetworkSpec> spec = parts ? parse_network(std::string(parts->first)) : std::nullopt;
-    if (!spec || spec->bounded || spec->path_bounded || !spec->threes.empty() || !spec->turned.empty() ||
-        spec->outputs() != 4) {
-      return {};
-    }
-    spec->turned = detail::whole_numbers(parts->second);
-    const auto no_feature = [&](int place) { return place < 0 || place >= spec->inputs; };
-    if (std::any_of(spec->turned.begin(), spec->turned.end(), no_feature)) return {};
     return spec;
   }
   if (const auto inside = detail::inside_of(text, "pinnquad::AxisAligned")) {
@@ -349,19 +325,7 @@ class RunTimeNetwork {
   /// the kink of a ReLU it is the derivative from below, 0, as in nn/jacobian.hpp.
   template <std::size_t Count>
   std::vector<std::array<Scalar, Count>> pushed_forward(std::vector<std::array<Scalar, Count>> x) const {
-    if (spec_.turned.empty()) return held(through_layers(std::move(x)));
-    std::vector<std::array<Scalar, Count>> image = x;
-    for (const int place : spec_.turned) {
-      for (Scalar& value : image[static_cast<std::size_t>(place)]) value = -value;
-    }
-    x = through_layers(std::move(x));
-    image = through_layers(std::move(image));
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      for (std::size_t k = 0; k < Count; ++k) {
-        x[i][k] = Scalar(0.5) * (i % 2 == 0 ? x[i][k] + image[i][k] : x[i][k] - image[i][k]);
-      }
-    }
-    return held(std::move(x));
+    return held(through_layers(std::move(x)));
   }
 
  private:

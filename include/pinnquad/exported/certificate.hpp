@@ -108,7 +108,7 @@ constexpr void bound_residual(const CertifiedNumbers<Scalar>& from, Certificate&
 template <class Scalar>
 constexpr void take_thrust(const CertifiedNumbers<Scalar>& from, Certificate& certificate) noexcept {
   if (from.thrust_count == 0) return;
-  const double formula = from.vehicle.formula_thrust_slope;
+  const double formula = from.vehicle.base_thrust_slope;
   if (!is_finite_constant(formula)) {
     certificate.thrust_slope = certificate.held_thrust_slope = formula;
     return;
@@ -133,7 +133,7 @@ constexpr void take_thrust(const CertifiedNumbers<Scalar>& from, Certificate& ce
 /// The base's rounding inside the envelope, and the step from which on a slope is above it (docs/certificate.md).
 template <class Scalar>
 constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate& certificate) noexcept {
-  if (from.has_paths || from.vehicle.on_formula || !certificate.bounded) {
+  if (from.has_paths || from.vehicle.on_base || !certificate.bounded) {
     for (double& step : certificate.sure_step) step = std::numeric_limits<double>::infinity();
     return;
   }
@@ -150,7 +150,7 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
     const double far = farthest(feature);
     if (tap < from.taps && feature == from.places[tap]) {
       for (int axis = 0; axis < 3; ++axis) {
-        sums[1 + axis] += magnitude(static_cast<double>(from.base[3 * tap + axis])) * farthest(feature + axis);
+        sums[1 + axis] += magnitude(static_cast<double>(from.affine[3 * tap + axis])) * farthest(feature + axis);
       }
       feature += 2;
       ++tap;
@@ -203,7 +203,7 @@ constexpr Certificate certificate_of(const CertifiedNumbers<Scalar>& from) noexc
     double present = 0, sum = 0, magnitudes = 0;
     for (int tap = 0; tap < from.taps; ++tap) {
       const double spread = static_cast<double>(from.scales.input_spread[from.places[tap] + axis]);
-      const double slope = static_cast<double>(from.base[3 * tap + axis]) / spread * scale;
+      const double slope = static_cast<double>(from.affine[3 * tap + axis]) / spread * scale;
       finite = finite && is_finite_constant(slope) && spread > 0;
       if (tap == 0) present = slope;
       sum += slope;

@@ -11,10 +11,10 @@
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/exported/model_records.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/features/read_features.hpp"
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 
 namespace pinnquad {
@@ -193,7 +193,7 @@ constexpr bool require_shape() noexcept {
   if constexpr (detail::HasShape<S>::value) {
     static_assert(
         is_predictor<typename S::Network>,
-        "pinnquad: the model's Network is neither a pinnquad::Network nor another answer (model/predictor.hpp)");
+        "pinnquad: the model's Network is neither a pinnquad::Network nor another predictor (model/predictor.hpp)");
     static_assert(is_feature_set<typename S::Features>, "pinnquad: the model's Features are not a feature set");
     static_assert(is_output_schema<typename S::Outputs>, "pinnquad: the model's Outputs are not an output schema");
     if constexpr (is_feature_set<typename S::Features>) {
@@ -216,11 +216,8 @@ constexpr bool require_shape() noexcept {
       static_assert(base_reads<typename S::Features, typename S::Outputs>(),
                     "pinnquad: the outputs' base reads a feature that the feature set has not, or not there: "
                     "LinearizedBase is of what begins as PaperFeatures, RigidBodyBase as PhysicsFeatures "
-                    "(features/read_features.hpp)");
+                    "(outputs/base.hpp)");
     }
-    static_assert(formulas_read<typename S::Features, typename S::Network>(),
-                  "pinnquad: a formula in the model's Network reads a feature that the feature set has not, or not "
-                  "there (features/read_features.hpp)");
   }
   return detail::HasShape<S>::value;
 }

@@ -12,8 +12,8 @@
 #include "pinnquad/dynamics/command_meaning.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/features/extra_columns.hpp"
-#include "pinnquad/features/read_features.hpp"
 #include "pinnquad/model/description.hpp"
+#include "pinnquad/outputs/base.hpp"
 
 namespace pinnquad {
 

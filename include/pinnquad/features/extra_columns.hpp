@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Anything measured besides the motion as an input of the network: WithColumns<PaperFeatures, BatteryVoltage> is a feature set.
-// A column is a type with `name` and `unit`, constexpr texts; flights call their columns by the same names (data/dataset.hpp).
+// Further measured values as inputs of the network: WithColumns<PaperFeatures, BatteryVoltage> is a feature set. A
+// column is a type with `name` and `unit`, constexpr texts; flights call their columns by the same names
+// (data/dataset.hpp).
 #pragma once
 
 #include <array>
@@ -12,55 +13,17 @@
 
 namespace pinnquad {
 
-/// Of the pack, under load.
+/// Of the pack, under load: a column of your own is written the same way.
 struct BatteryVoltage {
   static constexpr const char* name = "battery_voltage";
   static constexpr const char* unit = "V";
 };
 
-/// Of one rotor, as its speed controller reports it. Rotor 1 to 4 in the order of Eq. (2), as u1 to u4.
-template <int Rotor>
-struct RotorSpeed {
-  static_assert(Rotor >= 1 && Rotor <= 4, "pinnquad: rotors count from 1 to 4");
-  static constexpr const char* name = Rotor == 1 ? "n1" : Rotor == 2 ? "n2" : Rotor == 3 ? "n3" : "n4";
-  static constexpr const char* unit = "rev/s";
-};
-
 namespace detail {
 
-/// Two lists of texts, one after the other.
-template <std::size_t First, std::size_t Second>
-constexpr std::array<const char*, First + Second> joined_texts(const std::array<const char*, First>& first,
-                                                               const std::array<const char*, Second>& second) noexcept {
-  std::array<const char*, First + Second> result{};
-  for (std::size_t i = 0; i < First; ++i) result[i] = first[i];
-  for (std::size_t i = 0; i < Second; ++i) result[First + i] = second[i];
-  return result;
-}
-
-constexpr bool equal_texts(const char* a, const char* b) noexcept {
-  for (; *a != '\0' && *a == *b; ++a, ++b) {
-  }
-  return *a == *b;
-}
-
-template <std::size_t Size>
-constexpr bool all_differ(const std::array<const char*, Size>& texts) noexcept {
-  for (std::size_t i = 0; i < Size; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (equal_texts(texts[i], texts[j])) return false;
-    }
-  }
-  return true;
-}
-
-template <class T, class = void>
-struct IsColumn : std::false_type {};
 template <class T>
-struct IsColumn<T, std::void_t<decltype(T::name), decltype(T::unit)>>
-    : std::bool_constant<std::is_convertible_v<decltype(T::name), const char*> &&
-                         std::is_convertible_v<decltype(T::unit), const char*>> {};
-
+using ColumnMembers = std::enable_if_t<std::is_convertible_v<decltype(T::name), const char*> &&
+                                       std::is_convertible_v<decltype(T::unit), const char*>>;
 /// Place of a type in a list; the list's length if it isn't there.
 template <class Wanted, class... Types>
 constexpr std::size_t place_of() noexcept {
@@ -70,34 +33,28 @@ constexpr std::size_t place_of() noexcept {
   return place;
 }
 
-/// A feature set with a past (features/windowed.hpp).
-template <class Features, class = void>
-struct HasWindow : std::false_type {};
+template <class T>
+using MeasuredColumnsOf = std::void_t<decltype(T::column_names), decltype(T::column_units)>;
 template <class Features>
-struct HasWindow<Features, std::void_t<typename Features::Window>> : std::true_type {};
-
-template <class Features, class = void>
-struct ExtraColumnsOf {
-  static constexpr std::array<const char*, 0> names{};
-  static constexpr std::array<const char*, 0> units{};
-};
-template <class Features>
-struct ExtraColumnsOf<Features, std::void_t<decltype(Features::column_names), decltype(Features::column_units)>> {
-  static constexpr auto names = Features::column_names;
-  static constexpr auto units = Features::column_units;
-};
+constexpr auto extra_columns_of([[maybe_unused]] bool units) noexcept {
+  if constexpr (is_detected<MeasuredColumnsOf, Features>) {
+    return units ? Features::column_units : Features::column_names;
+  } else {
+    return std::array<const char*, 0>{};
+  }
+}
 
 }  // namespace detail
 
 /// True for a type that is a column: it has `name` and `unit`.
 template <class T>
-inline constexpr bool is_column = detail::IsColumn<T>::value;
+inline constexpr bool is_column = detail::is_detected<detail::ColumnMembers, T>;
 
-/// Names and units of the extra columns that a feature set asks for: none but where it is WithColumns, or has one inside.
+/// Names and units of the columns that a feature set asks for: none unless it is WithColumns, or has one inside.
 template <class Features>
-inline constexpr auto extra_column_names = detail::ExtraColumnsOf<Features>::names;
+inline constexpr auto extra_column_names = detail::extra_columns_of<Features>(false);
 template <class Features>
-inline constexpr auto extra_column_units = detail::ExtraColumnsOf<Features>::units;
+inline constexpr auto extra_column_units = detail::extra_columns_of<Features>(true);
 
 /// The inputs of another feature set and the columns' values. A value that was never set is NaN, which check() refuses.
 template <class Base, class Scalar, class... Column>
@@ -124,19 +81,18 @@ struct InputsWithColumns : Base {
   }
 };
 
-/// A feature set with columns: X of `Features`, then each column as it was measured. A guard's fallback sees the inputs of
-/// `Features`.
+/// A feature set with columns: X of `FeatureSet`, then each column as it was measured. A guard's fallback sees the
+/// inputs of `FeatureSet`.
 template <class FeatureSet, class... Column>
 struct WithColumns {
   static_assert(is_feature_set<FeatureSet>,
                 "pinnquad: WithColumns' first argument is not a feature set (features/features.hpp)");
   static_assert(
-      !detail::HasWindow<FeatureSet>::value,
+      !is_windowed<FeatureSet>,
       "pinnquad: columns belong inside a window, whose history then takes them too: Windowed<WithColumns<...>, ...>");
   static_assert(sizeof...(Column) > 0, "pinnquad: WithColumns needs a column");
   static_assert((is_column<Column> && ...),
-                "pinnquad: a column of WithColumns has no name or no unit "
-                "(features/extra_columns.hpp)");
+                "pinnquad: a column of WithColumns has no name or no unit (features/extra_columns.hpp)");
 
   template <class Scalar>
   using Inputs = InputsWithColumns<typename FeatureSet::template Inputs<Scalar>, Scalar, Column...>;
@@ -149,13 +105,13 @@ struct WithColumns {
       detail::joined_texts(FeatureSet::units, std::array<const char*, sizeof...(Column)>{Column::unit...});
   static_assert(detail::all_differ(names), "pinnquad: a column of WithColumns has a name that is taken");
 
-  /// What flights must have measured: the columns, those of `Features` first.
+  /// Columns that flights must have measured, those of `FeatureSet` first.
   static constexpr auto column_names =
       detail::joined_texts(extra_column_names<FeatureSet>, std::array<const char*, sizeof...(Column)>{Column::name...});
   static constexpr auto column_units =
       detail::joined_texts(extra_column_units<FeatureSet>, std::array<const char*, sizeof...(Column)>{Column::unit...});
 
-  /// As `Features`; `not_finite` for a column too.
+  /// As `FeatureSet`; `not_finite` for a column too.
   template <class Scalar, class Base>
   static Status check(const InputsWithColumns<Base, Scalar, Column...>& in) noexcept {
     return all_finite(in.columns) ? FeatureSet::check(static_cast<const Base&>(in)) : Status::not_finite;

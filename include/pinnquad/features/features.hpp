@@ -1,34 +1,46 @@
 // SPDX-License-Identifier: MIT
-// Raw inputs -> X: the feature set as a type. The network's input count, names and order are said here, once.
-// Contract: `Inputs<Scalar>` (raw, a named struct), `size`, `names`, `units`, `angular_acceleration` (index of p_dot in X, -1
-// if X has none), `extract(inputs, x)` and `check(inputs)`, both noexcept. An input that is not finite makes a feature that is
-// not: a Guard without FiniteInputs relies on it.
+// A feature set: the numbers X that a network is shown, made of raw inputs. Their count, names and order are said here,
+// once. Contract, all static: `Inputs<Scalar>` (raw, a named struct), `size`, `names`, `units`, `angular_acceleration`
+// (index of p_dot in X, -1 if X has none), `extract(inputs, x)` and `check(inputs)`, both noexcept. An input that is
+// not finite makes a feature that is not finite: a Guard without FiniteInputs relies on it.
 #pragma once
 
 #include <array>
 #include <limits>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/dynamics/state.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-/// The names of a feature set that extends another one by an entry at the end.
-template <std::size_t Size>
-constexpr std::array<const char*, Size + 1> with_last(const std::array<const char*, Size>& names,
-                                                      const char* last) noexcept {
-  std::array<const char*, Size + 1> result{};
-  for (std::size_t i = 0; i < Size; ++i) result[i] = names[i];
-  result[Size] = last;
+/// Two lists of texts, one after the other.
+template <std::size_t First, std::size_t Second>
+constexpr std::array<const char*, First + Second> joined_texts(const std::array<const char*, First>& first,
+                                                               const std::array<const char*, Second>& second) noexcept {
+  std::array<const char*, First + Second> result{};
+  for (std::size_t i = 0; i < First; ++i) result[i] = first[i];
+  for (std::size_t i = 0; i < Second; ++i) result[First + i] = second[i];
   return result;
+}
+
+template <std::size_t Size>
+constexpr bool all_differ(const std::array<const char*, Size>& texts) noexcept {
+  for (std::size_t i = 0; i < Size; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (std::string_view(texts[i]) == texts[j]) return false;
+    }
+  }
+  return true;
 }
 }  // namespace detail
 
-/// What an inverse-dynamics network is asked: the motion wanted, in the state the vehicle is in. Body frame FRD.
+/// The question to an inverse-dynamics network: the wanted motion, in the state of the vehicle. Body frame FRD.
 template <class Scalar>
 struct MotionInputs {
   Vector3<Scalar> linear_acceleration_m_s2 = Vector3<Scalar>::Zero();  ///< v_dot_B, see Accelerations
@@ -38,13 +50,14 @@ struct MotionInputs {
   Quaternion<Scalar> attitude{};  ///< body -> world
 };
 
-/// The inputs that ask for `motion` in `state`.
+/// Inputs of `motion` in `state`.
 template <class Scalar>
 MotionInputs<Scalar> motion_inputs(const State<Scalar>& state, const Accelerations<Scalar>& motion) noexcept {
   return {motion.linear_m_s2, motion.angular_rad_s2, body_velocity(state), state.body_rates_rad_s, state.attitude};
 }
 
-/// X of Sec. 4.1: (v_dot_B, omega_dot, v_B, omega, phi, theta, sin psi, cos psi), 16 entries (docs/paper.md, deviation 1).
+/// X of Sec. 4.1: (v_dot_B, omega_dot, v_B, omega, phi, theta, sin psi, cos psi), 16 entries (docs/paper.md, deviation
+/// 1).
 struct PaperFeatures {
   template <class Scalar>
   using Inputs = MotionInputs<Scalar>;
@@ -90,24 +103,30 @@ struct PaperFeatures {
   }
 };
 
-/// What a network near the ground is asked besides.
+/// The same near the ground.
 template <class Scalar>
 struct MotionInputsWithAltitude : MotionInputs<Scalar> {
-  /// Above ground, positive up. What nobody measured is refused as not finite: no default would be a safe one.
+  /// Above ground, positive up. NaN until it is set, which is refused as not finite: no default would be a safe one.
   Scalar altitude_m = std::numeric_limits<Scalar>::quiet_NaN();
 };
 
 namespace detail {
-template <class T, class = void>
-struct IsFeatureSet : std::false_type {};
+template <class T, class Inputs = typename T::template Inputs<double>>
+using FeatureSetMembers =
+    std::void_t<decltype(T::size), decltype(T::names), decltype(T::units), decltype(T::angular_acceleration),
+                decltype(Status(T::check(std::declval<const Inputs&>()))),
+                decltype(T::extract(std::declval<const Inputs&>(), static_cast<double*>(nullptr)))>;
 template <class T>
-struct IsFeatureSet<T,
-                    std::void_t<typename T::template Inputs<double>, decltype(T::size), decltype(T::names),
-                                decltype(T::units), decltype(T::angular_acceleration),
-                                decltype(Status(T::check(std::declval<const typename T::template Inputs<double>&>()))),
-                                decltype(T::extract(std::declval<const typename T::template Inputs<double>&>(),
-                                                    static_cast<double*>(nullptr)))>>
-    : std::bool_constant<T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size)> {};
+constexpr bool fulfils_feature_set() noexcept {
+  if constexpr (is_detected<FeatureSetMembers, T>) {
+    return T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size);
+  } else {
+    return false;
+  }
+}
+/// Detected of a feature set with a past (features/windowed.hpp).
+template <class T>
+using WindowInside = typename T::Window;
 template <class T, class Inputs = typename T::template Inputs<double>>
 inline constexpr bool is_noexcept_feature_set = noexcept(T::check(std::declval<const Inputs&>())) && noexcept(
     T::extract(std::declval<const Inputs&>(), static_cast<double*>(nullptr)));
@@ -115,7 +134,11 @@ inline constexpr bool is_noexcept_feature_set = noexcept(T::check(std::declval<c
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_feature_set = detail::IsFeatureSet<T>::value;
+inline constexpr bool is_feature_set = detail::fulfils_feature_set<T>();
+
+/// True for a feature set that asks for a window.
+template <class Features>
+inline constexpr bool is_windowed = detail::is_detected<detail::WindowInside, Features>;
 
 /// A feature set of the motion alone, with the altitude as its last entry: a vehicle near the ground (Discussion 5).
 template <class FeatureSet>
@@ -130,8 +153,8 @@ struct WithAltitude {
 
   static constexpr int size = FeatureSet::size + 1;
   static constexpr int angular_acceleration = FeatureSet::angular_acceleration;
-  static constexpr auto names = detail::with_last(FeatureSet::names, "altitude");
-  static constexpr auto units = detail::with_last(FeatureSet::units, "m");
+  static constexpr auto names = detail::joined_texts(FeatureSet::names, std::array{"altitude"});
+  static constexpr auto units = detail::joined_texts(FeatureSet::units, std::array{"m"});
 
   /// As FeatureSet; `not_finite` for the altitude too.
   template <class Scalar>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The inputs of a control loop as a feature set wants them: the present ones, or a window of them at exact distances in time
-// whatever the loop's jitter. A value without heap.
+// Inputs of a feature set in a control loop: the present ones, or a window of them at exact distances in time whatever
+// the loop's jitter. A value without heap.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,10 @@
 
 namespace pinnquad {
 
-/// Inputs between two samples, `share` from 0 (a) to 1 (b): straight lines; the attitude by the normalised straight line between
-/// the quaternions, the shorter way. Of a turn at constant rate it misses 6e-5 rad over 0.25 rad, 5e-4 rad over 0.5 rad.
-/// Flight and training use the same.
-/// A feature set with inputs of its own is windowed once there is an `interpolated` for them in their namespace.
+/// Inputs between two samples, `share` from 0 (a) to 1 (b), the same in flight and in training. Straight lines; the
+/// attitude by the normalised straight line between the quaternions, the shorter way: over 0.25 rad of a turn at
+/// constant rate it errs by 6e-5 rad, over 0.5 rad by 5e-4 rad. For inputs of your own write an `interpolated` in their
+/// namespace.
 template <class Scalar>
 MotionInputs<Scalar> interpolated(const MotionInputs<Scalar>& a, const MotionInputs<Scalar>& b, Scalar share) noexcept {
   MotionInputs<Scalar> result;
@@ -57,8 +57,8 @@ InputsWithColumns<Base, Scalar, Column...> interpolated(const InputsWithColumns<
 
 namespace detail {
 
-/// The inputs at an instant among samples `first` to `last`, whose times rise: a sample itself where it is within the window's
-/// tolerance. `near` is where the search begins. False before the first and behind the last sample.
+/// Inputs at an instant among samples `first` to `last`, whose times rise; the search begins at `near`. A sample within
+/// the window's tolerance is taken as it is. False before the first and behind the last sample.
 template <class Scalar, class Window, class Index, class TimeOf, class Read, class Tap>
 bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
              Tap& result) noexcept {
@@ -77,7 +77,7 @@ bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& t
   return true;
 }
 
-/// The other taps of a window about a present instant; `complete` if all of them are there.
+/// Fills the other taps of a window about a present instant; `complete` if all of them are there.
 template <class Tap, class Scalar, class Window, class Index, class TimeOf, class Read>
 void fill_window(double present_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
                  WindowInputs<Tap, Scalar, Window>& window) noexcept {
@@ -89,8 +89,7 @@ void fill_window(double present_s, Index first, Index last, Index near, const Ti
   }
 }
 
-/// Largest distance of two samples in time that are neighbours to a window: more is a gap, and so is no time at all or time
-/// that runs backwards.
+/// True for two samples that are neighbours to a window: later, and not by more than a gap.
 template <class Window>
 constexpr bool follows(double earlier_s, double later_s) noexcept {
   return later_s > earlier_s && later_s - earlier_s <= Window::largest_gap_s + Window::tolerance_s;
@@ -98,7 +97,7 @@ constexpr bool follows(double earlier_s, double later_s) noexcept {
 
 }  // namespace detail
 
-/// Samples that a history keeps by default: eight per period of the window. A loop that is faster is thinned to that.
+/// Samples that a history keeps by default: eight per period of the window. Those of a faster loop are thinned to that.
 template <class Features>
 constexpr int default_history_length() noexcept {
   if constexpr (is_windowed<Features>) {
@@ -108,7 +107,7 @@ constexpr int default_history_length() noexcept {
   }
 }
 
-/// Inputs of a feature set without a past: the present ones are all there is, always `ok`; predict() checks them.
+/// Without a window: the present inputs, always `ok`; predict() checks them.
 template <class Features, class Scalar, int MostSamples = default_history_length<Features>(), class = void>
 class InputHistory {
  public:
@@ -126,25 +125,22 @@ class InputHistory {
   Inputs inputs_{};
 };
 
-/// Inputs of a causal window. Take the present inputs in every tick with their time; between them the taps are interpolated.
+/// Of a causal window. Take the present inputs with their time in every tick; taps in between are interpolated.
 template <class Features, class Scalar, int MostSamples>
 class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<Features>>> {
   using FeatureSet = typename Features::TapFeatures;
   using Window = typename Features::Window;
-  static_assert(
-      Window::causal,
-      "pinnquad: a centred window looks ahead, and no loop can: planned_window() makes it of a motion that is "
-      "known (features/input_history.hpp)");
+  static_assert(Window::causal, "pinnquad: a centred window looks ahead, and no loop can (features/windowed.hpp)");
   static_assert(MostSamples >= 4, "pinnquad: an InputHistory keeps four samples or more");
 
  public:
   using Inputs = typename Features::template Inputs<Scalar>;
   using Present = typename FeatureSet::template Inputs<Scalar>;
 
-  /// The present inputs; time in seconds from any start. What inputs() then are: `ok`, the window is complete; `warming_up`, it
-  /// is not yet: since the start, a gap of more than Window::largest_gap_s, or time that ran backwards, all of which empty the
-  /// history. `not_finite` for the time, and any Status of `Features` for inputs that are refused: the history stays as it was.
-  /// A time that comes twice replaces what came first.
+  /// The present inputs; time in seconds from any start. `ok`: the window is complete. `warming_up`: not yet, since the
+  /// start, a gap of more than Window::largest_gap_s, or time that ran backwards, which empty the history. `not_finite`
+  /// for the time, or any Status of the feature set for refused inputs: the history stays as it was. The same time
+  /// again replaces the sample.
   Status take(const Present& present, double time_s) noexcept {
     static_cast<Present&>(inputs_) = present;
     inputs_.complete = false;
@@ -181,7 +177,7 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
   /// As of the last take(): the present inputs, and the window's taps where it was `ok`.
   const Inputs& inputs() const noexcept { return inputs_; }
 
-  /// Forgets the past: a controller that was switched off.
+  /// Forgets the past, as after a controller was switched off.
   void clear() noexcept {
     count_ = 0;
     inputs_.complete = false;
@@ -193,11 +189,11 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
     Present inputs;
   };
 
-  /// Samples closer than this do not all stay. So many fit into the window's length that the one before it and the newest
-  /// have room too.
+  /// Samples closer than this are thinned: so many fit into the window that its oldest neighbour and the newest have
+  /// room too.
   static constexpr double thinned_s = -Window::earliest_s / (MostSamples - 3);
-  /// Thinning leaves no two samples further apart than a gap: one more that stays before a late tick takes no more room, as the
-  /// two steps together are as long as two that thinning leaves. A shorter history has no room for that.
+  /// True where thinning must leave no gap. A sample that stays before a late tick takes no more room, since the two
+  /// steps together are as long as two that thinning leaves. A shorter history has no room for that.
   static constexpr bool keeps_neighbours = 2 * thinned_s <= Window::largest_gap_s;
 
   /// Counted from the oldest.
@@ -209,21 +205,5 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
   int count_{0};
   Inputs inputs_{};
 };
-
-/// A window, causal or centred, of a motion that is known ahead: `plan(time_s, inputs)` gives the inputs of an instant, a Status,
-/// and does not throw.
-/// The first Status of the plan that is not ok, and then `window` is untouched.
-template <class Tap, class Scalar, class Window, class Plan>
-Status planned_window(const Plan& plan, double present_s, WindowInputs<Tap, Scalar, Window>& window) noexcept {
-  WindowInputs<Tap, Scalar, Window> filled;
-  Status status = plan(present_s, static_cast<Tap&>(filled));
-  for (int tap = 0; tap < Window::taps - 1 && status == Status::ok; ++tap) {
-    status = plan(present_s + Window::offset_s(tap), filled.others[std::size_t(tap)]);
-  }
-  if (status != Status::ok) return status;
-  filled.complete = true;
-  window = filled;
-  return Status::ok;
-}
 
 }  // namespace pinnquad

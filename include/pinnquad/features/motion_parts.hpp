@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What moves a vehicle, as feature sets to be joined: Joined<SpecificForce, AngularAcceleration, BodyRates> is one. They
-// say of a motion what forces and torques depend on; a network would have to find it in velocities and Euler angles.
-// Body frame FRD. An input that is not finite makes a feature of each part that depends on it not finite.
+// Parts of a motion as feature sets to be joined: Joined<SpecificForce, AngularAcceleration, BodyRates> is one. Forces
+// and torques depend on them directly; a network would have to find them in velocities and Euler angles. Body frame
+// FRD. An input that is not finite makes a feature of each part that depends on it not finite.
 #pragma once
 
 #include "pinnquad/dynamics/airframe.hpp"
@@ -11,8 +11,8 @@ namespace pinnquad {
 
 namespace detail {
 
-/// A part of three features of a motion: everything but `extract(inputs, x)`, which fills x[0..3) of inputs that have passed
-/// check(): number by number, for a vector in between would lie on the stack beside the network's numbers.
+/// A part of three features: all but `names`, `units` and `extract(inputs, x)`, which fills x[0..3) number by number: a
+/// vector in between would lie on the stack beside the network's numbers.
 template <class Part>
 struct MotionPart {
   template <class Scalar>
@@ -38,7 +38,7 @@ inline constexpr bool is_motion_part = std::is_base_of_v<MotionPart<Part>, Part>
 
 }  // namespace detail
 
-/// What an accelerometer measures: the sum of all forces but gravity over the mass. s = v_dot + omega x v - R^T g.
+/// The reading of an accelerometer: the sum of all forces but gravity over the mass. s = v_dot + omega x v - R^T g.
 /// Hovering it is (0, 0, -g) whatever the heading; a wind is in it, the frame's turning is not.
 struct SpecificForce : detail::MotionPart<SpecificForce> {
   static constexpr std::array<const char*, 3> names = {"s_x", "s_y", "s_z"};
@@ -77,9 +77,9 @@ struct BodyRates : detail::MotionPart<BodyRates> {
   }
 };
 
-/// What omega x J omega is made of: (w_y w_z, w_z w_x, w_x w_y). With principal axes along the body's each component of
+/// The parts of omega x J omega: (w_y w_z, w_z w_x, w_x w_y). With principal axes along the body's each component of
 /// omega x J omega is one of these times a difference of two moments of inertia: a factor that a linear map finds by
-/// itself, and that a standardised feature does not have. So no airframe is asked.
+/// itself, and that standardisation removes. So no airframe is needed.
 struct RateProducts : detail::MotionPart<RateProducts> {
   static constexpr std::array<const char*, 3> names = {"w_yz", "w_zx", "w_xy"};
   static constexpr std::array<const char*, 3> units = {"rad^2/s^2", "rad^2/s^2", "rad^2/s^2"};
@@ -93,7 +93,7 @@ struct RateProducts : detail::MotionPart<RateProducts> {
   }
 };
 
-/// Rotor drag is proportional to it.
+/// v_B: rotor drag is proportional to it.
 struct BodyVelocity : detail::MotionPart<BodyVelocity> {
   static constexpr std::array<const char*, 3> names = {"v_bx", "v_by", "v_bz"};
   static constexpr std::array<const char*, 3> units = {"m/s", "m/s", "m/s"};
@@ -104,7 +104,7 @@ struct BodyVelocity : detail::MotionPart<BodyVelocity> {
   }
 };
 
-/// Drag of a body is proportional to it: v_i |v_i|, axis by axis.
+/// v_i |v_i|, axis by axis: drag of a body is proportional to it.
 struct SquaredVelocity : detail::MotionPart<SquaredVelocity> {
   static constexpr std::array<const char*, 3> names = {"vv_bx", "vv_by", "vv_bz"};
   static constexpr std::array<const char*, 3> units = {"m^2/s^2", "m^2/s^2", "m^2/s^2"};
@@ -118,7 +118,8 @@ struct SquaredVelocity : detail::MotionPart<SquaredVelocity> {
   }
 };
 
-/// R^T e_z: how far down each body axis points. The tilt without angles, and no heading: a vehicle does not feel north.
+/// R^T e_z: how far down each body axis points. The tilt without angles and without the heading, on which no force
+/// depends.
 struct DownVector : detail::MotionPart<DownVector> {
   static constexpr std::array<const char*, 3> names = {"down_x", "down_y", "down_z"};
   static constexpr std::array<const char*, 3> units = {"1", "1", "1"};
@@ -126,6 +127,22 @@ struct DownVector : detail::MotionPart<DownVector> {
   template <class Scalar>
   static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
     detail::write_vector<Scalar>(world_down_axis(in.attitude), x);
+  }
+};
+
+/// The specific force along the thrust axis: the part of it that the rotors make. The other two parts are made by the
+/// air. On recorded flights they stay within some tenths of a m/s^2; a wanted motion has more, wherever the attitude
+/// still lags, and no command makes it. A model that is shown them as SpecificForce would be asked outside its envelope
+/// for nothing: on the demo's figure-eight 80 % of the time.
+struct ThrustAxisForce : detail::MotionPart<ThrustAxisForce> {
+  static constexpr int size = 1;
+  static constexpr std::array<const char*, 1> names = {"s_z"};
+  static constexpr std::array<const char*, 1> units = {"m/s^2"};
+
+  /// Fills x[0]. The inputs must have passed check().
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    x[0] = SpecificForce::of<Scalar>(in)[2];
   }
 };
 
@@ -138,7 +155,7 @@ struct Joined {
                  ...),
                 "pinnquad: feature sets that are Joined have the same Inputs");
   static_assert(
-      !detail::HasWindow<First>::value,
+      !is_windowed<First>,
       "pinnquad: a window is around what is joined: PartlyWindowed<Joined<...>, ...> (features/windowed.hpp)");
 
   template <class Scalar>
@@ -187,16 +204,24 @@ struct Joined {
   }
 };
 
-/// What the thrust and the torques of a vehicle go with at once: what a window is worth for.
+/// The features that thrust and torques change at once: those that a window is worth for.
 struct AccelerationFeatures : Joined<SpecificForce, AngularAcceleration> {};
 
-/// Of a vehicle whose velocity is known.
+/// For a vehicle whose velocity is known.
 struct PhysicsFeatures
     : Joined<SpecificForce, AngularAcceleration, BodyRates, RateProducts, DownVector, BodyVelocity, SquaredVelocity> {};
 
-/// Of one whose velocity was not measured. The specific force is then known of an accelerometer; where it is made of
-/// MotionInputs all the same, their velocity is 0 and their v_dot is s + R^T g.
+/// For a vehicle whose velocity was not measured: the specific force comes from an accelerometer. MotionInputs then
+/// have the velocity 0 and v_dot = s + R^T g.
 struct PhysicsFeaturesWithoutVelocity
     : Joined<SpecificForce, AngularAcceleration, BodyRates, RateProducts, DownVector> {};
+
+/// PhysicsFeatures with the specific force along the thrust axis alone.
+struct InverseFeatures
+    : Joined<ThrustAxisForce, AngularAcceleration, BodyRates, RateProducts, DownVector, BodyVelocity, SquaredVelocity> {
+};
+
+/// And the altitude: for a vehicle near the ground.
+struct InverseFeaturesWithAltitude : WithAltitude<InverseFeatures> {};
 
 }  // namespace pinnquad

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Features with a past: Windowed<PaperFeatures, 4, PeriodMicroseconds<20000>> is a feature set whose X is that of the present
-// instant and then those of 20, 40 and 60 ms ago. Times count, not calls: features/input_history.hpp makes such inputs of a
-// control loop's, data/flight_features.hpp of recorded flights.
+// Features with a past: Windowed<PaperFeatures, 4, PeriodMicroseconds<20000>> is a feature set whose X is that of the
+// present instant, then those of 20, 40 and 60 ms ago. Taps are at times, not at calls: features/input_history.hpp
+// makes such inputs in a control loop, data/flight_features.hpp from recorded flights.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct Causal {
   static constexpr int offset(int /*taps*/, int tap) noexcept { return -(tap + 1); }
 };
 
-/// A window about its instant: for motions that are planned, and known ahead. The earlier taps come first.
+/// A window about its instant, for recorded motions. The earlier taps come first.
 struct Centred {
   template <int Taps>
   static constexpr bool fits = Taps >= 1 && Taps % 2 == 1;
@@ -37,23 +37,6 @@ struct Centred {
     const int half = (taps - 1) / 2;
     return tap < half ? -(tap + 1) : tap - half + 1;
   }
-};
-
-/// Which instants a window holds.
-template <int Taps, class Period, class Reach>
-struct TapWindow {
-  static constexpr int taps = Taps;  ///< the present one among them
-  static constexpr double period_s = Period::seconds;
-  static constexpr bool causal = std::is_same_v<Reach, Causal>;
-  /// Seconds from the present, of the tap of this number (from 0) behind the present one.
-  static constexpr double offset_s(int tap) noexcept { return Reach::offset(Taps, tap) * period_s; }
-  static constexpr double earliest_s = causal ? -(Taps - 1) * period_s : -((Taps - 1) / 2) * period_s;
-  static constexpr double latest_s = causal ? 0.0 : ((Taps - 1) / 2) * period_s;
-
-  /// Samples further apart than this have a gap between them, over which nothing is interpolated: a missing row is one.
-  static constexpr double largest_gap_s = 1.5 * period_s;
-  /// A sample this close to a tap is the tap: times are sums of steps, or counts since 1970 in a double.
-  static constexpr double tolerance_s = 1e-4 * period_s;
 };
 
 /// The inputs of the present instant, and of the window's other taps. A guard's fallback sees the present alone.
@@ -64,6 +47,24 @@ struct WindowInputs : Tap {
 };
 
 namespace detail {
+
+/// The instants of a window.
+template <int Taps, class Period, class Reach>
+struct TapWindow {
+  static constexpr int taps = Taps;  ///< the present one among them
+  static constexpr double period_s = Period::seconds;
+  static constexpr bool causal = std::is_same_v<Reach, Causal>;
+  /// Seconds from the present, of the tap of this number (from 0) behind the present one.
+  static constexpr double offset_s(int tap) noexcept { return Reach::offset(Taps, tap) * period_s; }
+  static constexpr double earliest_s = causal ? -(Taps - 1) * period_s : -((Taps - 1) / 2) * period_s;
+  static constexpr double latest_s = causal ? 0.0 : ((Taps - 1) / 2) * period_s;
+
+  /// Samples further apart than this have a gap between them, over which nothing is interpolated: a missing row is a
+  /// gap.
+  static constexpr double largest_gap_s = 1.5 * period_s;
+  /// A sample this close to a tap is the tap: times are sums of steps, or counts since 1970 in a double.
+  static constexpr double tolerance_s = 1e-4 * period_s;
+};
 
 template <class FeatureSet, int Offset, int Index>
 constexpr std::size_t tap_name_length() noexcept {
@@ -115,18 +116,17 @@ constexpr std::array<const char*, Size> window_units() noexcept {
   return units;
 }
 
-/// X of `FeatureSet` at the present instant, then X of `Part` at each other tap: what Windowed and PartlyWindowed are.
+/// X of `FeatureSet` at the present instant, then X of `Part` at each other tap: Windowed and PartlyWindowed.
 template <class FeatureSet, class Part, int Taps, class Period, class Reach>
 struct WindowFeatures {
   static_assert(is_feature_set<FeatureSet> && is_feature_set<Part>,
                 "pinnquad: Windowed's first argument is not a feature set (features/features.hpp)");
-  static_assert(!HasWindow<FeatureSet>::value && !HasWindow<Part>::value,
+  static_assert(!is_windowed<FeatureSet> && !is_windowed<Part>,
                 "pinnquad: a window of windows is one with more taps: Windowed has no Windowed inside");
   static_assert(Reach::template fits<Taps>,
                 "pinnquad: a window has one tap or more, a centred one an odd number (features/windowed.hpp)");
-  static_assert(
-      std::is_base_of_v<typename Part::template Inputs<double>, typename FeatureSet::template Inputs<double>>,
-      "pinnquad: what PartlyWindowed asks of the other taps is made of the same inputs (features/windowed.hpp)");
+  static_assert(std::is_base_of_v<typename Part::template Inputs<double>, typename FeatureSet::template Inputs<double>>,
+                "pinnquad: the part of PartlyWindowed has the same inputs as its feature set (features/windowed.hpp)");
 
   using TapFeatures = FeatureSet;
   using OtherTapFeatures = Part;  ///< of the taps behind the present one
@@ -139,12 +139,12 @@ struct WindowFeatures {
   static constexpr auto names = window_names<FeatureSet, Part, Reach, Taps>(
       std::make_integer_sequence<int, FeatureSet::size + (Taps - 1) * Part::size>{});
   static constexpr auto units = window_units<FeatureSet, Part, names.size()>();
-  /// What flights must have measured.
+  /// Columns that flights must have measured.
   static constexpr auto column_names = extra_column_names<FeatureSet>;
   static constexpr auto column_units = extra_column_units<FeatureSet>;
 
-  /// As `FeatureSet` of the present and as `Part` of every other tap; `warming_up` where a tap is missing and the present
-  /// inputs are sound.
+  /// As `FeatureSet` of the present and as `Part` of every other tap; `warming_up` where a tap is missing and the
+  /// present inputs are sound.
   template <class Scalar, class Tap>
   static Status check(const WindowInputs<Tap, Scalar, Window>& in) noexcept {
     const Status present = FeatureSet::check(static_cast<const Tap&>(in));
@@ -157,7 +157,8 @@ struct WindowFeatures {
     return Status::ok;
   }
 
-  /// Fills x[0..size). The inputs must have passed check(); of a window that is not complete the other taps' features are NaN.
+  /// Fills x[0..size). The inputs must have passed check(); of a window that is not complete the other taps' features
+  /// are NaN.
   template <class Scalar, class Tap>
   static void extract(const WindowInputs<Tap, Scalar, Window>& in, Scalar* x) noexcept {
     FeatureSet::extract(static_cast<const Tap&>(in), x);
@@ -177,14 +178,10 @@ struct WindowFeatures {
 template <class FeatureSet, int Taps, class Period, class Reach = Causal>
 struct Windowed : detail::WindowFeatures<FeatureSet, FeatureSet, Taps, Period, Reach> {};
 
-/// The same with all of `FeatureSet` at the present instant and `Part` of it alone at the other taps: a window over what changes
-/// fast. Windowed<Set, ...> is PartlyWindowed<Set, Set, ...>.
+/// The same with all of `FeatureSet` at the present instant and `Part` of it alone at the other taps: a window over
+/// what changes fast. Windowed<Set, ...> is PartlyWindowed<Set, Set, ...>.
 template <class FeatureSet, class Part, int Taps, class Period, class Reach = Causal>
 struct PartlyWindowed : detail::WindowFeatures<FeatureSet, Part, Taps, Period, Reach> {};
-
-/// True for a feature set that asks for a window.
-template <class Features>
-inline constexpr bool is_windowed = detail::HasWindow<Features>::value;
 
 /// Index in X of the angular acceleration at a tap (0: the present one); -1 if it has none there.
 template <class Features>

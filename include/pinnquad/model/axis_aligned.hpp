@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// An affine map to signed sums (outputs/axis_command_outputs.hpp) in which the sum about an axis sees the angular
-// acceleration about that axis and no other one, and the sum of all commands sees none. With a slope above 0 it follows
-// what it is asked.
+// The affine part of a monotone model. Outputs are axis commands (outputs/axis_command_outputs.hpp). The command about
+// an axis depends on the angular acceleration about that axis and on no other one; the collective depends on none. With
+// slopes above 0 each axis command rises with the acceleration that is asked about its axis.
 //   y_0 = b_0 + w_0 r,  y_axis = b_axis + w_axis r + sum over taps of slope_(tap,axis) wdot_(tap,axis)
 // r: all features but the angular accelerations.
 #pragma once
@@ -16,8 +16,8 @@ namespace pinnquad {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// `First...`: where the angular acceleration of each tap begins, that of the present first. Parameters: slopes tap by
-/// tap, axis by axis; weights of the other features row by row; intercepts.
+/// `First...`: place of the angular acceleration of each tap, that of the present first. Parameters: slopes tap by tap,
+/// axis by axis; weights of the other features row by row; intercepts.
 template <class ScalarType, int FeatureCount, int... First>
 struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
                                    3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {
@@ -27,7 +27,7 @@ struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First..
   using Scalar = ScalarType;
   using AxisAligned::PredictorBase::forward;
   static constexpr int taps = Threes::count;
-  static constexpr int slopes = 0;  ///< where they stand among the parameters
+  static constexpr int slopes = 0;  ///< places among the parameters
   static constexpr int weights = 3 * taps;
   static constexpr int intercepts = weights + 4 * Threes::others;
 
@@ -84,7 +84,7 @@ constexpr int angular_acceleration_taps() noexcept {
   return 1;
 }
 
-/// Types of a feature set's angular accelerations.
+/// The parts of a monotone model of a feature set.
 template <class Features, class Taps = std::make_integer_sequence<int, angular_acceleration_taps<Features>()>>
 struct MonotoneParts;
 template <class Features, int... Tap>
@@ -101,20 +101,20 @@ struct MonotoneParts<Features, std::integer_sequence<int, Tap...>> {
 
 }  // namespace detail
 
-/// Features that a residual is shown: all but the angular accelerations.
+/// Number of features that the residual is shown: all but the angular accelerations.
 template <class Features>
 inline constexpr int residual_inputs = detail::MonotoneParts<Features>::others;
 
-/// The base of these features alone.
+/// The affine part, of all features of the set.
 template <class Features, class Scalar = float>
 using MonotoneBase = typename detail::MonotoneParts<Features>::template Base<Scalar>;
 
-/// What is added to it: `Residual`, an answer of residual_inputs<Features> features, between bounds.
+/// The part that is added to it: `Residual`, a predictor of residual_inputs<Features> features, between bounds.
 template <class Features, class Residual>
 using MonotoneResidual = typename detail::MonotoneParts<Features>::template Bound<Residual>;
 
-/// The base and a residual: monotone in each axis' angular acceleration where the slopes are above 0, whatever else its
-/// weights are. Its schema is AxisCommandOutputs; exported/certificate.hpp says what is proven of it.
+/// Both: monotone in each axis' angular acceleration where the slopes are above 0, whatever its other weights are. For
+/// AxisCommandOutputs; exported/certificate.hpp says what is proven of it.
 template <class Features, class Residual>
 using MonotonePredictor = Sum<MonotoneBase<Features, typename Residual::Scalar>, MonotoneResidual<Features, Residual>>;
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The arguments of a certificate (exported/certificate.hpp): a structure that is proven, the vehicle, stored
-// numbers wherever they are.
+// The arguments of a certificate (exported/certificate.hpp): which structure of a model is proven, numbers of the
+// vehicle, and the stored numbers of a model, in a header, a block or a trainer.
 #pragma once
 
 #include <limits>
 #include <string_view>
 
-#include "pinnquad/features/read_features.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
@@ -14,15 +13,15 @@
 
 namespace pinnquad {
 
-/// A slope is proven above this share of the airframe's own at full command: a hundredth is the least that training
-/// leaves (SlopeRule), of which a network that is shown the angular acceleration may take nine tenths; and a half for
-/// rounding and rotors' curves.
+/// A proven slope is above this share of the airframe's own at full command. Training leaves a hundredth at least
+/// (SlopeRule); a network that is shown the angular acceleration may take nine tenths of it, rounding and rotors'
+/// curves half of the rest.
 inline constexpr double least_slope_share = 0.0005;
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// True for the places of the angular acceleration at all taps of these features.
+/// True where `First...` are the places of the angular acceleration at all taps of these features.
 template <class Features, int... First>
 constexpr bool covers_angular_acceleration() noexcept {
   if constexpr (Features::angular_acceleration < 0) {
@@ -37,8 +36,9 @@ constexpr bool covers_angular_acceleration() noexcept {
   }
 }
 
-/// What of an answer's structure is proven. `Base`: void for an answer without such structure.
-template <class Answer, class Features>
+/// The structure of a predictor that a certificate proves. `Base`: its affine part, void where there is no such
+/// structure.
+template <class Predictor, class Features>
 struct ProvenStructure {
   using Base = void;
 };
@@ -51,23 +51,20 @@ struct ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
 };
 template <class Scalar, int FeatureCount, int... First, class Residual, class Features>
 struct ProvenStructure<
-    Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<Masked<Residual, FeatureCount, First...>>>, Features> {
-  using Base = std::conditional_t<covers_angular_acceleration<Features, First...>(),
-                                  AxisAligned<Scalar, FeatureCount, First...>, void>;
+    Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<Masked<Residual, FeatureCount, First...>>>, Features>
+    : ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
   static constexpr bool has_residual = true;
-  static constexpr bool has_paths = false;
 };
 template <class Scalar, int FeatureCount, int... First, class Residual, class Features>
-struct ProvenStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<PathBounded<Residual>>>, Features> {
-  using Base = std::conditional_t<covers_angular_acceleration<Features, First...>(),
-                                  AxisAligned<Scalar, FeatureCount, First...>, void>;
+struct ProvenStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<PathBounded<Residual>>>, Features>
+    : ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
   static constexpr bool has_residual = true;
   static constexpr bool has_paths = true;
   using Seeing = PathBounded<Residual>;
 };
 
-/// The mix and its inverse give the identity, without rounding: the entries are quarters; and each rotor enters a sum as
-/// the sum enters the rotor's command.
+/// True where the mix times its inverse is the identity without rounding (entries are quarters), and each rotor has the
+/// same sign in an axis command and in its inverse.
 template <class Scalar>
 constexpr bool exact_mix(const SignedMix<Scalar>& mix) noexcept {
   for (std::size_t row = 0; row < 4; ++row) {
@@ -87,7 +84,7 @@ constexpr bool exact_mix(const SignedMix<Scalar>& mix) noexcept {
   return true;
 }
 
-/// True where each rotor takes the same share of each sum.
+/// True where each rotor takes the same share of each axis command.
 template <class Scalar>
 constexpr bool even_mix(const SignedMix<Scalar>& mix) noexcept {
   for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
@@ -102,15 +99,15 @@ constexpr bool even_mix(const SignedMix<Scalar>& mix) noexcept {
 constexpr double magnitude(double value) noexcept { return value < 0 ? -value : value; }
 constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
 
-/// Places of the specific force along the thrust axis among the features, or of the acceleration along it: of the
-/// present instant first, then of a window's other taps.
+/// Places of the features that more thrust makes smaller, those of the present instant first, then of a window's other
+/// taps.
 template <int Size>
 struct ThrustPlaces {
   int place[Size]{};
   int count = 0;
   int present = 0;
 };
-/// "s_z", "vdot_bz", and of other taps "s_z[-1]": more thrust is less of it.
+/// True for "s_z", "vdot_bz" and, of other taps, "s_z[-1]".
 constexpr bool is_thrust(std::string_view name) noexcept {
   const std::string_view of_tap = name.substr(0, name.find('['));
   return of_tap == "s_z" || of_tap == "vdot_bz";
@@ -129,25 +126,20 @@ constexpr ThrustPlaces<Features::size> thrust_places() noexcept {
   return places;
 }
 
-template <class Formula, class Scalar, class = void>
-struct HasThrustSlope : std::false_type {};
-template <class Formula, class Scalar>
-struct HasThrustSlope<Formula, Scalar,
-                      std::void_t<decltype(Formula::least_thrust_slope(std::declval<const Airframe<Scalar>&>()))>>
-    : std::true_type {};
-/// Of no formula 0; of one that does not say it nobody knows.
-template <class Formula, class Scalar>
-constexpr double formula_thrust_slope(const Airframe<Scalar>& airframe) noexcept {
-  if constexpr (HasThrustSlope<Formula, Scalar>::value) {
-    return Formula::least_thrust_slope(airframe);
+template <class Base, class Scalar>
+using ThrustSlopeOf = decltype(Base::least_thrust_slope(std::declval<const Airframe<Scalar>&>()));
+/// Of an output schema's base; 0 without one, -infinity of a base that does not say it.
+template <class Base, class Scalar>
+constexpr double base_thrust_slope([[maybe_unused]] const Airframe<Scalar>& airframe) noexcept {
+  if constexpr (is_detected<ThrustSlopeOf, Base, Scalar>) {
+    return Base::least_thrust_slope(airframe);
   } else {
-    static_cast<void>(airframe);
-    return std::is_same_v<Formula, NoBase> ? 0.0 : -std::numeric_limits<double>::infinity();
+    return std::is_same_v<Base, NoBase> ? 0.0 : -std::numeric_limits<double>::infinity();
   }
 }
 
-/// Above the real sum or product of a few doubles that was worked out as `value`, all of one sign: each operation errs
-/// by at most 2^-53 of its result, and fewer than 64 are made.
+/// At or above the exact result of fewer than 64 sums and products of doubles of one sign that were worked out as
+/// `value`: each operation errs by at most 2^-53 of its result.
 constexpr double rounded_up(double value) noexcept {
   return value + magnitude(value) * 64 * std::numeric_limits<double>::epsilon();
 }
@@ -164,13 +156,13 @@ inline constexpr bool has_certificate =
     is_signed_sums<typename Shape::Outputs>&& base_reads<typename Shape::Features, typename Shape::Outputs>() &&
     !std::is_void_v<typename detail::ProvenStructure<typename Shape::Network, typename Shape::Features>::Base>;
 
-/// A vehicle, and the formula that its outputs add to, as a certificate reads them.
+/// Numbers of a vehicle, and of the base of its outputs, that a certificate reads.
 template <class Scalar>
 struct CertifiedVehicle {
   detail::SignedMix<Scalar> mix{};
   double least_slope[3]{};  ///< floors of the slopes, s^2/rad
-  bool on_formula = false;
-  double formula_thrust_slope = 0;  ///< what the formula adds to the thrust slope at least, s^2/m
+  bool on_base = false;
+  double base_thrust_slope = 0;  ///< least that the base adds to the thrust slope, s^2/m
 };
 
 template <class Outputs, class Scalar>
@@ -185,13 +177,13 @@ constexpr CertifiedVehicle<Scalar> certified_vehicle(const Airframe<Scalar>& air
       vehicle.least_slope[axis] += least_slope_share * static_cast<double>(share);
     }
   }
-  using Formula = typename detail::BaseOf<Outputs>::type;
-  vehicle.on_formula = !std::is_same_v<Formula, detail::NoBase>;
-  vehicle.formula_thrust_slope = detail::formula_thrust_slope<Formula>(airframe);
+  using Base = typename detail::BaseOf<Outputs>::type;
+  vehicle.on_base = !std::is_same_v<Base, detail::NoBase>;
+  vehicle.base_thrust_slope = detail::base_thrust_slope<Base>(airframe);
   return vehicle;
 }
 
-/// Scalers and envelope of a model, wherever they are.
+/// Scalers and envelope of a model.
 template <class Scalar>
 struct CertifiedScales {
   const Scalar* input_mean;
@@ -202,8 +194,8 @@ struct CertifiedScales {
   const Scalar* envelope_upper;
 };
 
-/// The stored numbers that a certificate reads, wherever they are. No pointer is null: a pointer into an array
-/// that is compared with null is no constant to g++ -fsanitize=undefined.
+/// The stored numbers that a certificate reads. No pointer is null: to compare a pointer into an array with null is no
+/// constant expression under g++ -fsanitize=undefined.
 template <class Scalar>
 struct CertifiedNumbers {
   int inputs;                 ///< features
@@ -212,15 +204,15 @@ struct CertifiedNumbers {
   int thrust_count;           ///< features that are the specific force along the thrust axis, of all taps
   int thrust_present;         ///< of them, how many are of the present instant
   const int* thrusts;         ///< where they are, the present first
-  const Scalar* base;         ///< as AxisAligned has its parameters
-  bool has_residual;          ///< its bounds follow those
+  const Scalar* affine;       ///< parameters in the order of AxisAligned
+  bool has_residual;          ///< its bounds follow the affine part's parameters
   const PathBound<4>* paths;  ///< of a residual that is shown the angular acceleration, tap by tap, axis by axis
   bool has_paths;
   CertifiedScales<Scalar> scales;
   CertifiedVehicle<Scalar> vehicle;
 
   constexpr int others() const noexcept { return inputs - 3 * taps; }
-  constexpr const Scalar* weights() const noexcept { return base + 3 * taps; }
+  constexpr const Scalar* weights() const noexcept { return affine + 3 * taps; }
   constexpr const Scalar* intercepts() const noexcept { return weights() + 4 * others(); }
   constexpr const Scalar* bounds() const noexcept { return intercepts() + 4; }  ///< lower, then upper ones
 };

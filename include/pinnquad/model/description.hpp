@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a model is made of, written down: the identity of its weights on flash. No compiler's word: a layer names itself
-// (`static constexpr const char* description`), the library's templates are described here. One that does neither is called
-// what the compiler calls it (core/type_text.hpp), which must then be the same from every compiler that is used.
+// (`static constexpr const char* description`), the library's templates are described here. One that does neither is
+// called what the compiler calls it (core/type_text.hpp), which must then be the same from every compiler that is used.
 #pragma once
 
 #include <string_view>
@@ -12,8 +12,8 @@
 
 namespace pinnquad {
 
-/// `add(sink)` gives the sink the description's pieces: `sink.add(std::string_view)`, `sink.add(int)`. Specialise it for a
-/// template of your own.
+/// `add(sink)` gives the sink the description's pieces: `sink.add(std::string_view)`, `sink.add(int)`. Specialise it
+/// for a template of your own.
 template <class T, class = void>
 struct Description {
   template <class Sink>

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-// An answer that is not shown some of the features: three in a row from each place of a list, an angular acceleration
-// of every tap. What it says can't depend on them, whatever its weights are.
+// A predictor that is not shown the angular accelerations: three features in a row from each place of a list, one place
+// per tap. Its outputs cannot depend on them, whatever its weights are.
 #pragma once
 
-#include "pinnquad/model/composition.hpp"
+#include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Features in threes from the places `First...`, ascending, and the others.
+/// Features split in two: three in a row from each of the places `First...`, ascending, and the others.
 template <int FeatureCount, int... First>
 struct Triples {
   static constexpr int count = int(sizeof...(First));
   static constexpr int others = FeatureCount - 3 * count;
 
-  /// No three overlap, all are features.
+  /// True where no three overlap and all are features.
   static constexpr bool fit() noexcept {
     int end = 0;
     bool fits = true;
@@ -34,17 +34,17 @@ struct Triples {
     (until(First), ...);
     until(FeatureCount);
   }
-  /// Writes the others of `x` one after the other.
+  /// Copies the others of `x`.
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void copy_others(const Scalar* x, Scalar* others_of_x) noexcept {
     each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { others_of_x[n] = x[feature]; });
   }
-  /// The n-th of the others as a feature.
+  /// Place in X of the n-th of the others.
   static PINNQUAD_ALWAYS_INLINE constexpr int other(int n) noexcept {
     ((n += n >= First ? 3 : 0), ...);
     return n;
   }
-  /// The others of `x` where they stand, [n] the n-th of them.
+  /// The others of `x`, read where they stand.
   template <class Scalar>
   struct InPlace {
     const Scalar* x;
@@ -63,15 +63,15 @@ struct Triples {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// `Inner` of all features but the threes from `First...` on.
+/// `Inner` is shown all features but the threes from `First...` on. Parameters: those of `Inner`.
 template <class Inner, int FeatureCount, int... First>
 struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename Inner::Scalar, FeatureCount,
-                             Inner::outputs, Inner::parameter_count> {
+                              Inner::outputs, Inner::parameter_count> {
   using Threes = detail::Triples<FeatureCount, First...>;
-  static_assert(is_predictor<Inner>, "pinnquad: features are Masked of an answer (model/predictor.hpp)");
-  static_assert(Threes::fit(), "pinnquad: what is Masked are features in threes, ascending, that do not overlap");
+  static_assert(is_predictor<Inner>, "pinnquad: Masked is around a predictor (model/predictor.hpp)");
+  static_assert(Threes::fit(), "pinnquad: Masked features are in threes, ascending, and do not overlap");
   static_assert(Inner::inputs == Threes::others,
-                "pinnquad: an answer from which features are Masked takes all the others");
+                "pinnquad: a predictor inside Masked takes all features that are not masked");
   using Scalar = typename Inner::Scalar;
   using Masked::PredictorBase::forward;
 
@@ -87,7 +87,7 @@ struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename In
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar seen[Threes::others], by_seen[Inner::outputs * Threes::others];
     Threes::copy_others(x, static_cast<Scalar*>(seen));
-    answer_jacobian<Inner>(parameters, static_cast<const Scalar*>(seen), y, static_cast<Scalar*>(by_seen));
+    predictor_jacobian<Inner>(parameters, static_cast<const Scalar*>(seen), y, static_cast<Scalar*>(by_seen));
     for (int i = 0; i < Inner::outputs * FeatureCount; ++i) by_x[i] = Scalar(0);
     Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA {
       for (int i = 0; i < Inner::outputs; ++i) by_x[i * FeatureCount + feature] = by_seen[i * Threes::others + n];
@@ -99,22 +99,7 @@ struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename In
 
 namespace detail {
 
-/// Asked of the features that are left.
-template <class Inner, int FeatureCount, int... First>
-struct FormulasOf<Masked<Inner, FeatureCount, First...>> {
-  static constexpr bool read(const NamedFeatures& features) noexcept {
-    using Threes = Triples<FeatureCount, First...>;
-    const char* names[Threes::others]{};
-    const char* units[Threes::others]{};
-    for (int n = 0; n < Threes::others; ++n) {
-      names[n] = features.names[Threes::other(n)];
-      units[n] = features.units[Threes::other(n)];
-    }
-    return FormulasOf<Inner>::read({names, units, Threes::others});
-  }
-};
-
-/// ", number, number, ...>": what a description of numbers in a list ends with.
+/// The end of a description with numbers in a list: ", number, number, ...>".
 template <class Sink, class... Number>
 constexpr void describe_numbers(Sink& sink, Number... number) {
   ((sink.add(std::string_view(", ")), sink.add(number)), ...);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Bounds of the derivative of a network's outputs by one input, for all inputs at once: along every path from the input
-// to an output the product of the weights, each activation's slope anywhere from 0 to 1 (docs/certificate.md). For a
-// network that is shown the angular acceleration and must not turn a base's slope round.
+// Bounds of d(output)/d(input) of a network, valid for every input: the products of the weights along each path from
+// the input to the output are added up, each activation's slope anywhere from 0 to 1 (docs/certificate.md). For a
+// network that is shown the angular acceleration and must not turn the sign of a slope.
 #pragma once
 
 #include <limits>
@@ -13,7 +13,7 @@
 
 namespace pinnquad {
 
-/// Activations whose slope is never below 0 nor above 1: of Relu 0 or 1, of Tanh 1 - y^2, of Softplus 1 / (1 + exp(-v)).
+/// True for activations whose slope is from 0 to 1: of Relu 0 or 1, of Tanh 1 - y^2, of Softplus 1 / (1 + exp(-v)).
 /// Not Gelu, Silu (-0.13 to 1.13) and Sine (-1 to 1).
 template <class Layer>
 inline constexpr bool slopes_from_0_to_1 = false;
@@ -27,8 +27,8 @@ inline constexpr bool slopes_from_0_to_1<SoftplusLayer<Scalar, Size>> = true;
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Weighs intervals: `outputs` sums of `inputs` products, weights row by row. Where the intervals hold 0 each end of a
-/// sum has terms of one sign, so that rounding errs by less than (inputs + 1) 2^-53 of it.
+/// The intervals of `outputs` weighted sums of `inputs` intervals, weights row by row. Intervals that hold 0 add up
+/// numbers of one sign at each end: rounding errs by less than (inputs + 1) 2^-53 of it.
 template <class Scalar>
 constexpr void weigh_intervals(const Scalar* weights, int inputs, int outputs, const double* lower, const double* upper,
                                double* sum_lower, double* sum_upper) noexcept {
@@ -43,15 +43,15 @@ constexpr void weigh_intervals(const Scalar* weights, int inputs, int outputs, c
 }
 
 template <class Network, class Indices = std::make_index_sequence<std::size_t(Network::layer_count)>>
-struct PathShape;
+struct PathLayers;
 template <class NetworkType, std::size_t... Index>
-struct PathShape<NetworkType, std::index_sequence<Index...>> {
+struct PathLayers<NetworkType, std::index_sequence<Index...>> {
   template <std::size_t At>
   using Layer = typename NetworkType::template Layer<int(At)>;
   template <class L>
   static constexpr bool is_dense = std::is_same_v<L, DenseLayer<typename NetworkType::Scalar, L::inputs, L::outputs>>;
 
-  /// Dense layers, an activation with such a slope after each but the last.
+  /// True where layers are Dense, with an activation of slope 0 to 1 after each but the last.
   static constexpr bool alternates =
       (... && (Index % 2 == 0 ? is_dense<Layer<Index>> : slopes_from_0_to_1<Layer<Index>>)) &&
       sizeof...(Index) % 2 == 1;
@@ -63,16 +63,16 @@ struct PathShape<NetworkType, std::index_sequence<Index...>> {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Between which d(output)/d(input) stays, 0 among it: what clips an output may rest.
+/// Lower and upper bounds of d(output)/d(input). The interval holds 0, the slope of an output that is clipped.
 template <int Outputs>
 struct PathBound {
   double lower[Outputs]{};
   double upper[Outputs]{};
 };
 
-/// Shapes of networks of which a bound is worked out at run time: `widths` of the dense layers' outputs, parameters as a
-/// Network has them. `work`: 4 x the widest, in which the first layer's intervals stand, 0 among each: lower ends, then
-/// from `widest` on upper ones.
+/// From the first layer's outputs to the network's. `widths`: outputs of each of the `layers` dense layers; parameters
+/// in the order of a Network. `work`: 4 x `widest` numbers; the intervals of the first layer's outputs, each holding 0,
+/// stand there: lower ends from 0 on, upper ends from `widest` on.
 template <class Scalar>
 constexpr void path_bound_behind_first(const Scalar* parameters, int inputs, const int* widths, int layers,
                                        double* work, int widest, double* lower, double* upper) noexcept {
@@ -97,7 +97,7 @@ constexpr void path_bound_behind_first(const Scalar* parameters, int inputs, con
   }
 }
 
-/// By one input.
+/// Bounds by one input, for widths that are known at run time alone: `lower` and `upper` of each output.
 template <class Scalar>
 constexpr void path_bound(const Scalar* parameters, int inputs, const int* widths, int layers, int input, double* work,
                           int widest, double* lower, double* upper) noexcept {
@@ -109,14 +109,15 @@ constexpr void path_bound(const Scalar* parameters, int inputs, const int* width
   path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
 }
 
-/// Along a direction, each input between two ends: tighter than the sum of the bounds by each.
+/// Bounds along a direction, of which each entry is from least[i] to most[i]: tighter than the sum of the bounds by
+/// each input.
 template <class Scalar>
 constexpr void path_bound_along(const Scalar* parameters, int inputs, const int* widths, int layers,
                                 const double* least, const double* most, double* work, int widest, double* lower,
                                 double* upper) noexcept {
   detail::weigh_intervals(parameters, inputs, widths[0], least, most, work, work + widest);
   for (int row = 0; row < widths[0]; ++row) {
-    double magnitudes = 0;  // of terms that may cancel
+    double magnitudes = 0;  // of products that may cancel
     for (int i = 0; i < inputs; ++i) {
       const double weight = static_cast<double>(parameters[row * inputs + i]);
       const double far = -least[i] > most[i] ? -least[i] : most[i];
@@ -129,20 +130,19 @@ constexpr void path_bound_along(const Scalar* parameters, int inputs, const int*
   path_bound_behind_first(parameters, inputs, widths, layers, work, widest, lower, upper);
 }
 
-/// A network whose sight of the angular acceleration is bounded by its weights, as PathProjection leaves them: an answer
-/// like `NetworkType`, of which a certificate asks that bound. At most 3 dense layers: the bound adds up the worst of
-/// all units, which cannot all be at their worst at once, and with each layer more it grows away from what the
-/// network does, until nothing is left of what it is shown. A float network: products of few of its weights are no
-/// subnormal double.
+/// A network that is shown the angular acceleration: a predictor like `NetworkType`, of which a certificate asks the
+/// path bound; PathProjection keeps its weights small in training. At most 3 dense layers: the bound adds up the worst
+/// of all units, and with each layer more it is further above what the network does, until nothing is left of what it
+/// is shown. A float network: a product of a few of its weights is no subnormal double.
 template <class NetworkType>
 struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
                                    NetworkType::outputs, NetworkType::parameter_count> {
   using Inner = NetworkType;
-  using Shape = detail::PathShape<NetworkType>;
+  using Layers = detail::PathLayers<NetworkType>;
   static_assert(std::is_same_v<typename NetworkType::Scalar, float>, "pinnquad: a PathBounded network is of floats");
-  static_assert(Shape::alternates,
+  static_assert(Layers::alternates,
                 "pinnquad: a PathBounded network has Dense layers with Relu, Tanh or Softplus between them");
-  static_assert(Shape::dense_layers <= 3,
+  static_assert(Layers::dense_layers <= 3,
                 "pinnquad: a PathBounded network has at most 3 Dense layers: of more the bound "
                 "says nothing (docs/certificate.md)");
   using Scalar = typename NetworkType::Scalar;
@@ -152,16 +152,16 @@ struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkTyp
     NetworkType::forward(parameters, x, y);
   }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
-    answer_jacobian<NetworkType>(parameters, x, y, by_x);
+    predictor_jacobian<NetworkType>(parameters, x, y, by_x);
   }
-  /// Of all outputs by one input, standardised as the network is.
+  /// Bounds of all outputs by one input, both standardised.
   static constexpr PathBound<NetworkType::outputs> bound(const Scalar* parameters, int input) noexcept {
-    int widths[Shape::dense_layers]{};
-    for (int i = 0; i < Shape::dense_layers; ++i) widths[i] = NetworkType::Sizes::outputs[std::size_t(2 * i)];
+    int widths[Layers::dense_layers]{};
+    for (int i = 0; i < Layers::dense_layers; ++i) widths[i] = NetworkType::Sizes::outputs[std::size_t(2 * i)];
     constexpr int widest = NetworkType::widest;
     double work[4 * widest]{};
     PathBound<NetworkType::outputs> found;
-    path_bound(parameters, NetworkType::inputs, widths, Shape::dense_layers, input, work, widest, found.lower,
+    path_bound(parameters, NetworkType::inputs, widths, Layers::dense_layers, input, work, widest, found.lower,
                found.upper);
     return found;
   }
@@ -177,8 +177,8 @@ struct Description<PathBounded<NetworkType>> {
   }
 };
 
-/// The base of these features and a network that is shown all of them, the angular accelerations too: where its path
-/// bound leaves the slopes above 0 each signed sum rises with the angular acceleration about its axis.
+/// The affine part and a network that is shown all features. Where its path bound is below the slopes, each axis
+/// command rises with the angular acceleration about its axis.
 template <class Features, class Residual>
 using PathBoundedPredictor = Sum<MonotoneBase<Features, typename Residual::Scalar>, Saturated<PathBounded<Residual>>>;
 

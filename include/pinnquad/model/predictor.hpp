@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
-// What answers in a model, between its scalers: a Network, or anything else with features in and outputs out
-// (model/composition.hpp). All parameters in one flat array, sizes known to the compiler.
-// Contract: `Scalar`, `inputs`, `outputs`, `parameter_count`, `Parameters` and a member `parameters`;
+// The part of a model between its scalers: a Network, or anything else that makes outputs of features.
+// Contract of a predictor: `Scalar`, `inputs`, `outputs`, `parameter_count`, `Parameters` (one flat array), a member
+// `parameters`, a Description (model/description.hpp), and
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept
-//   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept    outputs x inputs,
-//     row-major; a Network's is JacobianPass (nn/jacobian.hpp)
-// and a Description (model/description.hpp). A Network runs on the vector unit, any other answer as it is written.
+//   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept
+// by_x: outputs x inputs, row-major. A Network's Jacobian is JacobianPass (nn/jacobian.hpp). A Network runs on the
+// vector unit, any other predictor as it is written.
 #pragma once
 
 #include <array>
 #include <type_traits>
 
-#include "pinnquad/nn/network.hpp"
+#include "pinnquad/core/first_of.hpp"
+#include "pinnquad/model/description.hpp"
+#include "pinnquad/nn/jacobian.hpp"
 
 namespace pinnquad {
 
@@ -20,7 +22,7 @@ template <class T, class = void>
 struct IsPredictor : std::false_type {};
 template <class T>
 struct IsPredictor<T, std::void_t<typename T::Scalar, typename T::Parameters, decltype(T::inputs), decltype(T::outputs),
-                               decltype(T::parameter_count), decltype(std::declval<T&>().parameters)>>
+                                  decltype(T::parameter_count), decltype(std::declval<T&>().parameters)>>
     : std::bool_constant<noexcept(T::forward(static_cast<const typename T::Scalar*>(nullptr),
                                              static_cast<const typename T::Scalar*>(nullptr),
                                              static_cast<typename T::Scalar*>(nullptr)))> {};
@@ -29,5 +31,79 @@ struct IsPredictor<T, std::void_t<typename T::Scalar, typename T::Parameters, de
 /// True for a type that fulfils the contract at the head of this file, but for its Jacobian.
 template <class T>
 inline constexpr bool is_predictor = detail::IsPredictor<T>::value;
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// y = predictor(x) and dy/dx, both standardised.
+template <class Predictor>
+PINNQUAD_ALWAYS_INLINE void predictor_jacobian(const typename Predictor::Scalar* parameters,
+                                               const typename Predictor::Scalar* x, typename Predictor::Scalar* y,
+                                               typename Predictor::Scalar* by_x) noexcept {
+  if constexpr (is_network<Predictor>) {
+    JacobianPass<Predictor>::run(parameters, x, y, by_x);
+  } else {
+    Predictor::jacobian(parameters, x, y, by_x);
+  }
+}
+
+/// Sizes and parameters of a predictor that is no Network: its class derives from this one.
+template <class Derived, class ScalarType, int InputCount, int OutputCount, int ParameterCount>
+struct PredictorBase {
+  using Scalar = ScalarType;
+  static constexpr int inputs = InputCount;
+  static constexpr int outputs = OutputCount;
+  static constexpr int parameter_count = ParameterCount;
+  using Parameters = std::array<Scalar, static_cast<std::size_t>(ParameterCount)>;
+
+  Parameters parameters{};
+
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    Derived::forward(detail::first_of<Scalar>(parameters), x, y);
+  }
+};
+
+/// The sum of two predictors: an affine base and a residual network. Parameters of the first, then of the second.
+template <class First, class Second>
+struct Sum : PredictorBase<Sum<First, Second>, typename First::Scalar, First::inputs, First::outputs,
+                           First::parameter_count + Second::parameter_count> {
+  static_assert(is_predictor<First> && is_predictor<Second>,
+                "pinnquad: a Sum is of two predictors (model/predictor.hpp)");
+  static_assert(First::inputs == Second::inputs && First::outputs == Second::outputs &&
+                    std::is_same_v<typename First::Scalar, typename Second::Scalar>,
+                "pinnquad: the two predictors of a Sum differ in inputs, outputs or Scalar");
+  using Scalar = typename First::Scalar;
+  using Sum::PredictorBase::forward;
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Second::forward(parameters + First::parameter_count, x, y);
+    add_first(parameters, x, y);
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    Scalar other[Second::outputs], slopes[Second::outputs * Second::inputs];
+    predictor_jacobian<First>(parameters, x, y, by_x);
+    predictor_jacobian<Second>(parameters + First::parameter_count, x, static_cast<Scalar*>(other),
+                               static_cast<Scalar*>(slopes));
+    for (int i = 0; i < Second::outputs; ++i) y[i] += other[i];
+    for (int i = 0; i < Second::outputs * Second::inputs; ++i) by_x[i] += slopes[i];
+  }
+
+ private:
+  /// Out of line: its numbers are not on the stack beside a second predictor that needs much of it.
+  static PINNQUAD_NOINLINE void add_first(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Scalar one[First::outputs];
+    First::forward(parameters, x, static_cast<Scalar*>(one));
+    for (int i = 0; i < First::outputs; ++i) y[i] += one[i];
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+template <class First, class Second>
+struct Description<Sum<First, Second>> {
+  template <class Sink>
+  static constexpr void add(Sink& sink) {
+    detail::describe_list<First, Second>(sink, "pinnquad::Sum");
+  }
+};
 
 }  // namespace pinnquad

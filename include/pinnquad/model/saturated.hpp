@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: MIT
-// An answer whose outputs stay between bounds, whatever it is asked: a residual that says no more than it did in
-// training.
+// A predictor whose outputs stay between bounds for every input: a residual is never larger than it was in training.
 #pragma once
 
-#include "pinnquad/model/composition.hpp"
+#include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// y = clip(Inner(x)), output by output. Parameters: lower bounds, upper bounds, then those of `Inner`. NaN goes
-/// through.
+/// y = clip(Inner(x)), output by output. Parameters: lower bounds, upper bounds, then those of `Inner`. NaN stays NaN.
 template <class Inner>
 struct Saturated : PredictorBase<Saturated<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
-                            2 * Inner::outputs + Inner::parameter_count> {
-  static_assert(is_predictor<Inner>, "pinnquad: Saturated is of an answer (model/predictor.hpp)");
+                                 2 * Inner::outputs + Inner::parameter_count> {
+  static_assert(is_predictor<Inner>, "pinnquad: Saturated is around a predictor (model/predictor.hpp)");
   using Scalar = typename Inner::Scalar;
   using Saturated::PredictorBase::forward;
-  static constexpr int lower = 0;  ///< where they stand among the parameters
+  static constexpr int lower = 0;  ///< places among the parameters
   static constexpr int upper = Inner::outputs;
   static constexpr int own = 2 * Inner::outputs;
 
@@ -25,9 +23,9 @@ struct Saturated : PredictorBase<Saturated<Inner>, typename Inner::Scalar, Inner
     Inner::forward(parameters + own, x, y);
     clip(parameters, y);
   }
-  /// The derivative of an output that is clipped, and of one on its bound, is 0.
+  /// The derivative of an output that is clipped, or on its bound, is 0.
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
-    answer_jacobian<Inner>(parameters + own, x, y, by_x);
+    predictor_jacobian<Inner>(parameters + own, x, y, by_x);
     for (int i = 0; i < Inner::outputs; ++i) {
       if (y[i] > parameters[lower + i] && y[i] < parameters[upper + i]) continue;
       for (int k = 0; k < Inner::inputs; ++k) by_x[i * Inner::inputs + k] = Scalar(0);
@@ -45,11 +43,6 @@ struct Saturated : PredictorBase<Saturated<Inner>, typename Inner::Scalar, Inner
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-namespace detail {
-template <class Inner>
-struct FormulasOf<Saturated<Inner>> : FormulasOf<Inner> {};
-}  // namespace detail
 
 template <class Inner>
 struct Description<Saturated<Inner>> {

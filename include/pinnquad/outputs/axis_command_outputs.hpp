@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Outputs that are the rows of Eq. (2) with their signs alone: the sum of all commands, and the signed sums about roll,
-// pitch and yaw, as LocalMonotonicity compares them. Where a signed sum follows its own angular acceleration and no
-// other one does, so do the commands: u = A y, A the inverse of the signs, +-1/4 of an X.
+// Outputs as axis commands: the rows of Eq. (2) with their signs alone, which are the sum of all commands (collective)
+// and the signed sums about roll, pitch and yaw, as LocalMonotonicity compares them. u = A y, A the inverse of the
+// signs, +-1/4 for an X. Where each axis command follows its own angular acceleration and no other one, so does each
+// rotor's command.
 #pragma once
 
 #include <array>
 #include <limits>
 #include <type_traits>
 
-#include "pinnquad/features/read_features.hpp"
+#include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 
 namespace pinnquad {
@@ -16,14 +17,14 @@ namespace pinnquad {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The signs, row by row, and their inverse. Plain arrays, see detail::RotorMap.
+/// The signs, row by row, and their inverse. Plain arrays, as in detail::RotorMap.
 template <class Scalar>
 struct SignedMix {
   Scalar signs[4][rotor_count]{};  ///< rows: 1 of each rotor, then of roll, pitch, yaw
   Scalar by[rotor_count][4]{};     ///< A
 };
 
-/// NaN for a vehicle whose signs do not tell the axes apart: no guard lets its commands pass.
+/// NaN for a vehicle whose signs do not distinguish the axes: no guard lets its commands pass.
 template <class Scalar>
 constexpr SignedMix<Scalar> signed_mix(const Airframe<Scalar>& airframe) noexcept {
   AllocationMatrix<Scalar> signs{}, inverse{};
@@ -76,17 +77,15 @@ struct AxisCommandOutputs {
   }
 };
 
-/// u = base(x) + A y: the sums are added to what another inverse says, a Base of outputs/residual_outputs.hpp that is
-/// not shown the angular acceleration: it is not among what the base reads.
-template <class BaseInverse>
+/// u = base(x) + A y. The base (outputs/base.hpp) reads no angular acceleration: the slope by it is the model's own.
+template <class BaseType>
 struct SignedSumsOn {
-  static_assert(detail::SaysWhatItReads<BaseInverse>::value,
-                "pinnquad: a base says which features it reads, by name: `reads` (outputs/residual_outputs.hpp)");
-  static_assert(!detail::reads_angular_acceleration<BaseInverse>(),
+  static_assert(is_base<BaseType>,
+                "pinnquad: a base says which features it reads, by name: `reads` (outputs/base.hpp)");
+  static_assert(!detail::reads_angular_acceleration<BaseType>(),
                 "pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration: its slope is "
-                "replaced, not added "
-                "to (outputs/rigid_body_base.hpp)");
-  using Base = BaseInverse;  ///< a header and a block name it by its description
+                "replaced, not added to (outputs/rigid_body_base.hpp)");
+  using Base = BaseType;  ///< named by its description in headers and blocks
   static constexpr int size = 4;
   static constexpr std::array<const char*, size> names = {"dsum", "droll_sum", "dpitch_sum", "dyaw_sum"};
   static constexpr std::array<const char*, size> units = {"1", "1", "1", "1"};
@@ -134,8 +133,7 @@ template <class Base>
 struct IsSignedSums<SignedSumsOn<Base>> : std::true_type {};
 }  // namespace detail
 
-/// True for outputs that are signed sums, with a base of which nothing turns with the angular acceleration, or without
-/// one.
+/// True for axis commands, on a base or not.
 template <class Outputs>
 inline constexpr bool is_signed_sums = detail::IsSignedSums<Outputs>::value;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How much an airframe's signed sums of the commands rise with the angular acceleration: what a model's slopes are
-// compared with, and pinned to.
+// Slopes of an airframe's axis commands by the angular acceleration, in hover: a model's slopes are compared with them,
+// or pinned to them.
 #pragma once
 
 #include <array>

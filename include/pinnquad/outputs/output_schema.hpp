@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
-// What a model's outputs mean, as a type, and how they become the commands of the rotors (docs/paper.md, deviation 20).
-// Contract, all static and noexcept, Scalar deduced; x: features in physical units, y: `size` outputs in theirs, u: commands:
-//   size, names, units                      how many outputs, and of each its name and unit
-//   commands(x, y, setting, u)              u = g(x, y). `setting`: the airframe, or what `prepare(airframe)` made of it
-//   from_commands(x, u, setting, y)         outputs with g(x, y) = u: what a network is trained towards
-//   slopes(x, y, setting, by_outputs)       du/dy, rotor_count x size, row-major; not asked of a schema that says
-//                                           `linear = true`: g is affine in y, and its values give the slopes
+// The meaning of a model's outputs, as a type: how they become commands of the rotors (docs/paper.md, deviation 20).
+// Contract, all static and noexcept, Scalar deduced; x: features, y: `size` outputs, both in physical units, u: commands:
+//   size, names, units                   count, and of each output its name and unit
+//   commands(x, y, setting, u)           u = g(x, y). `setting`: the airframe, or the result of `prepare(airframe)`
+//   from_commands(x, u, setting, y)      outputs with g(x, y) = u: the targets of a training
+//   slopes(x, y, setting, by_outputs)    du/dy, rotor_count x size, row-major; not needed where the schema says
+//                                        `linear = true`: g is affine in y, and its values give the slopes
 //   feature_slopes<FeatureCount>(x, y, setting, by_x)
-//                                           du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
-//   prepare(airframe)                       optional, constexpr: worked out by the compiler
-//   takes_features                          optional, false: none of its functions looks at x, which may be null
-// A schema of one output per rotor and one unit says `names`, `unit`, `from_command(u, airframe)`, `command(y, airframe)`,
-// `command_slope(y, airframe)` instead, or these three with the rotor's index behind, for rotors that differ.
-// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets, and plain
-// arrays then, no Eigen (docs/guide.md, Reproducibility).
+//                                        du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
+//   prepare(airframe)                    optional, constexpr: worked out by the compiler
+//   takes_features                       optional, false: no function reads x, which may be null
+// Short form for one output per rotor and one unit: `names`, `unit`, from_command(u, airframe), command(y, airframe),
+// command_slope(y, airframe), or these three with the rotor's index as last argument, for rotors that differ.
+// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets,
+// and plain arrays then, no Eigen (docs/guide.md, Reproducibility).
 #pragma once
 
 #include <array>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
@@ -43,8 +44,8 @@ struct CommandOutputs {
   }
 };
 
-/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2, or the command at
-/// which the rotor's thrust_curve gives that speed. `rotor`: which one, where the curves differ.
+/// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2, or the
+/// command at which the rotor's thrust_curve gives that speed. `rotor`: its index, where the curves differ.
 struct RotorSpeedOutputs {
   static constexpr std::array<const char*, rotor_count> names = {"n1", "n2", "n3", "n4"};
   static constexpr const char* unit = "rev/s";
@@ -69,209 +70,202 @@ struct RotorSpeedOutputs {
 
 namespace detail {
 
-/// The form rotor by rotor, its functions called with `Rotor` behind: nothing, or the rotor's index.
-template <class T, class Enable, class... Rotor>
-struct MapsEachRotor : std::false_type {};
-template <class T, class... Rotor>
-struct MapsEachRotor<T,
-                     std::void_t<decltype(T::names), decltype(T::unit),
-                                 decltype(T::from_command(0.0, std::declval<const Airframe<double>&>(), Rotor{}...)),
-                                 decltype(T::command(0.0, std::declval<const Airframe<double>&>(), Rotor{}...)),
-                                 decltype(T::command_slope(0.0, std::declval<const Airframe<double>&>(), Rotor{}...))>,
-                     Rotor...> : std::bool_constant<T::names.size() == std::size_t(rotor_count)> {
+/// The functions of the short form, called with `Index...` as last arguments: none, or std::size_t.
+template <class T, class... Index>
+struct RotorCalls {
   using Body = const Airframe<double>&;
-  static constexpr bool forth = noexcept(T::from_command(0.0, std::declval<Body>(), Rotor{}...));
-  static constexpr bool back = noexcept(T::command(0.0, std::declval<Body>(), Rotor{}...));
-  static constexpr bool slope = noexcept(T::command_slope(0.0, std::declval<Body>(), Rotor{}...));
-  static constexpr bool is_noexcept = forth && back && slope;
+  template <class S>
+  using All = std::void_t<decltype(S::names), decltype(S::unit),
+                          decltype(S::from_command(0.0, std::declval<Body>(), Index{}...)),
+                          decltype(S::command(0.0, std::declval<Body>(), Index{}...)),
+                          decltype(S::command_slope(0.0, std::declval<Body>(), Index{}...))>;
+  static constexpr bool exist() noexcept {
+    if constexpr (is_detected<All, T>) {
+      return T::names.size() == std::size_t(rotor_count);
+    } else {
+      return false;
+    }
+  }
+  static constexpr bool are_noexcept() noexcept {
+    return noexcept(T::from_command(0.0, std::declval<Body>(), Index{}...))&& noexcept(T::command(
+        0.0, std::declval<Body>(), Index{}...))&& noexcept(T::command_slope(0.0, std::declval<Body>(), Index{}...));
+  }
 };
 template <class T>
-using MapsRotorByIndex = MapsEachRotor<T, void, std::size_t>;
+inline constexpr bool maps_rotor_by_index = RotorCalls<T, std::size_t>::exist();
 template <class T>
-using MapsRotorByRotor = std::conditional_t<MapsRotorByIndex<T>::value, MapsRotorByIndex<T>, MapsEachRotor<T, void>>;
+inline constexpr bool maps_each_rotor = maps_rotor_by_index<T> || RotorCalls<T>::exist();
 
-template <class T, class = void>
-struct Prepares : std::false_type {};
 template <class T>
-struct Prepares<T, std::void_t<decltype(T::prepare(std::declval<const Airframe<double>&>()))>> : std::true_type {};
+using PrepareOf = decltype(T::prepare(std::declval<const Airframe<double>&>()));
 
-/// What a schema is given beside features and outputs.
+/// The argument `setting` of a schema's functions.
 template <class Schema, class Scalar>
 constexpr auto output_setting(const Airframe<Scalar>& airframe) noexcept {
-  if constexpr (Prepares<Schema>::value) {
+  if constexpr (is_detected<PrepareOf, Schema>) {
     return Schema::prepare(airframe);
   } else {
     return airframe;
   }
 }
-template <class Schema>
-using SettingOf = decltype(output_setting<Schema>(std::declval<const Airframe<double>&>()));
 
-/// A function of a schema, called as the contract says.
-template <class Schema>
-struct SchemaCall {
+/// The functions of the full form.
+template <class T>
+struct VectorCalls {
   using In = const double*;
   using Out = double*;
-  using Setting = const SettingOf<Schema>&;
-  template <class T>
-  using Commands = decltype(T::commands(In{}, In{}, std::declval<Setting>(), Out{}));
-  template <class T>
-  using FromCommands = decltype(T::from_commands(In{}, In{}, std::declval<Setting>(), Out{}));
-  template <class T>
-  using Slopes = decltype(T::slopes(In{}, In{}, std::declval<Setting>(), Out{}));
-  template <class T>
-  using FeatureSlopes = decltype(T::template feature_slopes<16>(In{}, In{}, std::declval<Setting>(), Out{}));
+  using Setting = const decltype(output_setting<T>(std::declval<const Airframe<double>&>()))&;
+  template <class S>
+  using Both = std::void_t<std::enable_if_t<(S::size > 0)>, decltype(S::names), decltype(S::units),
+                           decltype(S::commands(In{}, In{}, std::declval<Setting>(), Out{})),
+                           decltype(S::from_commands(In{}, In{}, std::declval<Setting>(), Out{}))>;
+  template <class S>
+  using Slopes = decltype(S::slopes(In{}, In{}, std::declval<Setting>(), Out{}));
+  template <class S>
+  using FeatureSlopes = decltype(S::template feature_slopes<16>(In{}, In{}, std::declval<Setting>(), Out{}));
+  template <class S>
+  using Linear = std::enable_if_t<S::linear>;
+  static constexpr bool has_slopes = is_detected<Slopes, T>;
+  static constexpr bool has_feature_slopes = is_detected<FeatureSlopes, T>;
+
+  static constexpr bool exist() noexcept {
+    if constexpr (is_detected<Both, T>) {
+      return T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size) &&
+             (is_detected<Linear, T> || has_slopes);
+    } else {
+      return false;
+    }
+  }
+  static constexpr bool are_noexcept() noexcept {
+    bool all = noexcept(T::commands(In{}, In{}, std::declval<Setting>(), Out{}))&& noexcept(
+        T::from_commands(In{}, In{}, std::declval<Setting>(), Out{}));
+    if constexpr (has_slopes) all = all&& noexcept(T::slopes(In{}, In{}, std::declval<Setting>(), Out{}));
+    if constexpr (has_feature_slopes) {
+      all = all&& noexcept(T::template feature_slopes<16>(In{}, In{}, std::declval<Setting>(), Out{}));
+    }
+    return all;
+  }
 };
-
-template <class T, class = void>
-struct IsLinear : std::false_type {};
-template <class T>
-struct IsLinear<T, std::enable_if_t<T::linear>> : std::true_type {};
-template <class T, class = void>
-struct TakesFeatures : std::true_type {};
-template <class T>
-struct TakesFeatures<T, std::void_t<decltype(T::takes_features)>> : std::bool_constant<T::takes_features> {};
-template <class T, class = void>
-struct HasSlopes : std::false_type {};
-template <class T>
-struct HasSlopes<T, std::void_t<typename SchemaCall<T>::template Slopes<T>>> : std::true_type {};
-template <class T, class = void>
-struct HasFeatureSlopes : std::false_type {};
-template <class T>
-struct HasFeatureSlopes<T, std::void_t<typename SchemaCall<T>::template FeatureSlopes<T>>> : std::true_type {};
-
-template <class T, class = void>
-struct MapsVector : std::false_type {};
-template <class T>
-struct MapsVector<
-    T, std::void_t<std::enable_if_t<(T::size > 0)>, decltype(T::names), decltype(T::units),
-                   typename SchemaCall<T>::template Commands<T>, typename SchemaCall<T>::template FromCommands<T>>>
-    : std::bool_constant<T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size) &&
-                         (IsLinear<T>::value || HasSlopes<T>::value)> {};
 
 template <class T>
 constexpr bool output_schema_is_noexcept() noexcept {
-  if constexpr (MapsVector<T>::value) {
-    using Call = SchemaCall<T>;
-    constexpr typename Call::In in = nullptr;
-    constexpr typename Call::Out out = nullptr;
-    using Setting = typename Call::Setting;
-    bool all = noexcept(T::commands(in, in, std::declval<Setting>(), out))&& noexcept(
-        T::from_commands(in, in, std::declval<Setting>(), out));
-    if constexpr (HasSlopes<T>::value) all = all&& noexcept(T::slopes(in, in, std::declval<Setting>(), out));
-    if constexpr (HasFeatureSlopes<T>::value) {
-      all = all&& noexcept(T::template feature_slopes<16>(in, in, std::declval<Setting>(), out));
-    }
-    return all;
+  if constexpr (VectorCalls<T>::exist()) {
+    return VectorCalls<T>::are_noexcept();
+  } else if constexpr (maps_rotor_by_index<T>) {
+    return RotorCalls<T, std::size_t>::are_noexcept();
   } else {
-    return MapsRotorByRotor<T>::is_noexcept;
+    return RotorCalls<T>::are_noexcept();
   }
 }
 template <class T>
 inline constexpr bool is_noexcept_output_schema = output_schema_is_noexcept<T>();
 
+template <class T>
+using TakesFeaturesOf = decltype(T::takes_features);
+/// False for a schema that says so.
+template <class T, bool = is_detected<TakesFeaturesOf, T>>
+inline constexpr bool reads_features = true;
+template <class T>
+inline constexpr bool reads_features<T, true> = T::takes_features;
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// The short form as a schema of the full form; slopes() writes du_i/dy_i alone.
+template <class Schema, class... Index>
+struct EachRotor {
+  static constexpr int size = rotor_count;
+  static constexpr const auto& names = Schema::names;
+  static constexpr std::array<const char*, size> units = {Schema::unit, Schema::unit, Schema::unit, Schema::unit};
+  static constexpr bool takes_features = false;
+
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe,
+                                               [[maybe_unused]] int rotor) noexcept {
+    return Schema::command(output, airframe, static_cast<Index>(rotor)...);
+  }
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* y, const Airframe<Scalar>& airframe,
+                                              Scalar* u) noexcept {
+    for (int i = 0; i < size; ++i) u[i] = command(y[i], airframe, i);
+  }
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* y, const Airframe<Scalar>& airframe,
+                                            Scalar* own) noexcept {
+    for (int i = 0; i < size; ++i) own[i] = Schema::command_slope(y[i], airframe, static_cast<Index>(i)...);
+  }
+  template <class Scalar>
+  static void from_commands(const Scalar*, const Scalar* u, const Airframe<Scalar>& airframe, Scalar* y) noexcept {
+    for (int i = 0; i < size; ++i) y[i] = Schema::from_command(u[i], airframe, static_cast<Index>(i)...);
+  }
+};
+
+/// A schema in its full form.
+template <class Schema, bool = maps_each_rotor<Schema>>
+struct FullForm {
+  using type = Schema;
+};
+template <class Schema>
+struct FullForm<Schema, true> {
+  using type = std::conditional_t<maps_rotor_by_index<Schema>, EachRotor<Schema, std::size_t>, EachRotor<Schema>>;
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file, in one of its two forms.
 template <class T>
-inline constexpr bool is_output_schema = detail::MapsRotorByRotor<T>::value != detail::MapsVector<T>::value;
+inline constexpr bool is_output_schema = detail::maps_each_rotor<T> != detail::VectorCalls<T>::exist();
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// An output schema as everyone calls it, whichever form it is written in: here rotor by rotor.
-template <class Schema, bool RotorByRotor = detail::MapsRotorByRotor<Schema>::value>
-struct OutputMap {
-  static constexpr int size = rotor_count;
-  static constexpr const auto& names = Schema::names;
-  static constexpr std::array<const char*, size> units = {Schema::unit, Schema::unit, Schema::unit, Schema::unit};
-  static constexpr bool rotor_by_rotor = true;
-  static constexpr bool takes_features = false;  ///< x may be null where it is false
-  static constexpr bool has_feature_slopes = false;
-  static constexpr int slope_count = size;  ///< numbers that slopes() writes
-
-  /// Command i depends on the outputs from first_output(i) to before last_output(i); where du_i/dy_k stands in the slopes.
-  static constexpr int first_output(int command) noexcept { return command; }
-  static constexpr int last_output(int command) noexcept { return command + 1; }
-  static constexpr int slope_index(int command, int) noexcept { return command; }
-
-  template <class Scalar>
-  static constexpr Airframe<Scalar> setting(const Airframe<Scalar>& airframe) noexcept {
-    return airframe;
-  }
-  template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe, int rotor) noexcept {
-    if constexpr (detail::MapsRotorByIndex<Schema>::value) {
-      return Schema::command(output, airframe, static_cast<std::size_t>(rotor));
-    } else {
-      return Schema::command(output, airframe);
-    }
-  }
-  template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* outputs, const Airframe<Scalar>& airframe,
-                                              Scalar* commands) noexcept {
-    for (int i = 0; i < size; ++i) commands[i] = command(outputs[i], airframe, i);
-  }
-  template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* outputs, const Airframe<Scalar>& airframe,
-                                            Scalar* slopes) noexcept {
-    for (int i = 0; i < size; ++i) {
-      if constexpr (detail::MapsRotorByIndex<Schema>::value) {
-        slopes[i] = Schema::command_slope(outputs[i], airframe, static_cast<std::size_t>(i));
-      } else {
-        slopes[i] = Schema::command_slope(outputs[i], airframe);
-      }
-    }
-  }
-  template <class Scalar>
-  static void from_commands(const Scalar*, const Scalar* commands, const Airframe<Scalar>& airframe,
-                            Scalar* outputs) noexcept {
-    for (int i = 0; i < size; ++i) {
-      if constexpr (detail::MapsRotorByIndex<Schema>::value) {
-        outputs[i] = Schema::from_command(commands[i], airframe, static_cast<std::size_t>(i));
-      } else {
-        outputs[i] = Schema::from_command(commands[i], airframe);
-      }
-    }
-  }
-};
-
-/// Any number of outputs.
+/// An output schema as the library calls it, whichever form it is written in.
 template <class Schema>
-struct OutputMap<Schema, false> {
-  static constexpr int size = Schema::size;
-  static constexpr const auto& names = Schema::names;
-  static constexpr const auto& units = Schema::units;
-  static constexpr bool rotor_by_rotor = false;
-  static constexpr bool takes_features = detail::TakesFeatures<Schema>::value;
-  static constexpr bool has_feature_slopes = detail::HasFeatureSlopes<Schema>::value;
-  static constexpr int slope_count = rotor_count * size;
+struct OutputMap {
+  using Form = typename detail::FullForm<Schema>::type;
+  static constexpr int size = Form::size;
+  static constexpr const auto& names = Form::names;
+  static constexpr const auto& units = Form::units;
+  static constexpr bool rotor_by_rotor = !std::is_same_v<Form, Schema>;
+  static constexpr bool takes_features = detail::reads_features<Form>;  ///< x may be null where it is false
+  static constexpr bool has_feature_slopes = detail::VectorCalls<Form>::has_feature_slopes;
+  static constexpr int slope_count = rotor_by_rotor ? size : rotor_count * size;  ///< numbers that slopes() writes
 
-  static constexpr int first_output(int) noexcept { return 0; }
-  static constexpr int last_output(int) noexcept { return size; }
-  static constexpr int slope_index(int command, int output) noexcept { return command * size + output; }
+  /// Command i depends on the outputs from first_output(i) to before last_output(i). du_i/dy_k stands at
+  /// slope_index(i, k) of the slopes.
+  static constexpr int first_output(int command) noexcept { return rotor_by_rotor ? command : 0; }
+  static constexpr int last_output(int command) noexcept { return rotor_by_rotor ? command + 1 : size; }
+  static constexpr int slope_index(int command, int output) noexcept {
+    return rotor_by_rotor ? command : command * size + output;
+  }
 
   template <class Scalar>
   static constexpr auto setting(const Airframe<Scalar>& airframe) noexcept {
-    return detail::output_setting<Schema>(airframe);
+    return detail::output_setting<Form>(airframe);
+  }
+  /// Of one rotor; only where rotor_by_rotor.
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe, int rotor) noexcept {
+    return Form::command(output, airframe, rotor);
   }
   template <class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void commands(const Scalar* x, const Scalar* outputs, const Setting& setting,
                                               Scalar* commands) noexcept {
-    Schema::commands(x, outputs, setting, commands);
+    Form::commands(x, outputs, setting, commands);
   }
-  /// Of a linear schema: g(x, e_k) - g(x, 0).
+  /// Of a linear schema without slopes(): g(x, e_k) - g(x, 0).
   template <class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar* x, const Scalar* outputs, const Setting& setting,
                                             Scalar* slopes) noexcept {
-    if constexpr (detail::HasSlopes<Schema>::value) {
-      Schema::slopes(x, outputs, setting, slopes);
+    if constexpr (detail::VectorCalls<Form>::has_slopes) {
+      Form::slopes(x, outputs, setting, slopes);
     } else {
       Scalar unit[size] = {};
       Scalar origin[rotor_count], moved[rotor_count];
-      Schema::commands(x, static_cast<const Scalar*>(unit), setting, origin);
+      Form::commands(x, static_cast<const Scalar*>(unit), setting, origin);
       for (int k = 0; k < size; ++k) {
         unit[k] = Scalar(1);
-        Schema::commands(x, static_cast<const Scalar*>(unit), setting, moved);
+        Form::commands(x, static_cast<const Scalar*>(unit), setting, moved);
         unit[k] = Scalar(0);
         for (int i = 0; i < rotor_count; ++i) slopes[slope_index(i, k)] = moved[i] - origin[i];
       }
@@ -280,11 +274,11 @@ struct OutputMap<Schema, false> {
   template <int FeatureCount, class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void feature_slopes(const Scalar* x, const Scalar* outputs, const Setting& setting,
                                                     Scalar* by_features) noexcept {
-    Schema::template feature_slopes<FeatureCount>(x, outputs, setting, by_features);
+    Form::template feature_slopes<FeatureCount>(x, outputs, setting, by_features);
   }
   template <class Scalar, class Setting>
   static void from_commands(const Scalar* x, const Scalar* commands, const Setting& setting, Scalar* outputs) noexcept {
-    Schema::from_commands(x, commands, setting, outputs);
+    Form::from_commands(x, commands, setting, outputs);
   }
 };
 

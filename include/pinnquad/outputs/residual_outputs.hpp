@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Outputs that are added to what another inverse says: the network learns what that one leaves.
-// Contract of a Base, static and noexcept, Scalar deduced: `reads`, which features of X it reads (features/read_features.hpp);
-// `prepare(airframe)`, constexpr; commands(x, prepared, u) of features in physical units;
-// `slopes<FeatureCount>(x, prepared, by_x)` = du/dx, rotor_count x FeatureCount, row-major, into zeros;
-// optional `least_thrust_slope(airframe)`, which a certificate asks (outputs/rigid_body_base.hpp).
+// Outputs that are added to the commands of a base, and the base of Eq. (3).
 #pragma once
 
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/features/read_features.hpp"
+#include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/outputs/rotor_map.hpp"
 
 namespace pinnquad {
 
-/// Eq. (3) inverted ("Model 1" of Table 2), of PaperFeatures and what begins as they do, in air of the rated density: thrust
-/// from v_dot_z, torques from omega_dot, nothing else.
+/// Eq. (3) inverted ("Model 1" of Table 2), of PaperFeatures and what begins as they do, in air of the rated density:
+/// thrust from v_dot_z, torques from omega_dot, nothing else.
 struct LinearizedBase {
   static constexpr const char* description = "pinnquad::LinearizedInverse";
   static constexpr std::array<ReadFeature, 4> reads = {
@@ -37,12 +33,12 @@ struct LinearizedBase {
   }
 };
 
-/// commands = base(x) + outputs.
-template <class BaseInverse>
+/// u = base(x) + y, in units of commands.
+template <class BaseType>
 struct ResidualOutputs {
-  static_assert(detail::SaysWhatItReads<BaseInverse>::value,
-                "pinnquad: a base says which features it reads, by name: `reads` (outputs/residual_outputs.hpp)");
-  using Base = BaseInverse;  ///< what the outputs add to; a header and a block name it by its description
+  static_assert(is_base<BaseType>,
+                "pinnquad: a base says which features it reads, by name: `reads` (outputs/base.hpp)");
+  using Base = BaseType;  ///< named by its description in headers and blocks
   static constexpr int size = rotor_count;
   static constexpr std::array<const char*, size> names = {"du1", "du2", "du3", "du4"};
   static constexpr std::array<const char*, size> units = {"1", "1", "1", "1"};

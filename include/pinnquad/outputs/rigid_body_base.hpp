@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The rigid body's inverse of motion features (features/motion_parts.hpp) as a Base of outputs, but for the angular
-// acceleration, which it is not shown: what it asks for is for a model's own slopes (model/axis_aligned.hpp) to
-// say.
+// The rigid body's inverse of motion features (features/motion_parts.hpp) as a base, without the angular acceleration:
+// the slope by it is the model's own (model/axis_aligned.hpp).
 #pragma once
 
 #include <limits>
 
-#include "pinnquad/features/read_features.hpp"
+#include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/outputs/rotor_map.hpp"
 
@@ -15,7 +14,7 @@ namespace pinnquad {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// What such a base asks of an airframe.
+/// Constants of an airframe.
 template <class Scalar>
 struct RigidBody {
   RotorMap<Scalar> map;  ///< of thrust along -z and torque
@@ -42,11 +41,11 @@ struct RigidBody {
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
-/// Thrust from the specific force along z, torque from w x J w; air of the rated density, no drag. Of PhysicsFeatures
-/// and what begins as they do: specific force, angular acceleration, body rates.
+/// Thrust from the specific force along z, torque from w x J w; air of the rated density, no drag. For PhysicsFeatures
+/// and feature sets that begin with specific force, angular acceleration, body rates.
 struct RigidBodyBase {
   static constexpr const char* description = "pinnquad::RigidBodyInverse";
-  static constexpr int force_z = 2;  ///< where it stands among the features
+  static constexpr int force_z = 2;  ///< place among the features
   static constexpr int body_rates = 6;
   static constexpr std::array<ReadFeature, 4> reads = {{{force_z, "s_z", "m/s^2"},
                                                         {body_rates, "w_x", "rad/s"},
@@ -86,10 +85,9 @@ struct RigidBodyBase {
   template <int FeatureCount, class Scalar>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar* x, const detail::RigidBody<Scalar>& body,
                                             Scalar* by_x) noexcept {
-    static_assert(
-        FeatureCount >= body_rates + 3,
-        "pinnquad: RigidBodyBase needs specific force, angular acceleration and body rates as the first nine "
-        "features");
+    static_assert(FeatureCount >= body_rates + 3,
+                  "pinnquad: RigidBodyBase needs specific force, angular acceleration and body rates as the first nine "
+                  "features");
     const Scalar* w = x + body_rates;
     Scalar wrench[4], momentum[3], by_wrench[rotor_count * 4];
     body.wrench(x[force_z], w, wrench);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Eq. (2) inverted as a model's answer needs it: four numbers that the rotors make together -> commands. Plain arrays that the
-// compiler works out, and nothing that could be emitted out of line: an object compiled for another instruction set has no copy.
+// Eq. (2) inverted: four numbers that the rotors make together -> commands. Plain arrays that the compiler works out,
+// and no function that could be emitted out of line: an object compiled for another instruction set holds no copy.
 #pragma once
 
 #include "pinnquad/core/attributes.hpp"
@@ -10,7 +10,8 @@
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Thrust fractions s = A v + b, and of each rotor the command by its curve. Air of the rated density, a full battery.
+/// Thrust fractions s = A v + b; the command of each rotor follows from its curve. Air of the rated density, a full
+/// battery.
 template <class Scalar>
 struct RotorMap {
   Scalar by[rotor_count][4]{};    ///< A

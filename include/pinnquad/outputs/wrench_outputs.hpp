@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Outputs that are no rotors: what the rotors together are to do, as a wrench or as the accelerations that it makes. The
-// airframe's allocation turns both into commands. Air of the rated density, as everywhere where it is not said.
+// Outputs of all rotors together: a wrench, or the accelerations that it makes. The airframe's allocation turns both
+// into commands, in air of the rated density.
 #pragma once
 
 #include "pinnquad/outputs/output_schema.hpp"
@@ -42,8 +42,8 @@ struct WrenchOutputs {
   }
 };
 
-/// Specific force f = F / m (what an accelerometer shows of the rotors) and angular acceleration J^-1 tau that the rotors make,
-/// body frame. Lateral force can't be commanded: f_x and f_y, 0 of upright rotors, change no command.
+/// Specific force f = F / m and angular acceleration J^-1 tau that the rotors make, body frame FRD. Lateral force
+/// cannot be commanded: f_x and f_y (0 for upright rotors) change no command.
 struct AccelerationOutputs {
   static constexpr int size = 6;
   static constexpr std::array<const char*, size> names = {"f_x", "f_y", "f_z", "a_x", "a_y", "a_z"};

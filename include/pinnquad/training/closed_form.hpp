@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/model/composition.hpp"
+#include "pinnquad/model/predictor.hpp"
 #include "pinnquad/regression/regression_sums.hpp"
 #include "pinnquad/training/trained_model.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/features/read_features.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/schedule/progress.hpp"
 #include "pinnquad/training/context_airframe.hpp"
@@ -23,7 +23,7 @@ struct Context : ContextAirframe<VehicleType> {
                 "pinnquad: Context's third argument is not an output schema (outputs/output_schema.hpp)");
   static_assert(base_reads<FeatureSet, Schema>(),
                 "pinnquad: the base of Context's outputs reads a feature that the feature set has not, or not there "
-                "(features/read_features.hpp)");
+                "(outputs/base.hpp)");
   using Features = FeatureSet;
   using Vehicle = VehicleType;
   using Outputs = Schema;

@@ -9,9 +9,8 @@
 #include <random>
 
 #include "pinnquad/deploy/record_writer.hpp"
-#include "pinnquad/features/inverse_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "pinnquad/model/symmetrised.hpp"
 #include "support/monotone_shapes.hpp"
 
 namespace {
@@ -26,7 +25,6 @@ using Plain = MonotoneShape<Features, MonotoneBase<Features>>;
 template <class Features>
 using Learnt = MonotoneShape<Features, MonotonePredictor<Features, SmallResidual<Features, Tanh>>>;
 using Residual = SmallResidual<PhysicsFeatures>;
-using OwnImage = MonotoneShape<PhysicsFeatures, MonotonePredictor<PhysicsFeatures, Symmetrised<Residual, 1, 3, 5>>>;
 
 constexpr double fastest = 3;  ///< body rates, rad/s
 
@@ -132,7 +130,7 @@ std::pair<std::array<double, 4>, double> difference(const Model<Shape>& model, d
 
 TEST_CASE_TEMPLATE("an acceleration that is held, with its body rates: between the bounds, and near them", Shape,
                    Plain<PhysicsFeatures>, Plain<PhysicsWindow>, Plain<WholeWindow>, Plain<CentredWindow>,
-                   Learnt<PhysicsWindow>, Learnt<WholeWindow>, OwnImage) {
+                   Learnt<PhysicsWindow>, Learnt<WholeWindow>) {
   std::mt19937_64 engine(1);
   double largest_rates = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -174,8 +172,7 @@ TEST_CASE_TEMPLATE("an acceleration that is held, with its body rates: between t
 }
 
 TEST_CASE_TEMPLATE("more thrust at all instants: the base's slope exactly, with the residual's paths at every input",
-                   Shape, Plain<PhysicsFeatures>, Plain<WholeWindow>, Learnt<PhysicsFeatures>, Learnt<CentredWindow>,
-                   OwnImage) {
+                   Shape, Plain<PhysicsFeatures>, Plain<WholeWindow>, Learnt<PhysicsFeatures>, Learnt<CentredWindow>) {
   std::mt19937_64 engine(2);
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Model<Shape> model(seed);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Mirror images and turned flights against the equations of motion: what a vehicle does under the mirrored commands is the
 // mirror image of what it does, and a heading changes nothing in the body's frame.
-#include "pinnquad/data/mirrored_flight.hpp"
+#include "study/mirrored_rows.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,9 +12,9 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/training/symmetric_rows.hpp"
 
 using namespace pinnquad;
+using namespace study;
 
 namespace {
 
