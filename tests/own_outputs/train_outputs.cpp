@@ -13,7 +13,7 @@
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/model/composition.hpp"
 #include "pinnquad/nn/tanh.hpp"
-#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/monotone_fit.hpp"

@@ -16,7 +16,7 @@
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
-#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"

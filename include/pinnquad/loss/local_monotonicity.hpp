@@ -5,12 +5,13 @@
 #include <cmath>
 #include <type_traits>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/loss/signed_command_sum.hpp"
 
 namespace pinnquad {
 
-/// Step function tanh(gain x): differentiable sign. A gain of 3 on series standardised by their spread trains well; the
+/// Step function tanh(gain x): differentiable sign. A gain of 3 on standardised series trains well; the
 /// paper prints gain 1 on raw series.
 struct TanhStep {
   double gain = 3.0;
@@ -29,18 +30,6 @@ struct TanhStep {
 
   /// Throws std::invalid_argument unless the gain is a finite number from 0.
   constexpr void check() const { detail::expect_from_zero("TanhStep::gain", gain); }
-};
-
-/// The sign itself, for evaluation: its slope is zero, so it can't train.
-struct SignStep {
-  template <class Array>
-  void apply(Array& differences) const {
-    differences = differences.sign();
-  }
-  template <class Array>
-  Array slope(const Array& steps) const {
-    return Array::Zero(steps.size());
-  }
 };
 
 namespace detail {
@@ -98,7 +87,7 @@ typename Array::Scalar monotonicity_match(const Step& step, const Array& m, cons
   return (steps.m - steps.n).square().sum() / pairs;
 }
 
-/// Form of the loss, default: both series divided by their spread in the training set, mean over the pairs
+/// Form of the loss, default: both series divided by their standard deviations in the training set, mean over the pairs
 /// (docs/paper.md, deviations 8 and 9).
 struct Standardised {
   static constexpr double gain = 3.0;  ///< of a TanhStep that is not set otherwise
@@ -137,19 +126,13 @@ struct Match {
 
 namespace detail {
 using ProbeArray = Eigen::Array<double, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), 8>;
-template <class T, class = void>
-struct IsStep : std::false_type {};
 template <class T>
-struct IsStep<T, std::void_t<decltype(std::declval<const T&>().apply(std::declval<ProbeArray&>())),
-                             decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>>
-    : std::true_type {};
-template <class T, class = void>
-struct IsForm : std::false_type {};
+using StepFunctionOf = std::void_t<decltype(std::declval<const T&>().apply(std::declval<ProbeArray&>())),
+                                   decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>;
 template <class T>
-struct IsForm<T, std::void_t<decltype(T::gain), decltype(T::physical_units),
-                             decltype(T::compare(std::declval<const TanhStep&>(), std::declval<const ProbeArray&>(),
-                                                 std::declval<const ProbeArray&>(), 1.0, std::declval<ProbeArray&>()))>>
-    : std::true_type {};
+using FormOf = std::void_t<decltype(T::gain), decltype(T::physical_units),
+                           decltype(T::compare(std::declval<const TanhStep&>(), std::declval<const ProbeArray&>(),
+                                               std::declval<const ProbeArray&>(), 1.0, std::declval<ProbeArray&>()))>;
 
 template <class Step, class Form>
 constexpr Step initial_step() {
@@ -166,11 +149,11 @@ constexpr Step initial_step() {
 template <class Axis, class Step = TanhStep, class Form = Standardised>
 struct LocalMonotonicity {
   static_assert(
-      detail::IsStep<Step>::value,
+      detail::is_detected<detail::StepFunctionOf, Step>,
       "pinnquad: LocalMonotonicity's second argument is not a step function; it needs apply() and slope(), as "
       "TanhStep has");
   static_assert(
-      detail::IsForm<Form>::value,
+      detail::is_detected<detail::FormOf, Form>,
       "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
       "Standardised has");
   Step step = detail::initial_step<Step, Form>();

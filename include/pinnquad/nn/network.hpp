@@ -26,9 +26,9 @@ struct Chain<Scalar, In, First, Rest...> {
       is_layer<First, Scalar, In>,
       "pinnquad: this type is not a layer; it needs Bind<Scalar, In> with sizes and forward() (nn/layer.hpp)");
   using Layer = typename First::template Bind<Scalar, In>;
-  static_assert(detail::is_noexcept_layer<Layer>,
+  static_assert(is_noexcept_layer<Layer>,
                 "pinnquad: a layer's forward(), activate() and slope() must be noexcept: they fly (nn/layer.hpp)");
-  static_assert(!(detail::HasSlope<Layer>::value && detail::HasSlopeFromInput<Layer>::value),
+  static_assert(!(is_detected<SlopeOf, Layer> && is_detected<SlopeFromInputOf, Layer>),
                 "pinnquad: an element-wise layer gives slope(y) or slope_from_input(v), not both (nn/layer.hpp)");
   static_assert(Layer::inputs == In, "pinnquad: a layer does not take the outputs of the layer before it");
   using Layers = decltype(std::tuple_cat(std::declval<std::tuple<Layer>>(),
@@ -61,17 +61,13 @@ struct Sizes<std::tuple<Layers...>> {
   }
 };
 
-template <class Layer, class Activation, class = void>
-struct FusesActivation : std::false_type {};
 template <class Layer, class Activation>
-struct FusesActivation<
-    Layer, Activation,
-    std::void_t<decltype(Layer::template forward_fused<Activation>(
-        static_cast<const typename Layer::Scalar*>(nullptr), static_cast<const typename Layer::Scalar*>(nullptr),
-        static_cast<typename Layer::Scalar*>(nullptr)))>> : std::true_type {};
+using ForwardFusedOf = decltype(Layer::template forward_fused<Activation>(
+    static_cast<const typename Layer::Scalar*>(nullptr), static_cast<const typename Layer::Scalar*>(nullptr),
+    static_cast<typename Layer::Scalar*>(nullptr)));
 /// True for a layer that applies an element-wise layer to its sums before it stores them.
 template <class Layer, class Activation>
-inline constexpr bool fuses_activation = FusesActivation<Layer, Activation>::value;
+inline constexpr bool fuses_activation = is_detected<ForwardFusedOf, Layer, Activation>;
 
 }  // namespace detail
 

@@ -5,8 +5,7 @@
 #pragma once
 
 #include "pinnquad/nn/kernel/tile.hpp"
-#include "pinnquad/training/backward/backward.hpp"
-#include "pinnquad/training/backward/dense.hpp"
+#include "pinnquad/training/backward.hpp"
 
 namespace pinnquad {
 
@@ -14,9 +13,9 @@ namespace pinnquad {
 template <class Layer, class Pack, int BatchSize, class = void>
 struct BatchLayer {
   static_assert(is_trainable<Layer>,
-                "pinnquad: this layer cannot be trained; specialise BackwardRule (training/backward/backward.hpp)");
+                "pinnquad: this layer cannot be trained; specialise BackwardRule (training/backward.hpp)");
   static_assert(is_noexcept_backward<Layer>,
-                "pinnquad: a BackwardRule's backward() must be noexcept (training/backward/backward.hpp)");
+                "pinnquad: a BackwardRule's backward() must be noexcept (training/backward.hpp)");
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = false;
   static constexpr bool needs_output = true;      ///< backward() looks at y, so nobody may overwrite it

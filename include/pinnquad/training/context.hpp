@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What the trainer tells a loss beside the batch: which features, airframe and outputs, how they were standardised, where training
-// stands.
+// The two things that the trainer gives a loss: the context (features, airframe, outputs, their standardisation, the epoch) and
+// the mini-batch.
 #pragma once
 
 #include <array>
 
+#include "pinnquad/core/types.hpp"
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/features/read_features.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
-#include "pinnquad/schedule/progress.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
 namespace pinnquad {
@@ -51,6 +52,30 @@ struct Context : ContextAirframe<VehicleType> {
       if (!(spread[i] > 0.0)) detail::refuse_setting(setting, "a spread above 0", spread[i]);
       detail::expect_finite(setting, spread[i]);
     }
+  }
+};
+
+/// One mini-batch as a loss sees it: a sample is a column. No heap: `MaxSize` is the capacity.
+template <class ScalarType, int InputCount, int OutputCount, int MaxSize>
+struct LossBatch {
+  using Scalar = ScalarType;
+  template <int Rows>
+  using Samples =
+      Eigen::Matrix<Scalar, Rows, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), Rows, MaxSize>;
+  using Gradient = Samples<OutputCount>;
+  static constexpr int inputs = InputCount;
+  static constexpr int outputs = OutputCount;
+  static constexpr int max_size = MaxSize;
+
+  Samples<InputCount> features;     ///< standardised X
+  Samples<OutputCount> prediction;  ///< standardised network output
+  Samples<OutputCount> target;      ///< standardised Y
+
+  int size() const noexcept { return static_cast<int>(prediction.cols()); }
+  void resize(int samples) {
+    features.resize(Eigen::NoChange, samples);
+    prediction.resize(Eigen::NoChange, samples);
+    target.resize(Eigen::NoChange, samples);
   }
 };
 

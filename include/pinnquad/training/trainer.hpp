@@ -14,7 +14,6 @@
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/context.hpp"
 #include "pinnquad/training/flush_denormals.hpp"
-#include "pinnquad/training/loss_batch.hpp"
 #include "pinnquad/training/network_gradient.hpp"
 #include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/training_data.hpp"
@@ -249,14 +248,10 @@ class Trainer {
 
   auto begin_step() {
     ++steps_;
-    if constexpr (follows_progress<OptimizerType>) {
-      const double epochs =
-          context_.progress.epochs > 0 ? context_.progress.epochs : 1;  // the context's, outside epoch()
-      const double within = static_cast<double>(batch_of_epoch_) / batches_per_epoch_;
-      return optimizer_.begin(steps_, (context_.progress.epoch + within) / epochs);
-    } else {
-      return optimizer_.begin(steps_);
-    }
+    const double epochs =
+        context_.progress.epochs > 0 ? context_.progress.epochs : 1;  // the context's, outside epoch()
+    const double within = static_cast<double>(batch_of_epoch_) / batches_per_epoch_;
+    return detail::begin_step(optimizer_, steps_, (context_.progress.epoch + within) / epochs);
   }
 
   LossType loss_;

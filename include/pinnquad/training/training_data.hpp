@@ -20,7 +20,7 @@ template <class Scalar, int InputCount, int OutputCount>
 struct TrainingData {
   std::vector<Scalar> features;  ///< size() x InputCount
   std::vector<Scalar> outputs;   ///< size() x OutputCount
-  std::vector<double> weights;   ///< size(), the flights' (training/weighted_batches.hpp); empty where all are 1
+  std::vector<double> weights;   ///< size(), those of the flights; empty where all are 1. Read by an order of one's own
 
   int size() const noexcept { return static_cast<int>(outputs.size()) / OutputCount; }
   const Scalar* features_of(int row) const noexcept { return features.data() + std::ptrdiff_t{row} * InputCount; }
