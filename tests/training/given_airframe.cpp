@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An airframe that a program was given trains what the same airframe as a type does, bit for bit, and its export brings it along.
+// An airframe that a program was given trains what the same airframe as a type does, bit for bit, and its export
+// brings it along.
 #include <doctest/doctest.h>
 
 #include <memory>

@@ -74,8 +74,8 @@ typename Array::Scalar local_monotonicity(const Step& step, const Array& m, cons
   return (Scalar(1) - steps.m * steps.n).sum() / pairs;
 }
 
-/// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It asks for equal
-/// steps, not only for steps to the same side. Adds weight * d/dm to `gradient`.
+/// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It wants
+/// equal steps, not only equal signs. Adds weight * d/dm to `gradient`.
 template <class Step, class Array>
 typename Array::Scalar monotonicity_match(const Step& step, const Array& m, const Array& n,
                                           typename Array::Scalar weight, Array& gradient) {
@@ -99,8 +99,8 @@ struct Standardised {
   }
 };
 
-/// Form of the loss as Algorithm 1 prints it: tanh of the differences as they are (commands; rad/s^2), the N_b - 1 terms
-/// divided by N_b.
+/// Form of the loss as Algorithm 1 prints it: tanh of the differences as they are (commands; rad/s^2), the N_b - 1
+/// terms divided by N_b.
 struct Literal {
   static constexpr double gain = 1.0;
   static constexpr bool physical_units = true;
@@ -113,7 +113,7 @@ struct Literal {
   }
 };
 
-/// Form of the loss that asks for equal steps, on standardised series (not in the paper).
+/// Form of the loss for equal steps, on standardised series (not in the paper).
 struct Match {
   static constexpr double gain = 3.0;
   static constexpr bool physical_units = false;
@@ -144,8 +144,8 @@ constexpr Step initial_step() {
 }
 }  // namespace detail
 
-/// Local monotonicity about one axis (Roll, Pitch or Yaw): m = signed sum of predicted commands with the signs of the airframe's
-/// allocation, n = angular acceleration, compared as the form says.
+/// Local monotonicity about one axis (Roll, Pitch or Yaw): m = signed sum of predicted commands with the signs of the
+/// airframe's allocation, n = angular acceleration, compared as the form says.
 template <class Axis, class Step = TanhStep, class Form = Standardised>
 struct LocalMonotonicity {
   static_assert(

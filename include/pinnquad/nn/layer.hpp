@@ -4,13 +4,15 @@
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
 // A spec may name itself for flash: `static constexpr const char* description` (model/description.hpp).
 // Layers are types without data: a network owns all parameters in one flat array, as the exported header does.
-// forward(), activate() and the slope are noexcept. They see samples alone: a batch that is padded to whole packs repeats a sample,
-// or leaves the padding out (training). Lanes past the last neuron may hold anything, NaN too: they are not read.
+// forward(), activate() and the slope are noexcept. They see samples alone: a batch that is padded to whole packs
+// repeats a sample, or leaves the padding out (training). Lanes past the last neuron may hold anything, NaN too: they
+// are not read.
 //
-// A layer has no memory. A recurrent cell is a layer from [new inputs, state] to [outputs, next state]; forward() stays a pure
-// function. The caller owns the state: it feeds the outputs of one call into the next and sets them to zero after a gap.
-// A layer that takes a part of its inputs passes the rest on. Training needs a layer that calls the cell once per instant of a
-// window, with a BackwardRule that goes the same way back; the network of the cell is exported with the parameters found.
+// A layer has no memory. A recurrent cell is a layer from [new inputs, state] to [outputs, next state]; forward()
+// stays a pure function. The caller owns the state: it feeds the outputs of one call into the next and sets them to
+// zero after a gap. A layer that takes a part of its inputs passes the rest on. Training needs a layer that calls the
+// cell once per instant of a window, with a BackwardRule that goes the same way back; the network of the cell is
+// exported with the parameters found.
 #pragma once
 
 #include <type_traits>
@@ -100,8 +102,8 @@ inline constexpr bool is_elementwise = detail::is_detected<detail::ElementwiseOf
 template <class Layer, class Pack>
 inline constexpr bool activates_pack = detail::is_detected<detail::PackActivateOf, Layer, Pack>;
 
-/// An element-wise layer with a derivative d activate / d v: `slope(y)` from its output, or `slope_from_input(v)` where two
-/// inputs have the same output or the output is costly to invert.
+/// An element-wise layer with a derivative d activate / d v: `slope(y)` from its output, or `slope_from_input(v)`
+/// where two inputs have the same output or the output is costly to invert.
 template <class Layer>
 inline constexpr bool has_slope =
     detail::is_detected<detail::SlopeOf, Layer> || detail::is_detected<detail::SlopeFromInputOf, Layer>;
@@ -110,14 +112,16 @@ inline constexpr bool has_slope =
 template <class Layer>
 inline constexpr bool slopes_from_input = detail::is_detected<detail::SlopeFromInputOf, Layer>;
 
-/// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole pack.
+/// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole
+/// pack.
 template <class Layer, class Pack>
 inline constexpr bool scales_pack =
     slopes_from_input<Layer> ? detail::is_detected<detail::PackScaledFromInputOf, Layer, Pack>
                              : detail::is_detected<detail::PackScaledOf, Layer, Pack>;
 
 namespace detail {
-/// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the output.
+/// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the
+/// output.
 template <class Layer, class Value>
 PINNQUAD_ALWAYS_INLINE Value scaled_by_slope(const Value& seen, const Value& dy) noexcept {
   if constexpr (std::is_same_v<Value, typename Layer::Scalar>) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Schedules and learning-rate policies. Their contracts, each one function that is const and noexcept:
 //   double weight(int epoch, int epochs)   schedule: the weight of a loss term; epochs count from 0
-//   double factor(double done)             rate: a factor of the optimiser's learning rate; `done` is the share of all
-//                                          training steps already taken, from 0 in the first to just below 1 in the last
+//   double factor(double done)             rate: a factor of the optimiser's learning rate
+// `done` is the share of all training steps already taken, from 0 in the first to just below 1 in the last.
 #pragma once
 
 #include <cmath>
@@ -50,9 +50,9 @@ struct Constant {
 
 /// Schedule of Eq. (6): the weight is held, then falls linearly, and starts anew each cycle (Fig. 3).
 /// beta = mod(k, P) / P with P = ceil(T / M): lambda_max while beta <= R, then (1 - beta) / (1 - R) lambda_max.
-/// k is the epoch from 0, T the epochs. It never reaches 0: a cycle's last epoch has lambda_max / (P (1 - R)). R = 1 means
-/// constant; the last cycle may be cut short (docs/paper.md, deviation 11). Fewer than one cycle give NaN; check()
-/// refuses them.
+/// k is the epoch from 0, T the epochs. It never reaches 0: a cycle's last epoch has lambda_max / (P (1 - R)). R = 1
+/// means constant; the last cycle may be cut short (docs/paper.md, deviation 11). Fewer than one cycle give NaN;
+/// check() refuses them.
 struct CyclicalAnnealing {
   double maximum = 0.1;  ///< lambda_max
   int cycles = 5;        ///< M

@@ -19,7 +19,8 @@ namespace pinnquad {
 template <class NetworkType>
 class Checkpoint {
  public:
-  /// Looks at the error after `epoch` (from 0); `source.network()` is asked for only if it is the best. Returns whether it is.
+  /// Looks at the error after `epoch` (from 0); `source.network()` is asked for only if it is the best. Returns
+  /// whether it is.
   template <class Source>
   bool offer(int epoch, double error, const Source& source) {
     if (!(error < error_)) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The two things that the trainer gives a loss: the context (features, airframe, outputs, their standardisation, the epoch) and
-// the mini-batch.
+// The two things that the trainer gives a loss: the context (features, airframe, outputs, their standardisation, the
+// epoch) and the mini-batch.
 #pragma once
 
 #include <array>
@@ -33,11 +33,11 @@ struct Context : ContextAirframe<VehicleType> {
 
   Scaler<double, Features::size> input{};  ///< physical -> standardised, by the training set
   Scaler<double, output_count> output{};
-  std::array<double, 3> signed_sum_spread{1.0, 1.0, 1.0};  ///< spread of the signed command sums, training set
+  std::array<double, 3> signed_sum_spread{1.0, 1.0, 1.0};  ///< standard deviations of the signed command sums
   Progress progress{};
 
-  /// Throws std::invalid_argument unless every mean is finite and every spread a finite number above 0. What a flight with a NaN
-  /// leaves here would make every weight NaN.
+  /// Throws std::invalid_argument unless every mean is finite and every standard deviation is finite and above 0. A
+  /// NaN here would make every weight NaN.
   constexpr void check() const {
     check_scaler("Context::input", input.mean, input.standard_deviation);
     check_scaler("Context::output", output.mean, output.standard_deviation);
@@ -46,11 +46,11 @@ struct Context : ContextAirframe<VehicleType> {
 
  private:
   template <class Values>
-  static constexpr void check_scaler(const char* setting, const Values& mean, const Values& spread) {
-    for (std::size_t i = 0; i < spread.size(); ++i) {
+  static constexpr void check_scaler(const char* setting, const Values& mean, const Values& deviation) {
+    for (std::size_t i = 0; i < deviation.size(); ++i) {
       detail::expect_finite(setting, mean[i]);
-      if (!(spread[i] > 0.0)) detail::refuse_setting(setting, "a spread above 0", spread[i]);
-      detail::expect_finite(setting, spread[i]);
+      if (!(deviation[i] > 0.0)) detail::refuse_setting(setting, "a standard deviation above 0", deviation[i]);
+      detail::expect_finite(setting, deviation[i]);
     }
   }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The contract of an optimiser: `Step begin(long step) const` once per batch (steps from 1), then per layer
-//   template <class Pack> void update(const Step&, Scalar* parameters, const Scalar* gradient, Scalar* first, Scalar* second,
-//                                     int count) const noexcept;
+//   template <class Pack> void update(const Step&, Scalar* parameters, const Scalar* gradient, Scalar* first,
+//                                     Scalar* second, int count) const noexcept;
 // on whole packs; `first` and `second` are the optimiser's to keep. One that follows the training's progress has
 // `begin(long step, double done)` instead; done = share of all steps taken before this one, 0 <= done < 1.
 #pragma once
@@ -54,8 +54,8 @@ template <class T>
 inline constexpr bool is_optimizer = detail::fulfils_optimizer<T>();
 
 /// An optimiser whose learning rate follows a rate over the training: `Scheduled<AdamW, CosineDecay>`.
-/// Step t of T (from 0) is the optimiser's with learning_rate * rate.factor(t / T) in place of learning_rate, in begin() and
-/// in update(); t / T is the Trainer's Progress.
+/// Step t of T (from 0) is the optimiser's with learning_rate * rate.factor(t / T) in place of learning_rate, in
+/// begin() and in update(); t / T is the Trainer's Progress.
 template <class Optimizer, class Rate>
 struct Scheduled {
   static_assert(

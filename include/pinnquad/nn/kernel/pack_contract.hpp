@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The contract of a pack, and what is asked of one that also keeps a dense layer in registers. Both are checked where a kernel is
-// built, member by member: the compiler's message names what is missing.
+// The contract of a pack, and what is asked of one that also keeps a dense layer in registers. Both are checked where
+// a kernel is built, member by member: the compiler's message names what is missing.
 //
 // A pack is `width` scalars that are computed with at once (`unit`: with what; `fused`: multiply_add() rounds once):
 //   load(const Scalar*)  store(Scalar*)  broadcast(Scalar)  +  -  *  /  multiply_add(a, b, c) = a b + c  square_root(a)
@@ -8,15 +8,16 @@
 //   settle(): is worked out here (an empty function, or an empty `asm` that reads and writes the register)
 //   tile_rows, tile_vectors: rows and packs of the tile of sums that fits the registers (tile.hpp)
 //
-// The second contract: how a dense layer lies in registers (register_layer.hpp). A pack that states `blocks_at_once` takes part.
-//   columns: inputs that a step takes, 1 or 2; each row stands in as many neighbouring lanes (`columns` lanes, a "pair")
+// The second contract: how a dense layer lies in registers (register_layer.hpp). A pack that states `blocks_at_once`
+// takes part.
+//   columns: inputs that a step takes, 1 or 2; each row stands in `columns` neighbouring lanes (a "pair")
 //   values: outputs that one register holds; blocks_per_register: blocks (of width / columns rows) that make it
 //   blocks_at_once: blocks worked on side by side; chains: sums per block that hide the multiply-add's latency
 //   lane_of_value(i): the lane where value i of a register stands
 //   row_of_pair(block, pair): the row whose products stand in that pair, such that collect() puts it in its place
 //   repeat<First>(): values First, ..., First + columns - 1 in every row; repeat(const Scalar*): the same from memory
-//   repeat_last(v): the first lane of v in every row and, with two columns, a 1 behind it; with_one(): a 1 in each row's last lane
-//     (two columns)
+//   repeat_last(v): the first lane of v in every row and, with two columns, a 1 behind it
+//   with_one(): a 1 in each row's last lane (two columns)
 //   from_scalar(v): v in the first lane; first_value(): the first lane
 //   collect(sums): blocks_per_register blocks, the lanes of each row added, as values
 //   head<Count>(): the first Count values, 0 behind; sum_of_values(): their sum in the first lane
@@ -40,15 +41,18 @@ template <class P> using SumOf = decltype(std::declval<P>() + std::declval<P>())
 template <class P> using DifferenceOf = decltype(std::declval<P>() - std::declval<P>());
 template <class P> using ProductOf = decltype(std::declval<P>() * std::declval<P>());
 template <class P> using QuotientOf = decltype(std::declval<P>() / std::declval<P>());
-template <class P> using MultiplyAddOf = decltype(P::multiply_add(std::declval<P>(), std::declval<P>(), std::declval<P>()));
+template <class P> using MultiplyAddOf =
+    decltype(P::multiply_add(std::declval<P>(), std::declval<P>(), std::declval<P>()));
 template <class P> using SquareRootOf = decltype(P::square_root(std::declval<P>()));
 template <class P> using PositivePartOf = decltype(P::positive_part(std::declval<P>()));
 template <class P> using WherePositiveOf = decltype(P::where_positive(std::declval<P>(), std::declval<P>()));
 template <class P> using SettleOf = decltype(std::declval<P&>().settle());
 template <class P> using TileOf = std::enable_if_t<(P::tile_rows > 0 && P::tile_vectors > 0)>;
-template <class P> using ArithmeticOf = std::enable_if_t<(P::width > 0 && (P::fused || true) && P::unit >= VectorUnit::none)>;
+template <class P> using ArithmeticOf =
+    std::enable_if_t<(P::width > 0 && (P::fused || true) && P::unit >= VectorUnit::none)>;
 
-template <class P> using ColumnsOf = std::enable_if_t<(P::columns == 1 || P::columns == 2) && P::width % P::columns == 0>;
+template <class P> using ColumnsOf =
+    std::enable_if_t<(P::columns == 1 || P::columns == 2) && P::width % P::columns == 0>;
 template <class P> using ValuesOf =
     std::enable_if_t<P::values == P::blocks_per_register * (P::width / P::columns)>;
 template <class P> using ChainsOf = std::enable_if_t<(P::blocks_at_once > 0 && P::chains > 0)>;
