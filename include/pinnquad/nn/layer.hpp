@@ -35,10 +35,6 @@ struct OutputSize {
   static constexpr int size = Size;
 };
 
-/// As headers of formats 1 and 2 call it.
-template <int Size>
-using Inputs = InputSize<Size>;
-
 /// `Count` hidden layers of `Width` neurons.
 template <int Count, int Width>
 struct Hidden {};
