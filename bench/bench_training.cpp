@@ -9,7 +9,7 @@
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "support/naive_eigen_trainer.hpp"

@@ -13,9 +13,8 @@
 // CASE NO_ANGULAR_ACCELERATION: pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
-#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/context.hpp"
-#include "pinnquad/training/loss_batch.hpp"
 
 namespace {
 

@@ -20,9 +20,8 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/schedule/constant.hpp"
-#include "pinnquad/schedule/cosine_decay.hpp"
-#include "pinnquad/training/scheduled.hpp"
+#include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace {

@@ -8,8 +8,7 @@
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
-#include "pinnquad/schedule/constant.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "support/central_difference.hpp"
 #include "support/loss_batches.hpp"
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/loss_batches.hpp"
+#include "support/sign_step.hpp"
 #include "support/tolerances.hpp"
 
 using pinnquad::Airframe;
@@ -24,7 +25,6 @@ using pinnquad::PaperQuadrotor;
 using pinnquad::Pitch;
 using pinnquad::Roll;
 using pinnquad::RotorSpeedOutputs;
-using pinnquad::SignStep;
 using pinnquad::TanhStep;
 using pinnquad::Yaw;
 using pinnquad::test::array;
@@ -32,6 +32,7 @@ using pinnquad::test::flight_context;
 using pinnquad::test::PaperBatch;
 using pinnquad::test::random_batch;
 using pinnquad::test::rounding;
+using pinnquad::test::SignStep;
 
 namespace {
 

@@ -11,6 +11,7 @@
 
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "support/loss_batches.hpp"
+#include "support/sign_step.hpp"
 #include "support/tolerances.hpp"
 
 using pinnquad::Context;
@@ -21,7 +22,6 @@ using pinnquad::PaperFeatures;
 using pinnquad::PaperQuadrotor;
 using pinnquad::Pitch;
 using pinnquad::Roll;
-using pinnquad::SignStep;
 using pinnquad::Standardised;
 using pinnquad::TanhStep;
 using pinnquad::Yaw;
@@ -30,6 +30,7 @@ using pinnquad::test::flight_context;
 using pinnquad::test::PaperBatch;
 using pinnquad::test::random_batch;
 using pinnquad::test::rounding;
+using pinnquad::test::SignStep;
 
 namespace {
 

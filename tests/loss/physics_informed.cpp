@@ -6,9 +6,9 @@
 
 #include <random>
 
-#include "pinnquad/schedule/constant.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "support/loss_batches.hpp"
+#include "support/sign_step.hpp"
 
 using pinnquad::Constant;
 using pinnquad::Context;
@@ -22,12 +22,12 @@ using pinnquad::PaperQuadrotor;
 using pinnquad::PhysicsInformed;
 using pinnquad::Pitch;
 using pinnquad::Roll;
-using pinnquad::SignStep;
 using pinnquad::Weighted;
 using pinnquad::Yaw;
 using pinnquad::test::flight_context;
 using pinnquad::test::PaperBatch;
 using pinnquad::test::random_batch;
+using pinnquad::test::SignStep;
 
 namespace {
 

@@ -13,11 +13,11 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/nn/tanh.hpp"
-#include "pinnquad/schedule/cosine_decay.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/fly.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/scheduled.hpp"
+#include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/trainer.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Smooth activations against values of 40 digits (mpmath 1.3.0: PyTorch's formulas and their derivatives), and what every
-// element-wise layer owes: packs as scalars, NaN goes through, nothing overflows.
+// Smooth activations against values of 40 digits (mpmath 1.3.0: PyTorch's formulas and their derivatives), and what
+// every element-wise layer owes: packs as scalars, NaN goes through, nothing overflows.
 #include <doctest/doctest.h>
 
 #include <array>

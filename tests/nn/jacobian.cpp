@@ -208,8 +208,8 @@ void check_within_memory() {
 
 }  // namespace
 
-// Rows of weights that end before, with and after a pack; a bias behind the last of them that is long enough to be read, that is
-// not, and none.
+// Rows of weights that end before, with and after a pack; a bias behind the last of them that is long enough to be
+// read, that is not, and none.
 TEST_CASE_TEMPLATE("nothing is read behind parameters and inputs, nothing written behind outputs and Jacobian", Pack,
                    PINNQUAD_TEST_REGISTER_PACKS, GenericPack<float, 4>) {
   check_within_memory<Network<float, InputSize<5>, Dense<2>>, Pack>();

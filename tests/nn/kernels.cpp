@@ -37,8 +37,8 @@ struct Shape {
 template <class... Shapes>
 struct ShapeList {};
 
-/// One to forty, on both sides of a pack's width, and the sizes of the paper's network: each shape is there for a remainder
-/// of its own.
+/// One to forty, on both sides of a pack's width, and the sizes of the paper's network: each shape is there for a
+/// remainder of its own.
 using Shapes = ShapeList<Shape<1, 1>, Shape<3, 2>, Shape<2, 40>, Shape<4, 25>, Shape<7, 3>, Shape<9, 5>, Shape<16, 4>,
                          Shape<25, 16>, Shape<33, 9>, Shape<40, 1>>;
 

@@ -114,7 +114,8 @@ void check_sizes(std::mt19937_64& engine) {
              engine);
 }
 
-/// B is 1 to half of Count and C is Count down to the other half; A is odd and even, small and large: 11 is prime to Count.
+/// B is 1 to half of Count and C is Count down to the other half; A is odd and even, small and large: 11 is prime to
+/// Count.
 template <class Pack, int Count, int... Each>
 void check_all_sizes(std::integer_sequence<int, Each...>) {
   static_assert(Count % 2 == 0 && Count % 11 != 0 && sizeof...(Each) == Count / 2);
@@ -140,7 +141,8 @@ struct Reciprocal {
 
 TEST_CASE("any size: values, NaN and infinity from any input, nothing read or written behind") {
   using Pack = pinnquad::NativePack<float>;
-  // narrow packs repeat themselves behind one group of blocks and a register; a wide one has three registers in 40 anyway
+  // narrow packs repeat themselves behind one group of blocks and a register; a wide one has three registers in 40
+  // anyway
   constexpr int count = Pack::values < 8 ? (Pack::blocks_at_once + 1) * Pack::values : 40;
   check_all_sizes<Pack, count>(std::make_integer_sequence<int, count / 2>{});
 }

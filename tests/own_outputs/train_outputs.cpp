@@ -12,7 +12,7 @@
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/tanh.hpp"
-#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/monotone_fit.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Eq. (6), with the reading of docs/paper.md, deviation 11.
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 
 #include <doctest/doctest.h>
 

@@ -3,15 +3,18 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "pinnquad/schedule/constant.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "support/tolerances.hpp"
 
 using pinnquad::Constant;
+using pinnquad::CosineDecay;
 using pinnquad::CyclicalAnnealing;
+using pinnquad::is_rate;
 using pinnquad::is_schedule;
+using pinnquad::test::rounding;
 
 namespace {
 
@@ -30,6 +33,9 @@ struct WrongResult {
 };
 struct ChangesItself {
   double weight(int, int) noexcept { return 0.0; }
+};
+struct FactorMayThrow {
+  double factor(double) const { return 1.0; }
 };
 
 }  // namespace
@@ -67,4 +73,23 @@ TEST_CASE("a constant is constant") {
   CHECK_NOTHROW(Constant{0.0}.check());
   CHECK_THROWS_WITH_AS(Constant{std::numeric_limits<double>::quiet_NaN()}.check(),
                        "Constant::value: expected a finite number from 0, found nan", std::invalid_argument);
+}
+
+TEST_CASE("what is a rate") {
+  CHECK(is_rate<CosineDecay>);
+  CHECK_FALSE(is_rate<Constant>);
+  CHECK_FALSE(is_rate<int>);
+  CHECK_FALSE(is_rate<FactorMayThrow>);  // the contract says noexcept
+}
+
+TEST_CASE("cosine: 1 at the start, one half in the middle, 0 at the end, falling all the way") {
+  const CosineDecay rate{};
+  CHECK(rate.factor(0.0) == 1.0);
+  CHECK(rate.factor(1.0) <= rounding<double>(1));
+  CHECK(rate.factor(0.5) == doctest::Approx(0.5));
+  CHECK(rate.factor(1.0 / 3.0) == doctest::Approx(0.75));  // cos 60 degrees = 1/2
+  for (int t = 0; t < 100; ++t) {
+    CHECK(rate.factor((t + 1) / 100.0) < rate.factor(t / 100.0));
+    CHECK(rate.factor(t / 100.0) + rate.factor(1.0 - t / 100.0) == doctest::Approx(1.0));  // point symmetry
+  }
 }

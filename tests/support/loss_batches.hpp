@@ -10,7 +10,6 @@
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/training/context.hpp"
-#include "pinnquad/training/loss_batch.hpp"
 
 namespace pinnquad::test {
 

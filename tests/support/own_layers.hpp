@@ -7,7 +7,7 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/layer.hpp"
-#include "pinnquad/training/backward/backward.hpp"
+#include "pinnquad/training/backward.hpp"
 
 namespace pinnquad::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every layer's backward rule, alone and in its mini-batch form, against central differences in double.
-#include "pinnquad/training/backward/backward.hpp"
+#include "pinnquad/training/backward.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"

@@ -68,8 +68,9 @@ Moments moments(const Rows& rows) {
   return m;
 }
 
-/// A batch through the network with plain loops: batch norm by this batch's statistics (by the running ones for a single
-/// sample), all other layers by their own forward pass. Notes what was normalised and how near a ReLU came to its kink.
+/// A batch through the network with plain loops: batch norm by this batch's statistics (by the running ones for a
+/// single sample), all other layers by their own forward pass. Notes what was normalised and how near a ReLU came to
+/// its kink.
 template <class Net, int Index = 0>
 Rows plain_batch(const double* parameters, const Rows& x, double& smallest_kink, std::vector<Moments>& seen) {
   if constexpr (Index == Net::layer_count) {

@@ -15,7 +15,7 @@
 #include "pinnquad/features/windowed.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/regression/ridge.hpp"
-#include "pinnquad/training/weight_average.hpp"
+#include "pinnquad/training/checkpoint.hpp"
 #include "support/random_network.hpp"
 #include "support/training_sets.hpp"
 

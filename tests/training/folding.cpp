@@ -33,8 +33,8 @@ using pinnquad::test::random_batch_norm_network;
 
 namespace {
 
-/// Folding rounds every weight once: a relative error of half an ulp in each product of a sum, then through the layers behind,
-/// whose sums cancel. In ulps of the largest output.
+/// Folding rounds every weight once: a relative error of half an ulp in each product of a sum, then through the layers
+/// behind, whose sums cancel. In ulps of the largest output.
 constexpr double ulps = 64;
 
 template <class Net>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An airframe that a program was given trains what the same airframe as a type does, bit for bit, and its export brings it along.
+// An airframe that a program was given trains what the same airframe as a type does, bit for bit, and its export
+// brings it along.
 #include <doctest/doctest.h>
 
 #include <memory>
@@ -16,7 +17,7 @@
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
-#include "pinnquad/schedule/constant.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"

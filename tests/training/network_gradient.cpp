@@ -51,7 +51,8 @@ namespace {
 /// No input of 1 / v may be nearer to 0: a step of 1e-5 errs by its share squared there, 1e-8 of the slope.
 constexpr double pole_margin = 0.1;
 
-/// How near this pass comes to a kink or a pole: the smallest input of any ReLU, and of any reciprocal by its own measure. Walks the layers with the network's own types.
+/// How near this pass comes to a kink or a pole: the smallest input of any ReLU, and of any reciprocal by its own
+/// measure. Walks the layers with the network's own types.
 template <class Net, int Index = 0>
 double smallest_kink_input(const double* parameters, const double* x) {
   if constexpr (Index == Net::layer_count) {

@@ -33,9 +33,9 @@ TEST_CASE("every unit of the feature sets and output schemas has a resolution of
   const auto known = [](const char* unit) {
     const auto unknown = resolution_of("furlong", 0);
     const auto of_unit = resolution_of(unit, 0);
-    CHECK(of_unit.smallest_spread != unknown.smallest_spread);
-    CHECK(of_unit.smallest_spread > 0);
-    CHECK(of_unit.still_margin > of_unit.smallest_spread);
+    CHECK(of_unit.smallest_deviation != unknown.smallest_deviation);
+    CHECK(of_unit.smallest_deviation > 0);
+    CHECK(of_unit.still_margin > of_unit.smallest_deviation);
   };
   for (const char* unit : pinnquad::PaperFeaturesWithAltitude::units) known(unit);
   known(pinnquad::CommandOutputs::unit);
@@ -43,15 +43,15 @@ TEST_CASE("every unit of the feature sets and output schemas has a resolution of
 }
 
 TEST_CASE("an unknown unit: relative to the value, and to 1 about 0") {
-  CHECK(resolution_of("K", 0).smallest_spread == 1e-6);
+  CHECK(resolution_of("K", 0).smallest_deviation == 1e-6);
   CHECK(resolution_of("K", -0.5).still_margin == 0.01);
-  CHECK(resolution_of("Pa", 1e5).smallest_spread == doctest::Approx(0.1));
+  CHECK(resolution_of("Pa", 1e5).smallest_deviation == doctest::Approx(0.1));
   CHECK(resolution_of("Pa", -1e5).still_margin == doctest::Approx(1000));
 }
 
 TEST_CASE("a known unit's spread is never below a float's rounding of the value") {
-  CHECK(resolution_of("m", 100).smallest_spread == 0.01);
-  CHECK(resolution_of("m", 1e6).smallest_spread == doctest::Approx(1));
+  CHECK(resolution_of("m", 100).smallest_deviation == 0.01);
+  CHECK(resolution_of("m", 1e6).smallest_deviation == doctest::Approx(1));
 }
 
 TEST_CASE("still or not: scale and margin") {

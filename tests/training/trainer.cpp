@@ -16,8 +16,7 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/schedule/constant.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "support/central_difference.hpp"
 #include "support/loss_batches.hpp"
@@ -395,7 +394,8 @@ TEST_CASE("a loss whose numbers make no sense does not begin a training") {
     PaperContext context;
     context.signed_sum_spread[2] = 0.0;
     CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, context),
-                         "Context::signed_sum_spread: expected a spread above 0, found 0", std::invalid_argument);
+                         "Context::signed_sum_spread: expected a standard deviation above 0, found 0",
+                         std::invalid_argument);
   }
   SUBCASE("gain") {
     std::get<2>(loss.terms).loss.step.gain = std::numeric_limits<double>::quiet_NaN();

@@ -16,7 +16,7 @@
 #include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/io/csv_table.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "report/comparisons.hpp"
 #include "training/ellipses_drawing.hpp"
 #include "training/judgement.hpp"

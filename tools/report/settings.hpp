@@ -15,7 +15,7 @@
 #include "command_line/json_file.hpp"
 #include "command_line/listed.hpp"
 #include "pinnquad/io/csv_table.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "report/columns.hpp"
 
 namespace programs {

@@ -11,7 +11,7 @@
 
 #include "command_line/listed.hpp"
 #include "pinnquad/loss/pearson_correlation.hpp"
-#include "pinnquad/training/adam_w.hpp"
+#include "pinnquad/training/adam.hpp"
 #include "study/contender.hpp"
 
 namespace study {

@@ -35,11 +35,9 @@
 #include <tuple>
 
 #include "pinnquad/loss/physics_informed.hpp"
-#include "pinnquad/schedule/constant.hpp"
-#include "pinnquad/schedule/cosine_decay.hpp"
-#include "pinnquad/schedule/cyclical_annealing.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/adam.hpp"
-#include "pinnquad/training/scheduled.hpp"
+#include "pinnquad/training/optimizer.hpp"
 
 namespace programs {
 inline constexpr int batch_size = 64;  ///< of every recipe

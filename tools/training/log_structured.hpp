@@ -16,14 +16,14 @@
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/nn/clip.hpp"
 #include "pinnquad/nn/silu.hpp"
-#include "pinnquad/schedule/cosine_decay.hpp"
-#include "pinnquad/training/adam_w.hpp"
+#include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/training/adam.hpp"
+#include "pinnquad/training/checkpoint.hpp"
 #include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/residual_features.hpp"
-#include "pinnquad/training/scheduled.hpp"
 #include "pinnquad/training/structured_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
-#include "pinnquad/training/weight_average.hpp"
 #include "training/log_closed_form.hpp"
 
 namespace programs {

@@ -4,12 +4,15 @@
 
 #include "pinnquad/model/masked.hpp"
 #include "pinnquad/model/saturated.hpp"
+#include "pinnquad/nn/layer.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
 
 namespace pinnquad {
 
+template <int Size>
+using Inputs = InputSize<Size>;
 using SignedSumOutputs = AxisCommandOutputs;
 using LinearizedInverse = LinearizedBase;
 using RigidBodyInverse = RigidBodyBase;

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <type_traits>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/loss/signed_command_sum.hpp"
 
 namespace pinnquad {
 
-/// Step function tanh(gain x): differentiable sign. A gain of 3 on series standardised by their spread trains well; the
+/// Step function tanh(gain x): differentiable sign. A gain of 3 on standardised series trains well; the
 /// paper prints gain 1 on raw series.
 struct TanhStep {
   double gain = 3.0;
@@ -29,18 +30,6 @@ struct TanhStep {
 
   /// Throws std::invalid_argument unless the gain is a finite number from 0.
   constexpr void check() const { detail::expect_from_zero("TanhStep::gain", gain); }
-};
-
-/// The sign itself, for evaluation: its slope is zero, so it can't train.
-struct SignStep {
-  template <class Array>
-  void apply(Array& differences) const {
-    differences = differences.sign();
-  }
-  template <class Array>
-  Array slope(const Array& steps) const {
-    return Array::Zero(steps.size());
-  }
 };
 
 namespace detail {
@@ -85,8 +74,8 @@ typename Array::Scalar local_monotonicity(const Step& step, const Array& m, cons
   return (Scalar(1) - steps.m * steps.n).sum() / pairs;
 }
 
-/// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It asks for equal
-/// steps, not only for steps to the same side. Adds weight * d/dm to `gradient`.
+/// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It wants
+/// equal steps, not only equal signs. Adds weight * d/dm to `gradient`.
 template <class Step, class Array>
 typename Array::Scalar monotonicity_match(const Step& step, const Array& m, const Array& n,
                                           typename Array::Scalar weight, Array& gradient) {
@@ -98,7 +87,7 @@ typename Array::Scalar monotonicity_match(const Step& step, const Array& m, cons
   return (steps.m - steps.n).square().sum() / pairs;
 }
 
-/// Form of the loss, default: both series divided by their spread in the training set, mean over the pairs
+/// Form of the loss, default: both series divided by their standard deviations in the training set, mean over the pairs
 /// (docs/paper.md, deviations 8 and 9).
 struct Standardised {
   static constexpr double gain = 3.0;  ///< of a TanhStep that is not set otherwise
@@ -110,8 +99,8 @@ struct Standardised {
   }
 };
 
-/// Form of the loss as Algorithm 1 prints it: tanh of the differences as they are (commands; rad/s^2), the N_b - 1 terms
-/// divided by N_b.
+/// Form of the loss as Algorithm 1 prints it: tanh of the differences as they are (commands; rad/s^2), the N_b - 1
+/// terms divided by N_b.
 struct Literal {
   static constexpr double gain = 1.0;
   static constexpr bool physical_units = true;
@@ -124,7 +113,7 @@ struct Literal {
   }
 };
 
-/// Form of the loss that asks for equal steps, on standardised series (not in the paper).
+/// Form of the loss for equal steps, on standardised series (not in the paper).
 struct Match {
   static constexpr double gain = 3.0;
   static constexpr bool physical_units = false;
@@ -137,19 +126,13 @@ struct Match {
 
 namespace detail {
 using ProbeArray = Eigen::Array<double, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), 8>;
-template <class T, class = void>
-struct IsStep : std::false_type {};
 template <class T>
-struct IsStep<T, std::void_t<decltype(std::declval<const T&>().apply(std::declval<ProbeArray&>())),
-                             decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>>
-    : std::true_type {};
-template <class T, class = void>
-struct IsForm : std::false_type {};
+using StepFunctionOf = std::void_t<decltype(std::declval<const T&>().apply(std::declval<ProbeArray&>())),
+                                   decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>;
 template <class T>
-struct IsForm<T, std::void_t<decltype(T::gain), decltype(T::physical_units),
-                             decltype(T::compare(std::declval<const TanhStep&>(), std::declval<const ProbeArray&>(),
-                                                 std::declval<const ProbeArray&>(), 1.0, std::declval<ProbeArray&>()))>>
-    : std::true_type {};
+using FormOf = std::void_t<decltype(T::gain), decltype(T::physical_units),
+                           decltype(T::compare(std::declval<const TanhStep&>(), std::declval<const ProbeArray&>(),
+                                               std::declval<const ProbeArray&>(), 1.0, std::declval<ProbeArray&>()))>;
 
 template <class Step, class Form>
 constexpr Step initial_step() {
@@ -161,16 +144,16 @@ constexpr Step initial_step() {
 }
 }  // namespace detail
 
-/// Local monotonicity about one axis (Roll, Pitch or Yaw): m = signed sum of predicted commands with the signs of the airframe's
-/// allocation, n = angular acceleration, compared as the form says.
+/// Local monotonicity about one axis (Roll, Pitch or Yaw): m = signed sum of predicted commands with the signs of the
+/// airframe's allocation, n = angular acceleration, compared as the form says.
 template <class Axis, class Step = TanhStep, class Form = Standardised>
 struct LocalMonotonicity {
   static_assert(
-      detail::IsStep<Step>::value,
+      detail::is_detected<detail::StepFunctionOf, Step>,
       "pinnquad: LocalMonotonicity's second argument is not a step function; it needs apply() and slope(), as "
       "TanhStep has");
   static_assert(
-      detail::IsForm<Form>::value,
+      detail::is_detected<detail::FormOf, Form>,
       "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
       "Standardised has");
   Step step = detail::initial_step<Step, Form>();

@@ -3,24 +3,25 @@
 //   template <class Context, class Batch, class Gradient> typename Batch::Scalar evaluate(const Context&, const Batch&,
 //       typename Batch::Scalar weight, Gradient& gradient) const;
 // returns the loss and ADDS weight * d loss / d prediction to `gradient`. Predictions and targets are standardised.
-// What it is given is the trainer's: training/context.hpp, training/loss_batch.hpp.
+// The trainer gives it the context and the batch: training/context.hpp.
 #pragma once
 
 #include <array>
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
-#include "pinnquad/schedule/progress.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-/// What a loss is asked with to see that it is one: the members of a context and of a batch, never evaluated.
+/// The members of a context and of a batch, to see whether a type is a loss; never evaluated.
 struct ProbeContext {
   struct Vehicle {
     static constexpr const char* name = "probe";
@@ -54,20 +55,16 @@ struct ProbeBatch {
   Samples<outputs> target;
   int size() const noexcept { return 0; }
 };
-template <class T, class = void>
-struct IsLoss : std::false_type {};
 template <class T>
-struct IsLoss<T, std::void_t<decltype(std::declval<const T&>().evaluate(std::declval<const ProbeContext&>(),
-                                                                        std::declval<const ProbeBatch&>(), 1.0,
-                                                                        std::declval<ProbeBatch::Gradient&>()))>>
-    : std::is_same<decltype(std::declval<const T&>().evaluate(std::declval<const ProbeContext&>(),
-                                                              std::declval<const ProbeBatch&>(), 1.0,
-                                                              std::declval<ProbeBatch::Gradient&>())),
-                   double> {};
+using LossOf =
+    std::enable_if_t<std::is_same_v<decltype(std::declval<const T&>().evaluate(std::declval<const ProbeContext&>(),
+                                                                               std::declval<const ProbeBatch&>(), 1.0,
+                                                                               std::declval<ProbeBatch::Gradient&>())),
+                                    double>>;
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_loss = detail::IsLoss<T>::value;
+inline constexpr bool is_loss = detail::is_detected<detail::LossOf, T>;
 
 }  // namespace pinnquad

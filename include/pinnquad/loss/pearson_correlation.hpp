@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pearson's correlation as a loss: what Sec. 4.2 argues against, here to be compared with.
+// Pearson's correlation as a loss. Sec. 4.2 argues against it; it is here for the comparison.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,8 @@
 namespace pinnquad {
 
 /// 1 - r(m, n), r = sum (m - mean m)(n - mean n) / (|m - mean m| |n - mean n|): 0 correlated, 1 unrelated, 2 opposed.
-/// Adds weight * d/dm to `gradient`. A series that stands still has no correlation: 1, no gradient; a single sample gives 0.
+/// Adds weight * d/dm to `gradient`. A series that stands still has no correlation: 1, no gradient; a single sample
+/// gives 0.
 template <class Array>
 typename Array::Scalar pearson_loss(const Array& m, const Array& n, typename Array::Scalar weight, Array& gradient) {
   using Scalar = typename Array::Scalar;

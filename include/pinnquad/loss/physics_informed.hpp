@@ -31,7 +31,8 @@ template <class LossType, class ScheduleType>
 struct IsWeighted<Weighted<LossType, ScheduleType>> : std::true_type {};
 }  // namespace detail
 
-/// L = base + sum_i lambda_i(epoch) L_i. Values and gradients are added in this order: base, first term, second term, ...
+/// L = base + sum_i lambda_i(epoch) L_i. Values and gradients are added in this order: base, first term, second term,
+/// ...
 template <class Base, class... Terms>
 struct PhysicsInformed {
   static_assert(is_loss<Base>,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The two series of a batch that Sec. 4.2 compares about one axis: the signed sum of predicted commands, a row of Eq. (2), and
-// the angular acceleration.
+// The two series of a batch that Sec. 4.2 compares about one axis: the signed sum of predicted commands, a row of Eq.
+// (2), and the angular acceleration.
 #pragma once
 
 #include "pinnquad/loss/loss.hpp"
@@ -19,11 +19,11 @@ struct SignedCommandSum {
   using Slope = Eigen::Array<Scalar, Map::size, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), Map::size,
                              Batch::max_size>;
 
-  Array commands;              ///< m: sum of sign_i u_i with the allocation's signs, divided by `spread`
+  Array commands;              ///< m: sum of sign_i u_i with the allocation's signs, divided by `divisor`
   Slope slope;                 ///< d m / d standardised prediction
   Array angular_acceleration;  ///< n: standardised, as the network is given it
 
-  SignedCommandSum(const Context& context, const Batch& batch, Scalar spread)
+  SignedCommandSum(const Context& context, const Batch& batch, Scalar divisor)
       : commands(Array::Zero(batch.prediction.cols())), slope(Slope::Zero(Map::size, batch.prediction.cols())) {
     const std::array<Scalar, rotor_count> signs = context.template signs<Axis, Scalar>();
     const auto setting = context.template output_setting<typename Context::Outputs, Scalar>();
@@ -42,7 +42,7 @@ struct SignedCommandSum {
       Map::commands(features, static_cast<const Scalar*>(outputs), setting, u);
       Map::slopes(features, static_cast<const Scalar*>(outputs), setting, by_outputs);
       for (int i = 0; i < rotor_count; ++i) {
-        const Scalar sign = signs[static_cast<std::size_t>(i)] / spread;
+        const Scalar sign = signs[static_cast<std::size_t>(i)] / divisor;
         commands[sample] += sign * u[i];
         for (int k = Map::first_output(i); k < Map::last_output(i); ++k) {
           slope(k, sample) += sign * scale(context, k) * by_outputs[Map::slope_index(i, k)];

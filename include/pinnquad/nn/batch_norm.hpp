@@ -12,8 +12,8 @@ namespace pinnquad {
 inline constexpr double batch_norm_epsilon = 1e-5;
 
 /// y_i = gamma_i (x_i - mean_i) / sqrt(variance_i + 1e-5) + beta_i.
-/// Parameters: gamma, beta, running mean, running variance, `Size` each. Training moves gamma and beta down the gradient and
-/// lets the other two follow the batches.
+/// Parameters: gamma, beta, running mean, running variance, `Size` each. Training moves gamma and beta down the
+/// gradient and lets the other two follow the batches.
 template <class ScalarType, int Size>
 struct BatchNormLayer {
   using Scalar = ScalarType;

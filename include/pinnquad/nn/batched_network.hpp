@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The forward pass over many samples at once, for rollouts (MPPI) and evaluation: one lane per sample, weights straight from
-// the row-major parameters. Each sample's sums are taken in the portable kernel's order.
+// The forward pass over many samples at once, for rollouts (MPPI) and evaluation: one lane per sample, weights
+// straight from the row-major parameters. Each sample's sums are taken in the portable kernel's order.
 #pragma once
 
 #include "pinnquad/nn/kernel/tile.hpp"
@@ -11,9 +11,9 @@ namespace pinnquad {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Twelve sums (six rows of two packs) hide the latency of the multiply-add; with many more the processor sees too little
-/// of the next tile to overlap the two. Sixteen registers hold twelve sums; where there are 32, a tile may be one row taller
-/// to save another.
+/// Twelve sums (six rows of two packs) hide the latency of the multiply-add; with many more the processor cannot
+/// overlap one tile with the next. Sixteen registers hold twelve sums; with 32, a tile may be one row taller to save
+/// another.
 template <class Pack, int Rows, class Body>
 PINNQUAD_ALWAYS_INLINE void in_batched_tiles(const Body& body) noexcept {
   if constexpr (sizeof(Pack) >= 64) {
@@ -23,8 +23,8 @@ PINNQUAD_ALWAYS_INLINE void in_batched_tiles(const Body& body) noexcept {
   }
 }
 
-/// How a layer runs over a block of `Lanes` samples, x and y by feature with strides: one sample after the other, unless
-/// specialised.
+/// How a layer runs over a block of `Lanes` samples, x and y by feature with strides: one sample after the other,
+/// unless specialised.
 template <class Layer, class Pack, int Lanes>
 struct BatchedLayer {
   using Scalar = typename Layer::Scalar;
@@ -106,7 +106,7 @@ struct BatchedNetwork {
       // the rest with some of the block before once more: it gives the same again
       if (first < samples) block(parameters, x + (samples - lanes), samples, y + (samples - lanes), samples);
     } else if (samples > 0) {
-      // padding repeats the last sample: a layer of a user's own meets no input that nobody gave
+      // padding repeats the last sample: a layer of a user's own sees real inputs only
       Scalar in[static_cast<std::size_t>(NetworkType::inputs * lanes)];
       Scalar out[static_cast<std::size_t>(NetworkType::outputs * lanes)];
       for (int i = 0; i < NetworkType::inputs; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Clipping as a layer: y = v between -3.5 and 3.5, else that bound. As the first layer, whose inputs are in units of their
-// spread, it asks what is behind it nothing that a training set hardly has. NaN goes through.
+// Clipping as a layer: y = v between -3.5 and 3.5, else that bound. As the first layer it bounds the standardised
+// inputs: the layers behind it see no input far outside the training set. NaN goes through.
 #pragma once
 
 #include "pinnquad/nn/layer.hpp"

@@ -27,14 +27,15 @@ struct DenseLayer {
                                 [](Scalar v) PINNQUAD_INLINE_LAMBDA { return Activation::activate(v); });
   }
 
-  /// y[0, Count) = activate(W x + b) for the `Count` neurons from `first` on. Inputs that the kernel holds all at a time may stand
-  /// anywhere: `X` is a pointer to them then, or anything else with [input].
+  /// y[0, Count) = activate(W x + b) for the `Count` neurons from `first` on. Inputs that the kernel holds all at a
+  /// time may stand anywhere: `X` is a pointer to them then, or anything else with [input].
   template <int Count, class X, class Activate>
   static PINNQUAD_ALWAYS_INLINE void forward_some(const Scalar* parameters, int first, const X& x, Scalar* y,
                                                   Activate activate) noexcept {
     multiply_row_major<Count, In>(parameters + first * In, parameters + weight_count + first, x, y, activate);
   }
-  /// y += what the `Count` inputs from `first` on, x[0, Count), give to W x. The sums of forward() are b and then all inputs.
+  /// y += what the `Count` inputs from `first` on, x[0, Count), give to W x. The sums of forward() are b and then all
+  /// inputs.
   template <int Count>
   static PINNQUAD_ALWAYS_INLINE void add_some(const Scalar* parameters, int first, const Scalar* x,
                                               Scalar* y) noexcept {

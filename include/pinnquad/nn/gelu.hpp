@@ -18,7 +18,8 @@ struct GeluLayer : ElementwiseLayer<GeluLayer<ScalarType, Size>, ScalarType, Siz
   static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
     return detail::each_lane(v, [](ScalarType lane) PINNQUAD_INLINE_LAMBDA { return activate(lane); });
   }
-  /// Phi(v) + v phi(v), phi the density of the standard normal distribution. Two inputs have the same output: asked with v.
+  /// Phi(v) + v phi(v), phi the density of the standard normal distribution. Two inputs have the same output: asked
+  /// with v.
   static PINNQUAD_ALWAYS_INLINE ScalarType slope_from_input(ScalarType v) noexcept {
     constexpr auto density_at_0 = ScalarType(0.39894228040143268);  // 1 / sqrt(2 pi)
     return normal_probability(v) + v * (density_at_0 * detail::exponential(ScalarType(-0.5) * v * v));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Value and Jacobian of a network in one pass, for model-predictive and incremental control: forward, keeping what each layer
-// gave, then back from the outputs, all rows of the Jacobian at once. Weights are read where they are, row-major.
+// Value and Jacobian of a network in one pass, for model-predictive and incremental control: forward, keeping each
+// layer's outputs, then back from the outputs, all rows of the Jacobian at once. Weights are read where they are,
+// row-major.
 #pragma once
 
 #include <utility>
@@ -13,9 +14,11 @@ namespace pinnquad {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// How a layer turns the gradients by its outputs into those by its inputs, `Rows` of them, both row-major with `Stride`:
+/// How a layer turns the gradients by its outputs into those by its inputs, `Rows` of them, both row-major with
+/// `Stride`:
 ///   static void run<Pack, Rows, Stride>(parameters, x, y, by_output, by_input, finish) noexcept
-/// where x and y are the layer's inputs and outputs, and `finish(column, pack)` is applied to what is stored. Specialise it for a layer of your own that is not element-wise.
+/// where x and y are the layer's inputs and outputs, and `finish(column, pack)` is applied to each stored pack.
+/// Specialise it for a layer of your own that is not element-wise.
 template <class Layer>
 struct PullBack {
   static_assert(is_elementwise<Layer>,
@@ -27,7 +30,7 @@ struct PullBack {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// What is left of a gradient when nothing has to be done with it.
+/// The gradient as it is: no activation stands before the layer.
 struct NoSlope {
   template <class Pack>
   PINNQUAD_ALWAYS_INLINE Pack operator()(int, Pack gradient) const noexcept {
@@ -39,8 +42,8 @@ struct NoSlope {
 template <class Pack, int Rows, int Stride, int In, int Out, int Behind, class Scalar, class Finish>
 PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar* by_output, Scalar* by_input,
                                               const Finish& finish) noexcept {
-  // Packs side by side read past the end of a row, into the next one, and leave nonsense past the end of `by_input`, where
-  // nobody looks. Overlapping stores would be slow to read back.
+  // Packs side by side read past the end of a row and write past the end of `by_input`, which nothing reads.
+  // Overlapping stores would be slow to read back.
   constexpr bool past_the_end = padded<Pack>(In) - In <= Behind;
   using Lane = std::conditional_t<past_the_end || (Pack::width <= In), Pack, GenericPack<Scalar, 1>>;
   constexpr int packs = padded<Lane>(In) / Lane::width;
@@ -107,8 +110,8 @@ PINNQUAD_NOINLINE void keep_layer(const typename Layer::Scalar* parameters, cons
   Layer::forward(parameters, x, y);
 }
 
-/// One layer back, and the activation before it (void: none), of which `seen` is what its slope is asked with. Out of line, as
-/// above.
+/// One layer back, and the activation before it (void: none), of which `seen` is what its slope is asked with. Out of
+/// line, as above.
 template <class Layer, class Activation, class Pack, int Rows, int Stride>
 PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const typename Layer::Scalar* x,
                                  const typename Layer::Scalar* y, const typename Layer::Scalar* seen,
@@ -128,8 +131,8 @@ PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// y = network(x) and J = dy/dx, row-major, outputs x inputs: J[i * inputs + k] = dy_i / dx_k. Exact; at the kink of a ReLU it
-/// is the derivative from below, 0. Time bounded, no heap; NaN in x reaches y.
+/// y = network(x) and J = dy/dx, row-major, outputs x inputs: J[i * inputs + k] = dy_i / dx_k. Exact; at the kink of a
+/// ReLU it is the derivative from below, 0. Time bounded, no heap; NaN in x reaches y.
 template <class NetworkType, class PackType = NativePack<typename NetworkType::Scalar>>
 class JacobianPass {
   static_assert(is_network<NetworkType>, "pinnquad: JacobianPass<N> needs a Network (nn/network.hpp)");
@@ -144,8 +147,8 @@ class JacobianPass {
   static constexpr int stride = padded<Pack>(NetworkType::widest);
   template <int Index>
   using Layer = typename NetworkType::template Layer<Index>;
-  // kept: the inputs, where the first layer's slope is asked with them, then each layer's outputs; a whole pack may be read at
-  // the last one
+  // kept: the inputs, where the first layer's slope is asked with them, then each layer's outputs; a whole pack may be
+  // read at the last one
   static constexpr int kept_inputs = is_elementwise<Layer<0>> && slopes_from_input<Layer<0>> ? NetworkType::inputs : 0;
   static constexpr int all_kept = kept_inputs + NetworkType::Sizes::outputs_before(layer_count) + Pack::width;
 
@@ -198,7 +201,7 @@ class JacobianPass {
       return kept_inputs > 0 ? kept : x;
     }
   }
-  /// What the slope of an element-wise layer is asked with.
+  /// Argument of an element-wise layer's slope: its input or its output.
   template <int Index>
   static PINNQUAD_ALWAYS_INLINE const Scalar* seen_by(const Scalar* x, const Scalar* kept) noexcept {
     if constexpr (slopes_from_input<Layer<Index>>) {

@@ -4,23 +4,22 @@
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
 // A spec may name itself for flash: `static constexpr const char* description` (model/description.hpp).
 // Layers are types without data: a network owns all parameters in one flat array, as the exported header does.
-// forward(), activate() and the slope are noexcept. They are asked about samples alone: where a batch is padded to whole packs,
-// the padding repeats a sample or is left out (training), and what a pack gives in lanes past the last neuron, NaN too, is not
-// read.
+// forward(), activate() and the slope are noexcept. They see samples alone: a batch that is padded to whole packs
+// repeats a sample, or leaves the padding out (training). Lanes past the last neuron may hold anything, NaN too: they
+// are not read.
 //
-// A layer has no memory. One with a state (a recurrent cell) is a layer whose inputs are [what is new, state] and whose outputs
-// are [what it answers, next state]; forward() stays a pure function of them, so that every pass, batch, Jacobian and self test
-// keeps its meaning. Who calls the network owns the state: a feature set that holds it beside the motion (as a window holds its
-// past), filled from the outputs of the call before and set to zero with it after a gap. A layer that takes only a part of what
-// reaches it passes the rest on. It is trained over windows: one layer `Unrolled<Cell, Taps>` with the cell's parameters, whose
-// forward() calls the cell's once per tap and whose BackwardRule goes the same way back (back-propagation through time). What is
-// exported is the network of the cell, with the parameters found.
+// A layer has no memory. A recurrent cell is a layer from [new inputs, state] to [outputs, next state]; forward()
+// stays a pure function. The caller owns the state: it feeds the outputs of one call into the next and sets them to
+// zero after a gap. A layer that takes a part of its inputs passes the rest on. Training needs a layer that calls the
+// cell once per instant of a window, with a BackwardRule that goes the same way back; the network of the cell is
+// exported with the parameters found.
 #pragma once
 
 #include <type_traits>
 #include <utility>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/detected.hpp"
 
 namespace pinnquad {
 
@@ -36,121 +35,89 @@ struct OutputSize {
   static constexpr int size = Size;
 };
 
-/// As headers of formats 1 and 2 call it.
-template <int Size>
-using Inputs = InputSize<Size>;
-
 /// `Count` hidden layers of `Width` neurons.
 template <int Count, int Width>
 struct Hidden {};
 
 namespace detail {
-template <class Layer, class Scalar, class = void>
-struct IsBoundLayer : std::false_type {};
+template <class Spec, class Scalar, class Size>
+using BoundLayer = typename Spec::template Bind<Scalar, Size::value>;
 template <class Layer, class Scalar>
-struct IsBoundLayer<
-    Layer, Scalar,
+using LayerMembersOf =
     std::void_t<typename Layer::Scalar, decltype(Layer::inputs), decltype(Layer::outputs),
                 decltype(Layer::parameter_count),
                 decltype(Layer::forward(static_cast<const Scalar*>(nullptr), static_cast<const Scalar*>(nullptr),
-                                        static_cast<Scalar*>(nullptr)))>> : std::true_type {};
-template <class Spec, class Scalar, int In, class = void>
-struct IsLayer : std::false_type {};
-template <class Spec, class Scalar, int In>
-struct IsLayer<Spec, Scalar, In, std::void_t<typename Spec::template Bind<Scalar, In>>>
-    : IsBoundLayer<typename Spec::template Bind<Scalar, In>, Scalar> {};
-/// True for what a bound layer has of forward(), activate() and slope().
-template <class Layer, class = void>
-struct ForwardIsNoexcept : std::false_type {};
+                                        static_cast<Scalar*>(nullptr)))>;
+template <class Spec, class Scalar, class Size>
+using LayerOf = LayerMembersOf<BoundLayer<Spec, Scalar, Size>, Scalar>;
+
+// each names std::bool_constant<is it noexcept>
 template <class Layer>
-struct ForwardIsNoexcept<Layer,
-                         std::enable_if_t<noexcept(Layer::forward(static_cast<const typename Layer::Scalar*>(nullptr),
-                                                                  static_cast<const typename Layer::Scalar*>(nullptr),
-                                                                  static_cast<typename Layer::Scalar*>(nullptr)))>>
-    : std::true_type {};
-template <class Layer, class = void>
-struct ActivateMayThrow : std::false_type {};
+using ForwardOf = std::bool_constant<noexcept(Layer::forward(static_cast<const typename Layer::Scalar*>(nullptr),
+                                                             static_cast<const typename Layer::Scalar*>(nullptr),
+                                                             static_cast<typename Layer::Scalar*>(nullptr)))>;
 template <class Layer>
-struct ActivateMayThrow<Layer, std::void_t<decltype(Layer::activate(std::declval<typename Layer::Scalar>()))>>
-    : std::bool_constant<!noexcept(Layer::activate(std::declval<typename Layer::Scalar>()))> {};
-template <class Layer, class = void>
-struct SlopeMayThrow : std::false_type {};
+using ActivateOf = std::bool_constant<noexcept(Layer::activate(std::declval<typename Layer::Scalar>()))>;
 template <class Layer>
-struct SlopeMayThrow<Layer, std::void_t<decltype(Layer::slope(std::declval<typename Layer::Scalar>()))>>
-    : std::bool_constant<!noexcept(Layer::slope(std::declval<typename Layer::Scalar>()))> {};
-template <class Layer, class = void>
-struct HasSlopeFromInput : std::false_type {};
+using SlopeOf = std::bool_constant<noexcept(Layer::slope(std::declval<typename Layer::Scalar>()))>;
 template <class Layer>
-struct HasSlopeFromInput<Layer, std::void_t<decltype(Layer::slope_from_input(std::declval<typename Layer::Scalar>()))>>
-    : std::true_type {
-  static constexpr bool may_throw = !noexcept(Layer::slope_from_input(std::declval<typename Layer::Scalar>()));
-};
-template <class Layer>
-constexpr bool slope_from_input_may_throw() noexcept {
-  if constexpr (HasSlopeFromInput<Layer>::value) {
-    return HasSlopeFromInput<Layer>::may_throw;
+using SlopeFromInputOf = std::bool_constant<noexcept(Layer::slope_from_input(std::declval<typename Layer::Scalar>()))>;
+
+template <template <class...> class Function, class T>
+constexpr bool is_noexcept_where_given() noexcept {
+  if constexpr (is_detected<Function, T>) {
+    return Function<T>::value;
   } else {
-    return false;
+    return true;
   }
 }
 template <class Layer>
-inline constexpr bool is_noexcept_layer = ForwardIsNoexcept<Layer>::value && !ActivateMayThrow<Layer>::value &&
-                                          !SlopeMayThrow<Layer>::value && !slope_from_input_may_throw<Layer>();
+inline constexpr bool is_noexcept_layer =
+    is_noexcept_where_given<ForwardOf, Layer>() && is_noexcept_where_given<ActivateOf, Layer>() &&
+    is_noexcept_where_given<SlopeOf, Layer>() && is_noexcept_where_given<SlopeFromInputOf, Layer>();
 
-template <class Layer, class Pack, class = void>
-struct ActivatesPack : std::false_type {};
-template <class Layer, class Pack>
-struct ActivatesPack<Layer, Pack, std::void_t<decltype(Layer::activate(std::declval<Pack>()))>>
-    : std::is_same<decltype(Layer::activate(std::declval<Pack>())), Pack> {};
-template <class Layer, class = void>
-struct IsElementwise : std::false_type {};
 template <class Layer>
-struct IsElementwise<Layer, std::enable_if_t<Layer::elementwise>> : std::true_type {};
-template <class Layer, class = void>
-struct HasSlope : std::false_type {};
-template <class Layer>
-struct HasSlope<Layer, std::void_t<decltype(Layer::slope(std::declval<typename Layer::Scalar>()))>> : std::true_type {};
-template <class Layer, class Pack, class = void>
-struct ScalesPack : std::false_type {};
+using ElementwiseOf = std::enable_if_t<Layer::elementwise>;
 template <class Layer, class Pack>
-struct ScalesPack<Layer, Pack, std::void_t<decltype(Layer::scaled(std::declval<Pack>(), std::declval<Pack>()))>>
-    : std::true_type {};
-template <class Layer, class Pack, class = void>
-struct ScalesPackFromInput : std::false_type {};
+using PackActivateOf = std::enable_if_t<std::is_same_v<decltype(Layer::activate(std::declval<Pack>())), Pack>>;
 template <class Layer, class Pack>
-struct ScalesPackFromInput<Layer, Pack,
-                           std::void_t<decltype(Layer::scaled_from_input(std::declval<Pack>(), std::declval<Pack>()))>>
-    : std::true_type {};
+using PackScaledOf = decltype(Layer::scaled(std::declval<Pack>(), std::declval<Pack>()));
+template <class Layer, class Pack>
+using PackScaledFromInputOf = decltype(Layer::scaled_from_input(std::declval<Pack>(), std::declval<Pack>()));
 }  // namespace detail
 
 /// True for a spec that fulfils the contract at the head of this file.
 template <class Spec, class Scalar = double, int In = 3>
-inline constexpr bool is_layer = detail::IsLayer<Spec, Scalar, In>::value;
+inline constexpr bool is_layer = detail::is_detected<detail::LayerOf, Spec, Scalar, std::integral_constant<int, In>>;
 
 /// A layer with `static constexpr bool elementwise = true` and `activate(v)`: y_i = activate(x_i). It works in place.
 template <class Layer>
-inline constexpr bool is_elementwise = detail::IsElementwise<Layer>::value;
+inline constexpr bool is_elementwise = detail::is_detected<detail::ElementwiseOf, Layer>;
 
 /// An element-wise layer whose activate() also takes a whole pack: it is fused into the layer before it.
 template <class Layer, class Pack>
-inline constexpr bool activates_pack = detail::ActivatesPack<Layer, Pack>::value;
+inline constexpr bool activates_pack = detail::is_detected<detail::PackActivateOf, Layer, Pack>;
 
-/// An element-wise layer that can be differentiated gives d activate / d v: `slope(y)` from its output or, where the output does
-/// not tell (two inputs have it, or it takes more to invert than to keep the input), `slope_from_input(v)`.
+/// An element-wise layer with a derivative d activate / d v: `slope(y)` from its output, or `slope_from_input(v)`
+/// where two inputs have the same output or the output is costly to invert.
 template <class Layer>
-inline constexpr bool has_slope = detail::HasSlope<Layer>::value || detail::HasSlopeFromInput<Layer>::value;
+inline constexpr bool has_slope =
+    detail::is_detected<detail::SlopeOf, Layer> || detail::is_detected<detail::SlopeFromInputOf, Layer>;
 
-/// True for a layer whose slope is asked with its input: what it was given is kept until then.
+/// True for a layer with slope_from_input(): its input is kept until the slope is needed.
 template <class Layer>
-inline constexpr bool slopes_from_input = detail::HasSlopeFromInput<Layer>::value;
+inline constexpr bool slopes_from_input = detail::is_detected<detail::SlopeFromInputOf, Layer>;
 
-/// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole pack.
+/// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole
+/// pack.
 template <class Layer, class Pack>
 inline constexpr bool scales_pack =
-    slopes_from_input<Layer> ? detail::ScalesPackFromInput<Layer, Pack>::value : detail::ScalesPack<Layer, Pack>::value;
+    slopes_from_input<Layer> ? detail::is_detected<detail::PackScaledFromInputOf, Layer, Pack>
+                             : detail::is_detected<detail::PackScaledOf, Layer, Pack>;
 
 namespace detail {
-/// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the output.
+/// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the
+/// output.
 template <class Layer, class Value>
 PINNQUAD_ALWAYS_INLINE Value scaled_by_slope(const Value& seen, const Value& dy) noexcept {
   if constexpr (std::is_same_v<Value, typename Layer::Scalar>) {

@@ -26,9 +26,9 @@ struct Chain<Scalar, In, First, Rest...> {
       is_layer<First, Scalar, In>,
       "pinnquad: this type is not a layer; it needs Bind<Scalar, In> with sizes and forward() (nn/layer.hpp)");
   using Layer = typename First::template Bind<Scalar, In>;
-  static_assert(detail::is_noexcept_layer<Layer>,
+  static_assert(is_noexcept_layer<Layer>,
                 "pinnquad: a layer's forward(), activate() and slope() must be noexcept: they fly (nn/layer.hpp)");
-  static_assert(!(detail::HasSlope<Layer>::value && detail::HasSlopeFromInput<Layer>::value),
+  static_assert(!(is_detected<SlopeOf, Layer> && is_detected<SlopeFromInputOf, Layer>),
                 "pinnquad: an element-wise layer gives slope(y) or slope_from_input(v), not both (nn/layer.hpp)");
   static_assert(Layer::inputs == In, "pinnquad: a layer does not take the outputs of the layer before it");
   using Layers = decltype(std::tuple_cat(std::declval<std::tuple<Layer>>(),
@@ -61,25 +61,21 @@ struct Sizes<std::tuple<Layers...>> {
   }
 };
 
-template <class Layer, class Activation, class = void>
-struct FusesActivation : std::false_type {};
 template <class Layer, class Activation>
-struct FusesActivation<
-    Layer, Activation,
-    std::void_t<decltype(Layer::template forward_fused<Activation>(
-        static_cast<const typename Layer::Scalar*>(nullptr), static_cast<const typename Layer::Scalar*>(nullptr),
-        static_cast<typename Layer::Scalar*>(nullptr)))>> : std::true_type {};
+using ForwardFusedOf = decltype(Layer::template forward_fused<Activation>(
+    static_cast<const typename Layer::Scalar*>(nullptr), static_cast<const typename Layer::Scalar*>(nullptr),
+    static_cast<typename Layer::Scalar*>(nullptr)));
 /// True for a layer that applies an element-wise layer to its sums before it stores them.
 template <class Layer, class Activation>
-inline constexpr bool fuses_activation = FusesActivation<Layer, Activation>::value;
+inline constexpr bool fuses_activation = is_detected<ForwardFusedOf, Layer, Activation>;
 
 }  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The forward pass of a Network, step by step (nn/walk.hpp). Code for flash: an activation is applied to the sums of the layer
-/// before it, and equal steps in a row are one loop. A last hidden layer that is wider than what the kernel holds is made and
-/// used in parts, so that it has no place of its own on the stack: the order of each sum, and so its bits, are the same.
+/// The forward pass of a Network, step by step (nn/walk.hpp). Code for flash: an activation is applied to the sums of
+/// the layer before it, and equal steps in a row are one loop. A last hidden layer that is wider than the kernel holds
+/// is made and used in parts, and takes no place on the stack: the order of each sum, and so its bits, are the same.
 template <class NetworkType>
 class PortablePass {
   using Scalar = typename NetworkType::Scalar;
@@ -90,8 +86,8 @@ class PortablePass {
   template <int Index>
   using StepAt = detail::Step<NetworkType, Kernel, Index>;
 
-  /// Parts of a layer that is made in parts. With four, a Cortex-M takes a twentieth less of instructions for 32 neurons, and
-  /// 16 B more of the stack.
+  /// Parts of a layer that is made in parts. With four, a Cortex-M takes a twentieth less of instructions for 32
+  /// neurons, and 16 B more of the stack.
   static constexpr int parts = 8;
   /// Neurons of a step that are made at a time; 0: all of them.
   template <class Step>
@@ -105,7 +101,7 @@ class PortablePass {
     }
     return 0;
   }
-  /// What the steps from this one on write to the buffer that it writes to itself, or to the other one.
+  /// Largest output of the steps from this one on: in the buffer that it writes to (`own`), or in the other one.
   template <class Step>
   static constexpr int entries(bool own) noexcept {
     if constexpr (Step::last) {
@@ -128,8 +124,8 @@ class PortablePass {
 
   /// y = network(x); out of line, so that an image holds it once.
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept { run(parameters, x, y); }
-  /// The same for inputs that stand anywhere, `x[i]` the i-th of them: they have no place of their own on the stack. Inlined,
-  /// so that the caller has none beside it.
+  /// The same for inputs that stand anywhere, `x[i]` the i-th of them: they have no place of their own on the stack.
+  /// Inlined, so that the caller has none beside it.
   template <class X>
   static PINNQUAD_ALWAYS_INLINE void forward_of(const Scalar* parameters, const X& x, Scalar* y) noexcept {
     if constexpr (takes_any) {
@@ -164,8 +160,8 @@ class PortablePass {
   struct Visitor {
     Scalar* y;
 
-    /// Of those that are alike, what may run as a loop: not the one that makes the network's outputs, which writes elsewhere,
-    /// nor one before it that is made in parts.
+    /// Number of equal steps that run as a loop: without the last one, which writes the network's outputs elsewhere,
+    /// and without one before it that is made in parts.
     template <class Step>
     static constexpr int count_loop() noexcept {
       constexpr int all = Step::count_alike();
@@ -217,7 +213,7 @@ class PortablePass {
       const Scalar* const weights = at.own + Last::parameters_offset - Step::parameters_offset;
       for (int i = 0; i < Outputs::outputs; ++i) y[i] = weights[Outputs::weight_count + i];
       for (int first = 0; first < Hidden::outputs; first += part) {
-        // else the first of them are kept from one part to the next, on the stack
+        // otherwise the compiler keeps the first of them on the stack from part to part
         if constexpr (std::is_pointer_v<X>) PINNQUAD_FORGET(x);
         Hidden::template forward_some<part>(at.own, first, x, at.target, detail::Activate<typename Step::Activation>{});
         Outputs::template add_some<part>(weights, first, at.target, y);

@@ -13,7 +13,8 @@ namespace pinnquad {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// How a layer is stored and run from memory to memory; the primary template keeps the layer's own layout and forward pass.
+/// How a layer is stored and run from memory to memory; the primary template keeps the layer's own layout and forward
+/// pass.
 template <class Layer, class Pack>
 struct PackedLayer {
   using Scalar = typename Layer::Scalar;
@@ -44,7 +45,7 @@ struct PackedLayer<DenseLayer<ScalarType, In, Out>, Pack> {
   }
 };
 
-/// For a forward pass whose layers' outputs nobody asks for. Not called: a reference to registers would cost some of them.
+/// The layers' outputs are dropped. Not called: a reference to registers would cost some of them.
 struct KeepNothing {
   static constexpr bool keeps = false;
 };
@@ -67,14 +68,14 @@ struct StoredOutputs {
   }
 };
 
-/// What PackedLayer can: a dense layer passes its sums through an activation that takes a pack.
+/// Kernel of PackedLayer: a dense layer passes its sums through an activation that takes a pack.
 template <class Pack>
 struct PackedKernel {
   template <class Layer, class Elementwise>
   static constexpr bool fuses = PackedLayer<Layer, Pack>::dense&& activates_pack<Elementwise, Pack>;
 };
 
-/// True where what an activation is given is asked for afterwards too.
+/// True where the inputs of an activation are kept too: its slope needs them.
 template <class Keep, class Activation>
 constexpr bool keeps_sums() noexcept {
   if constexpr (Keep::keeps && !std::is_void_v<Activation>) {
@@ -154,8 +155,8 @@ struct MemoryRun {
   };
 };
 
-/// The steps of a network, from register to register: dense layers of float, each with at most one activation, small enough for
-/// the registers. Hidden layers that are all the same are a loop.
+/// The steps of a network, from register to register: dense layers of float, each with at most one activation, small
+/// enough for the registers. Hidden layers that are all the same are a loop.
 template <class Network, class Pack>
 struct RegisterRun {
   using Kernel = PackedKernel<Pack>;
@@ -217,8 +218,8 @@ struct RegisterRun {
     }
   };
 
-  /// The steps from `Index` on, as walk_forward() takes them. Handed on from call to call: values returned from visit to visit
-  /// would cost registers.
+  /// The steps from `Index` on, as walk_forward() takes them. Handed on from call to call: values returned from visit
+  /// to visit would cost registers.
   template <int Index, class Values, class Keep>
   static PINNQUAD_ALWAYS_INLINE void run(const float* packed, const Values& x, float* y, const Keep& keep) noexcept {
     using Here = Step<Network, Kernel, Index>;
@@ -269,15 +270,15 @@ struct RegisterRun {
   }
 };
 
-/// True for activations that go through a pack lane by lane: registers hold a value in several lanes, so each would be worked
-/// out several times.
+/// True for activations that go through a pack lane by lane. Registers hold a value in several lanes: each would be
+/// computed several times.
 template <class Activation, class = void>
 inline constexpr bool lane_by_lane = false;
 template <class Activation>
 inline constexpr bool lane_by_lane<Activation, std::void_t<decltype(Activation::lane_by_lane)>> =
     Activation::lane_by_lane;
 
-/// Dense layers up to this many inputs and outputs run in registers; behind it the unrolled code outgrows its use.
+/// Dense layers up to this many inputs and outputs run in registers; beyond it the unrolled code is too large.
 inline constexpr int largest_in_registers = 40;
 
 /// True if all steps of a network can be a RegisterRun.
@@ -309,10 +310,10 @@ struct ChooseRun<Network, Pack, false> {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// A forward pass for batch 1 at the speed of the vector unit. Results agree with Network::forward to rounding: the sums are
-/// taken in several chains. NaN in an input reaches every output that depends on it.
-/// Aligned to 64 bytes, and so is what holds one: statics, the stack and C++17's operator new see to it; memory of malloc or an
-/// RTOS must be aligned by whoever places one there.
+/// A forward pass for batch 1 at the speed of the vector unit. Results agree with Network::forward to rounding: the
+/// sums are taken in several chains. NaN in an input reaches every output that depends on it. Aligned to 64 bytes, and
+/// so is what holds one: statics, the stack and C++17's operator new see to it; memory of malloc or an RTOS must be
+/// aligned by whoever places one there.
 template <class NetworkType, class PackType = NativePack<typename NetworkType::Scalar>>
 class PackedNetwork {
   static_assert(is_network<NetworkType>, "pinnquad: PackedNetwork<N> needs a Network (nn/network.hpp)");
@@ -335,8 +336,8 @@ class PackedNetwork {
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
     Run::forward(packed_, x, y, detail::KeepNothing{});
   }
-  /// The same; each layer's outputs are left in `kept`, layer by layer as Sizes::outputs_before() counts them. The outputs of a
-  /// layer whose activation is fused into it are written only where the activation slopes_from_input.
+  /// The same; each layer's outputs are left in `kept`, layer by layer as Sizes::outputs_before() counts them. The
+  /// outputs of a layer whose activation is fused into it are written only where the activation slopes_from_input.
   PINNQUAD_ALWAYS_INLINE void forward_keeping(const Scalar* x, Scalar* y, Scalar* kept) const noexcept {
     Run::forward(packed_, x, y, detail::KeepOutputs<Scalar>{kept});
   }

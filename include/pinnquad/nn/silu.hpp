@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sigmoid linear unit (swish): y = v / (1 + exp(-v)). Calls the C library once per neuron. NaN for -infinity, as PyTorch's SiLU.
+// Sigmoid linear unit (swish): y = v / (1 + exp(-v)). Calls the C library once per neuron. NaN for -infinity, as
+// PyTorch's SiLU.
 #pragma once
 
 #include "pinnquad/core/scalar_math.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sine activation (SIREN, Sitzmann et al. 2020): y = sin(v); a frequency is a factor of the weights before it. Calls the C library
-// once per neuron. NaN for an infinity.
+// Sine activation (SIREN, Sitzmann et al. 2020): y = sin(v); a frequency is a factor of the weights before it. Calls
+// the C library once per neuron. NaN for an infinity.
 #pragma once
 
 #include "pinnquad/core/scalar_math.hpp"

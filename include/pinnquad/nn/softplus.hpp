@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Softplus: y = log(1 + exp(v)), a smooth ReLU; PyTorch's Softplus(beta=1), without its threshold. Calls the C library twice per
-// neuron.
+// Softplus: y = log(1 + exp(v)), a smooth ReLU; PyTorch's Softplus(beta=1), without its threshold. Calls the C library
+// twice per neuron.
 #pragma once
 
 #include "pinnquad/core/scalar_math.hpp"
@@ -21,7 +21,7 @@ struct SoftplusLayer : ElementwiseLayer<SoftplusLayer<ScalarType, Size>, ScalarT
   static PINNQUAD_ALWAYS_INLINE Pack activate(Pack v) noexcept {
     return detail::each_lane(v, [](ScalarType lane) PINNQUAD_INLINE_LAMBDA { return activate(lane); });
   }
-  /// 1 / (1 + exp(-v)) = 1 - exp(-y): the output tells.
+  /// 1 / (1 + exp(-v)) = 1 - exp(-y).
   static PINNQUAD_ALWAYS_INLINE ScalarType slope(ScalarType y) noexcept { return -detail::exponential_minus_one(-y); }
   template <class Pack>
   static PINNQUAD_ALWAYS_INLINE Pack scaled(Pack y, Pack dy) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The walk over a network's layers: which of them run as one, how often equal ones stand in a row, in which order they are
-// visited. The forward passes (portable, packed, batched), the Jacobian and training are visitors of it.
+// The walk over a network's layers: it fuses layers that run as one, counts equal ones in a row, and visits them in
+// order. The forward passes (portable, packed, batched), the Jacobian and training are visitors of it.
 #pragma once
 
 #include <type_traits>
@@ -14,7 +14,7 @@ namespace pinnquad {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Which way a walk goes: from the inputs to the outputs, or back.
+/// Direction of a walk: from the inputs to the outputs, or back.
 enum class Way : int { forward = 1, back = -1 };
 
 /// For a walk that visits each layer alone.
@@ -32,8 +32,8 @@ struct LayerIf<true, Network, Index> {
   using type = typename Network::template Layer<Index>;
 };
 
-/// What runs as one from layer `Index` on: this layer and, where the kernel applies it to what the layer stores, the
-/// element-wise layer that comes next on the way. A kernel says what it can:
+/// The layers that run as one from `Index` on: this layer and, where the kernel fuses it, the element-wise layer that
+/// comes next on the way. A kernel states:
 ///   template <class Layer, class Elementwise> static constexpr bool fuses;
 template <class Network, class Kernel, int Index, Way way = Way::forward>
 struct Step {
@@ -98,7 +98,7 @@ constexpr bool runs_with_layer_before() noexcept {
 }
 
 /// Takes a visitor from step to step. The visitor turns a state into the next step's, of any type:
-///   template <class Step, class State> static constexpr int together;  // 1, or how many of Step::count_alike() it runs as a loop
+///   template <class Step, class State> static constexpr int together;  // of Step::count_alike(), run as a loop; or 1
 ///   template <class Step, class State> auto visit(const State& state) const noexcept;
 /// Returns the state behind the last step.
 template <class Network, class Kernel, Way way, int Index, class Visitor, class State>

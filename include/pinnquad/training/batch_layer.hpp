@@ -5,21 +5,20 @@
 #pragma once
 
 #include "pinnquad/nn/kernel/tile.hpp"
-#include "pinnquad/training/backward/backward.hpp"
-#include "pinnquad/training/backward/dense.hpp"
+#include "pinnquad/training/backward.hpp"
 
 namespace pinnquad {
 
-/// Any layer, sample by sample. `stored` and `gradient` are what the optimiser sees: one flat array of `size` scalars.
+/// Any layer, sample by sample. The optimiser sees `stored` and `gradient`: flat arrays of `size` scalars.
 template <class Layer, class Pack, int BatchSize, class = void>
 struct BatchLayer {
   static_assert(is_trainable<Layer>,
-                "pinnquad: this layer cannot be trained; specialise BackwardRule (training/backward/backward.hpp)");
+                "pinnquad: this layer cannot be trained; specialise BackwardRule (training/backward.hpp)");
   static_assert(is_noexcept_backward<Layer>,
-                "pinnquad: a BackwardRule's backward() must be noexcept (training/backward/backward.hpp)");
+                "pinnquad: a BackwardRule's backward() must be noexcept (training/backward.hpp)");
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = false;
-  static constexpr bool needs_output = true;      ///< backward() looks at y, so nobody may overwrite it
+  static constexpr bool needs_output = true;      ///< backward() reads y: it may not be overwritten
   static constexpr bool couples_samples = false;  ///< outputs depend on the other samples of the batch (batch_norm.hpp)
   static constexpr bool whole_tiles = false;      ///< `samples` has to be a multiple of the pack's tile_rows
   static constexpr int size = padded<Pack>(Layer::parameter_count);
@@ -127,9 +126,9 @@ template <class Scalar, int In, int Out, class Pack, int BatchSize>
 struct BatchLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, BatchSize, void>
     : detail::BatchDense<Scalar, In, Out, false, Pack> {};
 
-/// Element-wise, with a slope from the output: forward works on its own buffer or on that of the layer before, dx overwrites dy.
-/// The padding columns of both may hold anything: no layer reads them into a real column.
-/// With a slope from the input, the input is left as it is, and dx goes to a buffer of its own.
+/// Element-wise, with a slope from the output: forward works on its own buffer or on that of the layer before, dx
+/// overwrites dy. The padding columns of both may hold anything: no layer reads them into a real column. With a slope
+/// from the input, the input is left as it is, and dx goes to a buffer of its own.
 template <class Layer, class Pack, int BatchSize>
 struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>>> {
   static_assert(is_trainable<Layer>,

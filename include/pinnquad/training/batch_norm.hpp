@@ -14,9 +14,8 @@ inline constexpr double batch_norm_momentum = 0.1;
 /// Forward: xhat = (x - mean) / sqrt(var + 1e-5), y = gamma xhat + beta; mean and var (divisor N) of the N samples.
 /// Backward: dbeta = sum dy, dgamma = sum dy xhat, dx = gamma / sqrt(var + 1e-5) (dy - dbeta / N - xhat dgamma / N).
 /// Running statistics r <- 0.9 r + 0.1 batch, the variance with divisor N - 1; follow_statistics() moves them.
-/// One sample has no variance: it is normalised by the running statistics, which stay as they are, and the gradient is that of
-/// the affine map which remains. (PyTorch refuses such a batch.)
-/// The optimiser sees gamma and beta only.
+/// One sample has no variance: it is normalised by the running statistics, which stay as they are, and the gradient is
+/// that of the affine map which remains. (PyTorch refuses such a batch.) The optimiser sees gamma and beta only.
 template <class Scalar, int Size, class Pack, int BatchSize>
 struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
   static_assert(BatchSize > 1, "pinnquad: batch norm can't be trained in batches of one sample; they have no variance");
@@ -31,9 +30,9 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
   alignas(64) Scalar gradient[size] = {};
   alignas(64) Scalar running_mean[stride] = {};
   alignas(64) Scalar running_variance[stride] = {};
-  alignas(64) Scalar mean[stride] = {};            // of the last batch
-  alignas(64) Scalar variance[stride] = {};        // of the last batch, divisor N
-  alignas(64) Scalar inverse_spread[stride] = {};  // 1 / sqrt(variance + epsilon) that the last batch was divided by
+  alignas(64) Scalar mean[stride] = {};               // of the last batch
+  alignas(64) Scalar variance[stride] = {};           // of the last batch, divisor N
+  alignas(64) Scalar inverse_deviation[stride] = {};  // 1 / sqrt(variance + epsilon) of the last batch
   int batch_samples = 0;
 
   void load(const Scalar* parameters) noexcept {
@@ -94,7 +93,7 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
   void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous, int samples) noexcept {
     unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
       constexpr int offset = decltype(v)::value * Pack::width;
-      const Pack center = Pack::load(mean + offset), inverse = Pack::load(inverse_spread + offset);
+      const Pack center = Pack::load(mean + offset), inverse = Pack::load(inverse_deviation + offset);
       Pack shift[chains], scale[chains];
       for (int c = 0; c < chains; ++c) shift[c] = scale[c] = Pack::broadcast(Scalar(0));
       const auto add = [&](int i, int c) PINNQUAD_INLINE_LAMBDA {
@@ -156,26 +155,26 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
       center.store(mean + offset);
       (share * total(sum)).store(variance + offset);
     });
-    invert_spread();
+    invert_deviation();
   }
   void copy_running_statistics() noexcept {
     for (int i = 0; i < stride; ++i) {
       mean[i] = running_mean[i];
       variance[i] = running_variance[i];
     }
-    invert_spread();
+    invert_deviation();
   }
-  void invert_spread() noexcept {
+  void invert_deviation() noexcept {
     const Pack one = Pack::broadcast(Scalar(1)), epsilon = Pack::broadcast(Scalar(batch_norm_epsilon));
     for (int i = 0; i < stride; i += Pack::width) {
-      (one / Pack::square_root(Pack::load(variance + i) + epsilon)).store(inverse_spread + i);
+      (one / Pack::square_root(Pack::load(variance + i) + epsilon)).store(inverse_deviation + i);
     }
   }
   void normalise(const Scalar* x, Scalar* y, int samples) const noexcept {
     unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
       constexpr int offset = decltype(v)::value * Pack::width;
       const Pack center = Pack::load(mean + offset);
-      const Pack factor = Pack::load(stored + offset) * Pack::load(inverse_spread + offset);
+      const Pack factor = Pack::load(stored + offset) * Pack::load(inverse_deviation + offset);
       const Pack shift = Pack::load(stored + stride + offset);
       for (int i = 0; i < samples; ++i) {
         const Pack distance = Pack::load(x + i * stride + offset) - center;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The airframe of a training: a type's, known to the compiler, or a value that a program was given, from a file for instance.
-// Context and TrainedModel have it as a base; whoever needs it asks them.
+// The airframe of a training: a type known to the compiler, or a value given at run time, from a file for instance.
+// It is a base of Context and TrainedModel.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct ContextAirframe {
     constexpr auto worked_out = allocation_signs(airframe<Scalar>(), Axis::axis);
     return worked_out;
   }
-  /// What an output schema is given beside features and outputs.
+  /// Setting of an output schema: its third input beside features and outputs.
   template <class Schema, class Scalar>
   static constexpr auto output_setting() noexcept {
     constexpr auto worked_out = OutputMap<Schema>::setting(airframe_value<VehicleType, Scalar>());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Denormal numbers count as zero while this lives.
-// Weight decay drives the weights of a dead neuron, and Adam's moments with them, below 1e-38; each operation on such a number
-// costs a hundred ordinary ones, in training and later in every prediction.
+// Weight decay drives the weights of a dead neuron and their moments below 1e-38. An operation on such a number costs a
+// hundred ordinary ones, in training and in every prediction.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace pinnquad {
 
-/// Sets flush-to-zero and denormals-are-zero on this thread, and restores what was set before. x86-64 and aarch64; elsewhere
-/// it does nothing.
+/// Sets flush-to-zero and denormals-are-zero on this thread, and restores what was set before. x86-64 and aarch64;
+/// elsewhere it does nothing.
 class FlushDenormals {
  public:
   FlushDenormals() noexcept : saved_(control()) { set_control(saved_ | flush_bits); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Takes batch norm out of a trained network: a Dense followed by a BatchNorm is a Dense with other weights.
-// What is exported and flown is the folded network; kernels and headers know nothing of batch norm.
+// The folded network is exported and flown; exported headers hold no batch norm.
 #pragma once
 
 #include <cmath>
@@ -34,9 +34,9 @@ template <class... Done, int Out, class... Left>
 struct FoldSpecs<SpecList<Done...>, SpecList<Dense<Out>, BatchNorm, Left...>>
     : FoldSpecs<SpecList<Done..., Dense<Out>>, SpecList<Left...>> {};
 
-template <class Answer>
+template <class Predictor>
 struct FoldNetwork {
-  using type = Answer;
+  using type = Predictor;
 };
 template <class Scalar, class InputSize, class... Specs>
 struct FoldNetwork<Network<Scalar, InputSize, Specs...>> {
@@ -103,13 +103,13 @@ typename FoldNetwork<NetworkType>::type without_batch_norm(const NetworkType& ne
 
 }  // namespace detail
 
-/// The network without its BatchNorms: Dense, DenseWithoutBias and a BatchNorm behind either become one Dense. A network that
-/// has none of them, and an answer that is no network (model/predictor.hpp), is its own folded type.
+/// The network without its BatchNorms: Dense, DenseWithoutBias and a BatchNorm behind either become one Dense. A
+/// network that has none of them, and a predictor that is no network (model/predictor.hpp), is its own folded type.
 template <class NetworkType>
 using Folded = typename detail::FoldNetwork<NetworkType>::type;
 
-/// The same outputs to rounding as `network` with its running statistics, from plain layers. A network without batch norm is
-/// returned bit for bit.
+/// The same outputs to rounding as `network` with its running statistics, from plain layers. A network without batch
+/// norm is returned bit for bit.
 template <class NetworkType>
 Folded<NetworkType> folded(const NetworkType& network) {
   if constexpr (!is_network<NetworkType>) {

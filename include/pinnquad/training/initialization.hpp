@@ -11,8 +11,8 @@
 
 namespace pinnquad {
 
-/// Xavier (Glorot and Bengio 2010), uniform: W in +-sqrt(6 / (inputs + outputs)), biases 0. Layers of another kind that have
-/// parameters start at 0 unless they bring `initialise(parameters, engine)` themselves.
+/// Xavier (Glorot and Bengio 2010), uniform: W in +-sqrt(6 / (inputs + outputs)), biases 0. Other layers with
+/// parameters start at 0 unless they have `initialise(parameters, engine)` themselves.
 struct XavierUniform {
   template <class Scalar, int In, int Out, class Engine>
   void initialise(DenseLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {

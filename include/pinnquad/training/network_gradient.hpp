@@ -29,9 +29,10 @@ struct ActivationBuffer<Scalar, 0> {};
 }  // namespace detail
 
 /// Gradient of a scalar loss by all parameters, for up to BatchSize samples.
-/// Tiles may be wider than the batch. The rows past its samples are zeros in every activation and in every dL/dy, and only
-/// Dense, which makes 0 of them, is run on them: they add nothing to a gradient, whatever a layer gives for an input of zeros.
-/// Use: input() <- standardised samples, forward(n), output_delta() <- dL/dy, backward(n), then each layer's `gradient`.
+/// Tiles may be wider than the batch. The rows past its samples are zeros in every activation and in every dL/dy, and
+/// only Dense, which makes 0 of them, is run on them: they add nothing to a gradient, whatever a layer gives for an
+/// input of zeros. Use: input() <- standardised samples, forward(n), output_delta() <- dL/dy, backward(n), then each
+/// layer's `gradient`.
 template <class NetworkType, int BatchSize, class PackType = NativePack<typename NetworkType::Scalar>>
 class NetworkGradient {
  public:
@@ -67,7 +68,8 @@ class NetworkGradient {
     detail::walk_forward<NetworkType, Kernel>(Forward<true>{{}, *this}, samples);
   }
 
-  /// The same with batch norm's running statistics: outputs of the network as it will fly. backward() does not fit this pass.
+  /// The same with batch norm's running statistics: outputs of the network as it will fly. backward() does not fit
+  /// this pass.
   void predict(int samples) noexcept {
     clear_padding(input_, input_stride, samples);
     detail::walk_forward<NetworkType, Kernel>(Forward<false>{{}, *this}, samples);
@@ -104,7 +106,8 @@ class NetworkGradient {
   template <int Index>
   using Layer = std::tuple_element_t<static_cast<std::size_t>(Index), Layers>;
 
-  /// An element-wise layer that works in place runs with the layer before it, unless that one's backward pass needs what it gave.
+  /// An element-wise layer that works in place runs with the layer before it, unless that one's backward pass needs
+  /// what it gave.
   struct Kernel {
     template <class NetworkLayer, class Elementwise>
     static constexpr bool fuses =

@@ -1,57 +1,96 @@
 // SPDX-License-Identifier: MIT
 // The contract of an optimiser: `Step begin(long step) const` once per batch (steps from 1), then per layer
-//   template <class Pack> void update(const Step&, Scalar* parameters, const Scalar* gradient, Scalar* first, Scalar* second,
-//                                     int count) const noexcept;
-// on whole packs; `first` and `second` are the optimiser's to keep. One that needs to know how far training is takes
-// `begin(long step, double done)` instead, done = share of all steps taken before this one, 0 <= done < 1.
+//   template <class Pack> void update(const Step&, Scalar* parameters, const Scalar* gradient, Scalar* first,
+//                                     Scalar* second, int count) const noexcept;
+// on whole packs; `first` and `second` are the optimiser's to keep. One that follows the training's progress has
+// `begin(long step, double done)` instead; done = share of all steps taken before this one, 0 <= done < 1.
 #pragma once
 
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/detected.hpp"
+#include "pinnquad/data/settings.hpp"
 #include "pinnquad/nn/kernel/pack_generic.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-template <class T, class = void>
-struct FollowsProgress : std::false_type {};
 template <class T>
-struct FollowsProgress<T, std::void_t<decltype(std::declval<const T&>().begin(1L, 0.0))>> : std::true_type {};
+using BeginOf = decltype(std::declval<const T&>().begin(1L));
+template <class T>
+using BeginWithProgressOf = decltype(std::declval<const T&>().begin(1L, 0.0));
 
-template <class T, class = void>
-struct BeginsStep {
-  using Step = void;
-};
 template <class T>
-struct BeginsStep<T, std::enable_if_t<FollowsProgress<T>::value>> {
-  using Step = decltype(std::declval<const T&>().begin(1L, 0.0));
-};
+auto begin_step(const T& optimizer, long step, [[maybe_unused]] double done) {
+  if constexpr (is_detected<BeginWithProgressOf, T>) {
+    return optimizer.begin(step, done);
+  } else {
+    return optimizer.begin(step);
+  }
+}
 template <class T>
-struct BeginsStep<
-    T, std::enable_if_t<!FollowsProgress<T>::value, std::void_t<decltype(std::declval<const T&>().begin(1L))>>> {
-  using Step = decltype(std::declval<const T&>().begin(1L));
-};
+using StepOf = decltype(begin_step(std::declval<const T&>(), 1L, 0.0));
 
-template <class T, class Step, class = void>
-struct UpdatesParameters : std::false_type {};
-template <class T, class Step>
-struct UpdatesParameters<
-    T, Step,
-    std::void_t<decltype(std::declval<const T&>().template update<GenericPack<double, 4>>(
-        std::declval<const Step&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
-        static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))>>
-    : std::bool_constant<noexcept(std::declval<const T&>().template update<GenericPack<double, 4>>(
-          std::declval<const Step&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
-          static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))> {};
+template <class T>
+using UpdateOf = std::enable_if_t<noexcept(std::declval<const T&>().template update<GenericPack<double, 4>>(
+    std::declval<const StepOf<T>&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
+    static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))>;
+template <class T>
+constexpr bool fulfils_optimizer() noexcept {
+  if constexpr (is_detected<BeginOf, T> || is_detected<BeginWithProgressOf, T>) {
+    return is_detected<UpdateOf, T>;
+  } else {
+    return false;
+  }
+}
+template <class T>
+using LearningRateOf = decltype(std::declval<T&>().learning_rate *= 0.5);
 }  // namespace detail
-
-/// True for an optimiser whose begin() is told how far training is.
-template <class T>
-inline constexpr bool follows_progress = detail::FollowsProgress<T>::value;
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_optimizer = detail::UpdatesParameters<T, typename detail::BeginsStep<T>::Step>::value;
+inline constexpr bool is_optimizer = detail::fulfils_optimizer<T>();
+
+/// An optimiser whose learning rate follows a rate over the training: `Scheduled<AdamW, CosineDecay>`.
+/// Step t of T (from 0) is the optimiser's with learning_rate * rate.factor(t / T) in place of learning_rate, in
+/// begin() and in update(); t / T is the Trainer's Progress.
+template <class Optimizer, class Rate>
+struct Scheduled {
+  static_assert(
+      is_optimizer<Optimizer>,
+      "pinnquad: Scheduled's first argument is not an optimiser; it needs begin() and update() const noexcept "
+      "(training/optimizer.hpp)");
+  static_assert(is_rate<Rate>,
+                "pinnquad: Scheduled's second argument is not a rate; it needs factor(done) const noexcept "
+                "(schedule/schedule.hpp)");
+  static_assert(detail::is_detected<detail::LearningRateOf, Optimizer>,
+                "pinnquad: Scheduled's first argument has no member learning_rate that a rate could scale");
+  Optimizer optimizer{};
+  Rate rate{};
+
+  /// The optimiser as it is in this step, and the result of its own begin().
+  struct Step {
+    Optimizer now;
+    detail::StepOf<Optimizer> step;
+  };
+  Step begin(long t, double done) const {
+    Optimizer now = optimizer;
+    now.learning_rate *= rate.factor(done);
+    return {now, detail::begin_step(now, t, done)};
+  }
+  template <class Pack, class Scalar>
+  void update(const Step& step, Scalar* parameters, const Scalar* gradient, Scalar* first, Scalar* second,
+              int count) const noexcept {
+    step.now.template update<Pack>(step.step, parameters, gradient, first, second, count);
+  }
+
+  /// Throws std::invalid_argument if a number of the optimiser or of the rate makes no sense.
+  constexpr void check() const {
+    check_settings(optimizer);
+    check_settings(rate);
+  }
+};
 
 }  // namespace pinnquad

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How small a spread of a quantity still is a movement, by its unit. A feature that varies less than that stands still: it
-// is scaled as a constant and gets an envelope of its own, for a flight with it will move it a little.
+// The smallest standard deviation that counts as movement, by unit. A feature that varies less stands still: it is
+// scaled as a constant, and its envelope gets a fixed margin, for a flight will move it a little.
 #pragma once
 
 #include <array>
@@ -12,16 +12,17 @@ namespace pinnquad {
 
 /// In the unit itself.
 struct Resolution {
-  double smallest_spread;  ///< a standard deviation below this is rounding or noise
-  double still_margin;     ///< how far a quantity that stood still may be from where it stood
+  double smallest_deviation;  ///< a standard deviation below this is rounding or noise
+  double still_margin;        ///< how far a quantity that stood still may be from where it stood
 };
 
 /// Of a quantity with this unit (units of a feature set or an output schema) about `mean`:
 ///   unit      m/s^2  rad/s^2  m/s   rad/s  rad    1       m     rev/s  V
-///   spread    0.01   0.01     0.01  0.001  0.001  0.0001  0.01  0.01   0.01
+///   smallest  0.01   0.01     0.01  0.001  0.001  0.0001  0.01  0.01   0.01
 ///   margin    0.2    0.5      0.1   0.05   0.05   0.05    0.2   0.5    0.5
-/// Any other unit: a millionth and a hundredth of |mean|, of 1 for a smaller mean. No spread is below a millionth of |mean|:
-/// a float's rounding.
+/// Any other unit: a millionth and a hundredth of |mean|, of 1 for a smaller mean. No smallest deviation is below a
+/// millionth of
+/// |mean|: a float's rounding.
 inline Resolution resolution_of(std::string_view unit, double mean) {
   struct Named {
     std::string_view unit;
@@ -41,7 +42,7 @@ inline Resolution resolution_of(std::string_view unit, double mean) {
   for (const Named& known : named) {
     if (known.unit != unit) continue;
     Resolution resolution = known.resolution;
-    if (resolution.smallest_spread < rounding * magnitude) resolution.smallest_spread = rounding * magnitude;
+    if (resolution.smallest_deviation < rounding * magnitude) resolution.smallest_deviation = rounding * magnitude;
     return resolution;
   }
   const double scale = magnitude > 1 ? magnitude : 1.0;
@@ -51,7 +52,7 @@ inline Resolution resolution_of(std::string_view unit, double mean) {
 /// Share of a feature's range in the training set by which the envelope is wider on both sides.
 inline constexpr double envelope_margin = 0.1;
 
-/// What a column of training rows does.
+/// Statistics of a column of training rows.
 struct ColumnStatistics {
   double mean = 0;
   double standard_deviation = 0;  ///< divisor n
@@ -59,23 +60,23 @@ struct ColumnStatistics {
   double highest = 0;
   Resolution resolution{0, 0};
 
-  bool still() const noexcept { return !(standard_deviation >= resolution.smallest_spread); }
+  bool still() const noexcept { return !(standard_deviation >= resolution.smallest_deviation); }
 
-  /// What the column is divided by: 1 if it stands still.
+  /// Divisor of the column: 1 if it stands still.
   double scale() const noexcept { return still() ? 1.0 : standard_deviation; }
 
   /// By how much the envelope is wider than the range, on both sides: envelope_margin of the range, no less than the
-  /// smallest spread, or than the still margin if the column stands still.
+  /// smallest deviation, or than the still margin if the column stands still.
   double margin() const noexcept {
-    const double least = still() ? resolution.still_margin : resolution.smallest_spread;
+    const double least = still() ? resolution.still_margin : resolution.smallest_deviation;
     const double share = envelope_margin * (highest - lowest);
     return share > least ? share : least;
   }
 };
 
 /// Statistics of every column of a table that is made row by row and never held, by two passes: `each_row(visit)` calls
-/// `visit(row)` for every row, an array of Size numbers, the same ones in the same order each time. `unit_of(i)` is the unit of
-/// column i.
+/// `visit(row)` for every row, an array of Size numbers, the same ones in the same order each time. `unit_of(i)` is
+/// the unit of column i.
 template <std::size_t Size, class EachRow, class UnitOf>
 std::array<ColumnStatistics, Size> column_statistics(const EachRow& each_row, const UnitOf& unit_of) {
   std::array<ColumnStatistics, Size> columns;

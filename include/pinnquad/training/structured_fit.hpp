@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "pinnquad/loss/mse.hpp"
-#include "pinnquad/schedule/cosine_decay.hpp"
+#include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/checkpoint.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/monotone_base.hpp"
-#include "pinnquad/training/scheduled.hpp"
+#include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/trainer.hpp"
 
 namespace pinnquad {

@@ -14,7 +14,6 @@
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/context.hpp"
 #include "pinnquad/training/flush_denormals.hpp"
-#include "pinnquad/training/loss_batch.hpp"
 #include "pinnquad/training/network_gradient.hpp"
 #include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/training_data.hpp"
@@ -41,8 +40,8 @@ struct ValidationErrors {
   double mean_absolute = 0;  ///< over rows and outputs, in the units of the output schema
 };
 
-/// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.5 MB for the paper's network:
-/// put it on the heap or a large stack).
+/// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.5 MB for the
+/// paper's network: put it on the heap or a large stack).
 template <class NetworkType, class LossType, class OptimizerType, class ContextType, class Order = ShuffledBatches,
           int BatchSize = 64>
 class Trainer {
@@ -63,8 +62,8 @@ class Trainer {
   using Scalar = typename Network::Scalar;
   using Data = TrainingData<Scalar, Network::inputs, Network::outputs>;
 
-  /// Throws std::invalid_argument if a number of the loss, of its schedules, of the optimiser or of the context makes no sense
-  /// (data/settings.hpp).
+  /// Throws std::invalid_argument if a number of the loss, of its schedules, of the optimiser or of the context makes
+  /// no sense (data/settings.hpp).
   Trainer(const Network& network, const LossType& loss, const OptimizerType& optimizer, const ContextType& context,
           const Order& order = {})
       : loss_(loss), optimizer_(optimizer), context_(context), order_policy_(order) {
@@ -74,8 +73,9 @@ class Trainer {
     gradient_.load(network.parameters);
   }
 
-  /// One pass over the data; the last batch may be smaller. Returns the mean loss over the samples; no data: 0, and no step.
-  /// Throws std::invalid_argument, before any step, unless 0 <= progress.epoch < progress.epochs and the data are whole rows.
+  /// One pass over the data; the last batch may be smaller. Returns the mean loss over the samples; no data: 0, and no
+  /// step. Throws std::invalid_argument, before any step, unless 0 <= progress.epoch < progress.epochs and the data
+  /// are whole rows.
   template <class Engine>
   double epoch(const Data& data, const Progress& progress, Engine& engine) {
     return epoch(data, progress, engine, [](const Trainer&) {});
@@ -110,8 +110,9 @@ class Trainer {
     return data.size() > 0 ? sum / data.size() : 0.0;
   }
 
-  /// Loss of these rows and one optimiser step down its gradient. Outside epoch(), a rate policy sees the beginning of the
-  /// epoch that was trained last. Throws std::invalid_argument as differentiate() does, and then nothing is changed.
+  /// Loss of these rows and one optimiser step down its gradient. Outside epoch(), a rate policy sees the beginning of
+  /// the epoch that was trained last. Throws std::invalid_argument as differentiate() does, and then nothing is
+  /// changed.
   Scalar batch(const Data& data, const int* rows, int size) {
     const FlushDenormals flush;
     const Scalar value = differentiate(data, rows, size);
@@ -167,8 +168,8 @@ class Trainer {
     return value;
   }
 
-  /// Errors of the network as trained so far on other rows, standardised by the same context; nothing is changed. No data:
-  /// NaN, which a Checkpoint never takes. Throws std::invalid_argument unless the data are whole rows.
+  /// Errors of the network as trained so far on other rows, standardised by the same context; nothing is changed. No
+  /// data: NaN, which a Checkpoint never takes. Throws std::invalid_argument unless the data are whole rows.
   ValidationErrors validate(const Data& data) {
     check_data(data);
     const FlushDenormals flush;
@@ -249,14 +250,10 @@ class Trainer {
 
   auto begin_step() {
     ++steps_;
-    if constexpr (follows_progress<OptimizerType>) {
-      const double epochs =
-          context_.progress.epochs > 0 ? context_.progress.epochs : 1;  // the context's, outside epoch()
-      const double within = static_cast<double>(batch_of_epoch_) / batches_per_epoch_;
-      return optimizer_.begin(steps_, (context_.progress.epoch + within) / epochs);
-    } else {
-      return optimizer_.begin(steps_);
-    }
+    const double epochs =
+        context_.progress.epochs > 0 ? context_.progress.epochs : 1;  // the context's, outside epoch()
+    const double within = static_cast<double>(batch_of_epoch_) / batches_per_epoch_;
+    return detail::begin_step(optimizer_, steps_, (context_.progress.epoch + within) / epochs);
   }
 
   LossType loss_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flights as the trainer wants them, one set of rows: standardised features and outputs, and the context that knows what they
-// mean. Each function takes a set of rows, or a flight and a range of its rows.
+// Flights as rows for the trainer: standardised features and outputs, and the context that says how they were
+// standardised. Each function takes a set of rows, or a flight and a range of its rows.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ template <class Scalar, int InputCount, int OutputCount>
 struct TrainingData {
   std::vector<Scalar> features;  ///< size() x InputCount
   std::vector<Scalar> outputs;   ///< size() x OutputCount
-  std::vector<double> weights;   ///< size(), the flights' (training/weighted_batches.hpp); empty where all are 1
+  std::vector<double> weights;   ///< size(), those of the flights; empty where all are 1. Read by an order of one's own
 
   int size() const noexcept { return static_cast<int>(outputs.size()) / OutputCount; }
   const Scalar* features_of(int row) const noexcept { return features.data() + std::ptrdiff_t{row} * InputCount; }
@@ -29,7 +29,8 @@ struct TrainingData {
 
 namespace detail {
 
-/// Outputs of a sample with these features in the schema's physical units. `setting`: ContextAirframe::output_setting().
+/// Outputs of a sample with these features in the schema's physical units. `setting`:
+/// ContextAirframe::output_setting().
 template <class ContextType, class FeatureVector, class Setting>
 std::array<double, static_cast<std::size_t>(ContextType::output_count)> sample_outputs(const FeatureVector& x,
                                                                                        const Sample& sample,
@@ -53,8 +54,8 @@ std::array<ColumnStatistics, static_cast<std::size_t>(Features::size)> feature_s
 
 }  // namespace detail
 
-/// Names of the features that stand still in the training rows (training/resolution.hpp): the network can't learn what they
-/// do, and its model answers only where they stay.
+/// Names of the features that stand still in the training rows (training/resolution.hpp): the network can't learn their
+/// effect, and its model is valid only where they stay.
 template <class Features>
 std::vector<std::string> still_features(const RowSet& training) {
   const auto columns = detail::feature_statistics<Features>(training);
@@ -69,7 +70,7 @@ std::vector<std::string> still_features(const Flight& flight, const IndexRange& 
   return still_features<Features>(RowSet(flight, training));
 }
 
-/// The context of a training set: scalers and spreads of its rows. A column that stands still gets the spread 1.
+/// The context of a training set: scalers of its rows. A column that stands still is divided by 1.
 /// Flights count by their rows, whatever their weights. `airframe`: where the context's Vehicle is a GivenAirframe.
 template <class ContextType>
 ContextType make_context(const RowSet& rows, const ContextAirframe<typename ContextType::Vehicle>& airframe) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pinnquad/nn/layer.hpp>
-#include <pinnquad/training/backward/backward.hpp>
+#include <pinnquad/training/backward.hpp>
 
 namespace own {
 

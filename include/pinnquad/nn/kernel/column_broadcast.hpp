@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Matrix-vector product for batch 1: each input is broadcast and multiplies its column, several accumulator chains hide the
-// multiply-add latency. Weights are packed: column by column, each padded to whole packs, the bias as last column.
+// Matrix-vector product for batch 1: each input is broadcast and multiplies its column, several accumulator chains
+// hide the multiply-add latency. Weights are packed: column by column, each padded to whole packs, the bias as last
+// column.
 #pragma once
 
 #include "pinnquad/nn/kernel/pack.hpp"

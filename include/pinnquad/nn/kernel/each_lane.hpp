@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A function of the C library over a pack, lane by lane: the same numbers as scalar by scalar, on every instruction set.
+// A function of the C library over a pack, lane by lane: the same numbers as scalar by scalar, on every instruction
+// set.
 #pragma once
 
 #include "pinnquad/core/attributes.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The contract of a pack, and what is asked of one that also keeps a dense layer in registers. Both are checked where a kernel is
-// built, member by member: the compiler's message names what is missing.
+// The contract of a pack, and what is asked of one that also keeps a dense layer in registers. Both are checked where
+// a kernel is built, member by member: the compiler's message names what is missing.
 //
 // A pack is `width` scalars that are computed with at once (`unit`: with what; `fused`: multiply_add() rounds once):
 //   load(const Scalar*)  store(Scalar*)  broadcast(Scalar)  +  -  *  /  multiply_add(a, b, c) = a b + c  square_root(a)
@@ -8,15 +8,16 @@
 //   settle(): is worked out here (an empty function, or an empty `asm` that reads and writes the register)
 //   tile_rows, tile_vectors: rows and packs of the tile of sums that fits the registers (tile.hpp)
 //
-// The second contract: how a dense layer lies in registers (register_layer.hpp). A pack that states `blocks_at_once` takes part.
-//   columns: inputs that a step takes, 1 or 2; each row stands in as many neighbouring lanes (`columns` lanes, a "pair")
+// The second contract: how a dense layer lies in registers (register_layer.hpp). A pack that states `blocks_at_once`
+// takes part.
+//   columns: inputs that a step takes, 1 or 2; each row stands in `columns` neighbouring lanes (a "pair")
 //   values: outputs that one register holds; blocks_per_register: blocks (of width / columns rows) that make it
 //   blocks_at_once: blocks worked on side by side; chains: sums per block that hide the multiply-add's latency
 //   lane_of_value(i): the lane where value i of a register stands
 //   row_of_pair(block, pair): the row whose products stand in that pair, such that collect() puts it in its place
 //   repeat<First>(): values First, ..., First + columns - 1 in every row; repeat(const Scalar*): the same from memory
-//   repeat_last(v): the first lane of v in every row and, with two columns, a 1 behind it; with_one(): a 1 in each row's last lane
-//     (two columns)
+//   repeat_last(v): the first lane of v in every row and, with two columns, a 1 behind it
+//   with_one(): a 1 in each row's last lane (two columns)
 //   from_scalar(v): v in the first lane; first_value(): the first lane
 //   collect(sums): blocks_per_register blocks, the lanes of each row added, as values
 //   head<Count>(): the first Count values, 0 behind; sum_of_values(): their sum in the first lane
@@ -26,15 +27,11 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 
 namespace pinnquad {
 namespace detail {
-
-template <template <class> class Member, class Pack, class = void>
-struct PackHas : std::false_type {};
-template <template <class> class Member, class Pack>
-struct PackHas<Member, Pack, std::void_t<Member<Pack>>> : std::true_type {};
 
 // clang-format off
 template <class P> using LoadOf = decltype(P::load(std::declval<const typename P::Scalar*>()));
@@ -44,15 +41,18 @@ template <class P> using SumOf = decltype(std::declval<P>() + std::declval<P>())
 template <class P> using DifferenceOf = decltype(std::declval<P>() - std::declval<P>());
 template <class P> using ProductOf = decltype(std::declval<P>() * std::declval<P>());
 template <class P> using QuotientOf = decltype(std::declval<P>() / std::declval<P>());
-template <class P> using MultiplyAddOf = decltype(P::multiply_add(std::declval<P>(), std::declval<P>(), std::declval<P>()));
+template <class P> using MultiplyAddOf =
+    decltype(P::multiply_add(std::declval<P>(), std::declval<P>(), std::declval<P>()));
 template <class P> using SquareRootOf = decltype(P::square_root(std::declval<P>()));
 template <class P> using PositivePartOf = decltype(P::positive_part(std::declval<P>()));
 template <class P> using WherePositiveOf = decltype(P::where_positive(std::declval<P>(), std::declval<P>()));
 template <class P> using SettleOf = decltype(std::declval<P&>().settle());
 template <class P> using TileOf = std::enable_if_t<(P::tile_rows > 0 && P::tile_vectors > 0)>;
-template <class P> using ArithmeticOf = std::enable_if_t<(P::width > 0 && (P::fused || true) && P::unit >= VectorUnit::none)>;
+template <class P> using ArithmeticOf =
+    std::enable_if_t<(P::width > 0 && (P::fused || true) && P::unit >= VectorUnit::none)>;
 
-template <class P> using ColumnsOf = std::enable_if_t<(P::columns == 1 || P::columns == 2) && P::width % P::columns == 0>;
+template <class P> using ColumnsOf =
+    std::enable_if_t<(P::columns == 1 || P::columns == 2) && P::width % P::columns == 0>;
 template <class P> using ValuesOf =
     std::enable_if_t<P::values == P::blocks_per_register * (P::width / P::columns)>;
 template <class P> using ChainsOf = std::enable_if_t<(P::blocks_at_once > 0 && P::chains > 0)>;
@@ -77,23 +77,21 @@ template <class P> using StoreValuesOf =
 template <class Pack>
 constexpr bool require_pack() noexcept {
   using namespace detail;
-  static_assert(PackHas<ArithmeticOf, Pack>::value,
-                "pinnquad: a pack states unit, fused and width (pack_contract.hpp)");
-  static_assert(PackHas<LoadOf, Pack>::value, "pinnquad: this pack lacks load(const Scalar*) (pack_contract.hpp)");
-  static_assert(PackHas<StoreOf, Pack>::value, "pinnquad: this pack lacks store(Scalar*) (pack_contract.hpp)");
-  static_assert(PackHas<BroadcastOf, Pack>::value, "pinnquad: this pack lacks broadcast(Scalar) (pack_contract.hpp)");
-  static_assert(PackHas<SumOf, Pack>::value && PackHas<DifferenceOf, Pack>::value && PackHas<ProductOf, Pack>::value &&
-                    PackHas<QuotientOf, Pack>::value,
+  static_assert(is_detected<ArithmeticOf, Pack>, "pinnquad: a pack states unit, fused and width (pack_contract.hpp)");
+  static_assert(is_detected<LoadOf, Pack>, "pinnquad: this pack lacks load(const Scalar*) (pack_contract.hpp)");
+  static_assert(is_detected<StoreOf, Pack>, "pinnquad: this pack lacks store(Scalar*) (pack_contract.hpp)");
+  static_assert(is_detected<BroadcastOf, Pack>, "pinnquad: this pack lacks broadcast(Scalar) (pack_contract.hpp)");
+  static_assert(is_detected<SumOf, Pack> && is_detected<DifferenceOf, Pack> && is_detected<ProductOf, Pack> &&
+                    is_detected<QuotientOf, Pack>,
                 "pinnquad: this pack lacks one of + - * / (pack_contract.hpp)");
-  static_assert(PackHas<MultiplyAddOf, Pack>::value,
+  static_assert(is_detected<MultiplyAddOf, Pack>,
                 "pinnquad: this pack lacks multiply_add(a, b, c) (pack_contract.hpp)");
-  static_assert(PackHas<SquareRootOf, Pack>::value, "pinnquad: this pack lacks square_root(a) (pack_contract.hpp)");
-  static_assert(PackHas<PositivePartOf, Pack>::value, "pinnquad: this pack lacks positive_part(a) (pack_contract.hpp)");
-  static_assert(PackHas<WherePositiveOf, Pack>::value,
+  static_assert(is_detected<SquareRootOf, Pack>, "pinnquad: this pack lacks square_root(a) (pack_contract.hpp)");
+  static_assert(is_detected<PositivePartOf, Pack>, "pinnquad: this pack lacks positive_part(a) (pack_contract.hpp)");
+  static_assert(is_detected<WherePositiveOf, Pack>,
                 "pinnquad: this pack lacks where_positive(gate, a) (pack_contract.hpp)");
-  static_assert(PackHas<SettleOf, Pack>::value, "pinnquad: this pack lacks settle() (pack_contract.hpp)");
-  static_assert(PackHas<TileOf, Pack>::value,
-                "pinnquad: this pack lacks tile_rows or tile_vectors (pack_contract.hpp)");
+  static_assert(is_detected<SettleOf, Pack>, "pinnquad: this pack lacks settle() (pack_contract.hpp)");
+  static_assert(is_detected<TileOf, Pack>, "pinnquad: this pack lacks tile_rows or tile_vectors (pack_contract.hpp)");
   return true;
 }
 
@@ -101,26 +99,25 @@ constexpr bool require_pack() noexcept {
 template <class Pack>
 constexpr bool require_register_layout() noexcept {
   using namespace detail;
-  static_assert(PackHas<ColumnsOf, Pack>::value, "pinnquad: this pack's columns are not 1 or 2 (pack_contract.hpp)");
-  static_assert(PackHas<ValuesOf, Pack>::value,
+  static_assert(is_detected<ColumnsOf, Pack>, "pinnquad: this pack's columns are not 1 or 2 (pack_contract.hpp)");
+  static_assert(is_detected<ValuesOf, Pack>,
                 "pinnquad: this pack's values are not blocks_per_register * width / columns (pack_contract.hpp)");
-  static_assert(PackHas<ChainsOf, Pack>::value,
-                "pinnquad: this pack lacks blocks_at_once or chains (pack_contract.hpp)");
-  static_assert(PackHas<LaneOfValueOf, Pack>::value, "pinnquad: this pack lacks lane_of_value(i) (pack_contract.hpp)");
-  static_assert(PackHas<RowOfPairOf, Pack>::value,
+  static_assert(is_detected<ChainsOf, Pack>, "pinnquad: this pack lacks blocks_at_once or chains (pack_contract.hpp)");
+  static_assert(is_detected<LaneOfValueOf, Pack>, "pinnquad: this pack lacks lane_of_value(i) (pack_contract.hpp)");
+  static_assert(is_detected<RowOfPairOf, Pack>,
                 "pinnquad: this pack lacks row_of_pair(block, pair) (pack_contract.hpp)");
-  static_assert(PackHas<RepeatOf, Pack>::value, "pinnquad: this pack lacks repeat<First>() (pack_contract.hpp)");
-  static_assert(PackHas<RepeatMemoryOf, Pack>::value,
+  static_assert(is_detected<RepeatOf, Pack>, "pinnquad: this pack lacks repeat<First>() (pack_contract.hpp)");
+  static_assert(is_detected<RepeatMemoryOf, Pack>,
                 "pinnquad: this pack lacks repeat(const Scalar*) (pack_contract.hpp)");
-  static_assert(PackHas<RepeatLastOf, Pack>::value, "pinnquad: this pack lacks repeat_last(v) (pack_contract.hpp)");
-  static_assert(PackHas<WithOneOf, Pack>::value || Pack::columns == 1,
+  static_assert(is_detected<RepeatLastOf, Pack>, "pinnquad: this pack lacks repeat_last(v) (pack_contract.hpp)");
+  static_assert(is_detected<WithOneOf, Pack> || Pack::columns == 1,
                 "pinnquad: this pack lacks with_one() (pack_contract.hpp)");
-  static_assert(PackHas<FromScalarOf, Pack>::value && PackHas<FirstValueOf, Pack>::value,
+  static_assert(is_detected<FromScalarOf, Pack> && is_detected<FirstValueOf, Pack>,
                 "pinnquad: this pack lacks from_scalar(v) or first_value() (pack_contract.hpp)");
-  static_assert(PackHas<CollectOf, Pack>::value, "pinnquad: this pack lacks collect(const Pack*) (pack_contract.hpp)");
-  static_assert(PackHas<HeadOf, Pack>::value, "pinnquad: this pack lacks head<Count>() (pack_contract.hpp)");
-  static_assert(PackHas<SumOfValuesOf, Pack>::value, "pinnquad: this pack lacks sum_of_values() (pack_contract.hpp)");
-  static_assert(PackHas<StoreValuesOf, Pack>::value,
+  static_assert(is_detected<CollectOf, Pack>, "pinnquad: this pack lacks collect(const Pack*) (pack_contract.hpp)");
+  static_assert(is_detected<HeadOf, Pack>, "pinnquad: this pack lacks head<Count>() (pack_contract.hpp)");
+  static_assert(is_detected<SumOfValuesOf, Pack>, "pinnquad: this pack lacks sum_of_values() (pack_contract.hpp)");
+  static_assert(is_detected<StoreValuesOf, Pack>,
                 "pinnquad: this pack lacks store_values<Count>(y) (pack_contract.hpp)");
   return true;
 }

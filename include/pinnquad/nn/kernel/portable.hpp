@@ -69,7 +69,8 @@ PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start sta
   if constexpr (Rows == 2) y[1] = activate(below);
 }
 
-/// y[0, Rows) = activate(start + weight x) for as many columns as are held. `x`: a pointer, or anything else with [column].
+/// y[0, Rows) = activate(start + weight x) for as many columns as are held. `x`: a pointer, or anything else with
+/// [column].
 template <int Rows, int Columns, class Scalar, class Start, class X, class Activate>
 PINNQUAD_ALWAYS_INLINE void multiply_held(const Scalar* weight, int stride, Start start, X x, Scalar* y,
                                           Activate activate) noexcept {
@@ -113,8 +114,8 @@ PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scala
   detail::multiply_parts<Rows, Columns>(weight, bias, x, y, activate);
 }
 
-/// y += W x for the `Count` columns from `weight` on, at most held_inputs, of rows `stride` apart. Columns taken so in their
-/// order give the bits of multiply_row_major().
+/// y += W x for the `Count` columns from `weight` on, at most held_inputs, of rows `stride` apart. Columns taken so in
+/// their order give the bits of multiply_row_major().
 template <int Rows, int Count, class Scalar>
 PINNQUAD_ALWAYS_INLINE void add_columns(const Scalar* weight, int stride, const Scalar* x, Scalar* y) noexcept {
   static_assert(Count <= detail::held_inputs);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One dense layer, batch 1, inputs and outputs in registers: a broadcast through memory would wait for the store.
-// A block is one register of rows; a step takes Pack::columns inputs to all rows of a block. Several chains of sums per block
-// hide the latency of the multiply-add. How rows, inputs and values lie in a register, the packs say: the second
-// contract of pack_contract.hpp.
+// A block is one register of rows; a step takes Pack::columns inputs to all rows of a block. Several chains of sums
+// per block hide the latency of the multiply-add. How rows, inputs and values lie in a register, the packs say: the
+// second contract of pack_contract.hpp.
 #pragma once
 
 #include <type_traits>
@@ -19,8 +19,8 @@ inline constexpr bool keeps_layers_in_registers = false;
 template <class Pack>
 inline constexpr bool keeps_layers_in_registers<Pack, std::void_t<decltype(Pack::blocks_at_once)>> = true;
 
-/// Outputs of a layer. One value past whole registers ("lone", 25 = 24 + 1) stands alone: a dot product is cheaper than a
-/// block for one row.
+/// Outputs of a layer. One value past whole registers ("lone", 25 = 24 + 1) stands alone: a dot product is cheaper
+/// than a block for one row.
 template <class Pack, int Size>
 struct RegisterValues {
   static constexpr int size = Size;
@@ -73,8 +73,8 @@ struct RegisterValues {
   }
 };
 
-/// Inputs of a network, in memory: the same steps. Narrow loads, because a wide one would wait for the narrow stores before
-/// it.
+/// Inputs of a network, in memory: the same steps. Narrow loads, because a wide one would wait for the narrow stores
+/// before it.
 template <class Pack, int Size>
 struct MemoryValues {
   static constexpr int size = Size;
@@ -115,7 +115,8 @@ struct RegisterLayer {
       (rows % Pack::values > Pack::row_of_pair(Pack::blocks_per_register - 1, 0) ? Pack::blocks_per_register
                                                                                  : (rows % Pack::values > 0 ? 1 : 0));
 
-  // packed: weights, block by block, step by step; biases; then of the dot product: weights, bias, the lone value's weight
+  // packed: weights, block by block, step by step; biases; then of the dot product: weights, bias, the lone value's
+  // weight
   static constexpr int bias_start = Pack::width * steps * blocks;
   static constexpr int dot_start = bias_start + (bias_in_step ? 0 : Pack::width * blocks);
   static constexpr int lone_start = dot_start + Pack::width * Values::registers;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Matrix products of a mini-batch as outer-product register tiles: no horizontal sums, each loaded row of B serves a whole
-// tile. One routine for the three products of back-propagation; only the strides of A differ.
+// Matrix products of a mini-batch as outer-product register tiles: no horizontal sums, each loaded row of B serves a
+// whole tile. One routine for the three products of back-propagation; only the strides of A differ.
 #pragma once
 
 #include "pinnquad/nn/kernel/pack.hpp"
@@ -18,8 +18,8 @@ struct Consecutive {
   static constexpr int offset(int vector) noexcept { return (First + vector) * Pack::width; }
 };
 
-/// Packs [First, First + Vectors) of `Columns` columns without padding: the last pack ends at the last column and may overlap
-/// the one before, so that nothing behind a row is read or written.
+/// Packs [First, First + Vectors) of `Columns` columns without padding: the last pack ends at the last column and may
+/// overlap the one before, so that nothing behind a row is read or written.
 template <class PackType, int Vectors, int First, int Columns>
 struct Overlapping {
   using Pack = PackType;
@@ -31,7 +31,8 @@ struct Overlapping {
   }
 };
 
-/// C[r][v] = finish(r, v, start(r, v) + sum_k A(r, k) B[k][v]) for one tile; A(r, k) = a[r * RowStride + k * DepthStride].
+/// C[r][v] = finish(r, v, start(r, v) + sum_k A(r, k) B[k][v]) for one tile; A(r, k) = a[r * RowStride + k *
+/// DepthStride].
 template <class Columns, int Rows, int RowStride, int DepthStride, class Scalar, class Start, class Finish>
 PINNQUAD_ALWAYS_INLINE void multiply_tile(const Scalar* a, const Scalar* b, int b_stride, int depth, const Start& start,
                                           const Finish& finish, Scalar* c, int c_stride) noexcept {
