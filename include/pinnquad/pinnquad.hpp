@@ -49,7 +49,7 @@
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/adam_w.hpp"
 #include "pinnquad/training/checkpoint.hpp"
-#include "pinnquad/training/closed_form.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/folding.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/scheduled.hpp"

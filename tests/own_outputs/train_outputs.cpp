@@ -16,8 +16,7 @@
 #include "pinnquad/schedule/constant.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/monotone_fit.hpp"
-#include "pinnquad/training/path_bounded_fit.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/symmetric_answer.hpp"
 #include "pinnquad/training/symmetric_context.hpp"
 #include "pinnquad/training/symmetric_rows.hpp"
@@ -160,15 +159,15 @@ void write_structured(const Flight& flight, const std::string& folder) {
   const auto context = make_context<Structured>(training);
   const AffineMap map = fit_monotone_base(context, training);
   const auto fit = fit_monotone<Residual>(context, training, validation, map, short_training(), engine, on);
-  write_structured(fit.answer, context, training, flight, folder + "/structured.hpp", "StructuredModel");
+  write_structured(fit.predictor, context, training, flight, folder + "/structured.hpp", "StructuredModel");
   const auto seeing = fit_path_bounded<Seeing>(context, training, validation, map, short_training(), engine, on);
-  write_structured(seeing.answer, context, training, flight, folder + "/path_bounded.hpp", "PathBoundedModel");
+  write_structured(seeing.predictor, context, training, flight, folder + "/path_bounded.hpp", "PathBoundedModel");
 
   const SymmetricRows both(training, PaperQuadrotor::value<double>(), {true, false}, engine);
   const auto of_both = context_of_mirror_images(make_context<Structured>(both.rows()));
   const auto mirrored = fit_monotone<Residual>(of_both, both.rows(), validation,
                                                fit_monotone_base(of_both, both.rows()), short_training(), engine, on);
-  write_structured(own_mirror_image<PhysicsFeatures, Residual>(mirrored.answer), of_both, both.rows(), flight,
+  write_structured(own_mirror_image<PhysicsFeatures, Residual>(mirrored.predictor), of_both, both.rows(), flight,
                    folder + "/symmetric.hpp", "SymmetricModel");
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "pinnquad/model/symmetrised.hpp"
-#include "pinnquad/training/residual_features.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 
 namespace pinnquad {
 
