@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `pinnquad train` from C++: flights in, a model that may fly out. It fits a structured model (docs/structured_models.md),
-// judges it on rows that it has not seen, and writes header, block and limits of trust.
+// `pinnquad train` from C++: flights in, a model that may fly out. It fits a structured model
+// (docs/structured_models.md), judges it on rows that it has not seen, and writes header, block and limits of trust.
 //   train FOLDER FLIGHT.csv...
 #include <cstdio>
 #include <exception>

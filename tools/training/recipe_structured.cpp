@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The recipe `structured`: the paper's networks, and beside them the model of fit_structured(), monotone by construction.
+// The recipe `structured`: the paper's networks, and beside them the model of fit_structured(), monotone by
+// construction.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -115,8 +116,8 @@ std::vector<Training> train_all_and_structured(const TrainingPlan& plan) {
   return all;
 }
 
-/// Of the paper's features and of the model's own, each once. An altitude that stands still is none of those, unless it is asked
-/// for: no validation row gains by it.
+/// Of the paper's features and of the model's own, each once. An altitude that stands still is none of those, unless it
+/// is asked for: no validation row gains by it.
 std::vector<std::string> still_features_of_both(const TrainingPlan& plan) {
   std::vector<std::string> all = pinnquad::still_features<pinnquad::PaperFeatures>(plan.split.train);
   for (const std::string& name : plan.altitude == AltitudeRule::yes

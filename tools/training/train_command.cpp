@@ -27,7 +27,7 @@
 #include "logs/training_flights.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/deploy/export_model.hpp"
-#include "pinnquad/evaluation/model_errors.hpp"
+#include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
 #include "training/certificate_words.hpp"
 #include "training/export_choice.hpp"

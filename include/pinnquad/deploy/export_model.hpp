@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Exports a trained model whole: its header with the certificate, its block, its limits of trust. All files appear, or none.
+// Exports a trained model whole: its header with the certificate, its block, its limits of trust. All files appear, or
+// none.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +27,7 @@ struct ModelFiles {
   std::string header, block, trust;
 };
 
-/// What became of an export.
+/// The result of an export, beside its files.
 struct Exported {
   std::optional<Certificate> certificate{};  ///< none: the model has no structure that could be proven
   std::size_t block_bytes = 0;               ///< 0: no block was written
@@ -44,8 +45,9 @@ inline Provenance provenance_of(const Dataset& flights, const RowSplit& split, s
 }
 
 /// Writes `struct <name>` and, to be included after it, `struct <name>Trust`. Golden vectors are of the training rows.
-/// Validation rows that are too few for limits of trust are no error: then the trust file of an earlier export is removed.
-/// Throws what write_model() and AtomicFile throw; no file has changed then. `WithTrust` false: limits are not compiled.
+/// Validation rows that are too few for limits of trust are no error: then the trust file of an earlier export is
+/// removed. Throws what write_model() and AtomicFile throw; no file has changed then. `WithTrust` false: limits are not
+/// compiled.
 template <bool WithTrust = true, class NetworkType, class ContextType>
 Exported export_model(const ModelFiles& files, const std::string& name,
                       const TrainedModel<NetworkType, ContextType>& model, const RowSplit& split,

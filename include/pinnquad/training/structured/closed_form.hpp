@@ -145,7 +145,7 @@ struct SlopeRule {
 struct MonotoneShape {
   int inputs = 0;
   std::vector<int> places;  ///< of each tap's angular acceleration among the features, the present first
-  std::vector<double> input_spread, output_spread;
+  std::vector<double> input_deviation, output_deviation;
   AxisSlopes airframe_slopes{};  ///< hover_slopes()
 };
 
@@ -157,8 +157,8 @@ MonotoneShape monotone_shape(const ContextType& context) {
   MonotoneShape shape;
   shape.inputs = Features::size;
   MonotoneBase<Features>::Threes::each([&](int place, int) { shape.places.push_back(place); });
-  shape.input_spread.assign(context.input.standard_deviation.begin(), context.input.standard_deviation.end());
-  shape.output_spread.assign(context.output.standard_deviation.begin(), context.output.standard_deviation.end());
+  shape.input_deviation.assign(context.input.standard_deviation.begin(), context.input.standard_deviation.end());
+  shape.output_deviation.assign(context.output.standard_deviation.begin(), context.output.standard_deviation.end());
   shape.airframe_slopes = hover_slopes(context.template airframe<double>());
   return shape;
 }
@@ -190,7 +190,7 @@ inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector
       WeightBound present, held;
       for (const int place : shape.places) {
         const auto feature = static_cast<std::size_t>(place + axis);
-        const double factor = shape.output_spread[static_cast<std::size_t>(output)] / shape.input_spread[feature];
+        const double factor = shape.output_deviation[static_cast<std::size_t>(output)] / shape.input_deviation[feature];
         if (held.terms.empty()) present.terms.emplace_back(place + axis, factor);
         held.terms.emplace_back(place + axis, factor);
       }

@@ -226,15 +226,15 @@ class PathProjection {
   PathProjection(const ContextType& context, const AffineMap& map, double share = 0.9) {
     if (!(share >= 0 && share < 1)) throw std::invalid_argument("path projection: expected a share from 0 to below 1");
     Base::Threes::each([&](int place, int tap) { places_[static_cast<std::size_t>(tap)] = place; });
-    for (std::size_t k = 0; k < 4; ++k) output_spread_[k] = context.output.standard_deviation[k];
+    for (std::size_t k = 0; k < 4; ++k) output_deviation_[k] = context.output.standard_deviation[k];
     for (int axis = 0; axis < 3; ++axis) {
       double present = 0, held = 0;
       for (int tap = 0; tap < Base::taps; ++tap) {
         const int place = places_[static_cast<std::size_t>(tap)] + axis;
-        const double spread = context.input.standard_deviation[static_cast<std::size_t>(place)];
-        spread_[static_cast<std::size_t>(3 * tap + axis)] = spread;
+        const double deviation = context.input.standard_deviation[static_cast<std::size_t>(place)];
+        deviation_[static_cast<std::size_t>(3 * tap + axis)] = deviation;
         const double slope = map.weights.at(static_cast<std::size_t>((1 + axis) * Features::size + place)) *
-                             output_spread_[static_cast<std::size_t>(1 + axis)] / spread;
+                             output_deviation_[static_cast<std::size_t>(1 + axis)] / deviation;
         if (tap == 0) present = slope;
         held += slope;
       }
@@ -250,7 +250,7 @@ class PathProjection {
       for (int axis = 0; axis < 3; ++axis) {
         const int place = places_[static_cast<std::size_t>(tap)] + axis;
         const double most =
-            danger(Path::bound(parameters.data(), place), axis) / spread_[static_cast<std::size_t>(3 * tap + axis)];
+            danger(Path::bound(parameters.data(), place), axis) / deviation_[static_cast<std::size_t>(3 * tap + axis)];
         const double allowed = allowed_[static_cast<std::size_t>(axis)];
         if (!(most > allowed)) continue;
         const auto factor = static_cast<typename Residual::Scalar>(allowed / most);
@@ -266,14 +266,14 @@ class PathProjection {
     double sum = 0;
     for (int k = 0; k < 4; ++k) {
       const double below = -bound.lower[k], worst = std::max(below, bound.upper[k]);
-      sum += (k == 1 + axis ? below : worst) * output_spread_[static_cast<std::size_t>(k)];
+      sum += (k == 1 + axis ? below : worst) * output_deviation_[static_cast<std::size_t>(k)];
     }
     return sum;
   }
 
   std::array<int, static_cast<std::size_t>(Base::taps)> places_{};
-  std::array<double, static_cast<std::size_t>(3 * Base::taps)> spread_{};
-  std::array<double, 4> output_spread_{};
+  std::array<double, static_cast<std::size_t>(3 * Base::taps)> deviation_{};
+  std::array<double, 4> output_deviation_{};
   std::array<double, 3> allowed_{};
 };
 

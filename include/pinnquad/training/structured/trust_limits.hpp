@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// When a model is not to be trusted: the distribution of its training rows, and limits of distance and innovation that
-// validation flights pass with a false-alarm rate of one's choice (docs/trust.md).
+// Limits of trust: the joint distribution of a model's training rows, and limits of distance and innovation (the mean
+// command residual) that validation flights pass with a chosen false-alarm rate (docs/trust.md).
 #pragma once
 
 #include <algorithm>
@@ -20,10 +20,10 @@
 
 namespace pinnquad {
 
-/// Share of the covariance that is replaced by independent features of the same spread. Features that go together in
-/// all rows (one a linear map of others) leave it without an inverse; with this share no eigenvalue of the correlations
-/// is below it, so that a float's rounding stays below a hundredth of a deviation, and what breaks such a rule by a
-/// deviation is 30 deviations away.
+/// Share of the covariance that is replaced by independent features of the same standard deviation. Features that go
+/// together in all rows (one a linear map of others) leave it without an inverse; with this share no eigenvalue of the
+/// correlations is below it, so that a float's rounding stays below a hundredth of a deviation, and what breaks such a
+/// rule by a deviation is 30 deviations away.
 inline constexpr double usual_shrinkage = 1e-3;
 
 template <int Size>
@@ -46,9 +46,9 @@ struct JointDistribution {
   }
 };
 
-/// Of the rows that have features. A feature that stands still is independent of the others, with the spread 1 that the
-/// scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for no more rows than
-/// features.
+/// Of the rows that have features. A feature that stands still is independent of the others, with the standard
+/// deviation 1 that the scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for
+/// no more rows than features.
 template <class Features>
 JointDistribution<Features::size> fit_joint_distribution(const RowSet& training, double shrinkage = usual_shrinkage) {
   constexpr auto size = static_cast<std::size_t>(Features::size);
@@ -88,7 +88,7 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
   return result;
 }
 
-/// What is asked of the two limits, and how the innovation's mean forgets.
+/// The demands on the two limits, and how fast the innovation's mean forgets.
 struct TrustSettings {
   double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
   double block_s = 10;              ///< alarms less than this apart are one
@@ -152,7 +152,7 @@ inline std::vector<double> innovation_means(const std::vector<double>& errors, d
   return means;
 }
 
-/// What the limits of a piece of a flight are judged by, row by row.
+/// The figures that have limits, row by row.
 struct TrustSeries {
   std::vector<double> squared_distances;
   std::vector<double> errors;  ///< mean over the rotors of |command predicted - command flown|
