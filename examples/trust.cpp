@@ -12,8 +12,8 @@
 #include "pinnquad/evaluation/auroc.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/pinnquad.hpp"
-#include "pinnquad/training/monotone_fit.hpp"
-#include "pinnquad/training/trust_limits.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/trust_limits.hpp"
 
 using namespace pinnquad;
 
@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
   std::mt19937_64 engine(1);
   const auto fit = fit_monotone<Residual>(settings, train, choose, fit_monotone_base(settings, train), how, engine,
                                           [](int) { return true; });
-  const Model model = make_trained_model(fit.answer, settings, train);
+  const Model model = make_trained_model(fit.predictor, settings, train);
 
   std::vector<Flight> validation;
   for (int i = 0; i < scale.validating; ++i)

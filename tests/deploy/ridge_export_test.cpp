@@ -20,7 +20,7 @@
 #include "pinnquad/nn/clip.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/regression/ridge.hpp"
-#include "pinnquad/training/closed_form.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 #include "support/block_bytes.hpp"
 #include "support/random_network.hpp"
 #include "support/training_sets.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <pinnquad/core/random.hpp>
-#include <pinnquad/evaluation/correlation.hpp>
+#include <pinnquad/evaluation/summary.hpp>
 #include <random>
 #include <stdexcept>
 #include <vector>

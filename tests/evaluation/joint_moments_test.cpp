@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <pinnquad/evaluation/joint_moments.hpp>
+#include <pinnquad/evaluation/summary.hpp>
 #include <stdexcept>
 #include <vector>
 

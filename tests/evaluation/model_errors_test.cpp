@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/evaluation/model_errors.hpp"
+#include "pinnquad/evaluation/judgement.hpp"
 
 #include <doctest/doctest.h>
 

@@ -115,7 +115,7 @@ TEST_CASE("each measure stands for itself, with the angular acceleration along x
   const Series& acceleration = motion.angular_acceleration;
   const Series prediction = mapped(motion.sum, 0.5, 0.01);
   const auto result = pinnquad::physical_consistency(motion.sum, prediction, acceleration, 2);
-  const auto spread = pinnquad::axis_spread(acceleration, motion.sum);
+  const auto spread = pinnquad::axis_deviation(acceleration, motion.sum);
   const auto predicted = standardized_confidence_ellipse(acceleration, prediction, spread, 2);
   CHECK(result.predicted_standardized.angle_deg == predicted.angle_deg);
   CHECK(result.predicted_standardized.semi_major == predicted.semi_major);

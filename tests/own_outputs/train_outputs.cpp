@@ -15,8 +15,7 @@
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/monotone_fit.hpp"
-#include "pinnquad/training/path_bounded_fit.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
 
 namespace {
@@ -106,9 +105,9 @@ void write_structured(const Flight& flight, const std::string& folder) {
   const auto context = make_context<Structured>(training);
   const AffineMap map = fit_monotone_base(context, training);
   const auto fit = fit_monotone<Residual>(context, training, validation, map, short_training(), engine, on);
-  write_structured(fit.answer, context, training, flight, folder + "/structured.hpp", "StructuredModel");
+  write_structured(fit.predictor, context, training, flight, folder + "/structured.hpp", "StructuredModel");
   const auto seeing = fit_path_bounded<Seeing>(context, training, validation, map, short_training(), engine, on);
-  write_structured(seeing.answer, context, training, flight, folder + "/path_bounded.hpp", "PathBoundedModel");
+  write_structured(seeing.predictor, context, training, flight, folder + "/path_bounded.hpp", "PathBoundedModel");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
-#include "pinnquad/evaluation/correlation.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 #include "support/long_flight.hpp"
 
 namespace {

@@ -14,7 +14,7 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/evaluation/correlation.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/simulation/fly.hpp"
 #include "support/long_flight.hpp"
 

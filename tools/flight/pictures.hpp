@@ -20,7 +20,7 @@
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/evaluation/correlation.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
 
 namespace programs {

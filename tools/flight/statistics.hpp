@@ -13,7 +13,6 @@
 
 #include "command_line/parallel.hpp"
 #include "flight/axis_motion.hpp"
-#include "pinnquad/evaluation/correlation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/simulation/fly.hpp"

@@ -37,15 +37,17 @@ class JudgedModelOf : public JudgedModel {
  public:
   explicit JudgedModelOf(const Model& model) : model_(model) {}
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override {
-    return programs::network_predictions(model_, rows);
+    return pinnquad::predicted_commands(model_, rows);
   }
   programs::Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
-    return programs::network_predictions(model_, rows, programs::Answers::inside_envelope);
+    return pinnquad::predicted_commands(model_, rows, true);
   }
   programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return programs::derivative_figures(rows, programs::derivatives_of(model_));
   }
-  std::optional<pinnquad::Certificate> certificate() const override { return programs::certificate_of_structure(model_); }
+  std::optional<pinnquad::Certificate> certificate() const override {
+    return programs::certificate_of_structure(model_);
+  }
 
  private:
   Model model_;

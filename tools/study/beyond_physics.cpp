@@ -6,7 +6,7 @@
 #include "pinnquad/loss/mse.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/regression/ridge.hpp"
-#include "pinnquad/training/closed_form.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "study/beyond_models.hpp"

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Models that are monotone by construction (training/monotone_fit.hpp) and no recipe's: with other features, on the rigid
-// body's inverse, with a network that is shown the angular acceleration.
+// Models that are monotone by construction (training/structured/residual_fit.hpp) and no recipe's: with other features, on
+// the rigid body's inverse, with a network that is shown the angular acceleration.
 #include <random>
 
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
-#include "pinnquad/training/monotone_fit.hpp"
-#include "pinnquad/training/path_bounded_fit.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 #include "study/beyond_models.hpp"
 
 namespace study {
@@ -28,7 +27,7 @@ BeyondTraining train_structured(const BeyondTask& task, Slopes slopes, const Fit
   const auto fit = fit_answer(context, map, how, engine, [&task](int) { return task.goes_on(); });
   if (!fit.finished) return {};
   // the base alone is the answer with a residual bounded to 0: one type to judge
-  auto answer = fit.answer;
+  auto answer = fit.predictor;
   if (!fit.residual_kept) {
     auto* const residual = std::copy(fit.base.parameters.begin(), fit.base.parameters.end(), answer.parameters.begin());
     for (int k = 0; k < 4; ++k) residual[Bound::lower + k] = residual[Bound::upper + k] = 0;

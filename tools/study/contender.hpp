@@ -206,7 +206,7 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
     judge(
         material,
         [&](const pinnquad::IndexRange& range) {
-          return programs::network_predictions(model, {material.flight, range});
+          return pinnquad::predicted_commands(model, {material.flight, range});
         },
         outcome);
     return true;

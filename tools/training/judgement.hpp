@@ -13,23 +13,24 @@
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/evaluation/errors.hpp"
+#include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
-#include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
-#include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {
 
 constexpr std::array<const char*, 3> axis_names = {"roll", "pitch", "yaw"};
 
-/// Commands of every row of a block, one model's.
-using Predictions = std::vector<std::array<double, pinnquad::rotor_count>>;
+using pinnquad::axis_series;
+using pinnquad::AxisFigures;
+using pinnquad::AxisSeries;
+using pinnquad::judge;
+using pinnquad::no_axis_figures;
+using pinnquad::pair_signs;
+using pinnquad::PairSigns;
 
-/// Roll, pitch, yaw.
-using AxisFigures = std::array<double, 3>;
-inline constexpr AxisFigures no_axis_figures = {pinnquad::not_a_number, pinnquad::not_a_number, pinnquad::not_a_number};
+/// Commands of every row of a block, one model's.
+using Predictions = std::vector<pinnquad::Commands<double>>;
 
 /// Exact derivatives of the signed command sums over the rows (training/derivatives.hpp).
 struct DerivativeFigures {
@@ -37,65 +38,13 @@ struct DerivativeFigures {
   AxisFigures least = no_axis_figures;        ///< s^2/rad
 };
 
-/// Signs of pairs of rows that follow each other (sign_violation_share()), docs/monotonicity.md.
-struct PairSigns {
-  AxisFigures all = no_axis_figures;
-  AxisFigures of_flown = no_axis_figures;        ///< of the commands that were flown themselves
-  AxisFigures large = no_axis_figures;           ///< among steps of more than half a deviation
-  AxisFigures large_of_flown = no_axis_figures;  ///< of the commands that were flown themselves
+/// The library's judgement, and the derivatives: NaN until they were asked.
+struct Judgement : pinnquad::Judgement {
+  Judgement() = default;
+  Judgement(const pinnquad::Judgement& judged)
+      : pinnquad::Judgement(judged) {}  // NOLINT: the same, but for derivatives
+  DerivativeFigures derivatives;
 };
-
-/// One model on one block of rows.
-struct Judgement {
-  pinnquad::PredictionErrors<pinnquad::rotor_count> errors;
-  std::array<pinnquad::PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
-  PairSigns pairs;
-  DerivativeFigures derivatives;                 ///< NaN until they were asked
-  AxisFigures nominal_slopes = no_axis_figures;  ///< hover_slopes() of the airframe, s^2/rad
-};
-
-/// Signed command sum and angular acceleration about one axis, row by row.
-struct AxisSeries {
-  std::vector<double> angular_acceleration;
-  std::vector<double> target;
-  std::vector<double> predicted;
-};
-
-template <class Vehicle>
-std::array<AxisSeries, 3> axis_series(const pinnquad::ContextAirframe<Vehicle>& airframe, const pinnquad::RowSet& rows,
-                                      const Predictions& predictions) {
-  using pinnquad::signed_sum;
-  const std::array<std::array<double, pinnquad::rotor_count>, 3> signs = {airframe.template signs<pinnquad::Roll>(),
-                                                                          airframe.template signs<pinnquad::Pitch>(),
-                                                                          airframe.template signs<pinnquad::Yaw>()};
-  std::array<AxisSeries, 3> series;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const pinnquad::Sample& sample = rows[i];
-      series[axis].angular_acceleration.push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
-      series[axis].target.push_back(signed_sum(signs[axis], sample.commands));
-      series[axis].predicted.push_back(signed_sum(signs[axis], predictions[i]));
-    }
-  }
-  return series;
-}
-
-/// A step of an angular acceleration counts as large above this share of its standard deviation over the rows.
-inline constexpr double large_step_share = 0.5;
-
-inline PairSigns pair_signs(const std::array<AxisSeries, 3>& series) {
-  PairSigns result;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const AxisSeries& s = series[axis];
-    const double large =
-        large_step_share * std::sqrt(pinnquad::joint_moments(s.angular_acceleration, s.target).variance_x);
-    result.all[axis] = pinnquad::sign_violation_share(s.predicted, s.angular_acceleration);
-    result.of_flown[axis] = pinnquad::sign_violation_share(s.target, s.angular_acceleration);
-    result.large[axis] = pinnquad::sign_violation_share(s.predicted, s.angular_acceleration, large);
-    result.large_of_flown[axis] = pinnquad::sign_violation_share(s.target, s.angular_acceleration, large);
-  }
-  return result;
-}
 
 /// Rows of a set, and what was predicted for them.
 struct PredictedRows {
@@ -120,23 +69,6 @@ inline PredictedRows rows_that_count(const pinnquad::RowSet& rows, const Predict
     }
     result.rows.add(*piece.flight, {begin, piece.rows.end});
   }
-  return result;
-}
-
-template <class Vehicle>
-Judgement judge(const pinnquad::ContextAirframe<Vehicle>& airframe, const pinnquad::RowSet& rows,
-                const Predictions& predictions) {
-  Predictions targets;
-  for (std::size_t i = 0; i < rows.size(); ++i) targets.push_back(rows[i].commands);
-  Judgement result;
-  result.errors = pinnquad::prediction_errors(predictions, targets);
-  const std::array<AxisSeries, 3> series = axis_series(airframe, rows, predictions);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    result.axes[axis] =
-        pinnquad::physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);
-  }
-  result.pairs = pair_signs(series);
-  result.nominal_slopes = pinnquad::hover_slopes(airframe.template airframe<double>());
   return result;
 }
 

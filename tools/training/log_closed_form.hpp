@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "pinnquad/training/closed_form.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 #include "training/log_features.hpp"
 #include "training/log_least_squares.hpp"
 

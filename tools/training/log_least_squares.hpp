@@ -9,7 +9,7 @@
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/regression/regression_sums.hpp"
-#include "pinnquad/training/monotone_base.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 
 namespace programs {
 
@@ -18,7 +18,7 @@ namespace programs {
 pinnquad::AffineMap solved_ridge(const std::vector<pinnquad::RegressionSums>& groups);
 
 /// Of standardised features and signed sums: each sum sees its own angular acceleration alone, with a slope above 0
-/// (training/monotone_base.hpp); its penalty as above.
+/// (training/structured/closed_form.hpp); its penalty as above.
 pinnquad::AffineMap solved_monotone_ridge(const pinnquad::MonotoneShape& shape,
                                           const std::vector<pinnquad::RegressionSums>& groups);
 

@@ -20,9 +20,8 @@
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/checkpoint.hpp"
 #include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/optimizer.hpp"
-#include "pinnquad/training/residual_features.hpp"
-#include "pinnquad/training/structured_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "training/log_closed_form.hpp"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
+#include "pinnquad/training/structured/fit_structured.hpp"
 
 namespace programs {
 
@@ -28,9 +29,7 @@ inline constexpr const LossName& vanilla = loss_names[0];
 inline constexpr const LossName& physics_informed = loss_names[1];
 
 /// No loss of a network but a model of another kind, in the same tables: the recipe `structured`.
-inline constexpr LossName structured = {
-    "structured", "structured",
-    "least squares, slopes above 0; MSE of the residual, which sees no angular acceleration"};
+inline constexpr LossName structured = {"structured", "structured", pinnquad::structured_in_words};
 
 /// The losses of that name, each once, in the order of the list above. Throws std::invalid_argument, one line, for a
 /// name that is none.

@@ -17,18 +17,14 @@
 #include "pinnquad/data/split_flights.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/training/context_airframe.hpp"
+#include "pinnquad/training/structured/fit_structured.hpp"
 #include "pinnquad/training/training_data.hpp"
 #include "training/losses.hpp"
 #include "training/trained_network.hpp"
 
 namespace programs {
 
-/// Whether the recipe structured shows its model the altitude above ground.
-enum class AltitudeRule {
-  by_validation,  ///< where the validation rows gain much
-  yes,
-  no
-};
+using pinnquad::AltitudeRule;
 
 /// What is to be trained, on what.
 struct TrainingPlan {

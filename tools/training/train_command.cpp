@@ -26,9 +26,8 @@
 #include "command_line/options.hpp"
 #include "logs/training_flights.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/data/sample_period.hpp"
-#include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/evaluation/model_errors.hpp"
+#include "pinnquad/deploy/export_model.hpp"
+#include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
 #include "training/certificate_words.hpp"
 #include "training/export_choice.hpp"
@@ -185,37 +184,28 @@ void say_certificate(const TrainOptions& options, const programs::TrainedNetwork
   if (const auto doubt = programs::thrust_doubt(*certificate, own_thrust)) report.warn(*doubt);
 }
 
-/// When the export is not to be trusted, where its kind and the validation rows tell; of an earlier training nothing stays.
-void export_trust(const TrainOptions& options, const programs::TrainedNetwork& network, const RowSplit& split,
-                  const Provenance& provenance) {
-  const std::string path = options.out + "/trust.hpp";
-  try {
-    if (network.write_trust(path, options.model_name, split.train, split.validation, provenance.training_data_hash)) {
-      std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and innovation\n",
-                  path.c_str(), options.model_name.c_str());
-      return;
-    }
-  } catch (const std::invalid_argument& error) {
-    std::printf("  no limits of distance and innovation (trust.hpp): %s\n", error.what());
-  }
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
-}
-
+/// Limits of trust are those of the structured model; of an earlier training none stay.
 void export_network(const TrainOptions& options, const programs::Training& training, const RowSplit& split,
                     const Provenance& provenance) {
   const programs::TrainedNetwork& network = *training.network;
-  network.write_header(options.out + "/model.hpp", options.model_name, split.train, provenance);
+  const std::string header = options.out + "/model.hpp", trust = options.out + "/trust.hpp";
+  const bool trusted = programs::is_structured(training.loss);
+  const Exported exported =
+      network.export_to({header, options.block, trusted ? trust : ""}, options.model_name, split, provenance);
+  std::error_code ignored;
+  if (!trusted) std::filesystem::remove(trust, ignored);
   network.write_replay(options.out + "/replay.txt", split.test);
-  std::printf("  %s/model.hpp: struct %s, %s of seed %llu (least error on the validation rows)%s\n",
-              options.out.c_str(), options.model_name.c_str(), training.loss.title,
-              static_cast<unsigned long long>(provenance.seed),
+  std::printf("  %s: struct %s, %s of seed %llu (least error on the validation rows)%s\n", header.c_str(),
+              options.model_name.c_str(), training.loss.title, static_cast<unsigned long long>(provenance.seed),
               provenance.verdict->worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
-  export_trust(options, network, split, provenance);
+  if (!exported.no_trust_because.empty()) {
+    std::printf("  no limits of distance and innovation (trust.hpp): %s\n", exported.no_trust_because.c_str());
+  } else if (trusted) {
+    std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and innovation\n",
+                trust.c_str(), options.model_name.c_str());
+  }
   if (options.block.empty()) return;
-  const std::vector<unsigned char> block = network.block(split.train, provenance);
-  write_weight_file(options.block, block);
-  std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), block.size());
+  std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), exported.block_bytes);
 }
 
 /// Per kind, on one core.
@@ -299,14 +289,8 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
   if (reason.empty()) {
     std::printf("[4/5] export\n");
     warn_of_better_network(plan.losses, results, chosen, report);
-    Provenance from{programs::flight_names(dataset),
-                    content_hash(dataset),
-                    split.train.size(),
-                    results[*best].seed,
-                    options.epochs,
-                    chosen.loss.words,
-                    chosen.verdict};
-    from.sample_period_s = sample_period_s(split.train);
+    const Provenance from =
+        provenance_of(dataset, split, results[*best].seed, options.epochs, chosen.loss.words, chosen.verdict);
     const programs::Training& exported = trainings[*best - 1];  // results[0] is the linearized model
     export_network(options, exported, split, from);
     say_certificate(options, *exported.network, plan.airframe, report);
@@ -377,7 +361,7 @@ int train_chosen(const TrainOptions& options) {
   require_separate_files(options);
   programs::end_at_interrupt();  // while nothing is worth keeping
   const Dataset dataset = programs::read_flights(options.flights, minimum_rows);
-  const RowSplit split = dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
+  const RowSplit split = split_for_training(dataset);
   programs::require_varied_commands(options.flights, dataset, split.train, "training");
   programs::require_varied_commands(options.flights, dataset, split.validation, "validation");
   programs::require_varied_commands(options.flights, dataset, split.test, "test");

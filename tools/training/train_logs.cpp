@@ -250,17 +250,15 @@ class LogTraining {
     const Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                                     made.seed, options_.epochs, verdict);
     const std::string header = options_.out + "/model.hpp";
-    const RowSet& training = made.fold->split.train;
-    made.model->write_header(header, options_.model_name, training, from);
+    const std::size_t block_bytes =
+        made.model->export_to({header, options_.block, {}}, options_.model_name, made.fold->split, from).block_bytes;
     made.model->write_replay(options_.out + "/replay.txt",
                              made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
     std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
                 kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
                 verdict.worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
     if (!options_.block.empty()) {
-      const std::vector<unsigned char> block = made.model->block(training, from);
-      write_weight_file(options_.block, block);
-      std::printf("  %s: the same weights as a block of %zu bytes\n", options_.block.c_str(), block.size());
+      std::printf("  %s: the same weights as a block of %zu bytes\n", options_.block.c_str(), block_bytes);
     }
     tell_flight(made.flown);
     report_.write_exported(kind, made.seed, header, options_.block);

@@ -9,8 +9,8 @@
 
 #include "airframe/names.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/deploy/golden_features.hpp"
-#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/deploy/export_model.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/training/trained_model.hpp"
@@ -36,23 +36,15 @@ class TrainedNetwork {
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
   /// What is proven of it by its structure; none of a model without.
   virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
-  /// Writes `struct <name>` into a header. Golden vectors are taken of the training rows.
-  virtual void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
-                            const pinnquad::Provenance& provenance) const = 0;
-  virtual std::vector<unsigned char> block(const pinnquad::RowSet& training,
-                                           const pinnquad::Provenance& provenance) const = 0;
+  /// Writes `struct <name>` and its block. Limits of trust are of a structured model alone.
+  virtual pinnquad::Exported export_to(const pinnquad::ModelFiles& files, const std::string& name,
+                                       const pinnquad::RowSplit& split,
+                                       const pinnquad::Provenance& provenance) const = 0;
   /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
   /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the feature set asks for it,
   /// predicted u (4), flown u (4). Of a feature set that asks for more "pinnquad-replay-features", and X in the place of the
   /// first 16.
   virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
-  /// Writes `struct <name>Trust`, when it is not to be trusted, into a header that is to follow the model's (docs/trust.md);
-  /// false, and nothing, of a kind that does not know. Throws std::invalid_argument for validation rows that are too few.
-  virtual bool write_trust(const std::string& /*path*/, const std::string& /*name*/,
-                           const pinnquad::RowSet& /*training*/, const pinnquad::RowSet& /*validation*/,
-                           std::uint64_t /*training_data_hash*/) const {
-    return false;
-  }
 };
 
 /// How an export says which airframe it is for.
@@ -62,34 +54,30 @@ enum class ExportedAirframe {
 };
 
 /// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
-/// name.
-template <class Model, ExportedAirframe Exported = ExportedAirframe::by_name>
+/// name. `WithTrust`: its export has limits of trust, where they are asked for.
+template <class Model, ExportedAirframe Exported = ExportedAirframe::by_name, bool WithTrust = false>
 class NetworkOfModel : public TrainedNetwork {
  public:
   explicit NetworkOfModel(const Model& model, bool library_airframe = false)
       : model_(model), library_airframe_(library_airframe) {}
 
-  Predictions predictions(const pinnquad::RowSet& rows) const override { return network_predictions(model_, rows); }
+  Predictions predictions(const pinnquad::RowSet& rows) const override {
+    return pinnquad::predicted_commands(model_, rows);
+  }
   Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
-    return network_predictions(model_, rows, Answers::inside_envelope);
+    return pinnquad::predicted_commands(model_, rows, true);
   }
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
     return derivative_figures(rows, derivatives_of(model_));
   }
   std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_structure(model_); }
-  void write_header(const std::string& path, const std::string& name, const pinnquad::RowSet& training,
-                    const pinnquad::Provenance& provenance) const override {
+  pinnquad::Exported export_to(const pinnquad::ModelFiles& files, const std::string& name,
+                               const pinnquad::RowSplit& split, const pinnquad::Provenance& provenance) const override {
+    pinnquad::Exported exported;
     with_exported([&](const auto& model) {
-      pinnquad::write_model_header(path, name, model, pinnquad::golden_features(model_, training), clocked(provenance));
+      exported = pinnquad::export_model<WithTrust>(files, name, model, split, provenance);
     });
-  }
-  std::vector<unsigned char> block(const pinnquad::RowSet& training,
-                                   const pinnquad::Provenance& provenance) const override {
-    std::vector<unsigned char> bytes;
-    with_exported([&](const auto& model) {
-      bytes = pinnquad::model_block(model, pinnquad::golden_features(model_, training), clocked(provenance));
-    });
-    return bytes;
+    return exported;
   }
   void write_replay(const std::string& path, const pinnquad::RowSet& rows) const override {
     using Inputs = typename Model::Features::template Inputs<typename Model::Scalar>;
@@ -128,9 +116,6 @@ class NetworkOfModel : public TrainedNetwork {
     file.commit();
   }
 
- protected:
-  const Model& model() const { return model_; }
-
  private:
   /// Calls `use` with the model of the airframe's own type, or of the value.
   template <class Use>
@@ -148,12 +133,6 @@ class NetworkOfModel : public TrainedNetwork {
         use(named);
       });
     }
-  }
-
-  /// A window has a period of its own, whatever that of the flights.
-  static pinnquad::Provenance clocked(pinnquad::Provenance provenance) {
-    if (pinnquad::is_windowed<typename Model::Features>) provenance.sample_period_s = 0;
-    return provenance;
   }
 
   Model model_;

@@ -114,4 +114,10 @@ inline RowSplit split_by_trajectory(const Dataset& dataset, const SplitShares& s
 }
 RowSplit split_by_trajectory(const Dataset&&, const SplitShares& = {}) = delete;
 
+/// The split of `pinnquad train`: one flight in contiguous blocks, several as whole flights.
+inline RowSplit split_for_training(const Dataset& dataset) {
+  return dataset.size() == 1 ? split_each_flight(dataset) : split_by_flight(dataset);
+}
+RowSplit split_for_training(const Dataset&&) = delete;
+
 }  // namespace pinnquad

@@ -15,7 +15,7 @@
 #include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/deploy/type_name.hpp"
 #include "pinnquad/io/decimal.hpp"
-#include "pinnquad/training/trust_limits.hpp"
+#include "pinnquad/training/structured/trust_limits.hpp"
 
 namespace pinnquad {
 

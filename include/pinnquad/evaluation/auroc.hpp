@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How well a score tells the rows that matter from the others: the area under the receiver operating characteristic, which is
-// the probability that a positive row scores higher than a negative one, ties counted half.
+// How well a score tells the rows that matter from the others: the area under the receiver operating characteristic,
+// which is the probability that a positive row scores higher than a negative one, ties counted half.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,9 @@
 
 namespace pinnquad {
 
-/// By ranks (Mann and Whitney 1947): (sum of the positives' ranks - n (n + 1) / 2) / (n m), equal scores sharing their mean
-/// rank. NaN unless there are positives and negatives. Throws std::invalid_argument for series of different length.
+/// By ranks (Mann and Whitney 1947): (sum of the positives' ranks - n (n + 1) / 2) / (n m), equal scores sharing their
+/// mean rank. NaN unless there are positives and negatives. Throws std::invalid_argument for series of different
+/// length.
 inline double auroc(const std::vector<double>& scores, const std::vector<bool>& positive) {
   if (scores.size() != positive.size()) {
     throw std::invalid_argument("auroc: expected as many scores as rows, found " + std::to_string(scores.size()) +

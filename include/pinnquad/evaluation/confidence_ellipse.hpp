@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "pinnquad/evaluation/joint_moments.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
 
@@ -56,32 +56,33 @@ inline ConfidenceEllipse confidence_ellipse(const std::vector<double>& x, const 
   return covariance_ellipse(joint_moments(x, y), sigmas);
 }
 
-/// Spread (standard deviation) along each axis: the units in which a standardised ellipse is measured.
-struct AxisSpread {
+/// Standard deviation along each axis: the units in which a standardised ellipse is measured.
+struct AxisDeviation {
   double x = 1;
   double y = 1;
 };
 
-/// The spread of the points (x[i], y[i]); to be taken from the target, for the target's and the prediction's ellipse.
-inline AxisSpread axis_spread(const std::vector<double>& x, const std::vector<double>& y) {
+/// The standard deviations of the points (x[i], y[i]); to be taken from the target, for the target's and the
+/// prediction's ellipse.
+inline AxisDeviation axis_deviation(const std::vector<double>& x, const std::vector<double>& y) {
   const JointMoments moments = joint_moments(x, y);
   return {std::sqrt(moments.variance_x), std::sqrt(moments.variance_y)};
 }
 
-/// The ellipse of the points (x[i] / spread.x, y[i] / spread.y), no unit. With its own spread a cloud lies at +-45
-/// degrees whatever its correlation; a prediction's angle, in the target's spread, says how far its slope or sign is
-/// off. Deviation: the paper does not say how its axes are scaled; in raw units roll and pitch stay below 1 degree,
-/// where its differences are 20 to 30 (docs/paper.md, deviation 12).
-/// NaN ellipse if a spread is 0 or NaN. Throws std::invalid_argument for series of different length.
+/// The ellipse of the points (x[i] / deviation.x, y[i] / deviation.y), no unit. With its own deviation a cloud lies at
+/// +-45 degrees whatever its correlation; a prediction's angle, in the target's deviation, says how far its slope or
+/// sign is off. Deviation: the paper does not say how its axes are scaled; in raw units roll and pitch stay below 1
+/// degree, where its differences are 20 to 30 (docs/paper.md, deviation 12). NaN ellipse if a deviation is 0 or NaN.
+/// Throws std::invalid_argument for series of different length.
 inline ConfidenceEllipse standardized_confidence_ellipse(const std::vector<double>& x, const std::vector<double>& y,
-                                                         const AxisSpread& spread, double sigmas = 3) {
+                                                         const AxisDeviation& deviation, double sigmas = 3) {
   JointMoments moments = joint_moments(x, y);
-  if (!(spread.x > 0) || !(spread.y > 0)) return {};
-  moments.mean_x /= spread.x;
-  moments.mean_y /= spread.y;
-  moments.variance_x /= spread.x * spread.x;
-  moments.variance_y /= spread.y * spread.y;
-  moments.covariance /= spread.x * spread.y;
+  if (!(deviation.x > 0) || !(deviation.y > 0)) return {};
+  moments.mean_x /= deviation.x;
+  moments.mean_y /= deviation.y;
+  moments.variance_x /= deviation.x * deviation.x;
+  moments.variance_y /= deviation.y * deviation.y;
+  moments.covariance /= deviation.x * deviation.y;
   return covariance_ellipse(moments, sigmas);
 }
 
@@ -89,9 +90,6 @@ inline ConfidenceEllipse standardized_confidence_ellipse(const std::vector<doubl
 inline double angle_difference_deg(double first_deg, double second_deg) {
   return std::abs(std::remainder(first_deg - second_deg, 180.0));
 }
-
-/// Share of a normal cloud inside its k-sigma ellipse in two dimensions: 1 - exp(-k^2 / 2), 98.9 % for k = 3.
-inline double enclosed_share(double sigmas) { return -std::expm1(-sigmas * sigmas / 2); }
 
 /// Points (x, y) on the outline for a plot, equally spaced in the ellipse's own angle, from the tip of the major axis
 /// round to the same point again: `points` of them, the last equal to the first. Throws std::invalid_argument below 2.

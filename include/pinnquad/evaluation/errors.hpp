@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "pinnquad/evaluation/joint_moments.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ordinary least squares with intercept: what a linear map of the features predicts. The bar for a network, which has to
-// earn its weights. Rank-revealing: features that stand still or repeat others do no harm.
+// Ordinary least squares with intercept: what a linear map of the features predicts. The bar for a network, which has
+// to earn its weights. Rank-revealing: features that stand still or repeat others do no harm.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "pinnquad/evaluation/joint_moments.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
 
@@ -31,9 +31,9 @@ struct LinearRegression {
 
 namespace detail {
 
-/// Gauss-Jordan on the symmetric matrix of moments, of which only the features' rows are needed: one feature after another, the
-/// one that varies most beside those before it first. Features that those before explain up to `threshold` of their variance are
-/// left out. The number taken.
+/// Gauss-Jordan on the symmetric matrix of moments, of which only the features' rows are needed: one feature after
+/// another, the one that varies most beside those before it first. Features that those before explain up to `threshold`
+/// of their variance are left out. The number taken.
 template <std::size_t InputCount, std::size_t Size>
 int sweep(std::array<std::array<double, Size>, InputCount>& moments, std::array<bool, InputCount>& taken,
           double threshold) {
@@ -60,7 +60,7 @@ int sweep(std::array<std::array<double, Size>, InputCount>& moments, std::array<
 }  // namespace detail
 
 /// Minimises sum |intercept + C x_n - y_n|^2 over the rows, by the sweep of the second moments of features and outputs,
-/// centred and divided by their spread. A feature that the others explain to all but 1e-9 of its variance gets the
+/// centred and divided by their deviation. A feature that the others explain to all but 1e-9 of its variance gets the
 /// coefficients 0: what could be fitted to the rest is rounding.
 /// Throws std::invalid_argument for no rows or tables of different length.
 /// Source: Goodnight, A tutorial on the SWEEP operator (1979).
@@ -69,7 +69,7 @@ LinearRegression<InputCount, OutputCount> fit_linear_regression(
     const std::vector<std::array<double, InputCount>>& features,
     const std::vector<std::array<double, OutputCount>>& outputs) {
   constexpr double rank_threshold = 1e-9;
-  constexpr double rounding = 1e-12;  // of a constant column's spread, relative to its mean
+  constexpr double rounding = 1e-12;  // of a constant column's deviation, relative to its mean
   constexpr std::size_t size = InputCount + OutputCount;
   detail::require_equal_length("fit_linear_regression", features.size(), outputs.size());
   if (features.empty()) throw std::invalid_argument("fit_linear_regression: expected at least one row, found none");
@@ -77,7 +77,7 @@ LinearRegression<InputCount, OutputCount> fit_linear_regression(
     return i < InputCount ? features[row][i] : outputs[row][i - InputCount];
   };
   const auto rows = static_cast<double>(features.size());
-  std::array<double, size> mean{}, spread{};
+  std::array<double, size> mean{}, deviation{};
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t row = 0; row < features.size(); ++row) mean[i] += value(row, i) / rows;
     double squares = 0;
@@ -85,13 +85,13 @@ LinearRegression<InputCount, OutputCount> fit_linear_regression(
       const double difference = value(row, i) - mean[i];
       squares += difference * difference;
     }
-    spread[i] = std::sqrt(squares / rows);
-    if (!(spread[i] > rounding * std::abs(mean[i]))) spread[i] = 0;
+    deviation[i] = std::sqrt(squares / rows);
+    if (!(deviation[i] > rounding * std::abs(mean[i]))) deviation[i] = 0;
   }
   std::array<std::array<double, size>, InputCount> moments{};
   for (std::size_t row = 0; row < features.size(); ++row) {
     std::array<double, size> z{};
-    for (std::size_t i = 0; i < size; ++i) z[i] = spread[i] > 0 ? (value(row, i) - mean[i]) / spread[i] : 0;
+    for (std::size_t i = 0; i < size; ++i) z[i] = deviation[i] > 0 ? (value(row, i) - mean[i]) / deviation[i] : 0;
     for (std::size_t i = 0; i < InputCount; ++i) {
       for (std::size_t j = 0; j < size; ++j) moments[i][j] += z[i] * z[j] / rows;
     }
@@ -103,7 +103,7 @@ LinearRegression<InputCount, OutputCount> fit_linear_regression(
     fit.intercept[k] = mean[InputCount + k];
     for (std::size_t i = 0; i < InputCount; ++i) {
       if (!taken[i]) continue;
-      fit.coefficients[k][i] = moments[i][InputCount + k] * spread[InputCount + k] / spread[i];
+      fit.coefficients[k][i] = moments[i][InputCount + k] * deviation[InputCount + k] / deviation[i];
       fit.intercept[k] -= fit.coefficients[k][i] * mean[i];
     }
   }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/evaluation/joint_moments.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
 

@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "pinnquad/evaluation/confidence_ellipse.hpp"
-#include "pinnquad/evaluation/correlation.hpp"
-#include "pinnquad/evaluation/joint_moments.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
 
@@ -54,7 +53,7 @@ inline double sign_violation_share(const std::vector<double>& predicted_sum,
 struct PhysicalConsistency {
   ConfidenceEllipse target;                  ///< raw units
   ConfidenceEllipse predicted;               ///< raw units
-  ConfidenceEllipse target_standardized;     ///< both axes in units of the target's spread
+  ConfidenceEllipse target_standardized;     ///< both axes in units of the target's deviation
   ConfidenceEllipse predicted_standardized;  ///< in the same units
   double angle_difference_deg = 0;           ///< Delta m of Table 3: between the standardised ellipses, 0..90
   double raw_angle_difference_deg = 0;       ///< between the raw ellipses, 0..90
@@ -69,12 +68,13 @@ struct PhysicalConsistency {
 inline PhysicalConsistency physical_consistency(const std::vector<double>& target_sum,
                                                 const std::vector<double>& predicted_sum,
                                                 const std::vector<double>& angular_acceleration, double sigmas = 3) {
-  const AxisSpread spread = axis_spread(angular_acceleration, target_sum);
+  const AxisDeviation deviation = axis_deviation(angular_acceleration, target_sum);
   PhysicalConsistency result;
   result.target = confidence_ellipse(angular_acceleration, target_sum, sigmas);
   result.predicted = confidence_ellipse(angular_acceleration, predicted_sum, sigmas);
-  result.target_standardized = standardized_confidence_ellipse(angular_acceleration, target_sum, spread, sigmas);
-  result.predicted_standardized = standardized_confidence_ellipse(angular_acceleration, predicted_sum, spread, sigmas);
+  result.target_standardized = standardized_confidence_ellipse(angular_acceleration, target_sum, deviation, sigmas);
+  result.predicted_standardized =
+      standardized_confidence_ellipse(angular_acceleration, predicted_sum, deviation, sigmas);
   result.angle_difference_deg =
       angle_difference_deg(result.target_standardized.angle_deg, result.predicted_standardized.angle_deg);
   result.raw_angle_difference_deg = angle_difference_deg(result.target.angle_deg, result.predicted.angle_deg);

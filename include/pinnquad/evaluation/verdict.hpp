@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Is a network worth flying? Its errors on rows that it was not trained on, beside the two predictors that cost nothing:
-// the mean of the commands, and linear regression on the same features.
+// Is a network worth flying? Its errors on rows that it was not trained on, beside the two predictors that cost
+// nothing: the mean of the commands, and linear regression on the same features.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,8 @@ struct Verdict {
   /// Of the model, the least of the motors; NaN if one is, or if nothing is said of it.
   double worst_motor_r_squared = std::numeric_limits<double>::quiet_NaN();
 
-  /// Answering always with the mean command would have been better; so too if R^2 is NaN. Such a model is not for flight.
+  /// Answering always with the mean command would have been better; so too if R^2 is NaN. Such a model is not for
+  /// flight.
   bool worse_than_mean() const noexcept { return !(is_finite(test_r_squared) && test_r_squared >= 0); }
   /// The same of one motor: a good mean may hide it.
   bool has_poor_motor() const noexcept { return is_finite(worst_motor_r_squared) && worst_motor_r_squared < 0; }

@@ -43,8 +43,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// An alarm with hysteresis on m. `Trust`, constants: double innovation_factor, in (0, 1]; innovation_limit, the mean
 /// above which the model is distrusted; innovation_cleared, not above the limit, below which it is trusted again. They
-/// hold for updates as often as those that they were fitted on (training/trust_limits.hpp). As a JointDistance's they may be
-/// read while a program on the ground runs.
+/// hold for updates as often as those that they were fitted on (training/structured/trust_limits.hpp). As a
+/// JointDistance's they may be read while a program on the ground runs.
 template <class Trust, class Scalar = float>
 class InnovationMonitor {
   static_assert(detail::require_innovation<Trust>());

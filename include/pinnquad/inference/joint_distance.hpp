@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How far a feature vector lies from the training rows, all features taken together: the Mahalanobis distance. A motion
 // whose features are each within what was flown, and never came together, is far.
-//   squared distance = |W (x - mean)|^2,  W' W = inverse of the rows' covariance (training/joint_distribution.hpp)
+//   squared distance = |W (x - mean)|^2,  W' W = inverse of the rows' covariance (training/structured/trust_limits.hpp)
 // Code: squared_joint_distance(). docs/trust.md says what it finds and what it doesn't.
 #pragma once
 

@@ -170,7 +170,7 @@ TEST_CASE("rows that a window leaves without an answer are told by NaN, the othe
     }
     rows.add(flight, {1, 6});
   }
-  const programs::Predictions predictions = programs::network_predictions(model, rows);
+  const programs::Predictions predictions = pinnquad::predicted_commands(model, rows);
   REQUIRE(predictions.size() == 10);
   for (std::size_t row = 0; row < 10; ++row) {
     const bool complete = row % 5 > 0 && row % 5 < 4;

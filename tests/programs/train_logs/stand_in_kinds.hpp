@@ -25,11 +25,10 @@ class ModelOfFunction : public programs::TrainedNetwork {
 
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override { return function_(rows); }
   programs::DerivativeFigures derivatives(const pinnquad::RowSet&) const override { return {}; }
-  void write_header(const std::string&, const std::string&, const pinnquad::RowSet&,
-                    const pinnquad::Provenance&) const override {
+  pinnquad::Exported export_to(const pinnquad::ModelFiles&, const std::string&, const pinnquad::RowSplit&,
+                               const pinnquad::Provenance&) const override {
     throw std::logic_error("a stand-in is not exported");
   }
-  std::vector<unsigned char> block(const pinnquad::RowSet&, const pinnquad::Provenance&) const override { return {}; }
   void write_replay(const std::string&, const pinnquad::RowSet&) const override {}
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// When a model is not to be trusted: the distribution of its training rows, and limits of distance and innovation that
-// validation flights pass with a false-alarm rate of one's choice (docs/trust.md).
+// Limits of trust: the joint distribution of a model's training rows, and limits of distance and innovation (the mean
+// command residual) that validation flights pass with a chosen false-alarm rate (docs/trust.md).
 #pragma once
 
 #include <algorithm>
@@ -9,16 +9,86 @@
 #include <cstddef>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "pinnquad/training/joint_distribution.hpp"
+#include "pinnquad/regression/symmetric_system.hpp"
 #include "pinnquad/training/trained_model.hpp"
+#include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
 
-/// What is asked of the two limits, and how the innovation's mean forgets.
+/// Share of the covariance that is replaced by independent features of the same standard deviation. Features that go
+/// together in all rows (one a linear map of others) leave it without an inverse; with this share no eigenvalue of the
+/// correlations is below it, so that a float's rounding stays below a hundredth of a deviation, and what breaks such a
+/// rule by a deviation is 30 deviations away.
+inline constexpr double usual_shrinkage = 1e-3;
+
+template <int Size>
+struct JointDistribution {
+  static constexpr std::size_t factor_size = std::size_t(Size) * (std::size_t(Size) + 1) / 2;
+  std::array<double, std::size_t(Size)> mean{};  ///< physical units
+  std::array<double, factor_size> whitening{};   ///< of x - mean; lower triangular, column after column
+
+  /// As the flight side works it out; of its training rows the mean is about Size.
+  template <class Scalar>
+  double squared_distance(const std::array<Scalar, std::size_t(Size)>& x) const noexcept {
+    std::array<double, std::size_t(Size)> white{};
+    std::size_t at = 0;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      for (std::size_t i = j; i < x.size(); ++i) white[i] += whitening[at++] * (static_cast<double>(x[j]) - mean[j]);
+    }
+    double squared = 0;
+    for (const double w : white) squared += w * w;
+    return squared;
+  }
+};
+
+/// Of the rows that have features. A feature that stands still is independent of the others, with the standard
+/// deviation 1 that the scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for
+/// no more rows than features.
+template <class Features>
+JointDistribution<Features::size> fit_joint_distribution(const RowSet& training, double shrinkage = usual_shrinkage) {
+  constexpr auto size = static_cast<std::size_t>(Features::size);
+  if (!(shrinkage > 0 && shrinkage <= 1)) {
+    throw std::invalid_argument("joint distribution: expected a shrinkage above 0 and up to 1, found " +
+                                std::to_string(shrinkage));
+  }
+  const auto columns = detail::feature_statistics<Features>(training);
+  DynamicMatrix correlation = DynamicMatrix::Zero(Features::size, Features::size);  // its lower triangle
+  std::size_t rows = 0;
+  each_features<Features, double>(training, [&](const Flight&, std::size_t, const auto& x) {
+    ++rows;
+    Vector<double, Features::size> z;
+    for (std::size_t i = 0; i < size; ++i) z[Eigen::Index(i)] = (x[i] - columns[i].mean) / columns[i].scale();
+    correlation.selfadjointView<Eigen::Lower>().rankUpdate(z);
+  });
+  if (rows <= size) {
+    throw std::invalid_argument("joint distribution: expected more rows than the " + std::to_string(size) +
+                                " features, found " + std::to_string(rows));
+  }
+  correlation *= (1 - shrinkage) / static_cast<double>(rows);
+  for (std::size_t i = 0; i < size; ++i) {
+    double& own = correlation(Eigen::Index(i), Eigen::Index(i));
+    own = columns[i].still() ? 1.0 : own + shrinkage;
+  }
+  const std::optional<DynamicMatrix> factor = whitening_of(correlation);
+  if (!factor) {
+    throw std::invalid_argument("joint distribution: expected a larger shrinkage, the correlations have no inverse");
+  }
+  JointDistribution<Features::size> result;
+  std::size_t at = 0;
+  for (std::size_t j = 0; j < size; ++j) {
+    result.mean[j] = columns[j].mean;
+    for (std::size_t i = j; i < size; ++i)
+      result.whitening[at++] = (*factor)(Eigen::Index(i), Eigen::Index(j)) / columns[j].scale();
+  }
+  return result;
+}
+
+/// The demands on the two limits, and how fast the innovation's mean forgets.
 struct TrustSettings {
   double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
   double block_s = 10;              ///< alarms less than this apart are one
@@ -82,7 +152,7 @@ inline std::vector<double> innovation_means(const std::vector<double>& errors, d
   return means;
 }
 
-/// What the limits of a piece of a flight are judged by, row by row.
+/// The figures that have limits, row by row.
 struct TrustSeries {
   std::vector<double> squared_distances;
   std::vector<double> errors;  ///< mean over the rotors of |command predicted - command flown|
@@ -106,8 +176,8 @@ TrustSeries trust_series(const Model& model, const JointDistribution<Model::Feat
   return series;
 }
 
-/// Seconds from row to row, over all pieces: all time over all steps, so that no short piece counts for more. 0 where no
-/// piece has two rows.
+/// Seconds from row to row, over all pieces: all time over all steps, so that no short piece counts for more. 0 where
+/// no piece has two rows.
 inline double mean_period_s(const RowSet& rows) {
   double lasts_s = 0, steps = 0;
   for (const FlightRows& piece : rows.pieces()) {
@@ -117,8 +187,8 @@ inline double mean_period_s(const RowSet& rows) {
   return steps > 0 ? lasts_s / steps : 0;
 }
 
-/// The innovation of a model that is as wrong as commands of 0 to 1 let it be, mean over the rows. A limit above it never
-/// triggers.
+/// The innovation of a model that is as wrong as commands of 0 to 1 let it be, mean over the rows. A limit above it
+/// never triggers.
 inline double greatest_innovation(const RowSet& rows) {
   double sum = 0;
   for (const FlightRows& piece : rows.pieces()) {
@@ -129,8 +199,8 @@ inline double greatest_innovation(const RowSet& rows) {
   return sum / static_cast<double>(rows.size());
 }
 
-/// No features within the envelope have a greater squared distance: each row of |W| times the envelope's half-widths about
-/// the mean. A limit above it never triggers beside TrainingEnvelope.
+/// No features within the envelope have a greater squared distance: each row of |W| times the envelope's half-widths
+/// about the mean. A limit above it never triggers beside TrainingEnvelope.
 template <int Size, class Bounds>
 double greatest_squared_distance(const JointDistribution<Size>& distribution, const Bounds& lower,
                                  const Bounds& upper) {
@@ -147,8 +217,8 @@ double greatest_squared_distance(const JointDistribution<Size>& distribution, co
 }
 
 /// The distribution of the training rows, and limits by validation rows that the model was not trained on; each piece
-/// of a flight is a flight of its own to the innovation. Throws std::invalid_argument for rows that are too few, and for
-/// a limit that could never trigger: the tail of few blocks, continued too far.
+/// of a flight is a flight of its own to the innovation. Throws std::invalid_argument for rows that are too few, and
+/// for a limit that could never trigger: the tail of few blocks, continued too far.
 template <class Model>
 FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
                                              const TrustSettings& settings = {}) {

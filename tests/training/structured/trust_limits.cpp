@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/training/trust_limits.hpp"
+#include "pinnquad/training/structured/trust_limits.hpp"
 
 #include <doctest/doctest.h>
 

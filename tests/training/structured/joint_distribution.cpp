@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/training/joint_distribution.hpp"
+#include "pinnquad/training/structured/trust_limits.hpp"
 
 #include <Eigen/LU>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A monotone model from rows whose law is known: its slopes found, held above 0 where the rows say otherwise, pinned; a
 // residual kept where there is something to learn, and dropped where there is not.
-#include "pinnquad/training/monotone_fit.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 
 #include <doctest/doctest.h>
 
@@ -179,11 +179,11 @@ TEST_CASE("a residual is kept where there is something to learn, bounded to what
   // far away it says no more than it did in training
   float x[PhysicsFeatures::size], y[4], base[4];
   std::mt19937_64 engine(9);
-  const auto* bounds = fit.answer.parameters.data() + fit.base.parameter_count;
+  const auto* bounds = fit.predictor.parameters.data() + fit.base.parameter_count;
   bool on_bound = false;
   for (int sample = 0; sample < 300; ++sample) {
     for (float& v : x) v = float(uniform(engine, -50, 50));
-    fit.answer.forward(x, y);
+    fit.predictor.forward(x, y);
     fit.base.forward(x, base);
     for (int k = 0; k < 4; ++k) {
       const float said = y[k] - base[k], rounding = 1e-5F * (1 + std::abs(base[k]));

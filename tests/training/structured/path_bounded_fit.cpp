@@ -2,7 +2,7 @@
 // A network that is shown the angular acceleration, trained beside a base: what it may not do, however much the rows ask
 // for it; what it learns that one which is not shown it can't; and what a projection leaves alone. Rows that say what a
 // derivative should be.
-#include "pinnquad/training/path_bounded_fit.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,6 @@
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/training/monotone_fit.hpp"
 
 using namespace pinnquad;
 
@@ -54,7 +53,7 @@ Flight flight_of(const Shape& shape, std::uint64_t seed) {
 }
 
 struct Fitted {
-  PathBoundedFit<PhysicsFeatures, Seeing> fit;
+  ResidualFit<PhysicsFeatures, PathBoundedPredictor<PhysicsFeatures, Seeing>> fit;
   Certificate certificate;
   double blind_error;
 };
@@ -73,7 +72,7 @@ Fitted fitted(const Shape& shape) {
   std::mt19937_64 engine(1), again(1);
   const auto fit = fit_path_bounded<Seeing>(context, training, validation, map, how, engine, on);
   const auto blind = fit_monotone<Blind>(context, training, validation, map, how, again, on);
-  const auto model = make_trained_model(fit.answer, context, training);
+  const auto model = make_trained_model(fit.predictor, context, training);
   return {fit, certificate_of_trained(model), blind.error};
 }
 

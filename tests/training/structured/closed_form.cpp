@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Closed forms between a dataset's rows and a trained model.
-#include "pinnquad/training/closed_form.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Exports a trained model whole: its header with the certificate, its block, its limits of trust. All files appear, or
+// none.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <variant>
+#include <vector>
+
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/sample_period.hpp"
+#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/deploy/golden_features.hpp"
+#include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/deploy/trust_writer.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
+
+namespace pinnquad {
+
+/// The files of an export. A block and limits of trust without a path are not written.
+struct ModelFiles {
+  std::string header, block, trust;
+};
+
+/// The result of an export, beside its files.
+struct Exported {
+  std::optional<Certificate> certificate{};  ///< none: the model has no structure that could be proven
+  std::size_t block_bytes = 0;               ///< 0: no block was written
+  std::string no_trust_because{};            ///< empty: limits of trust were written, or not asked for
+};
+
+/// The provenance of a model that was trained on the split of a dataset. `loss`: in words.
+inline Provenance provenance_of(const Dataset& flights, const RowSplit& split, std::uint64_t seed, int epochs,
+                                const std::string& loss, const Verdict& verdict) {
+  std::string names;
+  for (const Flight& flight : flights.flights()) names += (names.empty() ? "" : ", ") + flight.name;
+  Provenance from{names, content_hash(flights), split.train.size(), seed, epochs, loss, verdict};
+  from.sample_period_s = sample_period_s(split.train);
+  return from;
+}
+
+/// Writes `struct <name>` and, to be included after it, `struct <name>Trust`. Golden vectors are of the training rows.
+/// Validation rows that are too few for limits of trust are no error: then the trust file of an earlier export is
+/// removed. Throws what write_model() and AtomicFile throw; no file has changed then. `WithTrust` false: limits are not
+/// compiled.
+template <bool WithTrust = true, class NetworkType, class ContextType>
+Exported export_model(const ModelFiles& files, const std::string& name,
+                      const TrainedModel<NetworkType, ContextType>& model, const RowSplit& split,
+                      Provenance provenance) {
+  using Model = TrainedModel<NetworkType, ContextType>;
+  if constexpr (is_windowed<typename Model::Features>) provenance.sample_period_s = 0;  // a window has its own
+  Exported result;
+  if constexpr (has_certificate<Model>) result.certificate = certificate_of_trained(model);
+  const auto golden = golden_features(model, split.train);
+  AtomicFile header(files.header);
+  write_model(header.stream(), name, model, golden, provenance);
+  std::optional<AtomicFile> block, trust;
+  if (!files.block.empty()) {
+    const std::vector<unsigned char> bytes = model_block(model, golden, provenance);
+    block.emplace(files.block);
+    block->stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    result.block_bytes = bytes.size();
+  }
+  if constexpr (WithTrust) {
+    if (!files.trust.empty()) {
+      try {
+        const auto limits = fit_trust(model, split.train, split.validation);
+        trust.emplace(files.trust);
+        trust->stream() << "// To be included after the header of " << name << ". Limits by " << split.validation.size()
+                        << " validation rows: guesses where those are\n// less than 30 minutes of flight "
+                           "(docs/trust.md).\n#pragma once\n\n#include <array>\n#include <cstdint>\n";
+        write_trust<typename Model::Scalar>(trust->stream(), name, limits, provenance.training_data_hash);
+      } catch (const std::invalid_argument& refused) {
+        result.no_trust_because = refused.what();
+        trust.reset();
+      }
+    }
+  }
+  for (std::optional<AtomicFile>* file : {&block, &trust}) {
+    if (*file) (*file)->close();
+  }
+  header.commit();
+  for (std::optional<AtomicFile>* file : {&block, &trust}) {
+    if (*file) (*file)->commit();
+  }
+  std::error_code ignored;
+  if (!result.no_trust_because.empty()) std::filesystem::remove(files.trust, ignored);
+  return result;
+}
+
+/// The same of the model that a fit chose.
+template <class... Models>
+Exported export_model(const ModelFiles& files, const std::string& name, const std::variant<Models...>& model,
+                      const RowSplit& split, const Provenance& provenance) {
+  return std::visit([&](const auto& chosen) { return export_model(files, name, chosen, split, provenance); }, model);
+}
+
+/// Into a folder, made if it is not there: model.hpp, model.block, trust.hpp.
+template <class Model>
+Exported export_model(const std::string& folder, const std::string& name, const Model& model, const RowSplit& split,
+                      const Provenance& provenance) {
+  std::filesystem::create_directories(folder);
+  return export_model(ModelFiles{folder + "/model.hpp", folder + "/model.block", folder + "/trust.hpp"}, name, model,
+                      split, provenance);
+}
+
+}  // namespace pinnquad

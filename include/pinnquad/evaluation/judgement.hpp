@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// The judgement on a model: its errors on rows that it was not trained on, whether its commands run with the angular
+// acceleration, and whether it is worth flying.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <variant>
+#include <vector>
+
+#include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/evaluation/errors.hpp"
+#include "pinnquad/evaluation/linear_regression.hpp"
+#include "pinnquad/evaluation/physical_consistency.hpp"
+#include "pinnquad/evaluation/verdict.hpp"
+#include "pinnquad/features/features.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/training/context_airframe.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+
+/// The errors of `predict(x)` over the rows that have features.
+template <class Features, class Scalar, class Predict>
+PredictionErrors<rotor_count> errors_on(const RowSet& rows, const Predict& predict) {
+  std::vector<std::array<double, rotor_count>> predicted, flown;
+  each_features<Features, Scalar>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
+    const auto u = predict(x);
+    predicted.push_back({});
+    for (std::size_t i = 0; i < rotor_count; ++i) predicted.back()[i] = static_cast<double>(u[i]);
+    flown.push_back(flight[row].commands);
+  });
+  return prediction_errors(predicted, flown);
+}
+
+}  // namespace detail
+
+/// The errors of a TrainedModel's commands, 0..1. Throws std::invalid_argument where no row has features.
+template <class Model>
+PredictionErrors<rotor_count> model_errors(const Model& model, const RowSet& rows) {
+  return detail::errors_on<typename Model::Features, typename Model::Scalar>(
+      rows, [&model](const typename Model::FeatureVector& x) { return model.predict(x); });
+}
+
+/// The errors on `test` of linear regression on a feature set, fitted to `training`. Throws as model_errors().
+template <class Features>
+PredictionErrors<rotor_count> linear_regression_errors(const RowSet& training, const RowSet& test) {
+  std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
+  std::vector<std::array<double, rotor_count>> commands;
+  each_features<Features, double>(training, [&](const Flight& flight, std::size_t row, const auto& x) {
+    features.push_back(x);
+    commands.push_back(flight[row].commands);
+  });
+  const auto regression = fit_linear_regression(features, commands);
+  return detail::errors_on<Features, double>(test, [&](const auto& x) { return regression.predict(x); });
+}
+
+/// The verdict on a model, beside linear regression on the same features that was fitted to its training rows. Throws
+/// as model_errors().
+template <class Model>
+Verdict verdict_on(const Model& model, const RowSet& training, const RowSet& test) {
+  const auto bar = linear_regression_errors<typename Model::Features>(training, test);
+  return verdict_on(model_errors(model, test), bar.mean.r_squared);
+}
+
+/// Roll, pitch, yaw.
+using AxisFigures = std::array<double, 3>;
+inline constexpr AxisFigures no_axis_figures = {not_a_number, not_a_number, not_a_number};
+
+/// sign_violation_share() of pairs of rows that follow each other (docs/monotonicity.md). Large steps of the angular
+/// acceleration are above half its standard deviation.
+struct PairSigns {
+  AxisFigures all = no_axis_figures;
+  AxisFigures of_flown = no_axis_figures;  ///< of the flown commands
+  AxisFigures large = no_axis_figures;     ///< among large steps
+  AxisFigures large_of_flown = no_axis_figures;
+};
+
+/// Signed command sum and angular acceleration about one axis, row by row.
+struct AxisSeries {
+  std::vector<double> angular_acceleration;  ///< rad/s^2
+  std::vector<double> target;                ///< sum of the flown commands
+  std::vector<double> predicted;
+};
+
+/// One model on one set of rows; validation_error and verdict by judge(model, split) alone.
+struct Judgement {
+  PredictionErrors<rotor_count> errors;
+  std::array<PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
+  PairSigns pairs;
+  AxisFigures nominal_slopes = no_axis_figures;  ///< hover_slopes() of the airframe, s^2/rad
+  double validation_error = not_a_number;        ///< mean absolute error of the commands on the validation rows
+  Verdict verdict{};
+};
+
+/// Roll, pitch, yaw. As many predictions as rows.
+template <class Vehicle>
+std::array<AxisSeries, 3> axis_series(const ContextAirframe<Vehicle>& airframe, const RowSet& rows,
+                                      const std::vector<Commands<double>>& predictions) {
+  const std::array<std::array<double, rotor_count>, 3> signs = {
+      airframe.template signs<Roll>(), airframe.template signs<Pitch>(), airframe.template signs<Yaw>()};
+  std::array<AxisSeries, 3> series;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Sample& sample = rows[i];
+      series[axis].angular_acceleration.push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
+      series[axis].target.push_back(signed_sum(signs[axis], sample.commands));
+      series[axis].predicted.push_back(signed_sum(signs[axis], predictions[i]));
+    }
+  }
+  return series;
+}
+
+inline PairSigns pair_signs(const std::array<AxisSeries, 3>& series) {
+  constexpr double large_step_share = 0.5;  // of the standard deviation
+  PairSigns result;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisSeries& s = series[axis];
+    const double large = large_step_share * std::sqrt(joint_moments(s.angular_acceleration, s.target).variance_x);
+    result.all[axis] = sign_violation_share(s.predicted, s.angular_acceleration);
+    result.of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration);
+    result.large[axis] = sign_violation_share(s.predicted, s.angular_acceleration, large);
+    result.large_of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration, large);
+  }
+  return result;
+}
+
+/// Judges commands, one for each row. Throws std::invalid_argument for no rows or another number of commands.
+template <class Vehicle>
+Judgement judge(const ContextAirframe<Vehicle>& airframe, const RowSet& rows,
+                const std::vector<Commands<double>>& predictions) {
+  std::vector<Commands<double>> targets;
+  for (std::size_t i = 0; i < rows.size(); ++i) targets.push_back(rows[i].commands);
+  Judgement result;
+  result.errors = prediction_errors(predictions, targets);
+  const std::array<AxisSeries, 3> series = axis_series(airframe, rows, predictions);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.axes[axis] =
+        physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);
+  }
+  result.pairs = pair_signs(series);
+  result.nominal_slopes = hover_slopes(airframe.template airframe<double>());
+  return result;
+}
+
+/// The commands of a TrainedModel, row by row. NaN for a row without features (a window that is not complete) and, if
+/// `inside_envelope`, for a row that the guard of its export declines.
+template <class Model>
+std::vector<Commands<double>> predicted_commands(const Model& model, const RowSet& rows, bool inside_envelope = false) {
+  std::vector<Commands<double>> result;
+  for (const FlightRows& piece : rows.pieces()) {
+    const std::size_t first = result.size();
+    result.resize(first + piece.rows.size(), {not_a_number, not_a_number, not_a_number, not_a_number});
+    each_features<typename Model::Features, typename Model::Scalar>(
+        RowSet(*piece.flight, piece.rows), [&](const Flight&, std::size_t row, const typename Model::FeatureVector& x) {
+          for (std::size_t i = 0; inside_envelope && i < x.size(); ++i) {
+            if (!(x[i] >= model.envelope_lower[i] && x[i] <= model.envelope_upper[i])) return;
+          }
+          const auto u = model.predict(x);
+          for (std::size_t i = 0; i < u.size(); ++i) {
+            result[first + row - piece.rows.begin][i] = static_cast<double>(u[i]);
+          }
+        });
+  }
+  return result;
+}
+
+/// Judges a TrainedModel on the test rows; its verdict is beside linear regression on the paper's features. Figures of
+/// a model of a window are NaN: its first rows have no features (model_errors() leaves them out). Throws
+/// std::invalid_argument for a split with an empty part.
+template <class Model>
+Judgement judge(const Model& model, const RowSplit& split) {
+  Judgement result = judge(static_cast<const ContextAirframe<typename Model::Vehicle>&>(model), split.test,
+                           predicted_commands(model, split.test));
+  result.validation_error = model_errors(model, split.validation).mean.mean_absolute;
+  result.verdict =
+      verdict_on(result.errors, linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared);
+  return result;
+}
+
+/// The same of the model that a fit chose.
+template <class... Models>
+Judgement judge(const std::variant<Models...>& model, const RowSplit& split) {
+  return std::visit([&split](const auto& chosen) { return judge(chosen, split); }, model);
+}
+
+}  // namespace pinnquad

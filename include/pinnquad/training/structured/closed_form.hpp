@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Models that are solved rather than trained: rows as sums for least squares (regression/ridge.hpp), an affine map as a
+// predictor, and the monotone base of a structured model.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/model/predictor.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
+#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/regression/bounded_ridge.hpp"
+#include "pinnquad/regression/regression_sums.hpp"
+#include "pinnquad/training/trained_model.hpp"
+
+namespace pinnquad {
+
+/// An affine map of a context's features to its outputs.
+template <class ContextType, class Scalar = float>
+using AffineAnswer = Network<Scalar, InputSize<ContextType::Features::size>, Dense<ContextType::output_count>>;
+
+/// Throws std::invalid_argument for a map of other sizes.
+template <class ContextType, class Scalar = float>
+AffineAnswer<ContextType, Scalar> affine_answer(const AffineMap& map) {
+  AffineAnswer<ContextType, Scalar> predictor;
+  if (map.weights.size() + map.intercept.size() != predictor.parameters.size() || map.inputs != predictor.inputs) {
+    throw std::invalid_argument("affine_answer: expected a map of " + std::to_string(predictor.inputs) +
+                                " features to " + std::to_string(predictor.outputs) + " outputs, found another");
+  }
+  auto to = predictor.parameters.begin();
+  for (const double v : map.weights) *to++ = static_cast<Scalar>(v);
+  for (const double v : map.intercept) *to++ = static_cast<Scalar>(v);
+  return predictor;
+}
+
+/// The sum of two predictors: an affine map and what a network learnt of its residuals.
+template <class First, class Second>
+Sum<First, Second> sum_of(const First& first, const Second& second) {
+  Sum<First, Second> sum;
+  const auto border = std::copy(first.parameters.begin(), first.parameters.end(), sum.parameters.begin());
+  std::copy(second.parameters.begin(), second.parameters.end(), border);
+  return sum;
+}
+
+/// Subtracts the map's outputs from those of standardised rows.
+template <class Scalar, int InputCount, int OutputCount>
+void take_away(const AffineMap& map, TrainingData<Scalar, InputCount, OutputCount>& data) {
+  std::array<double, static_cast<std::size_t>(InputCount)> x{};
+  for (int row = 0; row < data.size(); ++row) {
+    const Scalar* features = data.features_of(row);
+    std::copy(features, features + InputCount, x.begin());
+    const std::vector<double> said = map(x.data());
+    Scalar* outputs = data.outputs.data() + std::ptrdiff_t{row} * OutputCount;
+    for (int k = 0; k < OutputCount; ++k) outputs[k] -= static_cast<Scalar>(said[static_cast<std::size_t>(k)]);
+  }
+}
+
+/// Groups for cross-validation: trajectories with their repeats; where there is one trajectory, flights; where there is
+/// one flight, its quarters.
+inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
+  const auto grouped = [&](const auto& name_of) {
+    std::vector<RowSet> groups;
+    std::vector<std::string> names;
+    for (const FlightRows& piece : rows.pieces()) {
+      const std::string name = name_of(*piece.flight);
+      const auto found = std::find(names.begin(), names.end(), name);
+      const auto at = static_cast<std::size_t>(found - names.begin());
+      if (found == names.end()) {
+        names.push_back(name);
+        groups.emplace_back();
+      }
+      groups[at].add(*piece.flight, piece.rows);
+    }
+    return groups;
+  };
+  std::vector<RowSet> groups = grouped([](const Flight& flight) {
+    return flight.trajectory.empty() ? "flight " + flight.name : "trajectory " + flight.trajectory;
+  });
+  if (groups.size() > 1) return groups;
+  groups = grouped([](const Flight& flight) { return flight.name; });
+  if (groups.size() > 1) return groups;
+  constexpr std::size_t parts = 4;
+  groups.assign(rows.empty() ? 0 : parts, {});
+  for (const FlightRows& piece : rows.pieces()) {
+    for (std::size_t part = 0; part < parts; ++part) {
+      const std::size_t size = piece.rows.size();
+      groups[part].add(*piece.flight,
+                       {piece.rows.begin + part * size / parts, piece.rows.begin + (part + 1) * size / parts});
+    }
+  }
+  return groups;
+}
+
+/// Sums of standardised features and of `target(y, commands)`, y the standardised outputs.
+template <class ContextType, class Target>
+RegressionSums regression_sums(const ContextType& context, const RowSet& rows, int targets, const Target& target) {
+  using Features = typename ContextType::Features;
+  RegressionSums sums(Features::size, targets);
+  const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
+  each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, auto x) {
+    auto y = detail::sample_outputs<ContextType>(x, flight[row], setting);
+    context.input.standardise(x.data(), x.data());
+    context.output.standardise(y.data(), y.data());
+    const std::vector<double> values = target(y, flight[row].commands);
+    sums.add(x.data(), values.data());
+  });
+  return sums;
+}
+
+/// Sums of standardised features and outputs.
+template <class ContextType>
+RegressionSums regression_sums(const ContextType& context, const RowSet& rows) {
+  return regression_sums(context, rows, ContextType::output_count, [](const auto& y, const Commands<double>&) {
+    return std::vector<double>(y.begin(), y.end());
+  });
+}
+
+/// The same of each group that has rows with all features.
+template <class ContextType>
+std::vector<RegressionSums> regression_sums(const ContextType& context, const std::vector<RowSet>& groups) {
+  std::vector<RegressionSums> sums;
+  for (const RowSet& group : groups) {
+    RegressionSums of_group = regression_sums(context, group);
+    if (of_group.rows() > 0) sums.push_back(of_group);
+  }
+  return sums;
+}
+
+/// The source of a base's slopes, s^2/rad.
+struct SlopeRule {
+  /// Fixed slopes, such as hover_slopes(), for a model of quiet flights that is to fly agile ones. None: learnt.
+  std::optional<AxisSlopes> pinned{};
+  /// A learnt slope is at least this share of the airframe's own, also where the rows say otherwise.
+  double least_share = 0.01;
+};
+
+/// The sizes and scales of a base, without its types: the equations are compiled once for all feature sets.
+struct MonotoneShape {
+  int inputs = 0;
+  std::vector<int> places;  ///< of each tap's angular acceleration among the features, the present first
+  std::vector<double> input_deviation, output_deviation;
+  AxisSlopes airframe_slopes{};  ///< hover_slopes()
+};
+
+template <class ContextType>
+MonotoneShape monotone_shape(const ContextType& context) {
+  using Features = typename ContextType::Features;
+  static_assert(is_signed_sums<typename ContextType::Outputs>,
+                "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, AxisCommandOutputs>");
+  MonotoneShape shape;
+  shape.inputs = Features::size;
+  MonotoneBase<Features>::Threes::each([&](int place, int) { shape.places.push_back(place); });
+  shape.input_deviation.assign(context.input.standard_deviation.begin(), context.input.standard_deviation.end());
+  shape.output_deviation.assign(context.output.standard_deviation.begin(), context.output.standard_deviation.end());
+  shape.airframe_slopes = hover_slopes(context.template airframe<double>());
+  return shape;
+}
+
+/// The base of a structured model: per axis command a ridge regression that sees its own angular acceleration alone,
+/// with a slope above 0. Standardised features to standardised axis commands. Each penalty is chosen by leaving out one
+/// group in turn. In a window the rule holds for the slope of the present and for the sum over all taps; `pinned` is
+/// the sum. Throws std::invalid_argument for no rows, and for a rule whose slopes are not above 0.
+inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector<RegressionSums>& groups,
+                                   const SlopeRule& rule = {}) {
+  if (groups.empty()) throw std::invalid_argument("monotone base: expected rows with all features, found none");
+  AffineMap all;
+  all.inputs = shape.inputs;
+  all.outputs = AxisCommandOutputs::size;
+  for (int output = 0; output < all.outputs; ++output) {
+    std::vector<bool> taken(static_cast<std::size_t>(shape.inputs), true);
+    std::vector<WeightBound> bounds;
+    const int axis = output - 1;
+    for (const int place : shape.places) {
+      for (int i = 0; i < 3; ++i) taken[static_cast<std::size_t>(place + i)] = i == axis;
+    }
+    if (axis >= 0) {
+      const auto of_axis = static_cast<std::size_t>(axis);
+      const double least = rule.least_share * shape.airframe_slopes[of_axis];
+      if (!(least > 0) || (rule.pinned && !((*rule.pinned)[of_axis] > least))) {
+        throw std::invalid_argument(
+            "monotone base: expected slopes above 0 and above the least share of the airframe's");
+      }
+      WeightBound present, held;
+      for (const int place : shape.places) {
+        const auto feature = static_cast<std::size_t>(place + axis);
+        const double factor = shape.output_deviation[static_cast<std::size_t>(output)] / shape.input_deviation[feature];
+        if (held.terms.empty()) present.terms.emplace_back(place + axis, factor);
+        held.terms.emplace_back(place + axis, factor);
+      }
+      present.least = held.least = least;
+      if (rule.pinned) {
+        held.pinned = true;
+        held.least = (*rule.pinned)[of_axis];
+      }
+      bounds.push_back(held);
+      if (shape.places.size() > 1) bounds.push_back(present);
+    }
+    std::vector<RegressionSums> parts;
+    for (const RegressionSums& group : groups) parts.push_back(group.of_output(output));
+    RegressionSums sums = parts.front();
+    for (std::size_t i = 1; i < parts.size(); ++i) sums += parts[i];
+    const double penalty = parts.size() < 2 ? 0.0 : choose_penalty(parts, usual_penalties(), taken).penalty;
+    const AffineMap one = fit_bounded_ridge(sums, penalty, taken, bounds);
+    all.weights.insert(all.weights.end(), one.weights.begin(), one.weights.end());
+    all.intercept.push_back(one.intercept.front());
+  }
+  return all;
+}
+
+/// The same from rows, in the groups of left_out_groups().
+template <class ContextType>
+AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows, const SlopeRule& rule = {}) {
+  return fit_monotone_base(monotone_shape(context), regression_sums(context, left_out_groups(rows)), rule);
+}
+
+/// The predictor of such a map.
+template <class ContextType, class Scalar = float>
+MonotoneBase<typename ContextType::Features, Scalar> monotone_base(const AffineMap& map) {
+  using Features = typename ContextType::Features;
+  using Base = MonotoneBase<Features, Scalar>;
+  Base base;
+  const auto weight = [&](int output, int feature) {
+    return static_cast<Scalar>(
+        map.weights.at(static_cast<std::size_t>(output) * Features::size + static_cast<std::size_t>(feature)));
+  };
+  auto* const to = base.parameters.data();
+  Base::Threes::each([&](int place, int tap) {
+    for (int axis = 0; axis < 3; ++axis) to[Base::slopes + 3 * tap + axis] = weight(1 + axis, place + axis);
+  });
+  for (int output = 0; output < Base::outputs; ++output) {
+    Base::Threes::each_other(
+        [&](int feature, int n) { to[Base::weights + output * Base::Threes::others + n] = weight(output, feature); });
+    to[Base::intercepts + output] = static_cast<Scalar>(map.intercept.at(static_cast<std::size_t>(output)));
+  }
+  return base;
+}
+
+}  // namespace pinnquad

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/evaluation/judgement.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <variant>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/nn/dense.hpp"
+#include "pinnquad/training/trained_model.hpp"
+#include "support/training_sets.hpp"
+
+using namespace pinnquad;
+
+namespace {
+
+using Linear = Network<double, InputSize<16>, Dense<4>>;
+using Model = TrainedModel<Linear, Context<PaperFeatures, PaperQuadrotor>>;
+
+/// Nothing standardised; an envelope of +-`half_width` about 0.
+Model linear_model(double half_width) {
+  Model model;
+  model.input.standard_deviation.fill(1);
+  model.output.standard_deviation.fill(1);
+  model.envelope_lower.fill(-half_width);
+  model.envelope_upper.fill(half_width);
+  for (std::size_t i = 0; i < 64; ++i) model.network.parameters[i] = 0.01 * std::cos(1.7 * double(i));
+  return model;
+}
+
+std::vector<Commands<double>> flown(const RowSet& rows) {
+  std::vector<Commands<double>> commands;
+  for (std::size_t row = 0; row < rows.size(); ++row) commands.push_back(rows[row].commands);
+  return commands;
+}
+
+}  // namespace
+
+TEST_CASE("the flown commands themselves have no error, and the signs of the flown") {
+  const Flight flight = test::random_flight_rows(200, 4);
+  const RowSet rows(flight, {0, 200});
+  const ContextAirframe<PaperQuadrotor> airframe;
+  const Judgement judged = judge(airframe, rows, flown(rows));
+  CHECK(judged.errors.mean.mean_absolute == 0);
+  CHECK(judged.errors.mean.r_squared == 1);
+  CHECK(judged.nominal_slopes == hover_slopes(airframe_value<PaperQuadrotor, double>()));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    CHECK(judged.axes[axis].slope_error == 0);
+    CHECK(judged.pairs.all[axis] == judged.pairs.of_flown[axis]);
+    CHECK(judged.pairs.large[axis] == judged.pairs.large_of_flown[axis]);
+    CHECK(judged.pairs.all[axis] > 0.3);  // commands that are not related to the motion
+  }
+  auto turned = flown(rows);
+  for (auto& u : turned) {
+    for (double& v : u) v = 1 - v;
+  }
+  const Judgement wrong = judge(airframe, rows, turned);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    CHECK(wrong.axes[axis].slope_error == doctest::Approx(2));
+    CHECK(wrong.pairs.all[axis] == doctest::Approx(1 - judged.pairs.all[axis]));
+  }
+  CHECK_THROWS_AS(judge(airframe, rows, {}), std::invalid_argument);
+}
+
+TEST_CASE("a model on a split: test rows judge, validation rows give their error, the verdict is beside regression") {
+  const Flight flight = test::random_flight_rows(500, 5);
+  const RowSplit split{RowSet(flight, {0, 300}), RowSet(flight, {300, 400}), RowSet(flight, {400, 500})};
+  const Model model = linear_model(1e3);
+  const Judgement judged = judge(model, split);
+  CHECK(judged.errors.mean.root_mean_square == model_errors(model, split.test).mean.root_mean_square);
+  CHECK(judged.validation_error == model_errors(model, split.validation).mean.mean_absolute);
+  const Verdict verdict = verdict_on(model, split.train, split.test);  // its features are the paper's
+  CHECK(judged.verdict.test_r_squared == verdict.test_r_squared);
+  CHECK(judged.verdict.linear_regression_r_squared == verdict.linear_regression_r_squared);
+  CHECK(judged.verdict.worst_motor_r_squared == verdict.worst_motor_r_squared);
+  const std::variant<Model> chosen = model;
+  CHECK(judge(chosen, split).validation_error == judged.validation_error);
+}
+
+TEST_CASE("the commands of a model, row by row; NaN where the guard of its export declines") {
+  const Flight flight = test::random_flight_rows(100, 6);
+  RowSet rows(flight, {0, 40});
+  rows.add(flight, {60, 100});
+  const Model model = linear_model(8);
+  const auto all = predicted_commands(model, rows), inside = predicted_commands(model, rows, true);
+  REQUIRE(all.size() == 80);
+  int declined = 0;
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    CHECK(all[row] == model.predict(rows[row]));
+    bool within = true;
+    for (const double x : sample_features<PaperFeatures, double>(rows[row])) within = within && std::abs(x) <= 8;
+    CHECK(std::isnan(inside[row][0]) == !within);
+    if (within) CHECK(inside[row] == all[row]);
+    declined += within ? 0 : 1;
+  }
+  CHECK(declined > 0);
+}
