@@ -46,7 +46,7 @@
 #include "set_point_source.hpp"
 #include "takeover.hpp"
 
-// Beside model.hpp there may be one that says which effects the formula knows: using FlownVehicle =
+// Beside model.hpp there may be one that says which effects the analytic inverse knows: using FlownVehicle =
 // pinnquad::Quadrotor<float, ...>. CMakeLists.txt says whether there is: a compiler's cache does not look for files that
 // were not there.
 #if PINNQUAD_FLOWN_VEHICLE

@@ -99,8 +99,8 @@ Guarded guarded() noexcept { return Guarded(pinnquad::AnalyticInverse<Everything
 struct Trust {
   static constexpr std::array<float, 16> distribution_mean{};
   static constexpr std::array<float, 136> whitening{1};
-  static constexpr double distance_limit = 100;
-  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+  static constexpr double squared_distance_limit = 100;
+  static constexpr double command_residual_factor = 0.2, command_residual_limit = 0.05, command_residual_cleared = 0.02;
 };
 using Trusting =
     pinnquad::InverseDynamics<SmallModel,

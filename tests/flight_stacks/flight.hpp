@@ -112,12 +112,13 @@ class FaultyFlight {
     figures_.fallback_share = last_.fallback_share;
     figures_.refused_samples = last_.refused_samples;
     char line[200];
-    std::snprintf(line, sizeof line,
-                  "%s; altitude from %.2f m, tilt up to %.1f deg, error up to %.2f m, RMSE %.3f m; formula %.2f %% "
-                  "of the answers, %u samples refused",
-                  figures_.crashed ? "CRASHED" : "in the air", figures_.min_altitude_m,
-                  figures_.max_tilt_rad * pinnquad::degrees_per_radian, figures_.max_error_m, figures_.rmse_m,
-                  100 * static_cast<double>(figures_.fallback_share), figures_.refused_samples);
+    std::snprintf(
+        line, sizeof line,
+        "%s; altitude from %.2f m, tilt up to %.1f deg, error up to %.2f m, RMSE %.3f m; analytic inverse %.2f %% "
+        "of the answers, %u samples refused",
+        figures_.crashed ? "CRASHED" : "in the air", figures_.min_altitude_m,
+        figures_.max_tilt_rad * pinnquad::degrees_per_radian, figures_.max_error_m, figures_.rmse_m,
+        100 * static_cast<double>(figures_.fallback_share), figures_.refused_samples);
     say("end", line);
     return figures_;
   }
@@ -163,7 +164,7 @@ class FaultyFlight {
   void end(const Fault& fault, std::size_t i) {
     say("over", std::string(fault.text) + "; at worst the module " + to_string(figures_.worst[i]) + "; " +
                     std::to_string(figures_.fell_back[i]) + " of " + std::to_string(figures_.asked[i]) +
-                    " answers by the formula");
+                    " answers by the analytic inverse");
     if (fault.kind == FaultKind::payload) weigh(1);
     if (fault.kind == FaultKind::model_swapped || fault.kind == FaultKind::model_too_narrow) offer(sound_);
   }

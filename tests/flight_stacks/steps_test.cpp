@@ -353,14 +353,14 @@ TEST_CASE("an estimator that moves its estimate by 3 m and 0.4 rad moves nothing
   SUBCASE("holding its place") { unmoved(); }
 }
 
-TEST_CASE("the formula knows the effects that the vehicle is said to have") {
+TEST_CASE("the analytic inverse knows the effects that the vehicle is said to have") {
   using Dragging = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag, pinnquad::RotorDrag>;
   using View = pinnquad::ModelView<DemoQuadModel>;
   const Dragging vehicle(pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>(), {}, {},
                          pinnquad::RotorDrag{0.02});
   pinnquad::autopilot::NeuralController<DemoQuadModel> plain;
   pinnquad::autopilot::NeuralController<DemoQuadModel, View, Dragging> dragging(vehicle);
-  const Block block = narrow_block<DemoQuadModel>();  // all answers are the formula's
+  const Block block = narrow_block<DemoQuadModel>();  // all answers are the analytic inverse's
   const auto commands = [&](auto& controller) {
     REQUIRE(controller.offer_model(block.data(), block.size()) == pinnquad::Status::ok);
     constexpr std::uint64_t now_us = 1'000'000;

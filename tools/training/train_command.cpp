@@ -191,12 +191,12 @@ void export_trust(const TrainOptions& options, const programs::TrainedNetwork& n
   const std::string path = options.out + "/trust.hpp";
   try {
     if (network.write_trust(path, options.model_name, split.train, split.validation, provenance.training_data_hash)) {
-      std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and innovation\n",
+      std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
                   path.c_str(), options.model_name.c_str());
       return;
     }
   } catch (const std::invalid_argument& error) {
-    std::printf("  no limits of distance and innovation (trust.hpp): %s\n", error.what());
+    std::printf("  no limits of distance and command residual (trust.hpp): %s\n", error.what());
   }
   std::error_code ignored;
   std::filesystem::remove(path, ignored);

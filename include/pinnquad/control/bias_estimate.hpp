@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The acceleration that a vehicle has besides what its model says: a weak battery, a payload, steady wind. Slow and bounded; who
-// flies subtracts it from what he asks for.
+// The acceleration that a vehicle has besides what its model says: a weak battery, a payload, steady wind. Slow and
+// bounded; who flies subtracts it from what he asks for.
 #pragma once
 
 #include "pinnquad/core/finite.hpp"
@@ -32,8 +32,8 @@ class BiasEstimate {
     return length > Scalar(0) && bias_.squaredNorm() >= length * length;
   }
 
-  /// One step in flight: `expected_m_s2` was asked for through the model, and had, during it. Steps of more than a quarter of
-  /// the estimate's time are as frozen.
+  /// One step in flight: `expected_m_s2` was asked for through the model, and had, during it. Steps of more than a
+  /// quarter of the estimate's time are as frozen.
   void update(const Vector3<Scalar>& velocity_m_s, const Vector3<Scalar>& expected_m_s2, Scalar step_s) noexcept {
     const Scalar w = settings_.bandwidth_1_s;
     if (!(step_s > Scalar(0) && w > Scalar(0) && step_s * w <= Scalar(0.25)) || !all_finite(expected_m_s2)) {

@@ -97,11 +97,11 @@ struct FallbackCount {
 /// What NetworkInverse is told besides the motion: nothing.
 struct MotionAlone {};
 
-/// The network's prediction for the motion wanted, or what its guard falls back to, counted by why. `InverseDynamics` has the
-/// interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in its guard
-/// the policy declines where the network does.
-/// A model with a past gets its window of what this policy was asked, by the times given: it declines as `warming_up` first.
-/// A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, called before each
+/// The network's prediction for the motion wanted, or what its guard falls back to, counted by why. `InverseDynamics`
+/// has the interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback
+/// in its guard the policy declines where the network does.
+/// A model with a past gets its window of what this policy was asked, by the times given: it declines as `warming_up`
+/// first. A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, called before each
 /// prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs& present) noexcept` sets what the
 /// motion does not say.
 template <class InverseDynamics, class Measured = MotionAlone>

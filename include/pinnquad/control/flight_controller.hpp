@@ -26,9 +26,9 @@ struct FlightGains {
   Scalar yaw_rate_1_s = Scalar(8);          ///< the same for yaw
 };
 
-/// What the controller may ask for: limits on the specific force (thrust / mass, NED), on turning and on its onset, and on the
-/// speed of a trajectory's point and the position error together. No speed limit by default: a position error asks for as much
-/// as it is large, and a vehicle far from its place arrives faster than it can stop.
+/// What the controller may ask for: limits on the specific force (thrust / mass, NED), on turning and on its onset, and
+/// on the speed of a trajectory's point and the position error together. No speed limit by default: a position error
+/// asks for as much as it is large, and a vehicle far from its place arrives faster than it can stop.
 template <class Scalar>
 struct FlightLimits {
   Scalar max_tilt_rad = Scalar(0.85);  ///< of the thrust wanted, 49 degrees
@@ -45,8 +45,8 @@ struct FlightLimits {
 
 namespace detail {
 
-/// What an airframe can do: thrust without torque over weight, and by how much all rotors together turn it about an axis, each
-/// moved by no more than hover leaves it.
+/// What an airframe can do: thrust without torque over weight, and by how much all rotors together turn it about an
+/// axis, each moved by no more than hover leaves it.
 template <class Scalar>
 struct Authority {
   Scalar thrust_to_weight{0};
@@ -95,10 +95,10 @@ Authority<Scalar> authority(const Airframe<Scalar>& airframe, Scalar rotor_scale
 
 }  // namespace detail
 
-/// The default limits, lowered to what the airframe can do where its thrust has this scale (Quadrotor::rotor_scale): 97 % of
-/// the thrust at which the first rotor is at its end, and 55 % of the horizontal acceleration that this leaves in level flight;
-/// angular accelerations that move a rotor by 60 % (roll, pitch) and 40 % (yaw) of what hover leaves it; body rates that can be
-/// stopped as fast as the attitude loop wants to.
+/// The default limits, lowered to what the airframe can do where its thrust has this scale (Quadrotor::rotor_scale): 97
+/// % of the thrust at which the first rotor is at its end, and 55 % of the horizontal acceleration that this leaves in
+/// level flight; angular accelerations that move a rotor by 60 % (roll, pitch) and 40 % (yaw) of what hover leaves it;
+/// body rates that can be stopped as fast as the attitude loop wants to.
 template <class Scalar>
 FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar rotor_scale,
                                    const FlightGains<Scalar>& gains = {}) noexcept {
@@ -146,8 +146,8 @@ class FlightController {
   constexpr Scalar gravity_m_s2() const noexcept { return gravity_m_s2_; }
 
   /// Pilot's loop: the accelerations that bring the vehicle to the velocity and yaw rate wanted; yaw itself is free.
-  /// `not_finite` for a bad input, `output_not_finite` for one so large that a sum overflows; `demand` is untouched unless
-  /// the Status is ok.
+  /// `not_finite` for a bad input, `output_not_finite` for one so large that a sum overflows; `demand` is untouched
+  /// unless the Status is ok.
   Status operator()(const State<Scalar>& state, const SetPoint<Scalar>& wanted,
                     Accelerations<Scalar>& demand) const noexcept {
     if (!(all_finite(state) && all_finite(wanted.velocity_m_s) && is_finite(wanted.yaw_rate_rad_s) &&
@@ -168,8 +168,8 @@ class FlightController {
   }
 
   /// Trajectory loop. Reference: the point's world acceleration in the current attitude, angular accelerations from
-  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory. Speed within the
-  /// limits, where there are any.
+  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory. Speed
+  /// within the limits, where there are any.
   /// `not_finite`, `no_solution` (flatness.hpp), `output_not_finite`; `demand` is untouched unless the Status is ok.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point,
                     TrackingDemand<Scalar>& demand) const noexcept {
@@ -202,9 +202,9 @@ class FlightController {
     return Status::ok;
   }
 
-  /// The velocity (NED) that closes a position error on top of a reference, within the speed limits: the point's velocity and
-  /// position_1_s times the error; under a limit no more than can be braked by 0.4 of what limited() leaves,
-  /// sqrt(2 a (e - a / (2 k^2))) beyond e = a / k^2.
+  /// The velocity (NED) that closes a position error on top of a reference, within the speed limits: the point's
+  /// velocity and position_1_s times the error; under a limit no more than can be braked by 0.4 of what limited()
+  /// leaves, sqrt(2 a (e - a / (2 k^2))) beyond e = a / k^2.
   Vector3<Scalar> wanted_velocity(const Vector3<Scalar>& reference_m_s, const Vector3<Scalar>& error_m) const noexcept {
     using std::sqrt;
     Vector3<Scalar> approach = error_m * gains_.position_1_s;

@@ -31,9 +31,9 @@ class TrackingController {
         feed_forward_(feed_forward),
         rotor_scale_(rotor_scale) {}
 
-  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust fractions,
-  /// then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's rigid-body wrench,
-  /// without air.
+  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust
+  /// fractions, then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's
+  /// rigid-body wrench, without air.
   /// `ok`. `limited`: the policy limited, or the sum was desaturated. `fell_back`: the policy fell back, or declined
   /// (feed_forward_status() says why). Any other Status of the controller, and `output_not_finite`: the commands are
   /// untouched.
