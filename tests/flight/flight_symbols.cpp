@@ -5,6 +5,7 @@
 #include <pinnquad/flight.hpp>
 
 #include "../support/described_model.hpp"
+#include "../support/hover.hpp"
 #include "../support/small_model.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/inference/self_test.hpp"
@@ -348,7 +349,7 @@ unsigned char pinnquad_flight_track_hover(float* rmse_m) {
   pinnquad::HoverTrim<float> trim;
   const Status status = pinnquad::hover_trim(everything<float>(), Vector3<float>(0.0F, 0.0F, -5.0F), trim);
   if (status != Status::ok) return static_cast<unsigned char>(status);
-  return fly(pinnquad::Hover<float>{}, trim, rmse_m);
+  return fly(pinnquad::test::Hover<float>{}, trim, rmse_m);
 }
 
 unsigned char pinnquad_flight_pilot_loop(const float* state, const float* wanted, float* demand) {

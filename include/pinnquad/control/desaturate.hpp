@@ -118,10 +118,10 @@ TorqueShares<Scalar> shares_that_fit(const ThrustRoom<Scalar>& room, const Thrus
 
 }  // namespace detail
 
-/// Commands within the range, with the torque of those given as far as it can be had; of rotors that may differ, sit
-/// anywhere and have curves. Gives way in this order: thrust, then yaw torque, then roll and pitch torque by one share,
-/// so that their direction stays. No torque is greater than asked or of the other sign. Commands within the range stay,
-/// to the bit. A rotor that has no part in pure thrust is clipped. NaN passes through.
+/// Commands within the range that keep the given torque as far as they can; rotors may differ, sit anywhere and have
+/// curves. Thrust gives way first, then yaw torque, then roll and pitch torque by one share, so that their direction
+/// stays. No torque is greater than asked or of the other sign. Commands within the range stay, to the bit. A rotor
+/// that has no part in pure thrust is clipped. NaN passes through.
 template <class Scalar>
 Commands<Scalar> desaturate(const Rotors<Scalar>& rotors, const Commands<Scalar>& commands,
                             const CommandRange<Scalar>& range = {}) noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trajectory tracking: commands = feed-forward of the reference motion + allocation of the feedback.
-// The feedback law is the same whatever the feed-forward policy, so that policies can be compared. It flies where the
-// policy has no answer too.
+// The feedback law does not depend on the feed-forward policy, so that policies can be compared. It flies where the policy
+// declines too.
 #pragma once
 
 #include "pinnquad/control/desaturate.hpp"
@@ -18,7 +18,7 @@ class TrackingController {
   static_assert(is_feed_forward<FeedForward, Scalar>,
                 "pinnquad: this type is no feed-forward policy; time is a std::uint64_t of microseconds "
                 "(control/feed_forward.hpp)");
-  static_assert(is_noexcept_feed_forward<FeedForward, Scalar>,
+  static_assert(!is_feed_forward<FeedForward, Scalar> || is_detected<detail::NoexceptFeedForward, FeedForward, Scalar>,
                 "pinnquad: a feed-forward policy flies: its operator() must be noexcept (control/feed_forward.hpp)");
 
  public:

@@ -13,9 +13,10 @@
 #include <type_traits>
 #include <vector>
 
+#include <model.hpp>  // the exported one, by the configuration
+
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
-#include "model.hpp"
 #include "pinnquad/flight.hpp"
 #include "pinnquad/io/regular_file.hpp"
 #include "pinnquad/simulation/tracking.hpp"
