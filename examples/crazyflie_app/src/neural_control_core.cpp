@@ -14,7 +14,7 @@
 #include "model.hpp"
 using FlownModel = TrainedQuadModel;
 #else
-#include "models/crazyflie_2_1.hpp"
+#include "../../models/crazyflie_2_1.hpp"
 using FlownModel = CrazyflieModel;
 #endif
 #if __has_include("flown_vehicle.hpp")
