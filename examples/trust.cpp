@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Limits of trust. A monotone model is fitted to a calm flight, limits of distance and command residual to others; then it
-// meets calm flights, wind, gusts, a payload and another controller that neither has seen. Prints false alarms, and how
-// well envelope, distance and command residual tell the rows on which the model errs three times as much as usual.
+// Limits of trust. A monotone model is fitted to a calm flight, limits of distance and command residual to others; then
+// it meets calm flights, wind, gusts, a payload and another controller that neither has seen. Prints false alarms, and
+// how well envelope, distance and command residual tell the rows on which the model errs three times as much as usual.
 // `trust short` flies a few minutes instead of hours.
 #include <cmath>
 #include <cstdio>

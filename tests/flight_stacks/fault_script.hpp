@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes wrong in a flight, when, and the worst that the module may do about it.
+// The faults of a flight, their times, and the worst reaction that the module may have.
 #pragma once
 
 #include <array>

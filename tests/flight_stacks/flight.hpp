@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Software in the loop: a module flies a simulated vehicle through a fault script; what happened is a log and some figures.
+// Software in the loop: a module flies a simulated vehicle through a fault script; what happened is a log and some
+// figures.
 #pragma once
 
 #include <algorithm>
@@ -190,7 +191,7 @@ class FaultyFlight {
     return result;
   }
 
-  /// What the estimator says this tick, faults included.
+  /// The estimator's state of this tick, faults included.
   void feed(long ms, std::uint64_t now_us, const TrajectoryPoint<double>& point) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr double denormal = 1e-41;
@@ -242,7 +243,7 @@ class FaultyFlight {
     last_ = answer;
   }
 
-  /// Whose commands reach the motors: the module's, or the stack's own controller's for a second where it gave up.
+  /// The commands that reach the motors: the module's, or the stack's own controller's for a second where it gave up.
   void choose(const Answer& answer, long ms) {
     if (!own_flies_ && !answer.has_commands) {
       own_flies_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the modules are told to fly: hover, a figure-eight, one place after another.
+// Paths of the modules: hover, a figure-eight, one place after another.
 #pragma once
 
 #include <random>

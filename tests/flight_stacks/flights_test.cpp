@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Both example modules fly their airframe in the simulator, through the fault script: hover, figure-eight, random places.
-// Each flight's log of events is printed and written beside the test program.
+// Both example modules fly their airframe in the simulator, through the fault script: hover, figure-eight, random
+// places. Each flight's log of events is printed and written beside the test program.
 #include <doctest/doctest.h>
 
 #include <fstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a core writes down (pinnquad/control/autopilot/core_record.hpp): the messages have its numbers, a recorded core answers as any other,
-// inputs are there as they came, refused ones too.
+// Records of a core (pinnquad/control/autopilot/core_record.hpp): the messages have its numbers, a recorded core
+// answers as any other, inputs are there as they came, refused ones too.
 #include <doctest/doctest.h>
 
 #include <cstring>

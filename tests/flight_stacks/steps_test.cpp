@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the shared controller does with a far place, a weak battery, the ground and an estimator that moves: flown in the simulator
+// The controller with a far place, a weak battery, the ground and an estimator that moves: flown in the simulator
 // without noise, sample by sample, without a flight stack's messages.
 #include <doctest/doctest.h>
 

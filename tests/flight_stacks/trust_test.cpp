@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Both cores with limits of trust: a vehicle that is another one is noticed and the analytic inverse flies; a calm flight, outages of
-// samples and commands included, is no reason.
+// Both cores with limits of trust: a vehicle that is another one is noticed and the analytic inverse flies; a calm
+// flight, outages of samples and commands included, is no reason.
 #include <doctest/doctest.h>
 
 #include "flight.hpp"

@@ -33,7 +33,7 @@ struct SpeedModel : DemoQuadModel {
 
 /// Float rounding through eleven layers, of a column's largest entry.
 constexpr double float_tolerance = 1e-5;
-/// What the step of the differences leaves.
+/// The error of the differences' step.
 constexpr double double_tolerance = 2.8e-9;
 
 /// `Header` has the numbers of `model`.
@@ -90,8 +90,8 @@ struct Tight {
 };
 using Counts = std::array<int, static_cast<std::size_t>(status_count)>;
 
-/// Under a guard: Status and commands as predict_features() gives them, to the bit; the Jacobian as if the guard left the commands
-/// alone. How often each Status came.
+/// Under a guard: Status and commands as predict_features() gives them, to the bit; the Jacobian as if the guard left
+/// the commands alone. How often each Status came.
 template <class GuardType>
 Counts check_guard(const GuardType& guard = GuardType{}) {
   const InverseDynamics<DemoQuadModel, GuardType> guarded(guard);

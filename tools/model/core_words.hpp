@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a flight stack's controller does, and why, in words; and its settings as its own types have them.
+// A flight stack's controller in words: its reactions and their reasons; and its settings as its own types have them.
 #pragma once
 
 #include <array>
@@ -99,7 +99,8 @@ class CoreWords {
   }
   bool refused(int input) const { return inputs_[static_cast<std::size_t>(input)].refused; }
 
-  /// "attitude is 21 ms old (limit 20 ms); body rates are refused: body_rates_rad_s[0] is NaN"; empty if nothing is stale.
+  /// "attitude is 21 ms old (limit 20 ms); body rates are refused: body_rates_rad_s[0] is NaN"; empty if nothing is
+  /// stale.
   std::string stale(const pinnquad::autopilot::StepReport& report, std::uint64_t now_us) const {
     std::string words;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {

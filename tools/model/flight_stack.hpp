@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) of a model that is known at run time alone, its
-// guard, and an airframe as it has one.
+// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) of a model that is known at run time
+// alone, its guard, and an airframe as it has one.
 #pragma once
 
 #include "airframe/names.hpp"

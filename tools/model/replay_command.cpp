@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs a model over a log, row by row, with the checks and guards that fly; or, where the log has what a flight stack's core
-// received, the core itself, and compares what it answers with what was logged.
+// Runs a model over a log, row by row, with the checks and guards that fly; or, where the log has what a flight stack's
+// core received, the core itself, and compares what it answers with what was logged.
 //   pinnquad replay flight.csv --model my_model/model.hpp
 #include "model/replay_command.hpp"
 
@@ -125,7 +125,7 @@ Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
   return replayed;
 }
 
-/// Which of the models flew in each tick, by checksum; one model alone stands for whatever flew.
+/// The model that flew in each tick, by checksum; one model alone stands for whatever flew.
 class FlownModels {
  public:
   explicit FlownModels(const std::vector<ReplayModel>& models) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) over what it logged: each tick's inputs go in as
-// they came, what it answers is compared with what was logged.
+// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) over what it logged: each tick's
+// inputs go in as they came, what it answers is compared with what was logged.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,8 @@ struct CoreReplayOptions {
   double tolerance = 1e-5;  ///< of a command
 };
 
-/// Runs records of one core, in their order, through controllers of the airframe of `models`, which is the same for all.
+/// Runs records of one core, in their order, through controllers of the airframe of `models`, which is the same for
+/// all.
 class CoreReplay {
  public:
   CoreReplay() = default;
@@ -52,8 +53,8 @@ class CoreReplay {
                           Replayed& replayed) = 0;
 };
 
-/// `models` must stay where they are. Throws std::invalid_argument for a model that no flight stack flies, for some of different
-/// features, for an effect or limits of trust that are not known.
+/// `models` must stay where they are. Throws std::invalid_argument for a model that no flight stack flies, for some of
+/// different features, for an effect or limits of trust that are not known.
 std::unique_ptr<CoreReplay> core_replay(const std::vector<ReplayModel>& models,
                                         const pinnquad::Airframe<float>& airframe, const CoreReplayOptions& options);
 

@@ -42,8 +42,8 @@ constexpr bool looks_back() {
   return false;
 }
 
-/// The inputs of a flight's rows, taken one after the other: what looks back has the history that a control loop has, what looks
-/// ahead the rows behind.
+/// The inputs of a flight's rows, taken one after the other: what looks back has the history that a control loop has,
+/// what looks ahead the rows behind.
 template <class Features, class Scalar, class = void>
 class InputsInFlight {
  public:

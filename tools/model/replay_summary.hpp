@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a replay came to, as its user reads it first: who answered how often, the longest stretch without the model, the first
-// events with their reasons, where commands differ most; and the same as JSON.
+// The summary of a replay, as its user reads it first: the share of each answerer, the longest stretch without the
+// model, the first events with their reasons, where commands differ most; and the same as JSON.
 #pragma once
 
 #include <algorithm>

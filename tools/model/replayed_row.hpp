@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What became of one row of a log, and the words for it.
+// The result of one row of a log, and the words for it.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace programs {
 
-/// Whose commands came out.
+/// The source of the commands.
 enum class Answerer {
   model,
   analytic_inverse,

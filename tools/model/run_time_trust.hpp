@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Limits of trust (docs/trust.md) from the header that `pinnquad train` wrote beside a model, read without a compiler; and a type
-// that holds them, where flying code wants constants.
+// Limits of trust (docs/trust.md) from the header that `pinnquad train` wrote beside a model, read without a compiler;
+// and a type that holds them, where flying code wants constants.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace programs {
 
-/// What trust.hpp holds.
+/// The contents of trust.hpp.
 struct TrustLimits {
   std::string path;
   std::vector<double> mean, whitening;

@@ -8,8 +8,8 @@
 #include "core_log.h"
 #include "pinnquad/control/autopilot/recorded_controller.hpp"
 
-// A model.hpp beside the app, as pinnquad train writes it, takes the place of the one for the Crazyflie 2.1; a flown_vehicle.hpp
-// says which effects the analytic inverse knows, a trust.hpp when the model is not to be trusted.
+// A model.hpp beside the app, as pinnquad train writes it, takes the place of the one for the Crazyflie 2.1; a
+// flown_vehicle.hpp says which effects the analytic inverse knows, a trust.hpp when the model is not to be trusted.
 #if __has_include("model.hpp")
 #include "model.hpp"
 using FlownModel = TrainedQuadModel;

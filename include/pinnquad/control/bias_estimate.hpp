@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bias of a model: the acceleration that a vehicle has besides the one asked for, from a weak battery, a payload, steady
-// wind. Slow and bounded. A controller subtracts it from what it asks for.
+// The bias of a model: the acceleration that a vehicle has besides the one asked for, from a weak battery, a payload,
+// steady wind. Slow and bounded. A controller subtracts it from what it asks for.
 #pragma once
 
 #include "pinnquad/core/finite.hpp"

@@ -26,9 +26,9 @@ struct FlightGains {
   Scalar yaw_rate_1_s = Scalar(8);          ///< the same for yaw
 };
 
-/// Limits of the demand: on the specific force (thrust / mass, NED), on turning, and on the speed of a trajectory's point
-/// and the position error together. Without a speed limit, the default, a vehicle far from its place arrives faster than
-/// it can stop.
+/// Limits of the demand: on the specific force (thrust / mass, NED), on turning, and on the speed of a trajectory's
+/// point and the position error together. Without a speed limit, the default, a vehicle far from its place arrives
+/// faster than it can stop.
 template <class Scalar>
 struct FlightLimits {
   Scalar max_tilt_rad = Scalar(0.85);  ///< of the thrust wanted, 49 degrees
@@ -45,8 +45,8 @@ struct FlightLimits {
 
 namespace detail {
 
-/// Thrust without torque over weight, and the greatest angular acceleration about each axis, no rotor moved by more than
-/// hover leaves it.
+/// Thrust without torque over weight, and the greatest angular acceleration about each axis, no rotor moved by more
+/// than hover leaves it.
 template <class Scalar>
 struct Authority {
   Scalar thrust_to_weight{0};
@@ -95,8 +95,8 @@ Authority<Scalar> authority(const Airframe<Scalar>& airframe, Scalar rotor_scale
 
 }  // namespace detail
 
-/// The default limits, lowered to the airframe's at a thrust scale (Quadrotor::rotor_scale): 97 % of the thrust at which
-/// the first rotor is at its end; 55 % of the horizontal acceleration that this leaves in level flight; angular
+/// The default limits, lowered to the airframe's at a thrust scale (Quadrotor::rotor_scale): 97 % of the thrust at
+/// which the first rotor is at its end; 55 % of the horizontal acceleration that this leaves in level flight; angular
 /// accelerations that move a rotor by 60 % (roll, pitch) and 40 % (yaw) of what hover leaves it; body rates that the
 /// attitude loop can stop.
 template <class Scalar>
@@ -202,8 +202,8 @@ class FlightController {
     return Status::ok;
   }
 
-  /// The velocity (NED) that closes a position error e: the point's velocity plus k e, k = position_1_s. Under a speed limit
-  /// no more than 0.4 of the acceleration limit a can brake: sqrt(2 a (e - a / (2 k^2))) beyond e = a / k^2.
+  /// The velocity (NED) that closes a position error e: the point's velocity plus k e, k = position_1_s. Under a speed
+  /// limit no more than 0.4 of the acceleration limit a can brake: sqrt(2 a (e - a / (2 k^2))) beyond e = a / k^2.
   Vector3<Scalar> wanted_velocity(const Vector3<Scalar>& reference_m_s, const Vector3<Scalar>& error_m) const noexcept {
     using std::sqrt;
     Vector3<Scalar> approach = error_m * gains_.position_1_s;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trajectory tracking: commands = feed-forward of the reference motion + allocation of the feedback.
-// The feedback law does not depend on the feed-forward policy, so that policies can be compared. It flies where the policy
-// declines too.
+// The feedback law does not depend on the feed-forward policy, so that policies can be compared. It flies where the
+// policy declines too.
 #pragma once
 
 #include "pinnquad/control/desaturate.hpp"

@@ -77,8 +77,8 @@ TrajectoryPoint<Scalar> assembled(const Vector3<Scalar>& center_m, const Derivat
 
 }  // namespace detail
 
-/// A lying eight: center + (length sin p, width sin 2p, height sin p), p = detail::smooth_phase(). Starts at rest in its center.
-/// Highest speed in the crossing: 2 pi / period sqrt(length^2 + 4 width^2 + height^2); 4.8 m/s by default.
+/// A lying eight: center + (length sin p, width sin 2p, height sin p), p = detail::smooth_phase(). Starts at rest in
+/// its center. Highest speed in the crossing: 2 pi / period sqrt(length^2 + 4 width^2 + height^2); 4.8 m/s by default.
 template <class Scalar>
 struct FigureEight {
   Vector3<Scalar> center_m = Vector3<Scalar>::Zero();  ///< NED
