@@ -94,6 +94,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
                                         pinnquad::ModelBlockLayout<Model>::most_record_bytes();
 
   void Run() override;
+  pinnquad::autopilot::ControllerSettings controller_settings() const;
   pinnquad_px4::StickSpeeds stick_speeds() const;
   /// Reads, opens and tests a model; the one that flies stays where it is. Of the shell's thread.
   pinnquad::Status load_model(const char* path);

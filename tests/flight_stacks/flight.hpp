@@ -50,7 +50,7 @@ class FaultyFlight {
   static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20;
 
   explicit FaultyFlight(const AgeLimits& ages = {})
-      : stack_(ages),
+      : stack_(ControllerSettings{ages}),
         vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), pinnquad::paper_site<double>()),
         own_({}, pinnquad::flight_limits(vehicle_.airframe(), 1.0)) {}
 

@@ -177,7 +177,8 @@ Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, con
   programs::CoreReplayOptions of_core{input.settings, {}, options.tolerance};
   const Airframe<float> airframe = programs::flying_airframe(models.front().identity.airframe);
   if (!input.has_settings) {
-    of_core.settings = programs::FlightStackController(airframe).settings();
+    using Core = programs::FlightStackController;
+    of_core.settings = Core(Core::Vehicle(airframe)).settings();
     replayed.notes.push_back("the log has no topic pinnquad_settings: a core's own limits and gains are taken");
   }
   for (const std::string& setting : options.settings) apply_setting(setting, of_core.settings);

@@ -140,9 +140,7 @@ class CoreReplayOf : public CoreReplay {
   static pinnquad::Vector3<float> vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
   void restart() {
-    controller_.emplace(vehicle_, age_limits(options_.settings), output_limits(options_.settings),
-                        flight_gains(options_.settings), speed_limits(options_.settings),
-                        bias_settings(options_.settings));
+    controller_.emplace(vehicle_, pinnquad::autopilot::controller_settings(options_.settings));
     flown_.reset();
     words_.forget();
     refused_base_ = 0;

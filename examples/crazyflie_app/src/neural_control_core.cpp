@@ -41,9 +41,10 @@ Control* made = nullptr;
 /// Made by the first call, which must have returned before another thread calls; the firmware may run no constructors.
 Control& controller(float most_command = 1.0f) noexcept {
   if (made == nullptr) {
-    pinnquad::autopilot::OutputLimits outputs;
-    if (most_command < outputs.upper && most_command > outputs.lower) outputs.upper = most_command;
-    made = new (memory) Control(pinnquad::autopilot::AgeLimits{}, outputs);
+    pinnquad::autopilot::ControllerSettings settings;
+    auto& [lower, upper] = settings.outputs;
+    if (most_command < upper && most_command > lower) upper = most_command;
+    made = new (memory) Control(settings);
   }
   return *made;
 }

@@ -44,27 +44,19 @@ class NeuralController {
       "this controller is given no altitude above ground and no extra column: it flies models that ask for the "
       "motion alone (pinnquad train --altitude no)");
 
-  explicit NeuralController(const AgeLimits& ages = {}, const OutputLimits& outputs = {},
-                            const FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
-                            const BiasSettings<float>& bias = {}) noexcept
-      : NeuralController(airframe_value<typename Shape::Vehicle, float>(), ages, outputs, gains, speeds, bias) {}
-  /// For an airframe that is known at run time alone.
-  explicit NeuralController(const Airframe<float>& airframe, const AgeLimits& ages = {},
-                            const OutputLimits& outputs = {}, const FlightGains<float>& gains = {},
-                            const SpeedLimits& speeds = {}, const BiasSettings<float>& bias = {}) noexcept
-      : NeuralController(Vehicle(airframe), ages, outputs, gains, speeds, bias) {}
-  /// For a vehicle whose effects have values of their own.
-  explicit NeuralController(const Vehicle& vehicle, const AgeLimits& ages = {}, const OutputLimits& outputs = {},
-                            const FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
-                            const BiasSettings<float>& bias = {}) noexcept
-      : ages_(ages),
-        outputs_(outputs),
+  explicit NeuralController(const ControllerSettings& settings = {}) noexcept
+      : NeuralController(Vehicle(airframe_value<typename Shape::Vehicle, float>()), settings) {}
+  /// For an airframe that is known at run time alone, or effects with values of their own.
+  explicit NeuralController(const Vehicle& vehicle, const ControllerSettings& settings = {}) noexcept
+      : ages_(settings.ages),
+        outputs_(settings.outputs),
         vehicle_(vehicle),
         analytic_(vehicle_),
-        outer_loop_(gains, flown_limits(vehicle_.airframe(), gains, speeds), vehicle_.site().gravity_m_s2),
+        outer_loop_(settings.gains, flown_limits(vehicle_.airframe(), settings.gains, settings.speeds),
+                    vehicle_.site().gravity_m_s2),
         models_(NetworkGuard{}),
-        bias_(bias),
-        take_off_(speeds.take_off_s),
+        bias_(settings.bias),
+        take_off_(settings.speeds.take_off_s),
         trust_(vehicle_.airframe().rise_time_constant_s(0)) {}
   NeuralController(const NeuralController&) = delete;  // slots are pointed to
   NeuralController& operator=(const NeuralController&) = delete;
@@ -194,8 +186,14 @@ class NeuralController {
 
   /// The settings that it was made with.
   CoreSettings settings() const noexcept {
-    CoreSettings all = core_settings(ages_, outputs_, outer_loop_, take_off_, bias_);
-    add_effects(flown_effects(vehicle_), all);
+    const FlightLimits<float>& limits = outer_loop_.limits();
+    CoreSettings all = core_settings(
+        {ages_,
+         outputs_,
+         outer_loop_.gains(),
+         {limits.max_horizontal_speed_m_s, limits.max_climb_m_s, limits.max_descent_m_s, take_off_.duration_s()},
+         bias_.settings()},
+        flown_effects(vehicle_));
     if constexpr (trusts) {
       all.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
       all.innovation_limit = static_cast<float>(CommandResidualMonitor<Trust>::Limits::command_residual_limit);
