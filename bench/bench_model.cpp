@@ -37,8 +37,8 @@ constexpr std::array<float, 136> any_factor() {
 struct Trust {
   static constexpr std::array<float, 16> distribution_mean{};
   static constexpr std::array<float, 136> whitening = any_factor();
-  static constexpr double distance_limit = 1e6;
-  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+  static constexpr double squared_distance_limit = 1e6;
+  static constexpr double command_residual_factor = 0.2, command_residual_limit = 0.05, command_residual_cleared = 0.02;
 };
 using Measuring = Extend<TrainingGuard, JointDistance<Trust>>;
 

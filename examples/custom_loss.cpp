@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A loss of one's own, in the paper's loss beside local monotonicity: commands of the four rotors should stay close to their mean.
-// No header of the library is touched; the trainer takes it because it has evaluate().
+// A loss of one's own, in the paper's loss beside local monotonicity: commands of the four rotors should stay close to
+// their mean. No header of the library is touched; the trainer takes it because it has evaluate().
 #include <cstdio>
 #include <memory>
 #include <random>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A new model while the vehicle flies: the control thread never waits, locks or allocates; another thread opens a model
-// block in the slot that is not in use, tests it, and publishes it with one atomic pointer (pinnquad/control/autopilot/model_slots.hpp).
+// block in the slot that is not in use, tests it, and publishes it with one atomic pointer
+// (pinnquad/control/autopilot/model_slots.hpp).
 //   exit code 0: every prediction was that of one whole model, all good blocks flew, no bad one did
 #include <atomic>
 #include <chrono>
@@ -54,7 +55,7 @@ Answers answers_of(const std::vector<unsigned char>& block) {
   return answers;
 }
 
-/// What the control thread counts; read when it has ended.
+/// Counts of the control thread; read when it has ended.
 struct Counts {
   unsigned long ticks = 0, of_a = 0, of_b = 0, of_neither = 0, declined = 0;
   std::atomic<bool> over{false};

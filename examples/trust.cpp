@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// When is a model not to be trusted? A monotone model is fitted to a calm flight, limits of distance and innovation to
-// others; then it meets calm flights, wind, gusts, a payload and another controller that neither has seen. Prints false
-// alarms, and how well envelope, distance and innovation tell the rows on which the model errs three times as much as
-// usual. `trust short` flies a few minutes instead of hours.
+// Limits of trust. A monotone model is fitted to a calm flight, limits of distance and command residual to others; then
+// it meets calm flights, wind, gusts, a payload and another controller that neither has seen. Prints false alarms, and
+// how well envelope, distance and command residual tell the rows on which the model errs three times as much as usual.
+// `trust short` flies a few minutes instead of hours.
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -71,14 +71,14 @@ Calm calm(double mass_share = 1) {
 
 /// Scores of rows, one after the other; greater is worse.
 struct Scores {
-  std::vector<double> errors, envelope, distance, innovation, both;
+  std::vector<double> errors, envelope, distance, residual, both;
 
   void add(const Scores& other) {
     const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
     append(errors, other.errors);
     append(envelope, other.envelope);
     append(distance, other.distance);
-    append(innovation, other.innovation);
+    append(residual, other.residual);
     append(both, other.both);
   }
 };
@@ -94,18 +94,18 @@ double excess(const Model& model, const Model::FeatureVector& x) {
   return worst;
 }
 
-/// The innovation of a row is that of the rows before it: what is known when the row is asked for.
+/// The command residual of a row is that of the rows before it: all that is known when the row is asked for.
 Scores scored(const Model& model, const FittedTrust<PhysicsFeatures::size>& trust, const Flight& flight) {
   const RowSet rows(flight, {0, flight.size()});
   const TrustSeries series = trust_series(model, trust.distribution, rows);
-  const std::vector<double> means = innovation_means(series.errors, trust.innovation_factor);
+  const std::vector<double> means = command_residual_means(series.errors, trust.command_residual_factor);
   Scores scores;
   scores.errors = series.errors;
   for (std::size_t row = 0; row < flight.size(); ++row) {
     scores.envelope.push_back(excess(model, sample_features<PhysicsFeatures, float>(flight[row])));
-    scores.distance.push_back(series.squared_distances[row] / trust.distance_limit);
-    scores.innovation.push_back((row == 0 ? 0.0 : means[row - 1]) / trust.innovation_limit);
-    scores.both.push_back(std::fmax(std::sqrt(scores.distance.back()), scores.innovation.back()));
+    scores.distance.push_back(series.squared_distances[row] / trust.squared_distance_limit);
+    scores.residual.push_back((row == 0 ? 0.0 : means[row - 1]) / trust.command_residual_limit);
+    scores.both.push_back(std::fmax(std::sqrt(scores.distance.back()), scores.residual.back()));
   }
   return scores;
 }
@@ -169,8 +169,8 @@ int main(int argc, char** argv) {
   RowSet validating;
   for (const Flight& flight : validation) validating.add(flight, {0, flight.size()});
   const auto trust = fit_trust(model, train, validating);
-  std::printf("limits: squared distance %.1f, innovation %.4f, cleared %.4f\n", trust.distance_limit,
-              trust.innovation_limit, trust.innovation_cleared);
+  std::printf("limits: squared distance %.1f, command residual %.4f, cleared %.4f\n", trust.squared_distance_limit,
+              trust.command_residual_limit, trust.command_residual_cleared);
 
   const auto judged = [&](const auto& fly_one) {
     Scores all;
@@ -185,15 +185,15 @@ int main(int argc, char** argv) {
   const double usual = mean_of(quiet.errors);
   const double minutes = static_cast<double>(quiet.errors.size()) * 0.05 / 60;
   std::printf(
-      "unseen calm flights: %.1f min, mean error %.2fe-3; false alarms: envelope %d, distance %d, innovation %d, "
+      "unseen calm flights: %.1f min, mean error %.2fe-3; false alarms: envelope %d, distance %d, command residual %d, "
       "either of the last two %d\n",
-      minutes, 1e3 * usual, alarms(quiet.envelope, 0), alarms(quiet.distance, 1), alarms(quiet.innovation, 1),
+      minutes, 1e3 * usual, alarms(quiet.envelope, 0), alarms(quiet.distance, 1), alarms(quiet.residual, 1),
       alarms(quiet.both, 1));
 
   std::printf(
-      "\n| flights | mean error, 1e-3 | rows above 3 x the usual | AUROC: envelope | distance | innovation | both | "
+      "\n| flights | mean error, 1e-3 | rows above 3 x the usual | AUROC: envelope | distance | residual | both | "
       "without "
-      "calm rows: distance | innovation | refused of these rows: distance | innovation | either |\n"
+      "calm rows: distance | residual | refused of these rows: distance | residual | either |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   const auto line = [&](const char* name, const Scores& there) {
     Scores with = there;
@@ -201,9 +201,9 @@ int main(int argc, char** argv) {
     const auto bad = above(with.errors, 3 * usual), bad_there = above(there.errors, 3 * usual);
     std::printf("| %s | %.1f | %.0f %% | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.0f %% | %.0f %% | %.0f %% |\n",
                 name, 1e3 * mean_of(there.errors), 100 * share(bad_there), auroc(with.envelope, bad),
-                auroc(with.distance, bad), auroc(with.innovation, bad), auroc(with.both, bad),
-                auroc(there.distance, bad_there), auroc(there.innovation, bad_there),
-                100 * caught(there.distance, bad_there), 100 * caught(there.innovation, bad_there),
+                auroc(with.distance, bad), auroc(with.residual, bad), auroc(with.both, bad),
+                auroc(there.distance, bad_there), auroc(there.residual, bad_there),
+                100 * caught(there.distance, bad_there), 100 * caught(there.residual, bad_there),
                 100 * caught(there.both, bad_there));
   };
   line("wind 3 m/s", judged([&](unsigned seed) { return in_wind(3, seed, scale.rows); }));

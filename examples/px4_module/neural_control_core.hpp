@@ -95,7 +95,7 @@ BodySetpoints body_setpoints(const ActuatorMotors& motors, const pinnquad::Airfr
   return all;
 }
 
-/// What the module says of itself (msg/PinnquadStatus.msg).
+/// The module's report (msg/PinnquadStatus.msg).
 struct PinnquadStatus {
   std::uint64_t timestamp{0};
   std::uint32_t inference_time_us{0};  ///< of the step, outer loop and inverse
@@ -110,7 +110,7 @@ struct PinnquadStatus {
   std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point
 };
 
-/// `Model` is an exported header; the weights come as a model block. `Controller`: one that writes down what it is told
+/// `Model` is an exported header; the weights come as a model block. `Controller`: one that records its inputs
 /// (pinnquad/control/autopilot/recorded_controller.hpp), where the module logs it.
 template <class Model, class Controller = pinnquad::autopilot::NeuralController<Model>>
 class NeuralControl {
@@ -139,8 +139,8 @@ class NeuralControl {
   pinnquad::Status take(const VehicleAttitude& m) noexcept {
     return controller_.attitude(m.timestamp_sample, {m.q[0], m.q[1], m.q[2], m.q[3]});
   }
-  /// `out_of_range` where the estimator itself calls a part of it invalid. Before the set point of the same tick: what was asked
-  /// for before a reset moves with it.
+  /// `out_of_range` where the estimator itself calls a part of it invalid. Before the set point of the same tick: what
+  /// was asked for before a reset moves with it.
   pinnquad::Status take(const VehicleLocalPosition& m) noexcept {
     take_resets(m);
     if (!(m.xy_valid && m.z_valid && m.v_xy_valid && m.v_z_valid)) return pinnquad::Status::out_of_range;
@@ -164,10 +164,11 @@ class NeuralControl {
     return controller_.set_point(m.timestamp, wanted);
   }
 
-  /// Whose the motors are, and whether the vehicle stands (vehicle_status, vehicle_land_detected).
+  /// The motors' owner, and whether the vehicle stands (vehicle_status, vehicle_land_detected).
   void situation(const pinnquad::autopilot::Situation& now) noexcept { controller_.situation(now); }
 
-  /// Before the first run(): what makes PX4's controls of the model's commands. The controller's output limits are thrusts, too.
+  /// Before the first run(): what makes PX4's controls of the model's commands. The controller's output limits are
+  /// thrusts, too.
   void propulsion(const Propulsion& propulsion) noexcept { propulsion_ = propulsion; }
 
   /// battery_status.scale, where the parameter asks for it.

@@ -64,19 +64,25 @@ PinnquadControl::PinnquadControl()
     : ModuleParams(nullptr),
       ScheduledWorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl),
       _propulsion(_param_air_density.get(), _param_curve.get(), px4_parameter("THR_MDL_FAC", 0.0f)),
-      _core(&clock_us,
-            pinnquad::autopilot::AgeLimits{static_cast<uint64_t>(_param_age_rates.get()) * 1000,
-                                           static_cast<uint64_t>(_param_age_attitude.get()) * 1000,
-                                           static_cast<uint64_t>(_param_age_position.get()) * 1000,
-                                           static_cast<uint64_t>(_param_age_setpoint.get()) * 1000},
-            pinnquad::autopilot::OutputLimits{_propulsion.thrust(_param_out_min.get()), _propulsion.thrust(1.0f)},
-            pinnquad::FlightGains<float>{_param_gain_position.get(), _param_gain_velocity.get(), _param_gain_tilt.get(),
-                                         _param_gain_yaw.get(), _param_gain_rate.get(), _param_gain_yaw_rate.get()},
-            pinnquad::autopilot::SpeedLimits{_param_speed_horizontal.get(), _param_speed_up.get(),
-                                             _param_speed_down.get(), _param_take_off.get()},
-            pinnquad::BiasSettings<float>{_param_bias_bandwidth.get(), _param_bias_most.get()}),
+      _core(&clock_us, controller_settings()),
       _source(stick_speeds()) {
   _core.propulsion(_propulsion);
+}
+
+pinnquad::autopilot::ControllerSettings PinnquadControl::controller_settings() const {
+  const auto us = [](int32_t time_ms) { return static_cast<uint64_t>(time_ms) * 1000; };
+  pinnquad::autopilot::ControllerSettings settings;
+  settings.ages.body_rates_us = us(_param_age_rates.get());
+  settings.ages.attitude_us = us(_param_age_attitude.get());
+  settings.ages.local_us = us(_param_age_position.get());
+  settings.ages.set_point_us = us(_param_age_setpoint.get());
+  settings.outputs = {_propulsion.thrust(_param_out_min.get()), _propulsion.thrust(1.0f)};
+  settings.gains = {_param_gain_position.get(), _param_gain_velocity.get(), _param_gain_tilt.get(),
+                    _param_gain_yaw.get(),      _param_gain_rate.get(),     _param_gain_yaw_rate.get()};
+  settings.speeds = {_param_speed_horizontal.get(), _param_speed_up.get(), _param_speed_down.get(),
+                     _param_take_off.get()};
+  settings.bias = {_param_bias_bandwidth.get(), _param_bias_most.get()};
+  return settings;
 }
 
 pinnquad_px4::StickSpeeds PinnquadControl::stick_speeds() const {

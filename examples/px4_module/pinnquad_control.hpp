@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The glue between PX4 and neural_control_core.hpp: topics, parameters, mode registration, the model's file. Compiled and run here
-// against a small uORB of ours (tests/flight_stacks/px4); see README.md.
+// The glue between PX4 and neural_control_core.hpp: topics, parameters, mode registration, the model's file. Compiled
+// and run here against a small uORB of ours (tests/flight_stacks/px4); see README.md.
 #pragma once
 
 #include <drivers/drv_hrt.h>
@@ -46,9 +46,9 @@
 #include "set_point_source.hpp"
 #include "takeover.hpp"
 
-// Beside model.hpp there may be one that says which effects the formula knows: using FlownVehicle =
-// pinnquad::Quadrotor<float, ...>. CMakeLists.txt says whether there is: a compiler's cache does not look for files that
-// were not there.
+// Beside model.hpp there may be a header with the analytic inverse's effects: using FlownVehicle =
+// pinnquad::Quadrotor<float, ...>. CMakeLists.txt says whether there is: a compiler's cache does not look for files
+// that were not there.
 #if PINNQUAD_FLOWN_VEHICLE
 #include "flown_vehicle.hpp"
 #else
@@ -94,10 +94,11 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
                                         pinnquad::ModelBlockLayout<Model>::most_record_bytes();
 
   void Run() override;
+  pinnquad::autopilot::ControllerSettings controller_settings() const;
   pinnquad_px4::StickSpeeds stick_speeds() const;
   /// Reads, opens and tests a model; the one that flies stays where it is. Of the shell's thread.
   pinnquad::Status load_model(const char* path);
-  /// Who has the motors, whether the vehicle stands, what other modes need.
+  /// The motors' owner, the land detector, and the needs of other modes.
   void read_vehicle();
   /// Registers the mode, and again until PX4 says yes; once more if it has dropped it.
   void keep_registered();
@@ -119,9 +120,9 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   void take_set_point();
   void publish(const pinnquad_px4::ActuatorMotors& motors);
   void publish(const pinnquad_px4::PinnquadStatus& status);
-  /// What the core received and answered in this tick, for pinnquad replay.
+  /// The record of this tick, for pinnquad replay.
   void publish_record();
-  /// What it was made with, where a log that begins later finds it too.
+  /// The settings, where a log that begins later finds them too.
   void publish_settings();
   void ask_for_takeover();
   void unregister_mode();
@@ -143,8 +144,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   uORB::Subscription _configured_sub{ORB_ID(setpoint_config_reply)};
 #endif
 
-  /// Outlive the module and are never destroyed: a destroyed publication takes its topic from under its readers. The motors'
-  /// outputs would freeze, and the commander would not hear that the mode is unregistered.
+  /// Outlive the module and are never destroyed: a destroyed publication takes its topic from under its readers. The
+  /// motors' outputs would freeze, and the commander would not hear that the mode is unregistered.
   struct Publications {
     uORB::Publication<actuator_motors_s> actuator_motors{ORB_ID(actuator_motors)};
     uORB::Publication<vehicle_thrust_setpoint_s> thrust{ORB_ID(vehicle_thrust_setpoint)};
@@ -214,7 +215,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   bool _said_no_commands{false};
   orb_advert_t _ground_station{nullptr};
   bool _configured{false};   ///< PX4 has said so since the mode was selected
-  bool _has_commands{true};  ///< what the next arming check is told
+  bool _has_commands{true};  ///< the next arming check's answer
   int8_t _arming_check_id{-1};
   int8_t _mode_id{-1};
 };

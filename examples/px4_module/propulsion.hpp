@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Between the model's commands, thrust over the greatest at the rated air density, and PX4's motor controls. Pure C++17.
+// Between the model's commands, thrust over the greatest at the rated air density, and PX4's motor controls. Pure
+// C++17.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 
 namespace pinnquad_px4 {
 
-/// PX4 makes a motor's signal s of its control: control = k s^2 + (1 - k) s, k its THR_MDL_FAC. Where the propulsion is another
-/// curve than that, or the air another than the rated, the control for a thrust is another too.
+/// PX4 makes a motor's signal s of its control: control = k s^2 + (1 - k) s, k its THR_MDL_FAC. Where the propulsion is
+/// another curve than that, or the air another than the rated, the control for a thrust is another too.
 class Propulsion {
  public:
   Propulsion() = default;
@@ -26,8 +27,8 @@ class Propulsion {
     if (pinnquad::detail::equal(curve_, px4_curve_)) return there;
     return pinnquad::thrust_fraction(px4_curve_, pinnquad::command_of_fraction(curve_, there));
   }
-  /// The controls of the rotors' thrusts: times the battery's scale, as PX4's rate controller has it; what does not fit below 1
-  /// gives way as thrust, the same for all, so that the torque stays.
+  /// The controls of the rotors' thrusts: times the battery's scale, as PX4's rate controller has it; what does not fit
+  /// below 1 gives way as thrust, the same for all, so that the torque stays.
   template <class Thrusts, std::size_t Count>
   void controls(const Thrusts& thrusts, float (&controls)[Count]) const noexcept {
     float most = 0;

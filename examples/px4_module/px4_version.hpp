@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where PX4's branches differ. v1.16: ModuleBase is a template of the module, a mode is configured by a vehicle_control_mode on
-// config_control_setpoints. Later: ModuleBase is a class with a descriptor of each module, a mode asks for a kind of set point by
-// setpoint_config.
+// Where PX4's branches differ. v1.16: ModuleBase is a template of the module, a mode is configured by a
+// vehicle_control_mode on config_control_setpoints. Later: ModuleBase is a class with a descriptor of each module, a
+// mode asks for a kind of set point by setpoint_config.
 #pragma once
 
 #include <px4_platform_common/module.h>
@@ -22,8 +22,8 @@
 
 namespace pinnquad_px4 {
 
-/// What the shell knows of a module, under one set of names. `Module` has the static functions task_spawn, custom_command and
-/// print_usage.
+/// The shell's view of a module, under one set of names. `Module` has the static functions task_spawn, custom_command
+/// and print_usage.
 #if PINNQUAD_PX4_MODULE_DESCRIPTOR
 template <class Module>
 class ShellModule : public ModuleBase {

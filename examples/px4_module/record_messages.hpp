@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a core wrote down (pinnquad/control/autopilot/core_record.hpp) as messages of PX4: same names, same order, other types.
+// A core's record (pinnquad/control/autopilot/core_record.hpp) as messages of PX4: same names, same order, other types.
 #pragma once
 
 #include <string.h>

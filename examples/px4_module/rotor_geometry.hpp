@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PX4's rotors (CA_ROTOR*) beside those of the airframe that the model was compiled for. Pure C++17; the glue reads the parameters.
+// PX4's rotors (CA_ROTOR*) beside those of the airframe that the model was compiled for. Pure C++17; the glue reads the
+// parameters.
 #pragma once
 
 #include <cmath>
@@ -23,7 +24,7 @@ struct CaGeometry {
 
 enum class GeometryFault { none, count, place, spin };
 
-/// What does not fit, and the first rotor that it is about.
+/// A parameter that does not fit, and the first rotor that it is about.
 struct GeometryCheck {
   GeometryFault fault{GeometryFault::none};
   std::size_t rotor{0};
@@ -31,8 +32,9 @@ struct GeometryCheck {
   bool fits() const noexcept { return fault == GeometryFault::none; }
 };
 
-/// Places fit to a tenth of the longest arm, at the scale of the longest arms: PX4's allocation knows no other (its own SIH says
-/// 1 m for arms of 0.2 m). Spins have to agree rotor by rotor: in another order, each would get the command of a neighbour.
+/// Places fit to a tenth of the longest arm, at the scale of the longest arms: PX4's allocation knows no other (its own
+/// SIH says 1 m for arms of 0.2 m). Spins have to agree rotor by rotor: in another order, each would get the command of
+/// a neighbour.
 template <class Scalar>
 GeometryCheck check_geometry(const CaGeometry& px4, const pinnquad::Airframe<Scalar>& airframe) noexcept {
   constexpr Scalar tolerance = Scalar(0.1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where a set point comes from in an external mode, in which none of PX4's own tasks publishes one: a trajectory (from a companion
-// computer), else a place to go to, else the pilot's sticks. Pure C++17. Missions are not followed.
+// Where a set point comes from in an external mode, in which none of PX4's own tasks publishes one: a trajectory (from
+// a companion computer), else a place to go to, else the pilot's sticks. Pure C++17. Missions are not followed.
 #pragma once
 
 #include <cmath>
@@ -36,8 +36,9 @@ struct StickSpeeds {
   float yaw_rate_rad_s = 1.5f;
 };
 
-/// Which one flies, tick by tick. A better source that falls silent leaves the next one to fly after `silence_us`; moved sticks ask
-/// for a velocity along the heading, released ones brake, then nothing is asked for: the controller holds its place.
+/// The source that flies, tick by tick. A better source that falls silent leaves the next one to fly after
+/// `silence_us`; moved sticks ask for a velocity along the heading, released ones brake, then nothing is asked for: the
+/// controller holds its place.
 class SetPointSource {
  public:
   enum class Kind : std::uint8_t { none, trajectory, place, sticks };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whom a module that gives up asks PX4 to let fly instead: the best mode whose needs are met, and the next one where PX4 does not
-// follow. Pure C++17; the glue fills what PX4 says (failsafe_flags).
+// The mode that a module asks PX4 for when it gives up: the best mode whose needs are met, and the next one where PX4
+// does not follow. Pure C++17; the glue fills what PX4 says (failsafe_flags).
 #pragma once
 
 #include <cstdint>

@@ -20,11 +20,15 @@
 #include <variant>
 #include <vector>
 
-#include "airframe/names.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/dynamics/airframes/crazyflie.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/px4_sih.hpp"
+#include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
+#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/simulation/fly.hpp"
 #include "pinnquad/simulation/noisy_recorder.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
@@ -65,9 +69,18 @@ std::vector<std::string> ground_effect_names() {
   return names;
 }
 
+template <class... Vehicles>
+std::array<std::pair<const char*, Airframe<double>>, sizeof...(Vehicles)> named_airframes() {
+  return {{{Vehicles::name, airframe_value<Vehicles, double>()}...}};
+}
+
+/// The library's airframes by name.
+const auto airframes =
+    named_airframes<PaperQuadrotor, ReferenceQuadrotor10, ReferenceQuadrotor15, Crazyflie, Racer5Inch, Px4Sih>();
+
 std::vector<std::string> airframe_names() {
   std::vector<std::string> names;
-  programs::each_airframe([&names](auto tag) { names.emplace_back(decltype(tag)::type::name); });
+  for (const auto& entry : airframes) names.emplace_back(entry.first);
   return names;
 }
 
@@ -92,11 +105,10 @@ const char* name_of(GroundEffectModel model) {
 }
 
 Airframe<double> airframe_named(const std::string& name) {
-  Airframe<double> airframe{};
-  const bool known = programs::with_airframe(
-      name, [&airframe](auto tag) { airframe = airframe_value<typename decltype(tag)::type, double>(); });
-  if (!known) refuse_name("airframe", name, airframe_names());
-  return airframe;
+  for (const auto& [known, airframe] : airframes) {
+    if (name == known) return airframe;
+  }
+  refuse_name("airframe", name, airframe_names());
 }
 
 // ------------------------------------------------------------------------------------------------ arguments

@@ -63,7 +63,7 @@ template <int Size, int Limit>
 struct Distribution {
   static constexpr std::array<float, std::size_t(Size)> distribution_mean{};
   static constexpr std::array<float, std::size_t(Size) * (Size + 1) / 2> whitening{};
-  static constexpr double distance_limit = Limits<0, Limit>::upper;
+  static constexpr double squared_distance_limit = Limits<0, Limit>::upper;
 };
 
 struct Described : test::SmallModel {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The least that a user can do: include what flies, use one name of it, say the version.
+// The least that a user can do: include the flight rooms and an autopilot's core, use one name, say the version.
 #include <cstdio>
+#include <pinnquad/control/autopilot/recorded_controller.hpp>
 #include <pinnquad/flight.hpp>
 #include <pinnquad/version.hpp>
 

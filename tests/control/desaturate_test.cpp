@@ -164,7 +164,8 @@ TEST_CASE("commands within the range stay, to the bit; a floor does not turn the
 namespace {
 
 /// The law once more, from the rotors' ends alone: of all (tilt share, yaw share, thrust step) at which three of the
-/// constraints hold with equality and none is broken, the one with the greatest tilt share, then the greatest yaw share.
+/// constraints hold with equality and none is broken, the one with the greatest tilt share, then the greatest yaw
+/// share.
 struct Best {
   double tilt{-1};
   double yaw{-1};

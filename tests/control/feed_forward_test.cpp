@@ -65,7 +65,8 @@ namespace {
 
 constexpr std::uint64_t hour_us = 3'600'000'000, day_us = 24 * hour_us;
 
-/// Features with a past of 60 ms, which keep the taps' body rates apart: the window, not the model, is what is asked here.
+/// Features with a past of 60 ms, which keep the taps' body rates apart: the window, not the model, is what is asked
+/// here.
 struct Recorder {
   using Scalar = float;
   using Features = Windowed<PaperFeatures, 4, PeriodMicroseconds<20'000>>;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pinnquad/dynamics/airframe.hpp"
+#include "support/hover.hpp"
 
 namespace {
 
@@ -66,7 +67,7 @@ TEST_CASE("body rates are the derivative of the attitude, angular accelerations 
 
 TEST_CASE("hover: level, still, thrust balances gravity") {
   FlatMotion<float> motion;
-  REQUIRE(flat_motion(Hover<float>{}.sample(0.0f), 9.80665f, motion) == Status::ok);
+  REQUIRE(flat_motion(test::Hover<float>{}.sample(0.0f), 9.80665f, motion) == Status::ok);
   CHECK(motion.attitude.w == 1);
   CHECK(motion.body_rates_rad_s.norm() == 0);
   CHECK(motion.angular_acceleration_rad_s2.norm() == 0);
@@ -98,7 +99,7 @@ TEST_CASE("what has no attitude has a Status, and the output is left alone") {
     CHECK(flat_motion(point, gravity, motion) == Status::no_solution);
   }
   SUBCASE("thrust too small to have a direction worth flying") {
-    point.acceleration_m_s2[2] = gravity - 0.1 * flatness_limit<double>;
+    point.acceleration_m_s2[2] = gravity - 0.1 * detail::flatness_limit<double>;
     CHECK(flat_motion(point, gravity, motion) == Status::no_solution);
   }
   SUBCASE("thrust along the horizon, across the heading") {

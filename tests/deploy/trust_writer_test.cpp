@@ -15,10 +15,10 @@ FittedTrust<2> small_trust() {
   FittedTrust<2> trust;
   trust.distribution.mean = {0.5, -2};
   trust.distribution.whitening = {1, 0.25, 0.1};
-  trust.distance_limit = 30.5;
-  trust.innovation_factor = 0.2;
-  trust.innovation_limit = 0.05;
-  trust.innovation_cleared = 0.03;
+  trust.squared_distance_limit = 30.5;
+  trust.command_residual_factor = 0.2;
+  trust.command_residual_limit = 0.05;
+  trust.command_residual_cleared = 0.03;
   trust.update_period_s = 0.05;
   return trust;
 }
@@ -29,11 +29,12 @@ TEST_CASE("the limits stand beside the model as constants of its Scalar") {
   std::ostringstream out;
   write_trust<float>(out, "Model", small_trust(), 0xabcdefu);
   const std::string text = out.str();
-  for (const char* line : {"struct ModelTrust {", "training_data_hash = 0x0000000000abcdef;",
-                           "std::array<float, 2> distribution_mean = {{0.5f, -2.0f}};",
-                           "std::array<float, 3> whitening = {{1.0f, 0.25f, 0.1f}};", "double distance_limit = 30.5;",
-                           "double innovation_factor = 0.2;", "double innovation_limit = 0.05;",
-                           "double innovation_cleared = 0.03;", "double update_period_s = 0.05;"}) {
+  for (const char* line :
+       {"struct ModelTrust {", "training_data_hash = 0x0000000000abcdef;",
+        "std::array<float, 2> distribution_mean = {{0.5f, -2.0f}};",
+        "std::array<float, 3> whitening = {{1.0f, 0.25f, 0.1f}};", "double squared_distance_limit = 30.5;",
+        "double command_residual_factor = 0.2;", "double command_residual_limit = 0.05;",
+        "double command_residual_cleared = 0.03;", "double update_period_s = 0.05;"}) {
     CAPTURE(line);
     CHECK(text.find(line) != std::string::npos);
   }
@@ -46,7 +47,7 @@ TEST_CASE("nothing is written of a name that is none, or of a number that the Sc
   trust.distribution.whitening[1] = 1e39;
   CHECK_THROWS_AS(write_trust<float>(out, "Model", trust, 1), std::invalid_argument);
   trust = small_trust();
-  trust.innovation_limit = std::numeric_limits<double>::quiet_NaN();
+  trust.command_residual_limit = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(write_trust<float>(out, "Model", trust, 1), std::invalid_argument);
   CHECK(out.str().empty());
 }

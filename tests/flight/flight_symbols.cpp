@@ -5,6 +5,7 @@
 #include <pinnquad/flight.hpp>
 
 #include "../support/described_model.hpp"
+#include "../support/hover.hpp"
 #include "../support/small_model.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/inference/self_test.hpp"
@@ -99,8 +100,8 @@ Guarded guarded() noexcept { return Guarded(pinnquad::AnalyticInverse<Everything
 struct Trust {
   static constexpr std::array<float, 16> distribution_mean{};
   static constexpr std::array<float, 136> whitening{1};
-  static constexpr double distance_limit = 100;
-  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+  static constexpr double squared_distance_limit = 100;
+  static constexpr double command_residual_factor = 0.2, command_residual_limit = 0.05, command_residual_cleared = 0.02;
 };
 using Trusting =
     pinnquad::InverseDynamics<SmallModel,
@@ -338,7 +339,7 @@ unsigned char pinnquad_flight_track_hover(float* rmse_m) {
   pinnquad::HoverTrim<float> trim;
   const Status status = pinnquad::hover_trim(everything<float>(), Vector3<float>(0.0F, 0.0F, -5.0F), trim);
   if (status != Status::ok) return static_cast<unsigned char>(status);
-  return fly(pinnquad::Hover<float>{}, trim, rmse_m);
+  return fly(pinnquad::test::Hover<float>{}, trim, rmse_m);
 }
 
 unsigned char pinnquad_flight_pilot_loop(const float* state, const float* wanted, float* demand) {

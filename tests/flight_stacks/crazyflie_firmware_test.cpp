@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The Crazyflie app's own glue (examples/crazyflie_app/src/out_of_tree_controller.c), flown by a stand-in of the firmware's
-// stabilizer loop: time stamps as each estimator sets them, the PID controller's output held between its slower steps, forces
-// clipped motor by motor over the platform's greatest thrust, the supervisor's rule of who is flying.
+// The Crazyflie app's own glue (examples/crazyflie_app/src/out_of_tree_controller.c), flown by a stand-in of the
+// firmware's stabilizer loop: time stamps as each estimator sets them, the PID controller's output held between its
+// slower steps, forces clipped motor by motor over the platform's greatest thrust, the supervisor's rule of who is
+// flying.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -36,8 +37,8 @@ enum class Estimator { kalman, complementary, ukf };
 
 std::uint32_t tick_ms = 0;
 
-/// The firmware calls it flying until 2 s have passed since any motor turned above the idle thrust, which is 0 on this platform. It
-/// looks at the motors 25 times a second.
+/// The firmware calls it flying until 2 s have passed since any motor turned above the idle thrust, which is 0 on this
+/// platform. It looks at the motors 25 times a second.
 struct Supervisor {
   std::uint32_t above_idle_ms = 0;
   bool flying = false;
@@ -72,8 +73,8 @@ void step_pid(Pid& of, control_t* control, const setpoint_t* setpoint, const sta
   control->thrust = setpoint->mode.z == modeDisable ? setpoint->thrust : 30000 + of.integral;
 }
 
-/// What the deck driver writes to a uSD card of the events that config.txt names: a head that says their variables, then each with
-/// its time, then a checksum.
+/// What the deck driver writes to a uSD card of the events that config.txt names: a head that says their variables,
+/// then each with its time, then a checksum.
 class Card {
  public:
   void trigger(const eventtrigger& event) {
@@ -221,7 +222,8 @@ class Firmware {
     const Vector3<double>& w = body_.body.body_rates_rad_s;
     sensors_.gyro = {static_cast<float>(w[0] * deg), static_cast<float>(-w[1] * deg), static_cast<float>(-w[2] * deg)};
   }
-  /// Every estimator's state has noise of its own; Kalman writes at its task's pace, the complementary one at 250 and 100 Hz.
+  /// Every estimator's state has noise of its own; Kalman writes at its task's pace, the complementary one at 250 and
+  /// 100 Hz.
   void estimate() {
     noise_ = 1e-6f * static_cast<float>(tick_ms % 7);
     const bool attitude_now = estimator_ != Estimator::complementary || step_ % 4 == 0;
@@ -239,7 +241,8 @@ class Firmware {
       if (estimator_ == Estimator::ukf) state_.position.timestamp = tick_ms;
     }
   }
-  /// M1 front right, M2 rear right, M3 rear left, M4 front left; pinnquad: front right, rear left, front left, rear right.
+  /// M1 front right, M2 rear right, M3 rear left, M4 front left; pinnquad: front right, rear left, front left, rear
+  /// right.
   void fly() {
     constexpr int motor_of_rotor[4] = {0, 2, 3, 1};
     pinnquad::Commands<double> u{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes wrong in a flight, when, and the worst that the module may do about it.
+// The faults of a flight, their times, and the worst reaction that the module may have.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ enum class FaultKind {
   model_swapped,     ///< for another sound one
   model_corrupt,     ///< offered, with a flipped bit
   model_wrong,       ///< offered, with a weight that is wrong under a right checksum
-  model_too_narrow,  ///< a sound one whose envelope holds hardly any motion: all is the formula's
+  model_too_narrow,  ///< a sound one whose envelope holds hardly any motion: all is the analytic inverse's
   model_soft,        ///< a sound one whose thrust makes 40 % of what is asked beyond hover
   payload,           ///< the vehicle weighs `value` times what it did
   bent_rotor,        ///< rotor 1 makes `value` of its thrust

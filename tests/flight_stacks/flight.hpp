@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Software in the loop: a module flies a simulated vehicle through a fault script; what happened is a log and some figures.
+// Software in the loop: a module flies a simulated vehicle through a fault script; what happened is a log and some
+// figures.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +50,7 @@ class FaultyFlight {
   static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20;
 
   explicit FaultyFlight(const AgeLimits& ages = {})
-      : stack_(ages),
+      : stack_(ControllerSettings{ages}),
         vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), pinnquad::paper_site<double>()),
         own_({}, pinnquad::flight_limits(vehicle_.airframe(), 1.0)) {}
 
@@ -112,12 +113,13 @@ class FaultyFlight {
     figures_.fallback_share = last_.fallback_share;
     figures_.refused_samples = last_.refused_samples;
     char line[200];
-    std::snprintf(line, sizeof line,
-                  "%s; altitude from %.2f m, tilt up to %.1f deg, error up to %.2f m, RMSE %.3f m; formula %.2f %% "
-                  "of the answers, %u samples refused",
-                  figures_.crashed ? "CRASHED" : "in the air", figures_.min_altitude_m,
-                  figures_.max_tilt_rad * pinnquad::degrees_per_radian, figures_.max_error_m, figures_.rmse_m,
-                  100 * static_cast<double>(figures_.fallback_share), figures_.refused_samples);
+    std::snprintf(
+        line, sizeof line,
+        "%s; altitude from %.2f m, tilt up to %.1f deg, error up to %.2f m, RMSE %.3f m; analytic inverse %.2f %% "
+        "of the answers, %u samples refused",
+        figures_.crashed ? "CRASHED" : "in the air", figures_.min_altitude_m,
+        figures_.max_tilt_rad * pinnquad::degrees_per_radian, figures_.max_error_m, figures_.rmse_m,
+        100 * static_cast<double>(figures_.fallback_share), figures_.refused_samples);
     say("end", line);
     return figures_;
   }
@@ -163,7 +165,7 @@ class FaultyFlight {
   void end(const Fault& fault, std::size_t i) {
     say("over", std::string(fault.text) + "; at worst the module " + to_string(figures_.worst[i]) + "; " +
                     std::to_string(figures_.fell_back[i]) + " of " + std::to_string(figures_.asked[i]) +
-                    " answers by the formula");
+                    " answers by the analytic inverse");
     if (fault.kind == FaultKind::payload) weigh(1);
     if (fault.kind == FaultKind::model_swapped || fault.kind == FaultKind::model_too_narrow) offer(sound_);
   }
@@ -189,7 +191,7 @@ class FaultyFlight {
     return result;
   }
 
-  /// What the estimator says this tick, faults included.
+  /// The estimator's state of this tick, faults included.
   void feed(long ms, std::uint64_t now_us, const TrajectoryPoint<double>& point) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr double denormal = 1e-41;
@@ -241,7 +243,7 @@ class FaultyFlight {
     last_ = answer;
   }
 
-  /// Whose commands reach the motors: the module's, or the stack's own controller's for a second where it gave up.
+  /// The commands that reach the motors: the module's, or the stack's own controller's for a second where it gave up.
   void choose(const Answer& answer, long ms) {
     if (!own_flies_ && !answer.has_commands) {
       own_flies_ = true;

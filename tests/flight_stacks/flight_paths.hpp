@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the modules are told to fly: hover, a figure-eight, one place after another.
+// Paths of the modules: hover, a figure-eight, one place after another.
 #pragma once
 
 #include <random>
 #include <vector>
 
+#include "../support/hover.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/simulation/flights.hpp"
 
@@ -12,7 +13,7 @@ namespace pinnquad::autopilot::test {
 
 using pinnquad::TrajectoryPoint;
 
-inline TrajectoryPoint<double> hover(double /*time_s*/) { return pinnquad::Hover<double>{{0, 0, -10}}.sample(0); }
+inline TrajectoryPoint<double> hover(double /*time_s*/) { return pinnquad::test::Hover<double>{{0, 0, -10}}.sample(0); }
 
 /// A lying eight around the start; its length says how fast.
 struct Eight {

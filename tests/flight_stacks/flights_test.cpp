@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Both example modules fly their airframe in the simulator, through the fault script: hover, figure-eight, random places.
-// Each flight's log of events is printed and written beside the test program.
+// Both example modules fly their airframe in the simulator, through the fault script: hover, figure-eight, random
+// places. Each flight's log of events is printed and written beside the test program.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -59,24 +59,26 @@ void through_all_faults(const std::string& path, const Target& target, double fa
   }
 }
 
-/// Without faults: how well it tracks, the network against the formula alone.
+/// Without faults: how well it tracks, the network against the analytic inverse alone.
 template <class Stack, class Target>
 void calm(const std::string& path, const Target& target, double most_rmse_m, float most_fallback_share) {
-  FaultyFlight<Stack> flight, by_formula;
+  FaultyFlight<Stack> flight, by_analytic;
   REQUIRE(flight.boot());
-  REQUIRE(by_formula.boot());
+  REQUIRE(by_analytic.boot());
   const FlightFigures flown = flight.fly(target, calm_duration_s, no_faults);
   const std::array<Fault, 1> narrow = {{{0.5, 100, FaultKind::model_too_narrow, 0, "", Reaction::flies}}};
-  const FlightFigures formula = by_formula.fly(target, calm_duration_s, narrow);
-  std::printf("%s %s without faults: RMSE %.3f m, formula in %.2f %% of the answers; by the formula alone %.3f m\n",
-              Stack::name, path.c_str(), flown.rmse_m, 100 * static_cast<double>(flown.fallback_share), formula.rmse_m);
+  const FlightFigures analytic = by_analytic.fly(target, calm_duration_s, narrow);
+  std::printf(
+      "%s %s without faults: RMSE %.3f m, analytic inverse in %.2f %% of the answers; by the analytic inverse alone "
+      "%.3f m\n",
+      Stack::name, path.c_str(), flown.rmse_m, 100 * static_cast<double>(flown.fallback_share), analytic.rmse_m);
   CHECK_FALSE(flown.crashed);
   CHECK(flown.takeovers == 0);
   CHECK(flown.module_share == 1);
   CHECK(flown.distrusted == 0);
   CHECK(flown.rmse_m < most_rmse_m);
   CHECK(flown.fallback_share <= most_fallback_share);
-  CHECK(formula.fallback_share > 0.97f);
+  CHECK(analytic.fallback_share > 0.97f);
 }
 
 /// A model that is soft in thrust (soft_block) hovers; then the vehicle is 30 % heavier for a while.
@@ -90,21 +92,22 @@ void carries_a_payload() {
   REQUIRE(flight.boot());
   using pinnquad::autopilot::CoreRecord;
   double handed_over_s = 0, taken_back_s = 0, deepest_m = 0, late_error_m = 0;
-  bool by_formula = false;
+  bool by_analytic = false;
   const FlightFigures flown = flight.fly(hover, ends_s, faults, [&](const CoreRecord& tick) {
     const double time_s = 1e-6 * static_cast<double>(tick.timestamp) - 5;
     const bool now = tick.status == static_cast<std::uint8_t>(Status::fell_back) &&
                      tick.cause == static_cast<std::uint8_t>(Status::distrusted);
-    if (now && !by_formula && handed_over_s <= 0) handed_over_s = time_s;
-    if (!now && by_formula) taken_back_s = time_s;
-    by_formula = now;
+    if (now && !by_analytic && handed_over_s <= 0) handed_over_s = time_s;
+    if (!now && by_analytic) taken_back_s = time_s;
+    by_analytic = now;
     const double below_m = static_cast<double>(tick.position_m[2]) + 10;
     deepest_m = std::max(deepest_m, below_m);
     const bool late = (time_s > loaded_s + 6 && time_s < relieved_s) || time_s > relieved_s + 6;
     if (late) late_error_m = std::max(late_error_m, std::abs(below_m));
   });
   std::printf(
-      "%s, 30 %% heavier under a soft model: the formula flies from %.2f s after to %.2f s after the load is gone; "
+      "%s, 30 %% heavier under a soft model: the analytic inverse flies from %.2f s after to %.2f s after the load is "
+      "gone; "
       "%.2f m "
       "too low at worst, %.3f m late\n",
       Stack::name, handed_over_s - loaded_s, taken_back_s - relieved_s, deepest_m, late_error_m);
@@ -113,7 +116,7 @@ void carries_a_payload() {
   CHECK(handed_over_s < loaded_s + 2);
   CHECK(taken_back_s > relieved_s);
   CHECK(taken_back_s < relieved_s + 4);
-  CHECK_FALSE(by_formula);
+  CHECK_FALSE(by_analytic);
   CHECK(deepest_m < 1.5);
   CHECK(late_error_m < 0.1);
 }

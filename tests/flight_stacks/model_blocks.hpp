@@ -68,8 +68,8 @@ Block narrow_block() {
   return pinnquad::model_block(model, {golden}, {});
 }
 
-/// A sound model of PaperFeatures whose thrust makes 40 % of the acceleration asked for along the body's z axis, as one makes that
-/// has seen hardly any.
+/// A sound model of PaperFeatures whose thrust makes 40 % of the acceleration asked for along the body's z axis, as one
+/// makes that has seen hardly any.
 template <class Model>
 Block soft_block() {
   constexpr float share = 0.4f;

@@ -37,7 +37,7 @@ bool pinnquad_flight_px4_run(Core* core, const pinnquad_px4::VehicleAngularVeloc
   return core->run(*motors, *status);
 }
 
-/// A module that logs what it is told.
+/// A module that logs its inputs.
 bool pinnquad_flight_px4_run_recorded(RecordedCore* core, const pinnquad_px4::VehicleAngularVelocity* rates,
                                       const pinnquad_px4::VehicleAttitude* attitude,
                                       const pinnquad_px4::VehicleLocalPosition* local,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// PX4's module, its glue included (examples/px4_module/pinnquad_control.cpp), against a small uORB of ours and a stand-in of what
-// PX4 does around a mode: the commander registers, unregisters, checks, changes modes; the allocator has the motors in PX4's own.
+// PX4's module, its glue included (examples/px4_module/pinnquad_control.cpp), against a small uORB of ours and a
+// stand-in of what PX4 does around a mode: the commander registers, unregisters, checks, changes modes; the allocator
+// has the motors in PX4's own.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Flies a core through the fault script in the simulator and writes what it received and answered, with the models that flew,
-// for `pinnquad replay`.
+// Flies a core through the fault script in the simulator and writes what it received and answered, with the models that
+// flew, for `pinnquad replay`.
 //   flight_stacks_record px4|crazyflie|structured|payload hover|eight|random_places FOLDER
-// `structured`: PX4's core with a structured model, other effects in the formula and limits of trust, in a flight with a payload.
-// `payload`: a model too soft to carry one, without limits of trust.
+// `structured`: PX4's core with a structured model, other effects in the analytic inverse and limits of trust, in a
+// flight with a payload. `payload`: a model too soft to carry one, without limits of trust.
 #include <cstdio>
 #include <cstring>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Records of a core (pinnquad/control/autopilot/core_record.hpp) as CSV, as PX4's ulog2csv would write the messages: FOLDER/NAME_TOPIC_0.csv.
-// The shortest digits that read back to the same number.
+// Records of a core (pinnquad/control/autopilot/core_record.hpp) as CSV, as PX4's ulog2csv would write the messages:
+// FOLDER/NAME_TOPIC_0.csv. The shortest digits that read back to the same number.
 #pragma once
 
 #include <charconv>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a core writes down (pinnquad/control/autopilot/core_record.hpp): the messages have its numbers, a recorded core answers as any other,
-// inputs are there as they came, refused ones too.
+// Records of a core (pinnquad/control/autopilot/core_record.hpp): the messages have its numbers, a recorded core
+// answers as any other, inputs are there as they came, refused ones too.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -184,11 +184,11 @@ TEST_CASE("flown by hand nothing is asked, and the record says so") {
 }
 
 TEST_CASE("settings are those that the controller was made with") {
-  pinnquad::autopilot::AgeLimits ages;
-  ages.attitude_us = 12'000;
-  pinnquad::FlightGains<float> gains;
-  gains.tilt_1_s = 7;
-  const pinnquad::autopilot::NeuralController<DemoQuadModel> controller(ages, {0.1f, 0.9f}, gains);
+  pinnquad::autopilot::ControllerSettings made;
+  made.ages.attitude_us = 12'000;
+  made.outputs = {0.1f, 0.9f};
+  made.gains.tilt_1_s = 7;
+  const pinnquad::autopilot::NeuralController<DemoQuadModel> controller(made);
   const CoreSettings settings = controller.settings();
   CHECK(settings.attitude_us == 12'000);
   CHECK(settings.body_rates_us == 10'000);

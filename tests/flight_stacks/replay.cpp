@@ -88,7 +88,8 @@ int main(int count, char** arguments) {
     for (double& u : plain.commands) file >> u;
     if (!file) return std::fprintf(stderr, "%s: too short\n", arguments[1]), 2;
     other_reactions += row.reaction == plain.reaction ? 0 : 1;
-    if (row.status != plain.status) {  // on the edge of the envelope: formula in one build, network in the other
+    if (row.status !=
+        plain.status) {  // on the edge of the envelope: analytic inverse in one build, network in the other
       ++other_statuses;
       continue;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The two example modules as a simulated flight sees them: samples in NED, FRD and SI go in, commands in the airframe's rotor
-// order come out. Each speaks to its core in the messages, units and frames of its flight stack, converted here by hand.
+// The two example modules as a simulated flight sees them: samples in NED, FRD and SI go in, commands in the airframe's
+// rotor order come out. Each speaks to its core in the messages, units and frames of its flight stack, converted here
+// by hand.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace pinnquad::autopilot::test {
 
-/// What a step came to, whichever the stack.
+/// The result of a step of any stack.
 struct Answer {
   bool has_commands = false;
   std::array<double, 4> commands{};

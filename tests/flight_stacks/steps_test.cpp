@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the shared controller does with a far place, a weak battery, the ground and an estimator that moves: flown in the simulator
+// The controller with a far place, a weak battery, the ground and an estimator that moves: flown in the simulator
 // without noise, sample by sample, without a flight stack's messages.
 #include <doctest/doctest.h>
 
@@ -17,12 +17,11 @@ namespace {
 using namespace pinnquad::autopilot::test;
 using pinnquad::TrajectoryPoint;
 using pinnquad::Vector3;
+using pinnquad::autopilot::ControllerSettings;
 using pinnquad::autopilot::Reaction;
 using pinnquad::autopilot::SpeedLimits;
 
-constexpr pinnquad::autopilot::AgeLimits ages{};
 constexpr pinnquad::autopilot::OutputLimits outputs{};
-constexpr pinnquad::FlightGains<float> gains{};
 
 /// A battery that is weaker than the airframe says.
 struct WeakBattery {
@@ -45,10 +44,9 @@ class Flight {
  public:
   using Vehicle = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, WeakBattery>;
 
-  template <class... Settings>
-  explicit Flight(double thrust_scale, const Settings&... settings)
+  explicit Flight(double thrust_scale, const ControllerSettings& settings = {})
       : vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), {}, {}, WeakBattery{thrust_scale}),
-        controller_(settings...) {
+        controller_(settings) {
     REQUIRE(controller_.offer_model(block_.data(), block_.size()) == pinnquad::Status::ok);
     body_.body.position_m = start_m;
     const double hover = 1 / vehicle_.airframe().thrust_to_weight();
@@ -108,8 +106,8 @@ template <class Model>
 void far_places(const SpeedLimits& limits) {
   constexpr double most_overshoot_m = 0.5, rounding = 1.05;
   const auto fly = [&](const Vector3<double>& way, double most_m_s) {
-    const Track track = Flight<Model>(1.0, ages, outputs, gains, limits)
-                            .fly(Flight<Model>::start_m + way, way.norm() / most_m_s + 10, 1e9);
+    const Track track =
+        Flight<Model>(1.0, {{}, {}, {}, limits}).fly(Flight<Model>::start_m + way, way.norm() / most_m_s + 10, 1e9);
     MESSAGE("step of ", way.norm(), " m: up to ", track.fastest_m_s, " m/s, ", track.overshoot_m, " m too far");
     CHECK(track.fastest_m_s <= most_m_s * rounding);
     CHECK(track.fastest_m_s >= 0.8 * most_m_s);
@@ -131,8 +129,7 @@ struct Standing {
   std::uint64_t now_us = 1'000'000;
   pinnquad::Commands<float> commands{};
 
-  template <class... Settings>
-  explicit Standing(const Settings&... settings) : controller(settings...) {
+  explicit Standing(const ControllerSettings& settings = {}) : controller(settings) {
     REQUIRE(controller.offer_model(block.data(), block.size()) == pinnquad::Status::ok);
   }
   void step() {
@@ -160,9 +157,7 @@ TEST_CASE("a battery a fifth too weak: the droop is gone after 3 s; without the 
   constexpr double most_m = 0.01;
   const Vector3<double> here = Flight<DemoQuadModel>::start_m;
   const Track with = Flight<DemoQuadModel>(0.8).fly(here, 8, 3);
-  const Track without =
-      Flight<DemoQuadModel>(0.8, ages, outputs, gains, SpeedLimits{}, pinnquad::BiasSettings<float>{0, 3})
-          .fly(here, 8, 3);
+  const Track without = Flight<DemoQuadModel>(0.8, {{}, {}, {}, {}, {0, 3}}).fly(here, 8, 3);
   const Track small = Flight<CrazyflieModel>(0.8).fly(here, 8, 3);
   MESSAGE("sinks ", with.deepest_m, " m, after 3 s ", with.late_height_error_m, " m too high or low; without ",
           without.late_height_error_m, " m; Crazyflie after 3 s ", small.late_height_error_m, " m");
@@ -277,7 +272,7 @@ TEST_CASE("the alarm of a bias at its bound begins anew on the ground, in other 
 
 TEST_CASE("at the motors' ends the bias stays") {
   constexpr pinnquad::autopilot::OutputLimits little{0.02f, 0.8f};
-  Standing standing(ages, little);
+  Standing standing({{}, little});
   standing.controller.situation({true, false});
   standing.wanted.position_m = {0, 0, -1000};  // as much thrust as there is
   standing.wanted.acceleration_m_s2 = {9, 0, -30};
@@ -353,14 +348,14 @@ TEST_CASE("an estimator that moves its estimate by 3 m and 0.4 rad moves nothing
   SUBCASE("holding its place") { unmoved(); }
 }
 
-TEST_CASE("the formula knows the effects that the vehicle is said to have") {
+TEST_CASE("the analytic inverse knows the effects that the vehicle is said to have") {
   using Dragging = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag, pinnquad::RotorDrag>;
   using View = pinnquad::ModelView<DemoQuadModel>;
   const Dragging vehicle(pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>(), {}, {},
                          pinnquad::RotorDrag{0.02});
   pinnquad::autopilot::NeuralController<DemoQuadModel> plain;
   pinnquad::autopilot::NeuralController<DemoQuadModel, View, Dragging> dragging(vehicle);
-  const Block block = narrow_block<DemoQuadModel>();  // all answers are the formula's
+  const Block block = narrow_block<DemoQuadModel>();  // all answers are the analytic inverse's
   const auto commands = [&](auto& controller) {
     REQUIRE(controller.offer_model(block.data(), block.size()) == pinnquad::Status::ok);
     constexpr std::uint64_t now_us = 1'000'000;

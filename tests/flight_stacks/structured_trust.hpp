@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // When models/structured_quadrotor.hpp is not to be trusted, as pinnquad train writes it beside a model: distribution of the flight
 // d1 of seed 1 (9,000 rows), limits by those of seeds 101 to 103 (15,000 rows each), fit_trust() and write_trust().
+// Archived with its earlier names: it must fly and be read as it is.
 #pragma once
 
 #include <array>

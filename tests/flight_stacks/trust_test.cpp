@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Both cores with limits of trust: a vehicle that is another one is noticed and the formula flies; a calm flight, outages of
-// samples and commands included, is no reason.
+// Both cores with limits of trust: a vehicle that is another one is noticed and the analytic inverse flies; a calm
+// flight, outages of samples and commands included, is no reason.
 #include <doctest/doctest.h>
 
 #include "flight.hpp"
@@ -13,12 +13,12 @@ using namespace pinnquad::autopilot::test;
 using pinnquad::autopilot::CoreRecord;
 using pinnquad::autopilot::Reaction;
 
-/// What the innovation came to in a flight.
+/// The command residual of a flight.
 struct Trusted {
   double distrusted_s = 0;  ///< the first time; 0: never
   double cleared_s = 0;     ///< the last time that it was trusted again
-  float most_innovation = 0;
-  long ticks = 0, by_formula_while_distrusted = 0, distrusted = 0, far = 0;
+  float most_residual = 0;
+  long ticks = 0, by_analytic_while_distrusted = 0, distrusted = 0, far = 0;
   FlightFigures figures;
 };
 
@@ -34,14 +34,14 @@ Trusted flown(const Target& target, double duration_s, const Faults& faults) {
     if (!trusted && !(result.distrusted_s > 0)) result.distrusted_s = time_s;
     if (trusted && !before) result.cleared_s = time_s;
     before = trusted;
-    result.most_innovation = std::max(result.most_innovation, tick.innovation);
+    result.most_residual = std::max(result.most_residual, tick.innovation);
     ++result.ticks;
     result.far += tick.cause == static_cast<std::uint8_t>(Status::outside_distribution) ? 1 : 0;
     if (trusted || tick.reaction > static_cast<std::uint8_t>(Reaction::levels)) return;
     ++result.distrusted;
-    const bool by_formula = tick.status == static_cast<std::uint8_t>(Status::fell_back) &&
-                            tick.cause == static_cast<std::uint8_t>(Status::distrusted);
-    result.by_formula_while_distrusted += by_formula ? 1 : 0;
+    const bool by_analytic = tick.status == static_cast<std::uint8_t>(Status::fell_back) &&
+                             tick.cause == static_cast<std::uint8_t>(Status::distrusted);
+    result.by_analytic_while_distrusted += by_analytic ? 1 : 0;
   });
   return result;
 }
@@ -49,11 +49,11 @@ Trusted flown(const Target& target, double duration_s, const Faults& faults) {
 template <class Stack>
 void no_alarm(const char* path, const Trusted& flight) {
   INFO(Stack::name, ", ", path);
-  std::printf("%s %s: innovation up to %.4f, limit %.4f; %ld of %ld answers outside the distribution\n", Stack::name,
-              path, static_cast<double>(flight.most_innovation), StructuredQuadModelTrust::innovation_limit, flight.far,
-              flight.ticks);
+  std::printf("%s %s: command residual up to %.4f, limit %.4f; %ld of %ld answers outside the distribution\n",
+              Stack::name, path, static_cast<double>(flight.most_residual), StructuredQuadModelTrust::innovation_limit,
+              flight.far, flight.ticks);
   CHECK_FALSE(flight.figures.crashed);
-  CHECK(flight.most_innovation > 1e-4f);  // it was measured
+  CHECK(flight.most_residual > 1e-4f);  // it was measured
   CHECK(flight.distrusted == 0);
   CHECK(flight.far < flight.ticks / 50);
 }
@@ -65,15 +65,16 @@ void noticed(const char* what, const Target& target, FaultKind kind, double valu
   const std::vector<Fault> fault = {{from_s, to_s - from_s, kind, value, what, Reaction::flies}};
   const Trusted flight = flown<Stack>(target, 22, fault);
   std::printf(
-      "%s, %s: distrusted after %.1f s, trusted again %.1f s after it was over, innovation up to %.4f, error up to "
+      "%s, %s: distrusted after %.1f s, trusted again %.1f s after it was over, command residual up to %.4f, error up "
+      "to "
       "%.2f m\n",
       Stack::name, what, flight.distrusted_s - from_s, flight.cleared_s - to_s,
-      static_cast<double>(flight.most_innovation), flight.figures.max_error_m);
+      static_cast<double>(flight.most_residual), flight.figures.max_error_m);
   CHECK_FALSE(flight.figures.crashed);
   CHECK(flight.distrusted_s > from_s);
   CHECK(flight.distrusted_s < from_s + 2);
   CHECK(flight.distrusted > 0);
-  CHECK(flight.by_formula_while_distrusted == flight.distrusted);
+  CHECK(flight.by_analytic_while_distrusted == flight.distrusted);
   CHECK(flight.cleared_s > to_s);
   CHECK(flight.cleared_s < to_s + 4);
 }
@@ -110,7 +111,7 @@ TEST_CASE(
   judge_stack<TrustingCrazyflieStack>();
 }
 
-TEST_CASE("limits of trust: beyond the distance the formula flies") {
+TEST_CASE("limits of trust: beyond the distance the analytic inverse flies") {
   const Trusted flight = flown<NarrowStack>(hover, 2, std::array<Fault, 0>{});
   CHECK(flight.far == flight.ticks);
   CHECK(flight.figures.fallback_share == 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Both cores with a structured model, limits of trust, and a formula that knows other effects than it does by default.
+// Both cores with a structured model, limits of trust, and an analytic inverse with other effects than by default.
 #pragma once
 
 #include "models/structured_quadrotor.hpp"

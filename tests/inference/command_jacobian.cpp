@@ -33,7 +33,7 @@ struct SpeedModel : DemoQuadModel {
 
 /// Float rounding through eleven layers, of a column's largest entry.
 constexpr double float_tolerance = 1e-5;
-/// What the step of the differences leaves.
+/// The error of the differences' step.
 constexpr double double_tolerance = 2.8e-9;
 
 /// `Header` has the numbers of `model`.
@@ -90,8 +90,8 @@ struct Tight {
 };
 using Counts = std::array<int, static_cast<std::size_t>(status_count)>;
 
-/// Under a guard: Status and commands as predict_features() gives them, to the bit; the Jacobian as if the guard left the commands
-/// alone. How often each Status came.
+/// Under a guard: Status and commands as predict_features() gives them, to the bit; the Jacobian as if the guard left
+/// the commands alone. How often each Status came.
 template <class GuardType>
 Counts check_guard(const GuardType& guard = GuardType{}) {
   const InverseDynamics<DemoQuadModel, GuardType> guarded(guard);
@@ -126,7 +126,7 @@ int of(const Counts& counts, Status status) { return counts[static_cast<std::siz
 }  // namespace
 
 TEST_CASE("under every guard: its Status, its commands, and the derivatives of the network's own") {
-  using Formula = AnalyticInverse<Quadrotor<double>>;
+  using Analytic = AnalyticInverse<Quadrotor<double>>;
   constexpr auto golden = static_cast<int>(DemoQuadModel::golden_features.size());
   const auto check = [&](const Counts& counts, Status least, bool some_ok) {
     CHECK(of(counts, least) > 0);
@@ -140,9 +140,9 @@ TEST_CASE("under every guard: its Status, its commands, and the derivatives of t
   check(check_guard<Extend<TrainingGuard, ClipCommands<Tight>>>(), Status::limited, false);
   check(check_guard<Extend<TrainingGuard, RefuseCommands<Tight>>>(), Status::outside_limits, false);
   check(check_guard<Extend<TrainingGuard, RefuseCommands<>, ClipCommands<Tight>>>(), Status::limited, false);
-  const Formula formula{Quadrotor<double>(airframe_value<PaperQuadrotor, double>(), Site<double>{})};
-  using FallingBack = Extend<TrainingGuard, ClipCommands<Tight>, Fallback<Formula>>;
-  check(check_guard(FallingBack(formula)), Status::limited, false);  // the fallback is not asked
+  const Analytic analytic{Quadrotor<double>(airframe_value<PaperQuadrotor, double>(), Site<double>{})};
+  using FallingBack = Extend<TrainingGuard, ClipCommands<Tight>, Fallback<Analytic>>;
+  check(check_guard(FallingBack(analytic)), Status::limited, false);  // the fallback is not asked
 }
 
 TEST_CASE("numbers that are none: refused, and nothing is written") {

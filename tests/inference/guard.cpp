@@ -180,7 +180,8 @@ TEST_CASE("the fallback answers where the network declines, and only there") {
   int declined = 0, at_the_edge = 0;
   for (int i = 0; i < 500; ++i) {
     const auto inputs = inputs_of(random, 1.55);
-    // outside by the angular acceleration alone: the network's commands at the edge, to which a fixed answer adds nothing
+    // outside by the angular acceleration alone: the network's commands at the edge, to which a fixed answer adds
+    // nothing
     auto nearest = inputs;
     for (int k = 0; k < 3; ++k) {
       const auto at = static_cast<std::size_t>(PaperFeatures::angular_acceleration + k);

@@ -36,10 +36,10 @@ constexpr std::array<float, 136> any_factor() {
 struct Trust {
   static constexpr std::array<float, 16> distribution_mean = {0.5F, -0.25F, 1, 0, 2, -1};
   static constexpr std::array<float, 136> whitening = any_factor();
-  static constexpr double distance_limit = 30;
-  static constexpr double innovation_factor = 0.2;
-  static constexpr double innovation_limit = 0.05;
-  static constexpr double innovation_cleared = 0.02;
+  static constexpr double squared_distance_limit = 30;
+  static constexpr double command_residual_factor = 0.2;
+  static constexpr double command_residual_limit = 0.05;
+  static constexpr double command_residual_cleared = 0.02;
 };
 
 using Measuring = Extend<TrainingGuard, JointDistance<Trust>>;
@@ -72,8 +72,8 @@ TEST_CASE("the distance is that of the dense product, and the guard refuses what
     const auto x = features(inputs);
     const double expected = dense_distance(x);
     CHECK(double(squared_joint_distance<Trust>(x.data())) == doctest::Approx(expected).epsilon(1e-5));
-    if (std::abs(expected - Trust::distance_limit) < 1e-3) continue;  // float decides
-    const bool inside = expected < Trust::distance_limit;
+    if (std::abs(expected - Trust::squared_distance_limit) < 1e-3) continue;  // float decides
+    const bool inside = expected < Trust::squared_distance_limit;
     ++(inside ? near : far);
     Commands<float> commands = marked(), alone{}, by_features = marked();
     REQUIRE(InverseDynamics<SmallModel>{}.predict(inputs, alone) == Status::ok);
@@ -139,7 +139,7 @@ TEST_CASE("fallback, clamped features, batch and Jacobian know the distance") {
       for (std::size_t k = 0; k < 16; ++k) {
         nearest[k] = std::min(std::max(row[k], SmallModel::envelope_lower[k]), SmallModel::envelope_upper[k]);
       }
-      const bool inside = dense_distance(nearest) < Trust::distance_limit;
+      const bool inside = dense_distance(nearest) < Trust::squared_distance_limit;
       CHECK(clamping.predict(inputs, commands) == (inside ? Status::limited : Status::outside_distribution));
     }
   }
@@ -149,8 +149,34 @@ TEST_CASE("fallback, clamped features, batch and Jacobian know the distance") {
   for (std::size_t s = 0; s < samples; ++s) CHECK(statuses[s] == expected[s]);
 }
 
-TEST_CASE("the innovation is the recursion by hand, alarms above its limit and clears below the other") {
-  InnovationMonitor<Trust> monitor;
+/// Names of a trust.hpp of earlier releases.
+struct EarlierTrust {
+  static constexpr auto distribution_mean = Trust::distribution_mean;
+  static constexpr auto whitening = Trust::whitening;
+  static constexpr double distance_limit = 30;
+  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+};
+
+TEST_CASE("a trust.hpp of earlier releases says the same limits") {
+  using Distribution = Extend<TrainingGuard, JointDistance<EarlierTrust>>::Distribution;
+  using Limits = CommandResidualMonitor<EarlierTrust>::Limits;
+  CHECK(Distribution::squared_distance_limit == Trust::squared_distance_limit);
+  CHECK(Limits::command_residual_factor == Trust::command_residual_factor);
+  CHECK(Limits::command_residual_limit == Trust::command_residual_limit);
+  CHECK(Limits::command_residual_cleared == Trust::command_residual_cleared);
+  const Guarded<Extend<TrainingGuard, JointDistance<EarlierTrust>>> earlier;
+  const Guarded<Measuring> today;
+  RandomStates random(407);
+  for (int i = 0; i < 200; ++i) {
+    const auto inputs = inputs_of(random, 0.99);
+    Commands<float> a = marked(), b = marked();
+    CHECK(earlier.predict(inputs, a) == today.predict(inputs, b));
+    CHECK(same_bits(a, b));
+  }
+}
+
+TEST_CASE("the command residual is the recursion by hand, alarms above its limit and clears below the other") {
+  CommandResidualMonitor<Trust> monitor;
   CHECK(monitor.trusted());
   double mean = 0;
   bool trusted = true;
@@ -240,25 +266,20 @@ TEST_CASE("a monitored inverse: the model while it was right, then the fallback,
 
 namespace {
 
-template <class T, class = void>
-struct Observes : std::false_type {};
 template <class T>
-struct Observes<T, std::void_t<decltype(std::declval<T&>().observe(MotionInputs<float>{}, Commands<float>{}))>>
-    : std::true_type {};
-template <class T, class = void>
-struct Resets : std::false_type {};
+using Observed = decltype(std::declval<T&>().observe(MotionInputs<float>{}, Commands<float>{}));
 template <class T>
-struct Resets<T, std::void_t<decltype(std::declval<T&>().reset())>> : std::true_type {};
+using Reset = decltype(std::declval<T&>().reset());
 
 }  // namespace
 
 TEST_CASE("a monitored inverse: what writes needs one that is not const, what is const may run at once") {
   using Backed = Guarded<Extend<TrainingGuard, Fallback<FixedFallback>>>;
   using Monitored = MonitoredInverse<Backed, Trust>;
-  CHECK(Observes<Monitored>::value);
-  CHECK(Resets<Monitored>::value);
-  CHECK_FALSE(Observes<const Monitored>::value);
-  CHECK_FALSE(Resets<const Monitored>::value);
+  CHECK(is_detected<Observed, Monitored>);
+  CHECK(is_detected<Reset, Monitored>);
+  CHECK_FALSE(is_detected<Observed, const Monitored>);
+  CHECK_FALSE(is_detected<Reset, const Monitored>);
 
   const Monitored inverse{Backed(Extend<TrainingGuard, Fallback<FixedFallback>>(FixedFallback{}))};
   RandomStates random(406);

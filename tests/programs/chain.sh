@@ -46,7 +46,7 @@ expect_line 2 'at least 2200 rows in 2 flights, found 2000' "$pinnquad" train --
 odd='a @place@ "of"; its own'
 mkdir "$odd"
 cp a/model.hpp "$odd"
-cmake -S "$source_dir/examples/fly_export" -B fly_export -G Ninja -DCMAKE_BUILD_TYPE=Release \
+cmake -S "$source_dir/tools/fly_export" -B fly_export -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS="$compiler_flags" \
   -DPINNQUAD_MODEL_HEADER="$work/$odd/model.hpp" >configure.txt
 cmp a/model.hpp fly_export/include/model.hpp || fail "the configured header is another one"

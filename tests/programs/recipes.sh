@@ -40,7 +40,7 @@ done
 "$pinnquad" evaluate near/model.hpp --flight near.csv --rows test --json >near.json || fail "evaluate does not judge a model with the altitude"
 [ "$(head -n 1 near/replay.txt)" = "pinnquad-replay 1 500 25" ] || fail "the replay: $(head -n 1 near/replay.txt)"
 "$compiler" -std=c++17 -fsyntax-only -Wall -Wextra -Werror -I near -I "$source_dir/include" -I "$source_dir/tools" -isystem "$eigen" \
-  "$source_dir/examples/fly_export/fly_export.cpp" || fail "fly_export does not compile with a model that is shown the altitude"
+  "$source_dir/tools/fly_export/fly_export.cpp" || fail "fly_export does not compile with a model that is shown the altitude"
 train --flight near.csv --out near_no --loss vanilla --altitude no
 grep -q 'pinnquad::InverseFeatures;' near_no/model.hpp || fail "--altitude no shows it"
 train --out far_yes --loss vanilla --altitude yes --slopes pinned

@@ -25,7 +25,7 @@ done
 grep -q 'NaN or infinite: wdot_x' demo.txt || fail "no word of the NaN: $(cat demo.txt)"
 grep -qE 'outside_envelope\),"?wdot_y = [-0-9.]+ rad/s\^2 is (above|below) [-0-9.]+, by [0-9.e+]+ half-widths' demo.csv ||
   fail "no word of the feature outside"
-grep -q 'the formula declines too' demo.csv || fail "no word of the formula"
+grep -q 'the analytic inverse declines too' demo.csv || fail "no word of the analytic inverse"
 ! grep -q altitude demo.csv || fail "complains of a column that the model does not ask for"
 grep -qE '^flight.csv,801,.*warming_up.* from 160 ms before' physics.csv || fail "no word of the window behind a gap"
 grep -q 'NaN or infinite: altitude' speeds.csv || fail "no word of the altitude"
@@ -109,7 +109,7 @@ print(f"{len(logged)} ticks, commands within {worst:.1e}")
 PY
 done
 
-# a structured model, other effects in the formula, limits of trust: to the bit
+# a structured model, other effects in the analytic inverse, limits of trust: to the bit
 trust=$source_dir/tests/flight_stacks/structured_trust.hpp
 mkdir structured
 "$record" structured eight structured >structured.txt
@@ -127,17 +127,17 @@ for was, now in zip(logged, replayed):
 assert sum(row["answered_by"] == "model" for row in replayed) > 20000
 words = " ".join(row["reason"] for row in replayed)
 assert sum(row["cause"] == "distrusted" for row in replayed) > 4000
-assert "innovation 0." in words and "limit 0.018" in words, words[:300]
+assert "command residual 0." in words and "limit 0.018" in words, words[:300]
 PY
-# the formula with other effects answers otherwise, where it answers; one that is not known is refused
+# the analytic inverse with other effects answers otherwise, where it answers; one that is not known is refused
 code=0
 "$pinnquad" replay structured "${structured[@]}" --trust "$trust" --set effects=1 >differs.txt || code=$?
 [ "$code" -eq 1 ] && grep -qE 'first at 1[2-9]\.[0-9]* s .*: u1 ' differs.txt || fail "other effects: $(tail -1 differs.txt)"
 expect_line 2 'knew an effect that replay does not \(effects f1\)' "$pinnquad" replay structured "${structured[@]}" \
   --trust "$trust" --set effects=241
-# limits that flew are asked for; others are said to be others, and the answer is another
+# limits that flew are asked for; others, by the names of today, are said to be others, and the answer is another
 expect_line 2 '--trust: the core that flew had limits' "$pinnquad" replay structured "${structured[@]}"
-sed 's/innovation_limit = 0.018/innovation_limit = 0.118/' "$trust" >loose.hpp
+sed 's/ distance_limit/ squared_distance_limit/; s/innovation_limit = 0.018/innovation_limit = 0.118/; s/innovation_/command_residual_/' "$trust" >loose.hpp
 code=0
 "$pinnquad" replay structured "${structured[@]}" --trust loose.hpp >differs.txt || code=$?
 [ "$code" -eq 1 ] && grep -q '^note .*other limits than those that flew' differs.txt || fail "other limits: $(tail -1 differs.txt)"
@@ -154,7 +154,7 @@ mkdir payload thirds
 soft=(--model payload/sound.block --model payload/soft.block)
 "$pinnquad" replay payload "${soft[@]}" --out payload.csv >payload.said || fail "payload: replay differs: $(tail -3 payload.said)"
 grep -qE '^because .*distrusted [0-9]{4,}' payload.said || fail "no word of the hand-over: $(cat payload.said)"
-grep -qE 'flies, formula \(distrusted\).*: the bias stood at its bound, 3 m/s\^2: the model does not make' payload.said ||
+grep -qE 'flies, analytic inverse \(distrusted\).*: the bias stood at its bound, 3 m/s\^2: the model does not make' payload.said ||
   fail "no word of the bias: $(cat payload.said)"
 cp payload/flight_pinnquad_settings_0.csv thirds/
 log=payload/flight_pinnquad_record_0.csv

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # The rooms of the program: a file includes headers of its own room and of those that tools/CMakeLists.txt names before it, all
-# by their path from tools/; the program itself may include every room.
-#   rooms.sh TOOLS
+# by their path from tools/; the program itself may include every room. Program and examples do not include each other.
+#   rooms.sh TOOLS EXAMPLES
 set -euo pipefail
+examples=$(cd -- "$2" && pwd)
 cd -- "$1"
 faults=0
 fault() {
@@ -20,7 +21,10 @@ for folder in */; do
 done
 while IFS=: read -r file line text; do
   header=${text#*\"} header=${header%\"*}
-  case $header in pinnquad/*) continue ;; esac
+  case $header in
+    pinnquad/*) continue ;;
+    *examples/*) fault "$file:$line: the program includes an example: $header" && continue ;;
+  esac
   room=${file%%/*} other=${header%%/*}
   if [ ! -f "$header" ]; then
     fault "$file:$line: no such header from here: $header"
@@ -28,6 +32,12 @@ while IFS=: read -r file line text; do
     fault "$file:$line: $room comes before $other"
   fi
 done < <(grep -rn '^#include "' --include='*.hpp' --include='*.cpp' .  | sed 's,^\./,,')
+while IFS=: read -r file line text; do
+  header=${text#*[<\"]} header=${header%[>\"]*}
+  if [ -f "$header" ] || [[ $header == *tools/* ]]; then
+    fault "$file:$line: an example includes the program: $header"
+  fi
+done < <(cd -- "$examples" && grep -rnE '^ *# *include *[<"]' --include='*.hpp' --include='*.cpp' --include='*.h' --include='*.c' .)
 if [ "$faults" -ne 0 ]; then
   printf '\n%s faults\n' "$faults"
   exit 1

@@ -69,7 +69,7 @@ grep -q 'what the others are compared with' each.txt || fail "no verdict on the 
 for flight in "${flights[@]}"; do grep -q "$flight" each/report.html || fail "the page does not name $flight"; done
 [ "$(sed -n 's/.*"worse_than_mean": *//p' each/report.json | head -n 1)" != true ] || fail "worse than the mean"
 
-cmake -S "$source_dir/examples/fly_export" -B fly_export -G Ninja -DCMAKE_BUILD_TYPE=Release \
+cmake -S "$source_dir/tools/fly_export" -B fly_export -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS="$compiler_flags" \
   -DPINNQUAD_MODEL_HEADER="$work/each/model.hpp" >configure.txt
 cmake --build fly_export >build.txt || { cat build.txt; fail "the exported header does not compile"; }

@@ -14,6 +14,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
+#include "support/hover.hpp"
 #include "support/small_model_variants.hpp"
 
 namespace {
@@ -171,7 +172,7 @@ TEST_CASE("a tick says what the feed-forward came to, and keeps the feedback wha
   off.position_m = Vector3<double>(0, 0, -20);
   off.attitude = from_euler<double>({-0.3, 0, 0});
   off.body_rates_rad_s[0] = -0.5;
-  const TrajectoryPoint<double> still = Hover<double>{Vector3<double>(0, 0, -20), 0.0}.sample(0);
+  const TrajectoryPoint<double> still = test::Hover<double>{Vector3<double>(0, 0, -20), 0.0}.sample(0);
   for (int i = 0; i < status_count; ++i) {
     const auto chosen = static_cast<Status>(i);
     TrackingController<double, Chosen> controller(quadrotor.airframe(), FlightController<double>{}, {trim(), chosen});
@@ -191,7 +192,7 @@ TEST_CASE("a sum that leaves the commands' range is said to be limited, and does
   much.commands = {0.98, 0.98, 0.98, 0.98};
   State<double> off;
   off.attitude = from_euler<double>({-0.3, 0, 0});
-  const TrajectoryPoint<double> still = Hover<double>{}.sample(0);
+  const TrajectoryPoint<double> still = test::Hover<double>{}.sample(0);
   Commands<double> commands{};
   for (const Status chosen : {Status::ok, Status::limited, Status::fell_back}) {
     TrackingController<double, Chosen> controller(quadrotor.airframe(), FlightController<double>{}, {much, chosen});
@@ -207,7 +208,7 @@ TEST_CASE("a circle, and a hover that stays") {
   const TrackingResult<double> round = track(vehicle(), circle, FlightController<double>{}, inverse);
   CHECK(round.status == Status::ok);
   CHECK(round.rmse_m < 0.05);
-  const Hover<double> still{Vector3<double>(1, 2, -20), 0.5};
+  const test::Hover<double> still{Vector3<double>(1, 2, -20), 0.5};
   CHECK(track(vehicle(), still, FlightController<double>{}, inverse).max_error_m <= 1e-9);
   CHECK(track(vehicle(), still, FlightController<double>{}, trim()).max_error_m <= 1e-9);
 }
@@ -273,7 +274,7 @@ TEST_CASE("answers are counted by Status; neither the network's own nor what was
 
 TEST_CASE("the loop recovers from a start far off, in every direction") {
   const Vehicle quadrotor = vehicle();
-  const Hover<double> goal{Vector3<double>(0, 0, -20), 0.0};
+  const test::Hover<double> goal{Vector3<double>(0, 0, -20), 0.0};
   for (int direction = 0; direction < 6; ++direction) {
     VehicleState<double> state;
     state.body.position_m = Vector3<double>(0, 0, -20);

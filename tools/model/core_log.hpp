@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a flight stack's core logged (pinnquad/control/autopilot/core_record.hpp), from a log's columns: numbers checked against what
-// each may be.
+// The records of a flight stack's core (pinnquad/control/autopilot/core_record.hpp), from a log's columns: numbers
+// checked against what each may be.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,8 @@ namespace detail {
       in_words("%.9g", found) + (has_line ? "" : " in message " + std::to_string(row + 1) + " of " + topic.name));
 }
 
-/// A column's number as a field has it: whole where the field is, within its range. NaN and infinity are numbers of a float.
+/// A column's number as a field has it: whole where the field is, within its range. NaN and infinity are numbers of a
+/// float.
 template <class Number>
 Number core_number(const LogTopic& topic, const LogColumn& column, std::size_t row) {
   const double value = column.values[row];
@@ -59,8 +60,8 @@ inline const LogColumn& core_column(const LogTopic& topic, const std::string& na
 
 }  // namespace detail
 
-/// A Crazyflie's events (examples/crazyflie_app/src/core_log.h) say times in ms, under names of their own, and leave out what it
-/// does not know: that is as a record is made. Columns are added to the topic.
+/// A Crazyflie's events (examples/crazyflie_app/src/core_log.h) say times in ms, under names of their own, and leave
+/// out what it does not know: that is as a record is made. Columns are added to the topic.
 template <class Record>
 void complete_core_topic(LogTopic& topic) {
   const Record layout{};
@@ -86,8 +87,8 @@ void complete_core_topic(LogTopic& topic) {
   });
 }
 
-/// The rows of a topic as records of a core. Throws InputError, one line: a column that is missing or holds text, a number that
-/// its field can't be.
+/// The rows of a topic as records of a core. Throws InputError, one line: a column that is missing or holds text, a
+/// number that its field can't be.
 template <class Record>
 std::vector<Record> core_records(const LogTopic& topic) {
   std::vector<const LogColumn*> columns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a flight stack's controller does, and why, in words; and its settings as its own types have them.
+// A flight stack's controller in words: its reactions and their reasons.
 #pragma once
 
 #include <array>
@@ -14,33 +14,6 @@
 #include "pinnquad/control/autopilot/neural_controller.hpp"
 
 namespace programs {
-
-inline pinnquad::autopilot::AgeLimits age_limits(const pinnquad::autopilot::CoreSettings& s) {
-  pinnquad::autopilot::AgeLimits ages;
-  ages.body_rates_us = s.body_rates_us;
-  ages.attitude_us = s.attitude_us;
-  ages.local_us = s.local_us;
-  ages.set_point_us = s.set_point_us;
-  ages.keep_us = s.keep_us;
-  ages.level_us = s.level_us;
-  return ages;
-}
-
-inline pinnquad::autopilot::OutputLimits output_limits(const pinnquad::autopilot::CoreSettings& s) {
-  return {s.lowest_command, s.highest_command};
-}
-
-inline pinnquad::FlightGains<float> flight_gains(const pinnquad::autopilot::CoreSettings& s) {
-  return {s.position_1_s, s.velocity_1_s, s.tilt_1_s, s.yaw_1_s, s.roll_pitch_rate_1_s, s.yaw_rate_1_s};
-}
-
-inline pinnquad::autopilot::SpeedLimits speed_limits(const pinnquad::autopilot::CoreSettings& s) {
-  return {s.horizontal_speed_m_s, s.climb_m_s, s.descent_m_s, s.take_off_s};
-}
-
-inline pinnquad::BiasSettings<float> bias_settings(const pinnquad::autopilot::CoreSettings& s) {
-  return {s.bias_bandwidth_1_s, s.most_bias_m_s2};
-}
 
 /// The numbers that a log holds may be those of a newer core.
 inline std::string reaction_name(std::uint8_t number) {
@@ -99,7 +72,8 @@ class CoreWords {
   }
   bool refused(int input) const { return inputs_[static_cast<std::size_t>(input)].refused; }
 
-  /// "attitude is 21 ms old (limit 20 ms); body rates are refused: body_rates_rad_s[0] is NaN"; empty if nothing is stale.
+  /// "attitude is 21 ms old (limit 20 ms); body rates are refused: body_rates_rad_s[0] is NaN"; empty if nothing is
+  /// stale.
   std::string stale(const pinnquad::autopilot::StepReport& report, std::uint64_t now_us) const {
     std::string words;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {

@@ -13,7 +13,7 @@
 
 namespace programs {
 
-/// `flight_stack`: as control/autopilot: absurd commands are refused too, and the formula answers where the network
+/// `flight_stack`: as control/autopilot: absurd commands are refused too, and the analytic inverse answers where the network
 /// declines. `training`: TrainingGuard alone, as an InverseDynamics that names no guard.
 enum class ReplayGuard { flight_stack, training };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) of a model that is known at run time alone, its
-// guard, and an airframe as it has one.
+// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) of a model that is known at run time
+// alone, its guard, and an airframe as it has one.
 #pragma once
 
 #include "airframe/names.hpp"
@@ -12,8 +12,8 @@ namespace programs {
 /// The guard that flies.
 using FlightStackController = pinnquad::autopilot::NeuralController<RunTimeShape<pinnquad::PaperFeatures, float>,
                                                                     RunTimeView<pinnquad::PaperFeatures, float>>;
-using FallbackFormula = FlightStackController::Formula;
-using FlightStackGuard = pinnquad::Extend<FlightStackController::NetworkGuard, pinnquad::Fallback<FallbackFormula>>;
+using FallbackInverse = FlightStackController::Analytic;
+using FlightStackGuard = pinnquad::Extend<FlightStackController::NetworkGuard, pinnquad::Fallback<FallbackInverse>>;
 
 /// The airframe as flight code has it: of the program's own airframes the type's numbers, else each rounded.
 inline pinnquad::Airframe<float> flying_airframe(const NamedAirframe& airframe) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The effects of the formula's vehicle, as a record names them (pinnquad/control/autopilot/flown_effects.hpp): which they are is known at run
-// time alone.
+// The effects of the analytic inverse's vehicle, as a record names them at run time (FlownEffects in
+// pinnquad/control/autopilot/core_settings.hpp).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
-#include "pinnquad/control/autopilot/flown_effects.hpp"
+#include "pinnquad/control/autopilot/core_settings.hpp"
 
 namespace programs {
 
@@ -41,7 +41,7 @@ inline RecordedEffects recorded_effects(const pinnquad::autopilot::CoreSettings&
     const std::uint32_t effect = code & 15u;
     if (effect == FlownEffects::quadratic_drag || effect == FlownEffects::linear_damping) continue;
     throw std::invalid_argument(
-        in_words("the formula that flew knew an effect that replay does not (effects %x): QuadraticDrag and "
+        in_words("the analytic inverse that flew knew an effect that replay does not (effects %x): QuadraticDrag and "
                  "LinearDamping are known",
                  settings.effects));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs a model over a log, row by row, with the checks and guards that fly; or, where the log has what a flight stack's core
-// received, the core itself, and compares what it answers with what was logged.
+// Runs a model over a log, row by row, with the checks and guards that fly; or, where the log has what a flight stack's
+// core received, the core itself, and compares what it answers with what was logged.
 //   pinnquad replay flight.csv --model my_model/model.hpp
 #include "model/replay_command.hpp"
 
@@ -125,7 +125,7 @@ Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
   return replayed;
 }
 
-/// Which of the models flew in each tick, by checksum; one model alone stands for whatever flew.
+/// The model that flew in each tick, by checksum; one model alone stands for whatever flew.
 class FlownModels {
  public:
   explicit FlownModels(const std::vector<ReplayModel>& models) {
@@ -158,14 +158,14 @@ void take_trust(const ReplayOptions& options, programs::CoreReplayOptions& core,
   if (options.trust.empty()) {
     if (!(logged.distance_limit > 0)) return;
     throw std::invalid_argument(
-        "--trust: the core that flew had limits of distance and innovation: give the trust.hpp "
+        "--trust: the core that flew had limits of distance and command residual: give the trust.hpp "
         "that it was compiled with");
   }
   core.trust = programs::read_trust(options.trust);
-  const bool same = static_cast<float>(core.trust->distance_limit) >= logged.distance_limit &&
-                    static_cast<float>(core.trust->distance_limit) <= logged.distance_limit &&
-                    static_cast<float>(core.trust->innovation_limit) >= logged.innovation_limit &&
-                    static_cast<float>(core.trust->innovation_limit) <= logged.innovation_limit;
+  const bool same = static_cast<float>(core.trust->squared_distance_limit) >= logged.distance_limit &&
+                    static_cast<float>(core.trust->squared_distance_limit) <= logged.distance_limit &&
+                    static_cast<float>(core.trust->command_residual_limit) >= logged.innovation_limit &&
+                    static_cast<float>(core.trust->command_residual_limit) <= logged.innovation_limit;
   if (!same) replayed.notes.push_back("--trust: other limits than those that flew: what follows may differ for that");
 }
 
@@ -177,7 +177,8 @@ Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, con
   programs::CoreReplayOptions of_core{input.settings, {}, options.tolerance};
   const Airframe<float> airframe = programs::flying_airframe(models.front().identity.airframe);
   if (!input.has_settings) {
-    of_core.settings = programs::FlightStackController(airframe).settings();
+    using Core = programs::FlightStackController;
+    of_core.settings = Core(Core::Vehicle(airframe)).settings();
     replayed.notes.push_back("the log has no topic pinnquad_settings: a core's own limits and gains are taken");
   }
   for (const std::string& setting : options.settings) apply_setting(setting, of_core.settings);
@@ -208,7 +209,7 @@ void print_head(const ReplayOptions& options, const Replayed& replayed, const st
               replayed.of_core ? "the flight stacks' controller, tick by tick, and compared with what it logged"
               : options.guard == "training"
                   ? "InverseDynamics behind TrainingGuard: refuses, has no fallback"
-                  : "InverseDynamics behind the flight stacks' guard: falls back to the formula");
+                  : "InverseDynamics behind the flight stacks' guard: falls back to the analytic inverse");
 }
 
 int replay(const ReplayOptions& options) {
@@ -270,14 +271,14 @@ programs::Command programs::replay_command(CLI::App& program) {
   add_model_hints(*line, options->hints);
   line->add_option("--guard", options->guard,
                    "what stands between model and motors where the log is a flight: flight_stack, as "
-                   "the autopilot, which falls back to the formula; training, which refuses")
+                   "the autopilot, which falls back to the analytic inverse; training, which refuses")
       ->capture_default_str()
       ->check(CLI::IsMember({"flight_stack", "training"}));
   line->add_option("--set", options->settings,
                    "a setting of the core other than the log's, to see what it would have done: --set tilt_1_s=7")
       ->type_name("NAME=VALUE");
   add_path(*line, "--trust", options->trust, "TRUST.hpp",
-           "limits of distance and innovation that the core was compiled with, as pinnquad train wrote them");
+           "limits of distance and command residual that the core was compiled with, as pinnquad train wrote them");
   add_number(*line, "--tolerance", options->tolerance, 0.0, 1.0,
              "largest difference of a command from the core's log that counts as the same");
   add_path(*line, "--out", options->out, "FILE.csv", "every row: status, who answered, commands, the reason in words");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The flight stacks' controller over what it logged, of the models that a core may be compiled for: those that ask for motion
-// alone.
+// The flight stacks' controller over what it logged, of the models that a core may be compiled for: those that ask for
+// motion alone.
 #include "model/replay_core.hpp"
 
 #include "pinnquad/features/motion_parts.hpp"

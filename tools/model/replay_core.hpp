@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) over what it logged: each tick's inputs go in as
-// they came, what it answers is compared with what was logged.
+// The flight stacks' controller (pinnquad/control/autopilot/neural_controller.hpp) over what it logged: each tick's
+// inputs go in as they came, what it answers is compared with what was logged.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,8 @@ struct CoreReplayOptions {
   double tolerance = 1e-5;  ///< of a command
 };
 
-/// Runs records of one core, in their order, through controllers of the airframe of `models`, which is the same for all.
+/// Runs records of one core, in their order, through controllers of the airframe of `models`, which is the same for
+/// all.
 class CoreReplay {
  public:
   CoreReplay() = default;
@@ -52,8 +53,8 @@ class CoreReplay {
                           Replayed& replayed) = 0;
 };
 
-/// `models` must stay where they are. Throws std::invalid_argument for a model that no flight stack flies, for some of different
-/// features, for an effect or limits of trust that are not known.
+/// `models` must stay where they are. Throws std::invalid_argument for a model that no flight stack flies, for some of
+/// different features, for an effect or limits of trust that are not known.
 std::unique_ptr<CoreReplay> core_replay(const std::vector<ReplayModel>& models,
                                         const pinnquad::Airframe<float>& airframe, const CoreReplayOptions& options);
 
@@ -128,7 +129,7 @@ class CoreReplayOf : public CoreReplay {
       compare(record, report, row, replayed);
     }
     if (!report.set_point_stale) holding_unknown_ = false;
-    if (row.answerer == Answerer::model || row.answerer == Answerer::formula) answer_unknown_ = false;
+    if (row.answerer == Answerer::model || row.answerer == Answerer::analytic_inverse) answer_unknown_ = false;
     // each tick is judged by itself: the next one starts from what this one logged
     controller_->resume(record);
     last_tick_ = record.tick;
@@ -139,9 +140,7 @@ class CoreReplayOf : public CoreReplay {
   static pinnquad::Vector3<float> vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
   void restart() {
-    controller_.emplace(vehicle_, age_limits(options_.settings), output_limits(options_.settings),
-                        flight_gains(options_.settings), speed_limits(options_.settings),
-                        bias_settings(options_.settings));
+    controller_.emplace(vehicle_, pinnquad::autopilot::controller_settings(options_.settings));
     flown_.reset();
     words_.forget();
     refused_base_ = 0;
@@ -230,7 +229,7 @@ class CoreReplayOf : public CoreReplay {
     for (std::size_t i = 0; i < 4; ++i) row.logged[i] = static_cast<double>(record.commands[i]);
     const bool asked_network = report.reaction <= Reaction::levels;
     if (asked_network) {
-      row.answerer = report.status == pinnquad::Status::fell_back ? Answerer::formula : Answerer::model;
+      row.answerer = report.status == pinnquad::Status::fell_back ? Answerer::analytic_inverse : Answerer::model;
     }
     if (record.asked == 0) {
       row.answerer = Answerer::not_asked;
@@ -240,8 +239,9 @@ class CoreReplayOf : public CoreReplay {
     }
     row.state = row.reaction;
     if (asked_network) {
-      row.state +=
-          row.answerer == Answerer::model ? ", model" : std::string(", formula (") + to_string(report.cause) + ")";
+      row.state += row.answerer == Answerer::model
+                       ? ", model"
+                       : std::string(", analytic inverse (") + to_string(report.cause) + ")";
     }
     if (model && models_.size() > 1) {
       row.state += " [" + std::filesystem::path(models_[*model].path).filename().string() + "]";
@@ -255,7 +255,7 @@ class CoreReplayOf : public CoreReplay {
           distrust.empty() ? reasons_[*model](report.cause, Excess(report), Features::template last<float>) : distrust;
       row.reason += (row.reason.empty() || why.empty() ? "" : "; ") + why;
       if (!pinnquad::has_output(report.status)) {
-        row.reason += std::string("; the formula declines too: ") + pinnquad::to_string(report.status);
+        row.reason += std::string("; the analytic inverse declines too: ") + pinnquad::to_string(report.status);
       }
     }
   }
@@ -266,12 +266,13 @@ class CoreReplayOf : public CoreReplay {
                       static_cast<double>(options_.settings.most_bias_m_s2));
     }
     if (report.cause == pinnquad::Status::distrusted) {
-      return in_words("innovation %.4g, limit %.4g, cleared at %.4g", static_cast<double>(controller_->innovation()),
-                      Trust::innovation_limit, Trust::innovation_cleared);
+      return in_words("command residual %.4g, limit %.4g, cleared at %.4g",
+                      static_cast<double>(controller_->command_residual()), Trust::command_residual_limit,
+                      Trust::command_residual_cleared);
     }
     if (report.cause == pinnquad::Status::outside_distribution) {
       return in_words("squared distance %.4g, limit %.4g", static_cast<double>(report.squared_distance),
-                      Trust::distance_limit);
+                      Trust::squared_distance_limit);
     }
     return "";
   }
@@ -349,9 +350,9 @@ class CoreReplayOf : public CoreReplay {
   template <class Say>
   void compare_trust(const Record& record, const Say& say) {
     constexpr float rounding = 1e-5f;
-    const float innovation = controller_->innovation();
-    if (!(std::fabs(innovation - record.innovation) <= rounding)) {
-      say(in_words("innovation %.6g, logged %.6g", static_cast<double>(innovation),
+    const float residual = controller_->command_residual();
+    if (!(std::fabs(residual - record.innovation) <= rounding)) {
+      say(in_words("command residual %.6g, logged %.6g", static_cast<double>(residual),
                    static_cast<double>(record.innovation)));
     }
     if (controller_->trusted() != (record.trusted != 0)) {

@@ -42,8 +42,8 @@ constexpr bool looks_back() {
   return false;
 }
 
-/// The inputs of a flight's rows, taken one after the other: what looks back has the history that a control loop has, what looks
-/// ahead the rows behind.
+/// The inputs of a flight's rows, taken one after the other: what looks back has the history that a control loop has,
+/// what looks ahead the rows behind.
 template <class Features, class Scalar, class = void>
 class InputsInFlight {
  public:
@@ -128,10 +128,10 @@ class FlightReplay {
       result.excess = static_cast<double>(report.excess[static_cast<std::size_t>(report.worst_feature)]);
     }
     if (pinnquad::has_output(result.status)) {
-      result.answerer = result.status == pinnquad::Status::fell_back ? Answerer::formula : Answerer::model;
+      result.answerer = result.status == pinnquad::Status::fell_back ? Answerer::analytic_inverse : Answerer::model;
       for (std::size_t i = 0; i < commands.size(); ++i) result.commands[i] = static_cast<double>(commands[i]);
     } else if (report.fallback_asked && report.fallback != report.cause) {
-      result.reason += std::string("; the formula declines too: ") + pinnquad::to_string(report.fallback);
+      result.reason += std::string("; the analytic inverse declines too: ") + pinnquad::to_string(report.fallback);
     }
   }
 
@@ -155,7 +155,7 @@ class FlightReplay {
 
   static std::string state_of(const ReplayedRow& row) {
     if (row.answerer == Answerer::model) return row.status == pinnquad::Status::limited ? "model, limited" : "model";
-    return std::string(row.answerer == Answerer::formula ? "formula (" : "no commands (") +
+    return std::string(row.answerer == Answerer::analytic_inverse ? "analytic inverse (" : "no commands (") +
            pinnquad::to_string(row.cause) + ")";
   }
 
@@ -190,7 +190,7 @@ std::unique_ptr<const FlightModel> flight_model_of(const Block& block, const Ide
   }
   using Inverse = pinnquad::InverseDynamics<View, FlightStackGuard>;
   const pinnquad::Quadrotor<float, pinnquad::QuadraticDrag> vehicle(flying_airframe(identity.airframe));
-  return std::make_unique<FlightModelOf<Inverse, Features>>(view, FlightStackGuard(FallbackFormula(vehicle)));
+  return std::make_unique<FlightModelOf<Inverse, Features>>(view, FlightStackGuard(FallbackInverse(vehicle)));
 }
 
 }  // namespace detail

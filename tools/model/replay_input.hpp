@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `replay` is given as a log: a recorded flight, a folder of imported flights, or what a flight stack's core logged (a ULog
+// The log of `replay`: a recorded flight, a folder of imported flights, or what a flight stack's core logged (a ULog
 // file, a folder that ulog2csv wrote, a Crazyflie's log from its uSD card, a CSV table).
 #pragma once
 
@@ -34,8 +34,8 @@ struct ReplayInput {
 
 namespace detail {
 
-/// A flight whose numbers may be NaN: why a model refuses a row is what the user asks. Throws InputError, one line: a column of
-/// every flight that is missing or holds text, time that is no number or does not increase.
+/// A flight whose numbers may be NaN: why a model refuses a row is what the user asks. Throws InputError, one line: a
+/// column of every flight that is missing or holds text, time that is no number or does not increase.
 inline pinnquad::Flight read_flight_with_gaps(const std::string& path) {
   LogSelection selection;
   ProgressLine progress("reading " + pinnquad::printable(std::filesystem::path(path).filename().string()));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Why a model did not answer, in words: which feature left the envelope, and by how much; what is NaN; which command is absurd.
+// Why a model did not answer, in words: which feature left the envelope, and by how much; what is NaN; which command is
+// absurd.
 #pragma once
 
 #include <array>

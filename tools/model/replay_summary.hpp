@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a replay came to, as its user reads it first: who answered how often, the longest stretch without the model, the first
-// events with their reasons, where commands differ most; and the same as JSON.
+// The summary of a replay, as its user reads it first: the share of each answerer, the longest stretch without the
+// model, the first events with their reasons, where commands differ most; and the same as JSON.
 #pragma once
 
 #include <algorithm>
@@ -150,7 +150,7 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
               replayed.rows.back().time_s);
   if (replayed.of_core) std::printf("reactions   %s\n", detail::counts_in_words(summary.reactions).c_str());
   const std::pair<Answerer, const char*> lines[] = {{Answerer::model, "model"},
-                                                    {Answerer::formula, "fell back"},
+                                                    {Answerer::analytic_inverse, "fell back"},
                                                     {Answerer::nobody, "no answer"},
                                                     {Answerer::not_asked, "not asked"}};
   for (const auto& [answerer, name] : lines) {
@@ -229,7 +229,7 @@ inline nlohmann::json as_json(const Replayed& replayed, const ReplaySummary& sum
     json["outside_envelope"][feature] = {{"rows", count.rows},
                                          {"largest_excess", finite_or_null(count.largest_excess)}};
   }
-  for (const Answerer answerer : {Answerer::model, Answerer::formula, Answerer::nobody, Answerer::not_asked}) {
+  for (const Answerer answerer : {Answerer::model, Answerer::analytic_inverse, Answerer::nobody, Answerer::not_asked}) {
     json["answered_by"][to_string(answerer)] = detail::count_of(summary.answerers, to_string(answerer));
   }
   for (std::size_t i = 0; i < std::min(summary.events.size(), events_shown); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What became of one row of a log, and the words for it.
+// The result of one row of a log, and the words for it.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@
 
 namespace programs {
 
-/// Whose commands came out.
+/// The source of the commands.
 enum class Answerer {
   model,
-  formula,
+  analytic_inverse,
   nobody,
   not_asked,  ///< a core that its stack asked nothing: off, or flown by hand
 };
@@ -26,7 +26,7 @@ enum class Answerer {
 constexpr const char* to_string(Answerer answerer) noexcept {
   switch (answerer) {
     case Answerer::model: return "model";
-    case Answerer::formula: return "formula";
+    case Answerer::analytic_inverse: return "analytic_inverse";
     case Answerer::nobody: return "nobody";
     case Answerer::not_asked: return "not_asked";
   }

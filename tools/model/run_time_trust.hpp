@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Limits of trust (docs/trust.md) from the header that `pinnquad train` wrote beside a model, read without a compiler; and a type
-// that holds them, where flying code wants constants.
+// Limits of trust (docs/trust.md) from the header that `pinnquad train` wrote beside a model, read without a compiler;
+// and a type that holds them, where flying code wants constants.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,16 @@
 
 namespace programs {
 
-/// What trust.hpp holds.
+/// The contents of trust.hpp.
 struct TrustLimits {
   std::string path;
   std::vector<double> mean, whitening;
-  double distance_limit = 0, innovation_factor = 0, innovation_limit = 0, innovation_cleared = 0, update_period_s = 0;
+  double squared_distance_limit = 0;
+  double command_residual_factor = 0, command_residual_limit = 0, command_residual_cleared = 0;
+  double update_period_s = 0;
 };
 
-/// Throws InputError, one line.
+/// Reads earlier names too (exported/renamed.hpp). Throws InputError, one line.
 inline TrustLimits read_trust(const std::string& path) {
   const HeaderFile header(path, "training_data_hash", "limits of trust, as pinnquad train writes them (trust.hpp)");
   TrustLimits limits;
@@ -35,10 +37,12 @@ inline TrustLimits read_trust(const std::string& path) {
     return value;
   };
   constexpr double any = 1e30;
-  limits.distance_limit = positive("distance_limit", any);
-  limits.innovation_factor = positive("innovation_factor", 1);
-  limits.innovation_limit = positive("innovation_limit", any);
-  limits.innovation_cleared = positive("innovation_cleared", limits.innovation_limit);
+  const bool earlier = header.has("innovation_limit");
+  limits.squared_distance_limit = positive(earlier ? "distance_limit" : "squared_distance_limit", any);
+  limits.command_residual_factor = positive(earlier ? "innovation_factor" : "command_residual_factor", 1);
+  limits.command_residual_limit = positive(earlier ? "innovation_limit" : "command_residual_limit", any);
+  limits.command_residual_cleared =
+      positive(earlier ? "innovation_cleared" : "command_residual_cleared", limits.command_residual_limit);
   limits.update_period_s = positive("update_period_s", any);
   return limits;
 }
@@ -51,10 +55,10 @@ struct RunTimeTrust {
 
   static inline std::array<float, size> distribution_mean{};
   static inline std::array<float, size*(size + 1) / 2> whitening{};
-  static inline double distance_limit = unlimited;
-  static inline double innovation_factor = 1;
-  static inline double innovation_limit = unlimited;
-  static inline double innovation_cleared = unlimited;
+  static inline double squared_distance_limit = unlimited;
+  static inline double command_residual_factor = 1;
+  static inline double command_residual_limit = unlimited;
+  static inline double command_residual_cleared = unlimited;
   static inline double update_period_s = 1;
 
   /// Throws InputError for limits of other features.
@@ -68,10 +72,10 @@ struct RunTimeTrust {
     };
     take(limits.mean, distribution_mean);
     take(limits.whitening, whitening);
-    distance_limit = limits.distance_limit;
-    innovation_factor = limits.innovation_factor;
-    innovation_limit = limits.innovation_limit;
-    innovation_cleared = limits.innovation_cleared;
+    squared_distance_limit = limits.squared_distance_limit;
+    command_residual_factor = limits.command_residual_factor;
+    command_residual_limit = limits.command_residual_limit;
+    command_residual_cleared = limits.command_residual_cleared;
     update_period_s = limits.update_period_s;
   }
 };

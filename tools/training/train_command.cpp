@@ -199,9 +199,9 @@ void export_network(const TrainOptions& options, const programs::Training& train
               options.model_name.c_str(), training.loss.title, static_cast<unsigned long long>(provenance.seed),
               provenance.verdict->worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
   if (!exported.no_trust_because.empty()) {
-    std::printf("  no limits of distance and innovation (trust.hpp): %s\n", exported.no_trust_because.c_str());
+    std::printf("  no limits of distance and command residual (trust.hpp): %s\n", exported.no_trust_because.c_str());
   } else if (trusted) {
-    std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and innovation\n",
+    std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
                 trust.c_str(), options.model_name.c_str());
   }
   if (options.block.empty()) return;

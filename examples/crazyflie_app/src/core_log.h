@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * What the core received and answered (pinnquad/control/autopilot/core_record.hpp), packed as the payload of an event trigger, for the
- * firmware's log on a uSD card: at most 255 bytes. Names are the record's; times are in ms, which is what the core is told. What
- * a Crazyflie does not say (jerk, resets of the estimator) is left out. Each list has a struct, its variables' types and names,
- * and who fills it. */
+ * The core's record (pinnquad/control/autopilot/core_record.hpp), packed as the payload of an event trigger, for the
+ * firmware's log on a uSD card: at most 255 bytes. Names are the record's; times are in ms, as the core is given them.
+ * What a Crazyflie does not say (jerk, resets of the estimator) is left out. Each list has a struct, its variables'
+ * types and names, and who fills it. */
 #ifndef PINNQUAD_CRAZYFLIE_CORE_LOG_H
 #define PINNQUAD_CRAZYFLIE_CORE_LOG_H
 
@@ -105,7 +105,7 @@ extern "C" {
 
 /* Of the last pinnquad_flight_step(). */
 void pinnquad_flight_record(struct CrazyflieCoreRecord* record);
-/* What the controller was made with. */
+/* The controller's settings. */
 void pinnquad_flight_settings(uint32_t now_ms, struct CrazyflieCoreSettings* settings);
 
 #ifdef __cplusplus

@@ -8,13 +8,13 @@
 #include "core_log.h"
 #include "pinnquad/control/autopilot/recorded_controller.hpp"
 
-// A model.hpp beside the app, as pinnquad train writes it, takes the place of the one for the Crazyflie 2.1; a flown_vehicle.hpp
-// says which effects the formula knows, a trust.hpp when the model is not to be trusted.
+// A model.hpp beside the app, as pinnquad train writes it, takes the place of the one for the Crazyflie 2.1; a
+// flown_vehicle.hpp says which effects the analytic inverse knows, a trust.hpp when the model is not to be trusted.
 #if __has_include("model.hpp")
 #include "model.hpp"
 using FlownModel = TrainedQuadModel;
 #else
-#include "models/crazyflie_2_1.hpp"
+#include "../../models/crazyflie_2_1.hpp"
 using FlownModel = CrazyflieModel;
 #endif
 #if __has_include("flown_vehicle.hpp")
@@ -41,9 +41,10 @@ Control* made = nullptr;
 /// Made by the first call, which must have returned before another thread calls; the firmware may run no constructors.
 Control& controller(float most_command = 1.0f) noexcept {
   if (made == nullptr) {
-    pinnquad::autopilot::OutputLimits outputs;
-    if (most_command < outputs.upper && most_command > outputs.lower) outputs.upper = most_command;
-    made = new (memory) Control(pinnquad::autopilot::AgeLimits{}, outputs);
+    pinnquad::autopilot::ControllerSettings settings;
+    auto& [lower, upper] = settings.outputs;
+    if (most_command < upper && most_command > lower) upper = most_command;
+    made = new (memory) Control(settings);
   }
   return *made;
 }

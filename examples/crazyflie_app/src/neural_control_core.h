@@ -42,7 +42,7 @@ struct CrazyflieSetpoint {
   uint8_t mode_quat;
 };
 
-/* What the controller says of itself: the firmware's log variables. */
+/* The controller's report: the firmware's log variables. */
 struct CrazyflieReport {
   uint32_t asked; /* predictions since the start */
   uint32_t refused_samples;
@@ -61,8 +61,8 @@ struct CrazyflieReport {
 uint8_t pinnquad_flight_offer_model(const void* block, size_t length);
 
 /* The first call of all, whoever makes it; a later one changes nothing. `most_thrust_N`: what the platform gives of one motor,
- * where its normalised force is 1; forces stay within it. What a force of pinnquad_flight_step is to be multiplied by, to be one
- * of the platform: the greatest thrust of a rotor of the model's airframe over the platform's. */
+ * where its normalised force is 1; forces stay within it. What a force of pinnquad_flight_step is to be multiplied by,
+ * to be one of the platform: the greatest thrust of a rotor of the model's airframe over the platform's. */
 float pinnquad_flight_start(float most_thrust_N);
 
 /* True once a model was accepted. */

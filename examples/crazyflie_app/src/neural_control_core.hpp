@@ -12,11 +12,12 @@ namespace pinnquad_crazyflie {
 
 inline constexpr float rad_per_deg = 0.017453292519943295f;
 
-/// Which of pinnquad's rotors a motor is. M1 front right, M2 rear right, M3 rear left, M4 front left; M1 and M3 turn
+/// Rotor of pinnquad for each motor. M1 front right, M2 rear right, M3 rear left, M4 front left; M1 and M3 turn
 /// counter-clockwise seen from above.
 inline constexpr std::size_t rotor_of_motor[4] = {0, 3, 1, 2};
 
-/// `Controller`: one that writes down what it is told (pinnquad/control/autopilot/recorded_controller.hpp), where the app logs it.
+/// `Controller`: one that records its inputs (pinnquad/control/autopilot/recorded_controller.hpp), where the app logs
+/// it.
 template <class Model, class Controller = pinnquad::autopilot::NeuralController<Model>>
 class NeuralControl {
  public:

@@ -35,7 +35,7 @@
 #error \
     "pinnquad: needs CONFIG_ENABLE_THRUST_BAT_COMPENSATED: without it controlModeForce sets voltages, not thrusts (app-config)"
 #endif
-/* What a step needs below the stabilizer's own frames, and what those, interrupts and the PID controller take. The first is
+/* The stack of a step below the stabilizer's own frames, and that of those, of interrupts and of the PID controller. The first is
  * checked against the compiler's own count (tests/flight_stacks/stack_depth.py). */
 #define PINNQUAD_STEP_STACK_BYTES 1400
 #define STABILIZER_OWN_STACK_BYTES 400
@@ -64,7 +64,7 @@ static struct CrazyflieSampleClock attitude_clock, position_clock;
 /* The PID controller's own: its output holds state between its slower steps, and forces lie in the same bytes. */
 static control_t pid_control;
 
-/* What the core received and answered, and what it was made with: for the uSD card, where config.txt asks for them. By hand what
+/* The core's inputs and answers, and its settings: for the uSD card, where config.txt asks for them. By hand what
  * the firmware's EVENTTRIGGER does for up to five variables. */
 static struct CrazyflieCoreRecord record;
 static const eventtriggerPayloadDesc record_variables[] = {

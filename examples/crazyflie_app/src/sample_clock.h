@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * When a sample of the estimator came. Of the firmware's estimators only the UKF stamps what it writes; Kalman and complementary
- * leave 0. Where there is no stamp, a sample came when its bits changed: an estimator that stops leaves them as they are, and
- * then they age as stamped ones do. */
+ * When a sample of the estimator came. Of the firmware's estimators only the UKF stamps what it writes; Kalman and
+ * complementary leave 0. Where there is no stamp, a sample came when its bits changed: an estimator that stops leaves
+ * them as they are, and then they age as stamped ones do. */
 #ifndef PINNQUAD_CRAZYFLIE_SAMPLE_CLOCK_H
 #define PINNQUAD_CRAZYFLIE_SAMPLE_CLOCK_H
 

@@ -146,9 +146,9 @@ using NoStatus = decltype(&WithNames<Effect>::status);
 }  // namespace detail
 
 template <class Effect>
-inline constexpr bool changes_surroundings = detail::is_detected<detail::SurroundingsOf, Effect>;
+inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsOf, Effect>;
 template <class Effect>
-inline constexpr bool makes_wrench = detail::is_detected<detail::WrenchOf, Effect>;
+inline constexpr bool makes_wrench = is_detected<detail::WrenchOf, Effect>;
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
@@ -156,22 +156,22 @@ inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<E
 
 /// True for an effect with `wrench_on`.
 template <class Effect>
-inline constexpr bool has_thrust_branches = detail::is_detected<detail::WrenchOnOf, Effect>;
+inline constexpr bool has_thrust_branches = is_detected<detail::WrenchOnOf, Effect>;
 
 /// True for an effect, or a thrust ratio, with `bound`.
 template <class Effect, class Scalar>
-inline constexpr bool is_bindable = detail::is_detected<detail::BoundOf, Effect, Scalar>;
+inline constexpr bool is_bindable = is_detected<detail::BoundOf, Effect, Scalar>;
 
 /// True for an effect whose `wrench` takes a RotorCondition.
 template <class Effect>
 inline constexpr bool uses_rotor_wrench =
-    makes_wrench<Effect> && !detail::is_detected<detail::WrenchOf, Effect, AeroCondition<double>>;
+    makes_wrench<Effect> && !is_detected<detail::WrenchOf, Effect, AeroCondition<double>>;
 
 /// False where the effect has a function of the contract's name that can't be called as the contract says, or returns
 /// something else: it would be passed over in silence. A `final` class is not looked into: C++ does not list its names.
 template <class Effect, class Scalar = double>
 constexpr bool is_whole_effect() noexcept {
-  using detail::is_detected;
+  using is_detected;
   if constexpr (std::is_class_v<Effect> && !std::is_final_v<Effect>) {
     return changes_surroundings<Effect> != is_detected<detail::NoSurroundings, Effect> &&
            makes_wrench<Effect> != is_detected<detail::NoWrench, Effect> &&
@@ -217,7 +217,7 @@ using BoundEffect = decltype(bound_effect(std::declval<const Effect&>(), std::de
 /// Status of an effect for an airframe; ok for an effect that has no `status`.
 template <class Effect, class Scalar>
 constexpr Status effect_status(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
-  if constexpr (detail::is_detected<detail::StatusOf, Effect, Scalar>) {
+  if constexpr (is_detected<detail::StatusOf, Effect, Scalar>) {
     return effect.status(airframe);
   } else {
     static_cast<void>(effect);

@@ -18,8 +18,8 @@ struct CommandRange {
 
 namespace detail {
 
-/// Ends of the thrust fractions, and the fractions that make thrust and no torque. A rotor whose part is below `nothing`
-/// has no part in pure thrust.
+/// Ends of the thrust fractions, and the fractions that make thrust and no torque. A rotor whose part is below
+/// `nothing` has no part in pure thrust.
 template <class Scalar>
 struct ThrustRoom {
   ThrustFractions<Scalar> lower, upper, along;
@@ -118,10 +118,10 @@ TorqueShares<Scalar> shares_that_fit(const ThrustRoom<Scalar>& room, const Thrus
 
 }  // namespace detail
 
-/// Commands within the range, with the torque of those given as far as it can be had; of rotors that may differ, sit
-/// anywhere and have curves. Gives way in this order: thrust, then yaw torque, then roll and pitch torque by one share,
-/// so that their direction stays. No torque is greater than asked or of the other sign. Commands within the range stay, to the bit.
-/// A rotor that has no part in pure thrust is clipped. NaN passes through.
+/// Commands within the range that keep the given torque as far as they can; rotors may differ, sit anywhere and have
+/// curves. Thrust gives way first, then yaw torque, then roll and pitch torque by one share, so that their direction
+/// stays. No torque is greater than asked or of the other sign. Commands within the range stay, to the bit. A rotor
+/// that has no part in pure thrust is clipped. NaN passes through.
 template <class Scalar>
 Commands<Scalar> desaturate(const Rotors<Scalar>& rotors, const Commands<Scalar>& commands,
                             const CommandRange<Scalar>& range = {}) noexcept {
@@ -159,11 +159,11 @@ Commands<Scalar> desaturate(const Rotors<Scalar>& rotors, const Commands<Scalar>
   return result;
 }
 
-/// True if a rotor is at its end: nothing, or its limit.
+/// True if a command is at an end of its range, beyond it or NaN.
 template <class Scalar>
-constexpr bool saturated(const Commands<Scalar>& commands) noexcept {
+constexpr bool saturated(const Commands<Scalar>& commands, const CommandRange<Scalar>& range = {}) noexcept {
   bool at_end = false;
-  for (const Scalar u : commands) at_end |= !(u > Scalar(0) && u < Scalar(1));
+  for (const Scalar u : commands) at_end |= !(u > range.lower && u < range.upper);
   return at_end;
 }
 

@@ -10,48 +10,33 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/features/input_history.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-/// The call, its time in braces: a policy that would take it as a floating-point number fails here.
+// The time in braces: a call that takes it as a floating-point number is not detected.
 template <class Policy, class Scalar>
-using FeedForwardStatus =
-    decltype(std::declval<Policy&>()(std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(),
-                                     {std::declval<std::uint64_t>()}, std::declval<Commands<Scalar>&>()));
-
-template <class Policy, class Scalar, class = void>
-struct IsFeedForward : std::false_type {
-  static constexpr bool is_noexcept = true;
-};
+using FeedForward = std::enable_if_t<
+    std::is_same_v<Status, decltype(std::declval<Policy&>()(
+                               std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(),
+                               {std::declval<std::uint64_t>()}, std::declval<Commands<Scalar>&>()))>>;
 template <class Policy, class Scalar>
-struct IsFeedForward<Policy, Scalar, std::void_t<FeedForwardStatus<Policy, Scalar>>>
-    : std::is_same<Status, FeedForwardStatus<Policy, Scalar>> {
-  static constexpr bool is_noexcept = noexcept(
-      std::declval<Policy&>()(std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(),
-                              {std::declval<std::uint64_t>()}, std::declval<Commands<Scalar>&>()));
-};
-
-/// The same of what measures for NetworkInverse.
-template <class Measured, class Scalar, class Present, class = void>
-struct Measures : std::false_type {};
+using NoexceptFeedForward = std::enable_if_t<noexcept(
+    std::declval<Policy&>()(std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(),
+                            {std::declval<std::uint64_t>()}, std::declval<Commands<Scalar>&>()))>;
 template <class Measured, class Scalar, class Present>
-struct Measures<Measured, Scalar, Present,
-                std::void_t<decltype(std::declval<Measured&>()(
-                    std::declval<const State<Scalar>&>(), {std::declval<std::uint64_t>()}, std::declval<Present&>()))>>
-    : std::bool_constant<noexcept(std::declval<Measured&>()(
-          std::declval<const State<Scalar>&>(), {std::declval<std::uint64_t>()}, std::declval<Present&>()))> {};
+using NoexceptMeasurement = std::enable_if_t<noexcept(std::declval<Measured&>()(
+    std::declval<const State<Scalar>&>(), {std::declval<std::uint64_t>()}, std::declval<Present&>()))>;
+template <class Policy>
+using FallbackCountOf = decltype(std::declval<const Policy&>().count());
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Policy, class Scalar>
-inline constexpr bool is_feed_forward = detail::IsFeedForward<Policy, Scalar>::value;
-
-/// True if the policy's call is noexcept: it flies.
-template <class Policy, class Scalar>
-inline constexpr bool is_noexcept_feed_forward = detail::IsFeedForward<Policy, Scalar>::is_noexcept;
+inline constexpr bool is_feed_forward = is_detected<detail::FeedForward, Policy, Scalar>;
 
 /// No feed-forward: the commands of the hover, whatever is wanted.
 template <class Scalar>
@@ -75,16 +60,16 @@ Status hover_trim(const Quadrotor<Scalar, Effects...>& quadrotor, const Vector3<
   return inverse_commands(quadrotor, state, Accelerations<Scalar>{}, Scalar(0), trim.commands);
 }
 
-/// How often a network declined, and why.
+/// Counts a network's answers by Status.
 struct FallbackCount {
   static constexpr auto statuses = static_cast<std::size_t>(status_count);
 
   std::uint32_t asked{0};
-  std::array<std::uint32_t, statuses> by_status{};  ///< indexed by Status; `ok` and `limited` count the network's own
+  std::array<std::uint32_t, statuses> by_status{};  ///< `ok` and `limited`: the network answered
 
   constexpr std::uint32_t of(Status status) const noexcept { return by_status[index(status)]; }
   constexpr std::uint32_t fallbacks() const noexcept { return asked - of(Status::ok) - of(Status::limited); }
-  /// What the network alone came to.
+  /// The network's own Status.
   constexpr void add(Status status) noexcept {
     ++asked;
     ++by_status[index(status)];
@@ -94,16 +79,15 @@ struct FallbackCount {
   static constexpr std::size_t index(Status status) noexcept { return static_cast<std::size_t>(status) % statuses; }
 };
 
-/// What NetworkInverse is told besides the motion: nothing.
+/// NetworkInverse is given the motion alone.
 struct MotionAlone {};
 
-/// The network's prediction for the motion wanted, or what its guard falls back to, counted by why. `InverseDynamics` has the
-/// interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in its guard
-/// the policy declines where the network does.
-/// A model with a past gets its window of what this policy was asked, by the times given: it declines as `warming_up` first.
-/// A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, called before each
-/// prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs& present) noexcept` sets what the
-/// motion does not say.
+/// The network's prediction for the motion wanted, or its guard's fallback, counted by Status. `InverseDynamics` has
+/// the interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in
+/// its guard the policy declines where the network does. A model with a past gets a window of the motions asked for,
+/// and declines as `warming_up` first. A model that asks for more than MotionInputs (altitude, battery voltage) needs
+/// `Measured`, called before each prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs&
+/// present) noexcept` sets it.
 template <class InverseDynamics, class Measured = MotionAlone>
 class NetworkInverse {
  public:
@@ -128,10 +112,9 @@ class NetworkInverse {
     Present present;
     static_cast<MotionInputs<NetworkScalar>&>(present) = narrowed(motion_inputs(state, desired));
     if constexpr (!std::is_same_v<Measured, MotionAlone>) {
-      static_assert(detail::Measures<Measured, Scalar, Present>::value,
+      static_assert(is_detected<detail::NoexceptMeasurement, Measured, Scalar, Present>,
                     "pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be "
-                    "noexcept; time "
-                    "is a std::uint64_t of microseconds (control/feed_forward.hpp)");
+                    "noexcept; time is a std::uint64_t of microseconds (control/feed_forward.hpp)");
       measured_(state, time_us, present);
     }
     const double time_s = seconds_of(time_us);
@@ -167,17 +150,10 @@ class NetworkInverse {
   FallbackCount count_{};
 };
 
-namespace detail {
-template <class Policy, class = void>
-struct CountsFallbacks : std::false_type {};
-template <class Policy>
-struct CountsFallbacks<Policy, std::void_t<decltype(std::declval<const Policy&>().count())>> : std::true_type {};
-}  // namespace detail
-
 /// The policy's count; all zero for a policy that has no fallback.
 template <class Policy>
 constexpr FallbackCount fallback_count(const Policy& policy) noexcept {
-  if constexpr (detail::CountsFallbacks<Policy>::value) {
+  if constexpr (is_detected<detail::FallbackCountOf, Policy>) {
     return policy.count();
   } else {
     static_cast<void>(policy);

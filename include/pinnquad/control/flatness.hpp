@@ -13,7 +13,7 @@
 
 namespace pinnquad {
 
-/// What a trajectory asks of the body.
+/// The motion of the body along a trajectory.
 template <class Scalar>
 struct FlatMotion {
   Quaternion<Scalar> attitude{};                                          ///< body -> world
@@ -22,24 +22,26 @@ struct FlatMotion {
   Scalar specific_thrust_m_s2 = Scalar(0);                                ///< thrust / mass, along body -z
 };
 
+namespace detail {
 /// Specific thrust and cosine of roll below which the attitude has no meaning: free fall, thrust along the horizon.
 template <class Scalar>
 inline constexpr Scalar flatness_limit = Scalar(1e-3);
+}  // namespace detail
 
-/// Body axes in the world for a specific force (a - g, NED) and a heading: z = -f / |f|, x in the vertical plane of the
-/// heading, so that the Euler ZYX yaw of the result is the heading's. Columns of R: x, y, z.
-/// `not_finite`; `no_solution` in free fall or with the thrust along the horizon across the heading.
+/// Body axes in the world for a specific force f = a - g (NED) and a heading: z = -f / |f|, x in the vertical plane of
+/// the heading, so that the Euler ZYX yaw of the result is the heading's. Columns of R: x, y, z.
+/// `not_finite`; `no_solution` in free fall, or with the thrust along the horizon across the heading.
 template <class Scalar>
 Status body_axes(const Vector3<Scalar>& specific_force_m_s2, const Heading<Scalar>& yaw,
                  Matrix<Scalar, 3, 3>& axes) noexcept {
   if (!(all_finite(specific_force_m_s2) && is_finite(yaw.sine) && is_finite(yaw.cosine))) return Status::not_finite;
   const Scalar thrust = specific_force_m_s2.norm();
-  if (!(thrust > flatness_limit<Scalar>)) return Status::no_solution;
+  if (!(thrust > detail::flatness_limit<Scalar>)) return Status::no_solution;
   const Vector3<Scalar> z = specific_force_m_s2 * (Scalar(-1) / thrust);
   const Vector3<Scalar> right(-yaw.sine, yaw.cosine, Scalar(0));
   const Vector3<Scalar> forward = cross<Scalar>(right, z);
   const Scalar cosine_roll = forward.norm();
-  if (!(cosine_roll > flatness_limit<Scalar>)) return Status::no_solution;
+  if (!(cosine_roll > detail::flatness_limit<Scalar>)) return Status::no_solution;
   const Vector3<Scalar> x = forward * (Scalar(1) / cosine_roll);
   axes.col(0) = x;
   axes.col(1) = cross<Scalar>(z, x);

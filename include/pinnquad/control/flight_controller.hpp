@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A cascaded flight controller: position -> velocity -> attitude -> body rates, proportional all through, no memory.
-// It says which accelerations it wants; an inverse of the dynamics, any, turns them into commands.
+// A cascaded flight controller: position -> velocity -> attitude -> body rates, all proportional, without memory.
+// Its output are the accelerations wanted; any inverse of the dynamics turns them into commands.
 #pragma once
 
 #include <array>
@@ -26,14 +26,14 @@ struct FlightGains {
   Scalar yaw_rate_1_s = Scalar(8);          ///< the same for yaw
 };
 
-/// What the controller may ask for: limits on the specific force (thrust / mass, NED), on turning and on its onset, and on the
-/// speed of a trajectory's point and the position error together. No speed limit by default: a position error asks for as much
-/// as it is large, and a vehicle far from its place arrives faster than it can stop.
+/// Limits of the demand: on the specific force (thrust / mass, NED), on turning, and on the speed of a trajectory's
+/// point and the position error together. Without a speed limit, the default, a vehicle far from its place arrives
+/// faster than it can stop.
 template <class Scalar>
 struct FlightLimits {
   Scalar max_tilt_rad = Scalar(0.85);  ///< of the thrust wanted, 49 degrees
   Scalar max_horizontal_acceleration_m_s2 = Scalar(9);
-  Scalar min_vertical_specific_force_m_s2 = Scalar(3.5);  ///< never falls freely: attitude needs thrust
+  Scalar min_vertical_specific_force_m_s2 = Scalar(3.5);  ///< above free fall: attitude needs thrust
   Scalar max_specific_force_m_s2 = Scalar(17);
   Scalar max_roll_pitch_rate_rad_s = Scalar(4);  ///< of what an attitude error asks for
   Scalar max_roll_pitch_acceleration_rad_s2 = Scalar(100);
@@ -45,8 +45,8 @@ struct FlightLimits {
 
 namespace detail {
 
-/// What an airframe can do: thrust without torque over weight, and by how much all rotors together turn it about an axis, each
-/// moved by no more than hover leaves it.
+/// Thrust without torque over weight, and the greatest angular acceleration about each axis, no rotor moved by more
+/// than hover leaves it.
 template <class Scalar>
 struct Authority {
   Scalar thrust_to_weight{0};
@@ -95,10 +95,10 @@ Authority<Scalar> authority(const Airframe<Scalar>& airframe, Scalar rotor_scale
 
 }  // namespace detail
 
-/// The default limits, lowered to what the airframe can do where its thrust has this scale (Quadrotor::rotor_scale): 97 % of
-/// the thrust at which the first rotor is at its end, and 55 % of the horizontal acceleration that this leaves in level flight;
-/// angular accelerations that move a rotor by 60 % (roll, pitch) and 40 % (yaw) of what hover leaves it; body rates that can be
-/// stopped as fast as the attitude loop wants to.
+/// The default limits, lowered to the airframe's at a thrust scale (Quadrotor::rotor_scale): 97 % of the thrust at
+/// which the first rotor is at its end; 55 % of the horizontal acceleration that this leaves in level flight; angular
+/// accelerations that move a rotor by 60 % (roll, pitch) and 40 % (yaw) of what hover leaves it; body rates that the
+/// attitude loop can stop.
 template <class Scalar>
 FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar rotor_scale,
                                    const FlightGains<Scalar>& gains = {}) noexcept {
@@ -118,7 +118,7 @@ FlightLimits<Scalar> flight_limits(const Airframe<Scalar>& airframe, Scalar roto
   return limits;
 }
 
-/// What a pilot asks for through a radio: a velocity and a yaw rate, and what his thumbs add to the body rates.
+/// A pilot's demand: a velocity, a yaw rate, and the sticks' own part of the body rates.
 template <class Scalar>
 struct SetPoint {
   Vector3<Scalar> velocity_m_s = Vector3<Scalar>::Zero();  ///< NED
@@ -146,8 +146,8 @@ class FlightController {
   constexpr Scalar gravity_m_s2() const noexcept { return gravity_m_s2_; }
 
   /// Pilot's loop: the accelerations that bring the vehicle to the velocity and yaw rate wanted; yaw itself is free.
-  /// `not_finite` for a bad input, `output_not_finite` for one so large that a sum overflows; `demand` is untouched unless
-  /// the Status is ok.
+  /// `not_finite` for a bad input, `output_not_finite` for one so large that a sum overflows; `demand` is untouched
+  /// unless the Status is ok.
   Status operator()(const State<Scalar>& state, const SetPoint<Scalar>& wanted,
                     Accelerations<Scalar>& demand) const noexcept {
     if (!(all_finite(state) && all_finite(wanted.velocity_m_s) && is_finite(wanted.yaw_rate_rad_s) &&
@@ -168,8 +168,8 @@ class FlightController {
   }
 
   /// Trajectory loop. Reference: the point's world acceleration in the current attitude, angular accelerations from
-  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory. Speed within the
-  /// limits, where there are any.
+  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory. Speed
+  /// within the limits, where there are any.
   /// `not_finite`, `no_solution` (flatness.hpp), `output_not_finite`; `demand` is untouched unless the Status is ok.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point,
                     TrackingDemand<Scalar>& demand) const noexcept {
@@ -202,9 +202,8 @@ class FlightController {
     return Status::ok;
   }
 
-  /// The velocity (NED) that closes a position error on top of a reference, within the speed limits: the point's velocity and
-  /// position_1_s times the error; under a limit no more than can be braked by 0.4 of what limited() leaves,
-  /// sqrt(2 a (e - a / (2 k^2))) beyond e = a / k^2.
+  /// The velocity (NED) that closes a position error e: the point's velocity plus k e, k = position_1_s. Under a speed
+  /// limit no more than 0.4 of the acceleration limit a can brake: sqrt(2 a (e - a / (2 k^2))) beyond e = a / k^2.
   Vector3<Scalar> wanted_velocity(const Vector3<Scalar>& reference_m_s, const Vector3<Scalar>& error_m) const noexcept {
     using std::sqrt;
     Vector3<Scalar> approach = error_m * gains_.position_1_s;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trajectory tracking: commands = feed-forward of the reference motion + allocation of the feedback.
-// The feedback law is the same whatever the feed-forward policy, so that policies can be compared. It flies where the
-// policy has no answer too.
+// The feedback law does not depend on the feed-forward policy, so that policies can be compared. It flies where the
+// policy declines too.
 #pragma once
 
 #include "pinnquad/control/desaturate.hpp"
@@ -18,7 +18,7 @@ class TrackingController {
   static_assert(is_feed_forward<FeedForward, Scalar>,
                 "pinnquad: this type is no feed-forward policy; time is a std::uint64_t of microseconds "
                 "(control/feed_forward.hpp)");
-  static_assert(is_noexcept_feed_forward<FeedForward, Scalar>,
+  static_assert(!is_feed_forward<FeedForward, Scalar> || is_detected<detail::NoexceptFeedForward, FeedForward, Scalar>,
                 "pinnquad: a feed-forward policy flies: its operator() must be noexcept (control/feed_forward.hpp)");
 
  public:
@@ -31,9 +31,9 @@ class TrackingController {
         feed_forward_(feed_forward),
         rotor_scale_(rotor_scale) {}
 
-  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust fractions,
-  /// then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's rigid-body wrench,
-  /// without air.
+  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust
+  /// fractions, then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's
+  /// rigid-body wrench, without air.
   /// `ok`. `limited`: the policy limited, or the sum was desaturated. `fell_back`: the policy fell back, or declined
   /// (feed_forward_status() says why). Any other Status of the controller, and `output_not_finite`: the commands are
   /// untouched.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where to be and when: reference trajectories with closed-form derivatives up to snap, which is what flatness needs.
+// Reference trajectories with closed-form derivatives up to snap, as flatness needs them.
 // Contract: a small value with `TrajectoryPoint<Scalar> sample(Scalar time_s) const noexcept`.
 #pragma once
 
@@ -22,6 +22,8 @@ struct TrajectoryPoint {
   Scalar yaw_rate_rad_s = Scalar(0);
   Scalar yaw_acceleration_rad_s2 = Scalar(0);
 };
+
+namespace detail {
 
 /// A value and its first four derivatives with respect to time.
 template <class Scalar>
@@ -65,7 +67,6 @@ Derivatives<Scalar> harmonic(const Derivatives<Scalar>& phase, Scalar amplitude,
           c * p4 - s * (three * p2 * p2 + four * p1 * p3) - six * c * p1 * p1 * p2 + s * p1 * p1 * p1 * p1};
 }
 
-namespace detail {
 template <class Scalar>
 TrajectoryPoint<Scalar> assembled(const Vector3<Scalar>& center_m, const Derivatives<Scalar>& north,
                                   const Derivatives<Scalar>& east, const Derivatives<Scalar>& down,
@@ -73,10 +74,11 @@ TrajectoryPoint<Scalar> assembled(const Vector3<Scalar>& center_m, const Derivat
   const auto order = [&](std::size_t n) noexcept { return Vector3<Scalar>(north[n], east[n], down[n]); };
   return {center_m + order(0), order(1), order(2), order(3), order(4), yaw[0], yaw[1], yaw[2]};
 }
+
 }  // namespace detail
 
-/// A lying eight: center + (length sin p, width sin 2p, height sin p), p = smooth_phase. Starts at rest in its center.
-/// Highest speed in the crossing: 2 pi / period sqrt(length^2 + 4 width^2 + height^2); 4.8 m/s by default.
+/// A lying eight: center + (length sin p, width sin 2p, height sin p), p = detail::smooth_phase(). Starts at rest in
+/// its center. Highest speed in the crossing: 2 pi / period sqrt(length^2 + 4 width^2 + height^2); 4.8 m/s by default.
 template <class Scalar>
 struct FigureEight {
   Vector3<Scalar> center_m = Vector3<Scalar>::Zero();  ///< NED
@@ -88,10 +90,10 @@ struct FigureEight {
   Scalar ramp_s = Scalar(4);
 
   TrajectoryPoint<Scalar> sample(Scalar time_s) const noexcept {
-    const Derivatives<Scalar> phase = smooth_phase(time_s, period_s, ramp_s);
-    return detail::assembled(center_m, harmonic(phase, half_length_m, Scalar(1)),
-                             harmonic(phase, half_width_m, Scalar(2)), harmonic(phase, half_height_m, Scalar(1)),
-                             harmonic(phase, yaw_amplitude_rad, Scalar(1)));
+    const auto phase = detail::smooth_phase(time_s, period_s, ramp_s);
+    return detail::assembled(
+        center_m, detail::harmonic(phase, half_length_m, Scalar(1)), detail::harmonic(phase, half_width_m, Scalar(2)),
+        detail::harmonic(phase, half_height_m, Scalar(1)), detail::harmonic(phase, yaw_amplitude_rad, Scalar(1)));
   }
 };
 
@@ -107,24 +109,10 @@ struct Circle {
 
   TrajectoryPoint<Scalar> sample(Scalar time_s) const noexcept {
     constexpr Scalar quarter_turn = Scalar(1.5707963267948966);
-    const Derivatives<Scalar> phase = smooth_phase(time_s, period_s, ramp_s);
-    return detail::assembled(center_m, harmonic(phase, radius_m, Scalar(1), quarter_turn),
-                             harmonic(phase, radius_m, Scalar(1)), Derivatives<Scalar>{},
-                             harmonic(phase, yaw_amplitude_rad, Scalar(1)));
-  }
-};
-
-/// Stays in one place: the trajectory of a hover.
-template <class Scalar>
-struct Hover {
-  Vector3<Scalar> position_m = Vector3<Scalar>::Zero();  ///< NED
-  Scalar yaw_rad = Scalar(0);
-
-  TrajectoryPoint<Scalar> sample(Scalar /*time_s*/) const noexcept {
-    TrajectoryPoint<Scalar> point;
-    point.position_m = position_m;
-    point.yaw_rad = yaw_rad;
-    return point;
+    const auto phase = detail::smooth_phase(time_s, period_s, ramp_s);
+    return detail::assembled(center_m, detail::harmonic(phase, radius_m, Scalar(1), quarter_turn),
+                             detail::harmonic(phase, radius_m, Scalar(1)), detail::Derivatives<Scalar>{},
+                             detail::harmonic(phase, yaw_amplitude_rad, Scalar(1)));
   }
 };
 

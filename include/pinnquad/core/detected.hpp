@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
-// One way to ask whether a type has a member: `is_detected<Op, Args...>` is true where `Op<Args...>` names a type.
-// Example: `template <class T> using NameOf = decltype(T::name);` and `is_detected<NameOf, Model>`.
+// Detection: is_detected<Op, Args...> is true where Op<Args...> is a type.
 #pragma once
+
 #include <type_traits>
 
-namespace pinnquad::detail {
+namespace pinnquad {
 
-template <class Void, template <class...> class Op, class... Args>
+namespace detail {
+template <class, template <class...> class Op, class... Args>
 struct Detector : std::false_type {};
 template <template <class...> class Op, class... Args>
 struct Detector<std::void_t<Op<Args...>>, Op, Args...> : std::true_type {};
+}  // namespace detail
 
 template <template <class...> class Op, class... Args>
-inline constexpr bool is_detected = Detector<void, Op, Args...>::value;
+inline constexpr bool is_detected = detail::Detector<void, Op, Args...>::value;
 
-}  // namespace pinnquad::detail
+}  // namespace pinnquad

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the limits of a model's trust as a struct beside the model: what JointDistance and InnovationMonitor are
-// given.
+// Writes the limits of trust in a model as a struct beside it, for JointDistance and CommandResidualMonitor.
 #pragma once
 
 #include <array>
@@ -35,9 +34,10 @@ void write_trust(std::ostream& stream, const std::string& model_name, const Fitt
   const auto whitening = rounded(trust.distribution.whitening);
   detail::require_finite(mean, "the distribution's mean");
   detail::require_finite(whitening, "the distribution's whitening");
-  detail::require_finite(std::array<double, 5>{trust.distance_limit, trust.innovation_factor, trust.innovation_limit,
-                                               trust.innovation_cleared, trust.update_period_s},
-                         "the trust's limits");
+  detail::require_finite(
+      std::array<double, 5>{trust.squared_distance_limit, trust.command_residual_factor, trust.command_residual_limit,
+                            trust.command_residual_cleared, trust.update_period_s},
+      "the trust's limits");
   std::ostringstream out;
   out.imbue(std::locale::classic());
   const std::string scalar = type_name<Scalar>();
@@ -49,18 +49,18 @@ void write_trust(std::ostream& stream, const std::string& model_name, const Fitt
   const auto number = [&](const char* name, double value) {
     out << "  static constexpr double " << name << " = " << detail::literal(value) << ";\n";
   };
-  out << "\n// When the model is not to be trusted: JointDistance<" << model_name << "Trust> for its Guard, "
-      << "InnovationMonitor<" << model_name << "Trust>.\n"
+  out << "\n// Limits of trust in the model: JointDistance<" << model_name << "Trust> for its Guard, "
+      << "CommandResidualMonitor<" << model_name << "Trust>.\n"
       << "struct " << model_name << "Trust {\n"
       << "  static constexpr std::uint64_t training_data_hash = " << hexadecimal(training_data_hash) << ";\n";
   array("distribution_mean", mean);
   out << "  // lower triangular, column after column\n";
   array("whitening", whitening);
-  number("distance_limit", trust.distance_limit);
-  out << "  // of the mean absolute error of the commands, updated every update_period_s\n";
-  number("innovation_factor", trust.innovation_factor);
-  number("innovation_limit", trust.innovation_limit);
-  number("innovation_cleared", trust.innovation_cleared);
+  number("squared_distance_limit", trust.squared_distance_limit);
+  out << "  // mean absolute error of the commands, updated every update_period_s\n";
+  number("command_residual_factor", trust.command_residual_factor);
+  number("command_residual_limit", trust.command_residual_limit);
+  number("command_residual_cleared", trust.command_residual_cleared);
   number("update_period_s", trust.update_period_s);
   out << "};\n";
   stream << out.str();

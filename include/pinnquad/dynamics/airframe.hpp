@@ -224,6 +224,6 @@ using AirframeOf = std::enable_if_t<(static_cast<void>(Vehicle::name),
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_airframe = detail::is_detected<detail::AirframeOf, T>;
+inline constexpr bool is_airframe = is_detected<detail::AirframeOf, T>;
 
 }  // namespace pinnquad

@@ -19,7 +19,7 @@ constexpr Airframe<Scalar> airframe_value() noexcept {
                 "pinnquad: an airframe needs `static constexpr const char* name` and `template <class Scalar> static "
                 "constexpr Airframe<Scalar> value()` (dynamics/airframe.hpp)");
   if constexpr (is_airframe<Vehicle>) {
-    constexpr bool compiled = detail::is_detected<detail::CompiledAirframe, Vehicle>;
+    constexpr bool compiled = is_detected<detail::CompiledAirframe, Vehicle>;
     static_assert(compiled,
                   "pinnquad: this airframe's value() can't be computed when compiled. An airframe has four rotors, "
                   "rotors[0] to rotors[3]: does it reach for a fifth? (dynamics/airframe.hpp)");

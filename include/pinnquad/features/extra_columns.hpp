@@ -48,7 +48,7 @@ constexpr auto extra_columns_of([[maybe_unused]] bool units) noexcept {
 
 /// True for a type that is a column: it has `name` and `unit`.
 template <class T>
-inline constexpr bool is_column = detail::is_detected<detail::ColumnMembers, T>;
+inline constexpr bool is_column = is_detected<detail::ColumnMembers, T>;
 
 /// Names and units of the columns that a feature set asks for: none unless it is WithColumns, or has one inside.
 template <class Features>

@@ -138,7 +138,7 @@ inline constexpr bool is_feature_set = detail::fulfils_feature_set<T>();
 
 /// True for a feature set that asks for a window.
 template <class Features>
-inline constexpr bool is_windowed = detail::is_detected<detail::WindowInside, Features>;
+inline constexpr bool is_windowed = is_detected<detail::WindowInside, Features>;
 
 /// A feature set of the motion alone, with the altitude as its last entry: a vehicle near the ground (Discussion 5).
 template <class FeatureSet>

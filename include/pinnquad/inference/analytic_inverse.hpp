@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The inverse by formula as a policy: of a loop (state, motion, time -> commands), and of a guard, which falls back to it.
+// The analytic inverse as a policy: of a loop (state, motion, time -> commands), and of a guard, which falls back to
+// it.
 #pragma once
 
 #include "pinnquad/features/features.hpp"
@@ -13,13 +14,13 @@ template <class Vehicle>
 class AnalyticInverse;
 
 /// inverse_commands() (vehicle/inverse.hpp) through the vehicle's own effects.
-/// As a fallback it works from the network's inputs, in the vehicle's scalar. What those don't say must not matter or be
-/// told: with MotionInputs alone no effect may depend on height, place or time, with an altitude height is known; the
-/// compiler refuses the rest, which needs PlaceAndTime.
+/// As a fallback it works from the network's inputs, in the vehicle's scalar. With MotionInputs alone no effect may
+/// depend on height, place or time; an altitude among the inputs says the height; the rest needs PlaceAndTime. The
+/// compiler refuses a vehicle that needs more.
 template <class Scalar, class... Effects>
 class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
  public:
-  /// What the answer depends on besides motion and airframe.
+  /// The effects' dependence besides motion and airframe.
   static constexpr VariesWith varies_with = widest_variation<Effects...>;
 
   explicit AnalyticInverse(const Quadrotor<Scalar, Effects...>& quadrotor) noexcept : quadrotor_(quadrotor) {}

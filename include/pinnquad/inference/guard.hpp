@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What stands between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>, a list of
-// policies that the compiler checks for sense. The order in the list has no meaning: inputs are checked first, then the
-// envelope, then the distance from the training rows, then the outputs' numbers and limits; what passes may have to agree with another inverse; where all that declines,
-// the fallback is asked.
+// The checks between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>. The
+// compiler checks that the policies go together; their order has no meaning. In flight the inputs are checked first,
+// then the envelope, the distance from the training rows, the commands' numbers and limits, and the agreement with
+// another inverse. Where one of them refuses, the fallback is asked.
 #pragma once
 
 #include <array>
@@ -19,25 +19,23 @@
 namespace pinnquad {
 
 /// Inputs and features are finite and the attitude is a rotation: else `not_finite`, `not_unit_quaternion`.
-/// May be left out beside TrainingEnvelope, which refuses NaN and infinite features too; the attitude's norm is then not
-/// looked at.
+/// May be left out beside TrainingEnvelope, which refuses NaN and infinite features too; nothing checks the attitude's
+/// norm then.
 struct FiniteInputs {};
 
-/// Every feature lies in what the model was trained on, margin included: else `outside_envelope`.
-/// A box, feature by feature: it does not know which features came together. A motion whose features are each within it can lie
-/// far from every motion of the training data: in level hover a pure roll demand of 30 to 60 rad/s^2 passes the envelope of
-/// examples/models/demo_quadrotor.hpp, and the commands make 5 to 36 % too little torque. Agreement finds the worst of such
-/// motions; JointDistance knows which features came together.
+/// Every feature lies in its range of the training rows, margin included: else `outside_envelope`.
+/// The envelope is a box, feature by feature. A motion within it may be far from every training row; JointDistance and
+/// Agreement find such motions.
 struct TrainingEnvelope {};
 
-/// Features outside the envelope are moved to its border: `limited`. The network is asked for another motion then, which a
-/// feedback loop around it has to make good.
+/// Features outside the envelope are moved to its border: `limited`. The network answers another motion then; a
+/// feedback loop must make good the difference.
 struct ClampToEnvelope {};
 
-/// The commands are finite: else `output_not_finite`. No guard is without it.
+/// The commands are finite: else `output_not_finite`. Every guard has it.
 struct FiniteOutputs {};
 
-/// What a rotor can do.
+/// The range of a rotor's command.
 struct UnitCommands {
   static constexpr double lower = 0.0;
   static constexpr double upper = 1.0;
@@ -47,35 +45,31 @@ struct UnitCommands {
 template <class Limits = UnitCommands>
 struct RefuseCommands {};
 
-/// Commands outside the limits are clipped to them: `limited`. Beside RefuseCommands the refusal comes first, so that what is
-/// a little too much is clipped and what is absurd refused.
+/// Commands outside the limits are clipped to them: `limited`. Beside RefuseCommands the refusal comes first.
 template <class Limits = UnitCommands>
 struct ClipCommands {};
 
-/// Asked where the network declines; its commands pass the same output checks and the Status is `fell_back`. Where it
-/// declines too, the Status is the network's and nothing is written.
-/// Beside TrainingEnvelope, a motion that is outside by its angular acceleration alone is answered by both:
+/// Another inverse, asked where the network declines. Its commands pass the same output checks and the Status is
+/// `fell_back`. Where it declines too, the Status is the network's and nothing is written.
+/// Beside TrainingEnvelope, both answer a motion that is outside by its angular acceleration alone:
 ///   commands(w) = network(c) + fallback(w - c) - fallback(0),  c = w clamped to the envelope,  then ClipCommands
-/// This is the network's answer at the edge, without a jump. Where each command of both moves with w as its rotor's torque
-/// does, which a certificate says of a structured model and which holds of an analytic inverse with rotors alike, the
-/// signed sum of an axis does not fall where more is asked about it, inside, outside and across. Other switches promise
-/// no order: other features at the envelope's edge, RefuseCommands, JointDistance, Agreement (docs/guide.md).
-/// Contract: `Status operator()(const Inputs&, Commands<Scalar>&) const noexcept`, or with a `const PlaceAndTime<Real>&` in
-/// the middle, or both; commands are taken if has_output(status). It checks its inputs itself: it is asked with those that the
-/// guard refused. inference/analytic_inverse.hpp is one.
+/// There is no jump at the edge. A certified model beside an analytic inverse with rotors alike keeps its order across
+/// it: an axis' command sum does not fall where more is asked about the axis (docs/guide.md, which lists what does
+/// not). Contract: `Status operator()(const Inputs&, Commands<Scalar>&) const noexcept`, or with a `const
+/// PlaceAndTime<Real>&` in the middle, or both. It checks its inputs itself: it is asked with those that the guard
+/// refused. Its commands are taken if has_output(status). inference/analytic_inverse.hpp is one.
 template <class Inverse>
 struct Fallback {};
 
-/// Largest difference of a command that Agreement lets pass by default. On ordinary flights of the demo model's vehicle 3 to 4 %
-/// of the motions differ by more (by 0.05: 8 %), and so do roll demands from 50 rad/s^2 in hover (0.05: from 40 rad/s^2).
+/// The default limit of Agreement.
 struct AgreedCommands {
   static constexpr double largest_difference = 0.07;
 };
 
 /// Each of the network's commands, clipped if the guard clips, differs from another inverse's by at most
 /// `Limit::largest_difference`: else `disagreement`. The other inverse is the Fallback, whose commands are then written
-/// (`fell_back`), or the Reference. Where it declines there is nothing to agree with: `disagreement` too. It is asked each time,
-/// which costs its time. It needs the inputs: predict(), not features alone.
+/// (`fell_back`), or the Reference. It is asked each time; where it declines, the Status is `disagreement` too.
+/// Needs the inputs: predict(), not features alone.
 template <class Limit = AgreedCommands>
 struct Agreement {};
 
@@ -88,15 +82,15 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// Why a prediction came out as it did.
 template <class Scalar, int Size>
 struct GuardReport {
-  Status cause{Status::ok};     ///< what the network alone came to: `ok`, `limited`, or why it declined
-  Status fallback{Status::ok};  ///< what the fallback or reference came to, if it was asked
+  Status cause{Status::ok};     ///< the network's own: `ok`, `limited`, or why it declined
+  Status fallback{Status::ok};  ///< the fallback's or reference's, if it was asked
   bool fallback_asked{false};
   bool features_clamped{false};
   bool commands_clipped{false};  ///< the network's or the fallback's
   Scalar squared_distance{0};    ///< that JointDistance measured; 0 if none was
   Scalar disagreement{0};  ///< largest |network's - other's command| that Agreement found; 0 if nothing was compared
-  /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that isn't.
-  /// All zero if the inputs were refused before there were features.
+  /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that
+  /// isn't. All zero if the inputs were refused before there were features.
   std::array<Scalar, static_cast<std::size_t>(Size)> excess{};
   int worst_feature{-1};  ///< the one furthest outside, -1 if none is
 };
@@ -109,53 +103,31 @@ namespace detail {
 struct NoFallback {};
 
 template <class Policy>
-struct PolicyTraits {
-  static constexpr bool known = false;
-};
+inline constexpr bool is_policy = false;
 template <>
-struct PolicyTraits<FiniteInputs> {
-  static constexpr bool known = true;
-};
+inline constexpr bool is_policy<FiniteInputs> = true;
 template <>
-struct PolicyTraits<TrainingEnvelope> {
-  static constexpr bool known = true;
-};
+inline constexpr bool is_policy<TrainingEnvelope> = true;
 template <>
-struct PolicyTraits<ClampToEnvelope> {
-  static constexpr bool known = true;
-};
+inline constexpr bool is_policy<ClampToEnvelope> = true;
 template <>
-struct PolicyTraits<FiniteOutputs> {
-  static constexpr bool known = true;
-};
-template <class L>
-struct PolicyTraits<RefuseCommands<L>> {
-  static constexpr bool known = true;
-};
-template <class L>
-struct PolicyTraits<ClipCommands<L>> {
-  static constexpr bool known = true;
-};
-template <class I>
-struct PolicyTraits<Fallback<I>> {
-  static constexpr bool known = true;
-};
-template <class L>
-struct PolicyTraits<Agreement<L>> {
-  static constexpr bool known = true;
-};
-template <class I>
-struct PolicyTraits<Reference<I>> {
-  static constexpr bool known = true;
-};
-template <class D>
-struct PolicyTraits<JointDistance<D>> {
-  static constexpr bool known = true;
-};
+inline constexpr bool is_policy<FiniteOutputs> = true;
+template <class Limits>
+inline constexpr bool is_policy<RefuseCommands<Limits>> = true;
+template <class Limits>
+inline constexpr bool is_policy<ClipCommands<Limits>> = true;
+template <class Inverse>
+inline constexpr bool is_policy<Fallback<Inverse>> = true;
+template <class Limit>
+inline constexpr bool is_policy<Agreement<Limit>> = true;
+template <class Inverse>
+inline constexpr bool is_policy<Reference<Inverse>> = true;
+template <class Distribution>
+inline constexpr bool is_policy<JointDistance<Distribution>> = true;
 
 /// Stands for a distribution where the guard measures no distance.
 struct NoDistribution {
-  static constexpr double distance_limit = 1;
+  static constexpr double squared_distance_limit = 1;
 };
 
 /// Both limits are numbers; what is compared with NaN or infinity is neither clipped nor refused.
@@ -178,7 +150,7 @@ struct ArgumentOf<Template, Default, Template<Argument>, Rest...> {
   static constexpr int count = 1 + ArgumentOf<Template, Default, Rest...>::count;
 };
 
-/// What a guard holds besides its rules: the fallback, else the reference.
+/// The value that a guard holds: the fallback, else the reference.
 template <class... Policies>
 struct OtherInverse {
   using Fallen = ArgumentOf<Fallback, NoFallback, Policies...>;
@@ -189,7 +161,7 @@ struct OtherInverse {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// See the head of this file. A value: it holds the fallback, and is empty without one.
+/// A list of policies. A value: it holds the fallback, and is empty without one.
 template <class... Policies>
 class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::type> {
   template <class Policy>
@@ -204,8 +176,8 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
  public:
   /// The fallback's type, or the reference's.
   using FallbackInverse = typename detail::OtherInverse<Policies...>::type;
-  /// Of JointDistance.
-  using Distribution = typename Distributed::type;
+  /// JointDistance's, by the names of today.
+  using Distribution = detail::DistanceTrust<typename Distributed::type>;
 
   static constexpr bool checks_inputs = count<FiniteInputs> > 0;
   static constexpr bool refuses_outside_envelope = count<TrainingEnvelope> > 0;
@@ -216,7 +188,7 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   static constexpr bool compares = Agreed::count > 0;
   static constexpr bool measures_distance = Distributed::count > 0;
 
-  static_assert((detail::PolicyTraits<Policies>::known && ...),
+  static_assert((detail::is_policy<Policies> && ...),
                 "pinnquad: this type is not a policy of a Guard (inference/guard.hpp)");
   static_assert(count<FiniteOutputs> > 0,
                 "pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor");
@@ -252,7 +224,8 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
 
   const FallbackInverse& fallback() const noexcept { return detail::Held<FallbackInverse>::held(); }
 
-  /// True if no command differs from the other inverse's by more than the Agreement's limit; leaves the largest difference.
+  /// True if no command differs from the other inverse's by more than the Agreement's limit; leaves the largest
+  /// difference.
   template <class Scalar>
   static bool agree(const Scalar* commands, const Scalar* others, Scalar& largest) noexcept {
     largest = Scalar(0);
@@ -263,7 +236,8 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
     return is_finite(largest) && largest <= Scalar(Agreed::type::largest_difference);
   }
 
-  /// Checks of the commands, the network's as the fallback's: `ok`, `limited` (and the commands are clipped) or a refusal.
+  /// Checks of the commands, the network's or the fallback's: `ok`, `limited` (and the commands are clipped) or a
+  /// refusal.
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE Status check_commands(Scalar* commands) noexcept {
     if (!all_finite(commands, rotor_count)) return Status::output_not_finite;
@@ -296,11 +270,6 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
 }  // namespace PINNQUAD_INSTRUCTION_SET
 
 namespace detail {
-template <class T>
-struct IsGuard : std::false_type {};
-template <class... Policies>
-struct IsGuard<Guard<Policies...>> : std::true_type {};
-
 template <class GuardType, class... More>
 struct Extended;
 template <class... Policies, class... More>
@@ -310,7 +279,9 @@ struct Extended<Guard<Policies...>, More...> {
 }  // namespace detail
 
 template <class T>
-inline constexpr bool is_guard = detail::IsGuard<T>::value;
+inline constexpr bool is_guard = false;
+template <class... Policies>
+inline constexpr bool is_guard<Guard<Policies...>> = true;
 
 /// The guard of an InverseDynamics that names none: refuses bad inputs, motions beyond the training data, bad outputs.
 using TrainingGuard = Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>;

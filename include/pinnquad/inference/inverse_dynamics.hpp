@@ -186,7 +186,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   PINNQUAD_ALWAYS_INLINE bool inside_distribution(const Scalar* x, Scalar& squared) const noexcept {
     if constexpr (Guard::measures_distance) {
       squared = squared_joint_distance<typename Guard::Distribution>(x);
-      return is_finite(squared) && squared <= Scalar(Guard::Distribution::distance_limit);
+      return is_finite(squared) && squared <= Scalar(Guard::Distribution::squared_distance_limit);
     } else {
       return true;
     }

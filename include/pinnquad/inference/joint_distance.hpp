@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How far a feature vector lies from the training rows, all features taken together: the Mahalanobis distance. A motion
-// whose features are each within what was flown, and never came together, is far.
+// The distance of a feature vector from the training rows, all features taken together (Mahalanobis). A motion is far
+// whose features are each within what was flown and never came together.
 //   squared distance = |W (x - mean)|^2,  W' W = inverse of the rows' covariance (training/structured/trust_limits.hpp)
-// Code: squared_joint_distance(). docs/trust.md says what it finds and what it doesn't.
+// docs/trust.md says what it finds and what it does not.
 #pragma once
 
 #include <array>
@@ -10,64 +10,53 @@
 #include <type_traits>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/exported/model_records.hpp"
+#include "pinnquad/exported/renamed.hpp"
 
 namespace pinnquad {
 
 /// Policy of a Guard: the squared distance of the features that the network is asked with is at most
-/// `Distribution::distance_limit`, else `outside_distribution`. Bounded time: size (size + 1) / 2 multiply-adds.
-/// Contract of a Distribution, a struct that deploy/trust_writer.hpp writes beside the model, constants all:
-///   array distribution_mean, size numbers, physical units; array whitening, size (size + 1) / 2 numbers: W, lower
-///   triangular, column after column from its diagonal down; double distance_limit; optional std::uint64_t
-///   training_data_hash, that of the model. A program on the ground may read them while it runs: static members that are no
-///   constants, of which nothing is checked while compiling.
+/// `Distribution::squared_distance_limit`, else `outside_distribution`. size (size + 1) / 2 multiply-adds.
+/// Contract of a Distribution, a struct of constants that deploy/trust_writer.hpp writes beside the model:
+///   array distribution_mean: size numbers, physical units
+///   array whitening: size (size + 1) / 2 numbers, W, lower triangular, column after column from its diagonal down
+///   double squared_distance_limit
+///   optional std::uint64_t training_data_hash, that of the model
+/// On the ground they may be static members that change at run time; nothing of them is checked while compiling then.
 template <class Distribution>
 struct JointDistance {};
 
 namespace detail {
 
-template <class Distribution, class = void>
-struct IsDistribution : std::false_type {};
 template <class Distribution>
-struct IsDistribution<Distribution,
-                      std::void_t<decltype(Distribution::distribution_mean), decltype(Distribution::whitening),
-                                  decltype(double{Distribution::distance_limit})>> : std::true_type {};
-
-/// False of numbers that a program reads while it runs, in static members that are no constants: what is checked here of
-/// constants is checked by whoever reads those.
-template <class Distribution, class = void>
-struct IsConstantDistribution : std::false_type {};
+using DistributionMembers = std::void_t<decltype(Distribution::distribution_mean), decltype(Distribution::whitening),
+                                        decltype(double{Distribution::squared_distance_limit})>;
 template <class Distribution>
-struct IsConstantDistribution<Distribution, std::void_t<std::bool_constant<(Distribution::distance_limit > 0)>>>
-    : std::true_type {};
+using ConstantDistanceLimit = std::bool_constant<(Distribution::squared_distance_limit > 0)>;
+/// Of a static member: a block's model has its hash at run time.
+template <class T>
+using StaticTrainingDataHash = std::enable_if_t<std::is_pointer_v<decltype(&T::training_data_hash)>>;
 
 /// A positive number, where it is a constant.
 template <class Distribution>
 constexpr bool sound_distance_limit() noexcept {
-  if constexpr (IsConstantDistribution<Distribution>::value) {
-    return is_finite_constant(double(Distribution::distance_limit)) && Distribution::distance_limit > 0;
+  if constexpr (is_detected<ConstantDistanceLimit, Distribution>) {
+    return is_finite_constant(double(Distribution::squared_distance_limit)) && Distribution::squared_distance_limit > 0;
   } else {
     return true;
   }
 }
 
-template <class First, class Second, class = void>
-struct HaveHashes : std::false_type {};
-template <class First, class Second>
-struct HaveHashes<First, Second,
-                  std::void_t<std::enable_if_t<std::is_pointer_v<decltype(&First::training_data_hash)> &&
-                                               std::is_pointer_v<decltype(&Second::training_data_hash)>>>>
-    : std::true_type {};
-
 /// Checks that a distribution is one, and the model's.
 template <class Distribution, class Model>
 constexpr bool require_distribution() noexcept {
-  static_assert(IsDistribution<Distribution>::value,
-                "pinnquad: a JointDistance needs distribution_mean, whitening and distance_limit "
+  static_assert(is_detected<DistributionMembers, Distribution>,
+                "pinnquad: a JointDistance needs distribution_mean, whitening and squared_distance_limit "
                 "(inference/joint_distance.hpp)");
-  if constexpr (IsDistribution<Distribution>::value) {
+  if constexpr (is_detected<DistributionMembers, Distribution>) {
     constexpr auto size = static_cast<std::size_t>(Model::Features::size);
     static_assert(
         Distribution::distribution_mean.size() == size && Distribution::whitening.size() == size * (size + 1) / 2,
@@ -75,12 +64,12 @@ constexpr bool require_distribution() noexcept {
     static_assert(std::is_same_v<std::decay_t<decltype(Distribution::distribution_mean[0])>, typename Model::Scalar> &&
                       std::is_same_v<std::decay_t<decltype(Distribution::whitening[0])>, typename Model::Scalar>,
                   "pinnquad: the distribution of a JointDistance has another Scalar than the model");
-    if constexpr (IsConstantDistribution<Distribution>::value) {
+    if constexpr (is_detected<ConstantDistanceLimit, Distribution>) {
       static_assert(
           all_finite_constants(Distribution::distribution_mean) && all_finite_constants(Distribution::whitening),
           "pinnquad: a number of the distribution of a JointDistance is NaN or infinite");
     }
-    if constexpr (HaveHashes<Distribution, Model>::value) {
+    if constexpr (is_detected<StaticTrainingDataHash, Distribution> && is_detected<StaticTrainingDataHash, Model>) {
       static_assert(Distribution::training_data_hash == Model::training_data_hash,
                     "pinnquad: the distribution of a JointDistance is that of other training data than the model's");
     }

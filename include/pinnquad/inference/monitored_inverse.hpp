@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: MIT
-// An InverseDynamics that remembers how right it was: observe() what was flown, predict() what to fly. While the
-// innovation is above its limit the model is not asked: the guard's fallback flies, or nobody (`distrusted`).
+// An InverseDynamics behind a CommandResidualMonitor: observe() what was flown, predict() what to fly. While the
+// command residual is above its limit the model is not asked: the guard's fallback flies, or nobody (`distrusted`).
 #pragma once
 
-#include "pinnquad/inference/innovation.hpp"
+#include "pinnquad/inference/command_residual.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 
 namespace pinnquad {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// `Inverse`: an InverseDynamics, with or without JointDistance and Fallback. `Trust`: InnovationMonitor's. The monitor
-/// goes on while the fallback flies, so that a model which is right again flies again.
-/// Threads: the const calls (predict(), inverse(), monitor(), trusted()) change nothing and may run at once, if the
-/// fallback's may. observe(), observe_features() and reset() write the monitor: while one of them runs, no other call on the same
-/// object may. A loop that observes and predicts in two threads needs a lock around both, or observes in the one that
-/// predicts.
+/// `Inverse`: an InverseDynamics. `Trust`: CommandResidualMonitor's. The monitor goes on while the fallback flies: a
+/// model that is right again flies again.
+/// Threads: the const calls may run at once, if the fallback's may. observe(), observe_features() and reset() write the
+/// monitor: while one of them runs, no other call on the same object may.
 template <class Inverse, class Trust>
 class MonitoredInverse : private detail::Held<Inverse> {
  public:
@@ -23,7 +21,7 @@ class MonitoredInverse : private detail::Held<Inverse> {
   using Features = typename Inverse::Features;
   using Inputs = typename Inverse::Inputs;
   using Report = typename Inverse::Report;
-  using Monitor = InnovationMonitor<Trust, Scalar>;
+  using Monitor = CommandResidualMonitor<Trust, Scalar>;
 
   MonitoredInverse() = default;
   explicit MonitoredInverse(const Inverse& inverse) noexcept : detail::Held<Inverse>(inverse) {}
@@ -33,8 +31,8 @@ class MonitoredInverse : private detail::Held<Inverse> {
   bool trusted() const noexcept { return monitor_.trusted(); }
   void reset() noexcept { monitor_.reset(); }
 
-  /// A motion that was measured, and the commands behind it. The bare network is asked, inside the envelope or not.
-  /// `ok`; else a Status of the features' check, `output_not_finite` or `not_finite`, and nothing changes.
+  /// A measured motion, and the commands that were flown in it. The bare network is asked, inside the envelope or not.
+  /// Unless `ok` nothing changes: a Status of the features' check, `output_not_finite`, `not_finite`.
   Status observe(const Inputs& measured, const Commands<Scalar>& flown) noexcept {
     const Status checked = Features::check(measured);
     if (checked != Status::ok) return checked;
@@ -61,7 +59,7 @@ class MonitoredInverse : private detail::Held<Inverse> {
     Report report;
     return inverse().without_network(Status::distrusted, inputs, commands, report);
   }
-  /// The same for a fallback that needs to know where and when.
+  /// The same for a fallback that depends on place and time.
   template <class Real>
   Status predict(const Inputs& inputs, const PlaceAndTime<Real>& place, Commands<Scalar>& commands,
                  Report& report) const noexcept {

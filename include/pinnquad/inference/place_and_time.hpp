@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where and when: what a fallback may need to know and a network's features need not say.
+// Place and time of a motion: a fallback may depend on them where a network's features do not.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace pinnquad {
 /// A flight stack's clock in seconds. After 30 days doubles are 5e-10 s apart, floats 0.25 s.
 constexpr double seconds_of(std::uint64_t time_us) noexcept { return 1e-6 * static_cast<double>(time_us); }
 
-/// Where and when a motion is wanted, for a fallback that needs to know (ground effect, density, wind). Effects read
-/// the time in their vehicle's scalar: in float it is to count from the flight's start.
+/// For a fallback with effects of place or time (ground effect, density, wind). Effects read the time in their
+/// vehicle's scalar: in float it must count from the flight's start.
 template <class Real>
 struct PlaceAndTime {
   Vector3<Real> position_m = Vector3<Real>::Zero();  ///< NED, of the vehicle's site

@@ -149,11 +149,11 @@ constexpr Step initial_step() {
 template <class Axis, class Step = TanhStep, class Form = Standardised>
 struct LocalMonotonicity {
   static_assert(
-      detail::is_detected<detail::StepFunctionOf, Step>,
+      is_detected<detail::StepFunctionOf, Step>,
       "pinnquad: LocalMonotonicity's second argument is not a step function; it needs apply() and slope(), as "
       "TanhStep has");
   static_assert(
-      detail::is_detected<detail::FormOf, Form>,
+      is_detected<detail::FormOf, Form>,
       "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
       "Standardised has");
   Step step = detail::initial_step<Step, Form>();

@@ -65,6 +65,6 @@ using LossOf =
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_loss = detail::is_detected<detail::LossOf, T>;
+inline constexpr bool is_loss = is_detected<detail::LossOf, T>;
 
 }  // namespace pinnquad

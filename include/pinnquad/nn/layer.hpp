@@ -88,32 +88,32 @@ using PackScaledFromInputOf = decltype(Layer::scaled_from_input(std::declval<Pac
 
 /// True for a spec that fulfils the contract at the head of this file.
 template <class Spec, class Scalar = double, int In = 3>
-inline constexpr bool is_layer = detail::is_detected<detail::LayerOf, Spec, Scalar, std::integral_constant<int, In>>;
+inline constexpr bool is_layer = is_detected<detail::LayerOf, Spec, Scalar, std::integral_constant<int, In>>;
 
 /// A layer with `static constexpr bool elementwise = true` and `activate(v)`: y_i = activate(x_i). It works in place.
 template <class Layer>
-inline constexpr bool is_elementwise = detail::is_detected<detail::ElementwiseOf, Layer>;
+inline constexpr bool is_elementwise = is_detected<detail::ElementwiseOf, Layer>;
 
 /// An element-wise layer whose activate() also takes a whole pack: it is fused into the layer before it.
 template <class Layer, class Pack>
-inline constexpr bool activates_pack = detail::is_detected<detail::PackActivateOf, Layer, Pack>;
+inline constexpr bool activates_pack = is_detected<detail::PackActivateOf, Layer, Pack>;
 
 /// An element-wise layer with a derivative d activate / d v: `slope(y)` from its output, or `slope_from_input(v)`
 /// where two inputs have the same output or the output is costly to invert.
 template <class Layer>
 inline constexpr bool has_slope =
-    detail::is_detected<detail::SlopeOf, Layer> || detail::is_detected<detail::SlopeFromInputOf, Layer>;
+    is_detected<detail::SlopeOf, Layer> || is_detected<detail::SlopeFromInputOf, Layer>;
 
 /// True for a layer with slope_from_input(): its input is kept until the slope is needed.
 template <class Layer>
-inline constexpr bool slopes_from_input = detail::is_detected<detail::SlopeFromInputOf, Layer>;
+inline constexpr bool slopes_from_input = is_detected<detail::SlopeFromInputOf, Layer>;
 
 /// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole
 /// pack.
 template <class Layer, class Pack>
 inline constexpr bool scales_pack =
-    slopes_from_input<Layer> ? detail::is_detected<detail::PackScaledFromInputOf, Layer, Pack>
-                             : detail::is_detected<detail::PackScaledOf, Layer, Pack>;
+    slopes_from_input<Layer> ? is_detected<detail::PackScaledFromInputOf, Layer, Pack>
+                             : is_detected<detail::PackScaledOf, Layer, Pack>;
 
 namespace detail {
 /// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the

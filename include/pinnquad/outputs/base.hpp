@@ -59,7 +59,7 @@ constexpr bool reads_angular_acceleration() noexcept {
 
 /// True for a type that says which features it reads; the compiler finds the rest of the contract where it is called.
 template <class T>
-inline constexpr bool is_base = detail::is_detected<detail::ReadsOf, T>;
+inline constexpr bool is_base = is_detected<detail::ReadsOf, T>;
 
 /// True where the base of an output schema finds each feature that it reads at its place, by name and unit.
 template <class Features, class Outputs>

@@ -32,11 +32,11 @@ using FactorOf = std::enable_if_t<noexcept(std::declval<const T&>().factor(0.5))
 
 /// True for a type that fulfils the schedule's contract at the head of this file.
 template <class T>
-inline constexpr bool is_schedule = detail::is_detected<detail::WeightOf, T>;
+inline constexpr bool is_schedule = is_detected<detail::WeightOf, T>;
 
 /// True for a type that fulfils the rate's contract at the head of this file.
 template <class T>
-inline constexpr bool is_rate = detail::is_detected<detail::FactorOf, T>;
+inline constexpr bool is_rate = is_detected<detail::FactorOf, T>;
 
 /// Schedule: the same weight in every epoch.
 struct Constant {

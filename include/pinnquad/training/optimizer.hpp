@@ -65,7 +65,7 @@ struct Scheduled {
   static_assert(is_rate<Rate>,
                 "pinnquad: Scheduled's second argument is not a rate; it needs factor(done) const noexcept "
                 "(schedule/schedule.hpp)");
-  static_assert(detail::is_detected<detail::LearningRateOf, Optimizer>,
+  static_assert(is_detected<detail::LearningRateOf, Optimizer>,
                 "pinnquad: Scheduled's first argument has no member learning_rate that a rate could scale");
   Optimizer optimizer{};
   Rate rate{};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Stand-in for what the glue of the Crazyflie app takes from the firmware: its types and functions by name, of our own making,
- * with the firmware's meaning (crazyflie_firmware_test.cpp plays its side). The headers beside this one all lead here. */
+ * Stand-in for what the glue of the Crazyflie app takes from the firmware: its types and functions by name, of our own
+ * making, with the firmware's meaning (crazyflie_firmware_test.cpp plays its side). The headers beside this one all
+ * lead here. */
 #ifndef PINNQUAD_TEST_CRAZYFLIE_FIRMWARE_H
 #define PINNQUAD_TEST_CRAZYFLIE_FIRMWARE_H
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Of PX4's messages (v1.16; setpoint_config of later branches), the fields that the module uses, under their names; queue lengths and numbers are PX4's.
+// Of PX4's messages (v1.16; setpoint_config of later branches), the fields that the module uses, under their names;
+// queue lengths and numbers are PX4's.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a module of PX4 is made of, in our own words: a clock, a work queue of one item, the shell's start and stop, parameters.
+// What a module of PX4 is made of, in our own words: a clock, a work queue of one item, the shell's start and stop,
+// parameters.
 #pragma once
 
 #include <cstdint>
@@ -217,8 +218,8 @@ PINNQUAD_TEST_NAME(PQ_AIR_RHO)
 PINNQUAD_TEST_NAME(PQ_THR_CURVE)
 PINNQUAD_TEST_NAME(PQ_BAT_SCALE)
 
-/// The shell's side of a module: a stop waits 5 s for the module to go by itself, then takes it away. `Shell` says where the module
-/// is kept.
+/// The shell's side of a module: a stop waits 5 s for the module to go by itself, then takes it away. `Shell` says
+/// where the module is kept.
 template <class Shell>
 struct ShellCommands {
   static int run(Shell shell, int argc, char* argv[]) {

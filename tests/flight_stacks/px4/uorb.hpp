@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A small uORB of our own, with the semantics that a module of PX4 meets: a topic exists for a reader only while somebody
-// advertises it when the reader first looks; a queue overwrites what was not read; a publication that is destroyed takes its
-// advertisement with it, unless its topic has a queue; a reader counts generations and may be told what it has lost.
+// A small uORB of our own, with the semantics that a module of PX4 meets: a topic exists for a reader only while
+// somebody advertises it when the reader first looks; a queue overwrites what was not read; a publication that is
+// destroyed takes its advertisement with it, unless its topic has a queue; a reader counts generations and may be told
+// what it has lost.
 #pragma once
 
 #include <cstdint>

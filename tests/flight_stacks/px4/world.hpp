@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PX4 around its module, in steps of 1 ms: estimators, a commander that registers, unregisters, checks and changes modes, the
-// allocator that has the motors in PX4's own modes.
+// PX4 around its module, in steps of 1 ms: estimators, a commander that registers, unregisters, checks and changes
+// modes, the allocator that has the motors in PX4's own modes.
 #pragma once
 
 #include <doctest/doctest.h>

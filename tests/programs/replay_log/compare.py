@@ -13,7 +13,7 @@ for number, (row, (status, cause, *commands)) in enumerate(zip(replayed, judged)
     assert (row["status"], row["cause"]) == (status, cause), (number, row, status, cause)
     assert int(row["row"]) == number
     seen.add(status)
-    answered = {"ok": "model", "limited": "model", "fell_back": "formula"}.get(status, "nobody")
+    answered = {"ok": "model", "limited": "model", "fell_back": "analytic_inverse"}.get(status, "nobody")
     assert row["answered_by"] == answered, (number, row)
     assert bool(row["reason"]) == (status != "ok"), (number, row)
     for i, command in enumerate(commands):

@@ -21,7 +21,7 @@ for i, row in enumerate(rows[1:]):
     if 400 <= i < 460:
         row[column["wdot_y"]] = str(3 * float(row[column["wdot_y"]]) + 200)
     if 600 <= i < 620:
-        row[column["vdot_bz"]] = "3000"  # outside, and the formula has no rotors for it
+        row[column["vdot_bz"]] = "3000"  # outside, and the analytic inverse has no rotors for it
     if i % 300 == 17:
         row[column["altitude"]] = "nan"  # which only some models ask for
 csv.writer(open(sys.argv[2], "w"), lineterminator="\n").writerows(rows)

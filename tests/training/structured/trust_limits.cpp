@@ -11,7 +11,7 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/features/motion_parts.hpp"
-#include "pinnquad/inference/innovation.hpp"
+#include "pinnquad/inference/command_residual.hpp"
 
 using namespace pinnquad;
 
@@ -57,7 +57,7 @@ namespace {
 using Features = Joined<AngularAcceleration, BodyRates>;
 
 struct Limits {
-  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
+  static constexpr double command_residual_factor = 0.2, command_residual_limit = 0.05, command_residual_cleared = 0.02;
 };
 
 /// Says 0.5 always.
@@ -84,10 +84,10 @@ Flight noisy(std::size_t rows, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("the innovation's means are those of the monitor that flies") {
+TEST_CASE("the command residual's means are those of the monitor that flies") {
   std::mt19937_64 engine(12);
   std::vector<double> errors;
-  InnovationMonitor<Limits> monitor;
+  CommandResidualMonitor<Limits> monitor;
   std::vector<double> flown;
   for (int i = 0; i < 300; ++i) {
     const auto error = static_cast<float>(uniform(engine, 0, 0.1));
@@ -95,7 +95,7 @@ TEST_CASE("the innovation's means are those of the monitor that flies") {
     REQUIRE(monitor.update({error, -error, error, -error}, {}) == Status::ok);
     flown.push_back(static_cast<double>(monitor.mean()));
   }
-  const auto means = innovation_means(errors, 0.2);
+  const auto means = command_residual_means(errors, 0.2);
   for (std::size_t i = 0; i < means.size(); ++i) CHECK(means[i] == doctest::Approx(flown[i]).epsilon(1e-5));
 }
 
@@ -106,15 +106,15 @@ TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as a
   const auto trust =
       fit_trust(Stub{}, RowSet(training, {0, training.size()}), RowSet(validation, {0, validation.size()}), settings);
   CHECK(trust.update_period_s == doctest::Approx(0.05));
-  CHECK(trust.innovation_cleared < trust.innovation_limit);
-  CHECK(trust.innovation_cleared > 0.0159);  // mean |error| = 0.02 sqrt(2 / pi)
+  CHECK(trust.command_residual_cleared < trust.command_residual_limit);
+  CHECK(trust.command_residual_cleared > 0.0159);  // mean |error| = 0.02 sqrt(2 / pi)
   const auto alarms = [&](const Flight& flight) {
     const TrustSeries series = trust_series(Stub{}, trust.distribution, RowSet(flight, {0, flight.size()}));
     std::array<int, 2> count{};
     for (const double most : block_maxima(series.squared_distances, 200))
-      count[0] += most > trust.distance_limit ? 1 : 0;
-    for (const double most : block_maxima(innovation_means(series.errors, 0.2), 200)) {
-      count[1] += most > trust.innovation_limit ? 1 : 0;
+      count[0] += most > trust.squared_distance_limit ? 1 : 0;
+    for (const double most : block_maxima(command_residual_means(series.errors, 0.2), 200)) {
+      count[1] += most > trust.command_residual_limit ? 1 : 0;
     }
     return count;
   };
@@ -147,7 +147,7 @@ bool says(const std::string& text, const char* part) { return text.find(part) !=
 
 }  // namespace
 
-TEST_CASE("a limit of the innovation that no command can exceed is refused: the tail of a short validation") {
+TEST_CASE("a limit of the command residual that no command can exceed is refused: the tail of a short validation") {
   const Flight training = noisy(2000, 31);
   Flight calm = noisy(8 * 200, 32), spread = calm;
   CHECK(refusal(training, RowSet(calm, {0, calm.size()})).empty());
@@ -158,7 +158,7 @@ TEST_CASE("a limit of the innovation that no command can exceed is refused: the 
   }
   const std::string said = refusal(training, RowSet(spread, {0, spread.size()}));
   CAPTURE(said);
-  CHECK(says(said, "innovation"));
+  CHECK(says(said, "command residual"));
   CHECK(says(said, "80 s"));
 }
 
@@ -182,7 +182,8 @@ TEST_CASE("validation rows that are too few: how long they last, and how long is
   CHECK(says(said, "60 s"));
 }
 
-TEST_CASE("the period of the innovation's updates is that of the rows, whatever short piece comes last or first") {
+TEST_CASE(
+    "the period of the command residual's updates is that of the rows, whatever short piece comes last or first") {
   const Flight training = noisy(2000, 37), validation = noisy(20000, 38);
   Flight late = noisy(2, 39);
   late[1].time_s = late[0].time_s + 0.09;

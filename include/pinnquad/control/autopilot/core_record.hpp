@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What the controller received and what it answered, tick by tick, as plain numbers: what a module logs and what
-// `pinnquad replay` runs through the same controller on the ground (docs/replay_log.md). The one place that says which numbers,
-// in which order, under which names and units: a PX4 message (px4_module/msg) and a CSV have those of each_number().
-// NED, FRD, SI units, commands in the airframe's rotor order, whatever the stack's own are.
+// The record of a tick: the controller's inputs and its answer as plain numbers. A module logs it; `pinnquad replay`
+// runs it through the same controller on the ground (docs/replay_log.md). each_number() is the format: numbers, order,
+// names and units of PX4's message (px4_module/msg), of a Crazyflie's event and of a CSV. A field keeps its name, so
+// that earlier logs replay. NED, FRD, SI units, commands in the airframe's rotor order.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace pinnquad::autopilot {
 /// An input's bit in `came` and `stale_inputs`.
 inline constexpr std::uint8_t body_rates_bit = 1, attitude_bit = 2, local_bit = 4, set_point_bit = 8;
 
-/// One tick. Inputs are those that came last, as they came: refused ones too. Of one input, one sample per tick at most.
+/// One tick. Inputs are those that came last, refused ones too; of one input one sample per tick at most.
 struct CoreRecord {
   static constexpr const char* topic = "pinnquad_record";
 
@@ -35,28 +35,28 @@ struct CoreRecord {
   float wanted_jerk_m_s3[3]{};
   float wanted_yaw_rad{0};
   float wanted_yaw_rate_rad_s{0};
-  float bias_m_s2[3]{};               ///< acceleration besides the model's that this tick reckoned with, NED
+  float bias_m_s2[3]{};               ///< of the bias estimate, NED
   float predicted_velocity_m_s[3]{};  ///< of the bias estimate
-  float jump_position_m[3]{};         ///< by how much the estimator moved its estimate before this tick, NED; 0: not
+  float jump_position_m[3]{};         ///< step of the estimator before this tick, NED; 0: none
   float jump_velocity_m_s[3]{};
   float jump_yaw_rad{0};
-  float lift{1};              ///< how much of its thrust it used, 0 to 1: below 1 while it takes off
+  float lift{1};              ///< share of the thrust that it used: below 1 at take-off and landing
   float commands[4]{};        ///< NaN where there were none
-  float envelope_excess{0};   ///< how far the worst feature lay outside, in half-widths of its range
+  float envelope_excess{0};   ///< of the worst feature beyond its range, in half-widths
   float squared_distance{0};  ///< of the features from the training rows; 0 without limits of trust
-  float innovation{0};        ///< of the model about what was flown; 0 without limits of trust
+  float innovation{0};        ///< command residual of the model; 0 without limits of trust
   std::int8_t envelope_feature{-1};
-  std::uint8_t came{0};           ///< which inputs came since the tick before, as bits
+  std::uint8_t came{0};           ///< inputs that came since the tick before, as bits
   std::uint8_t asked{0};          ///< 0: the stack asked nothing of the controller: off, or flown by hand
   std::uint8_t drives_motors{0};  ///< its commands reached the motors
   std::uint8_t landed{0};         ///< the stack said so
   std::uint8_t reaction{0};       ///< Reaction
   std::uint8_t status{0};         ///< Status
-  std::uint8_t cause{0};          ///< Status of the network alone
+  std::uint8_t cause{0};          ///< Status of the network
   std::uint8_t stale_inputs{0};   ///< as bits
-  std::uint8_t trusted{1};        ///< by the innovation
+  std::uint8_t trusted{1};        ///< by the command residual
 
-  /// Calls `visit(name, unit, number or array)` for each, in their order. No more noexcept than `visit`.
+  /// Calls `visit(name, unit, number or array)` for each, in order. It may throw what `visit` throws.
   template <class Self, class Visit>
   static void each_number(Self& self, const Visit& visit) {
     visit("timestamp", "us", self.timestamp);
@@ -100,7 +100,7 @@ struct CoreRecord {
   }
 };
 
-/// What a controller was made with: once when it starts.
+/// The settings of a controller, logged once when it starts.
 struct CoreSettings {
   static constexpr const char* topic = "pinnquad_settings";
 
@@ -130,13 +130,13 @@ struct CoreSettings {
   // BiasSettings
   float bias_bandwidth_1_s{0};
   float most_bias_m_s2{0};
-  // of the formula's vehicle: FlownEffects
+  // FlownEffects of the analytic inverse's vehicle
   std::uint32_t effects{0};
   float drag_n_s_m{0};
   float rate_damping_n_m_s{0};
-  // of trust; 0: none
-  float distance_limit{0};
-  float innovation_limit{0};
+  // limits of trust; 0: none
+  float distance_limit{0};    ///< of the squared distance
+  float innovation_limit{0};  ///< of the command residual
 
   /// As CoreRecord's.
   template <class Self, class Visit>

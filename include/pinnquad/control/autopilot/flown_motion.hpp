@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
-// What was flown, as a model can be asked about it: the mean motion of a while, and the mean of the commands that the rotors
-// followed then. For the innovation (docs/trust.md), which must compare motion and commands of one instant.
+// The flown motion of a window, as a model can be asked about it, and the mean commands that the rotors followed in it.
+// The command residual (docs/trust.md) compares motion and commands of one instant.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
-#include <type_traits>
 
 #include "pinnquad/control/bias_estimate.hpp"
 #include "pinnquad/features/motion_parts.hpp"
-#include "pinnquad/inference/innovation.hpp"
+#include "pinnquad/inference/command_residual.hpp"
+#include "pinnquad/inference/joint_distance.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad::autopilot {
 
-/// No limits of trust: neither distance nor innovation is measured.
+/// No limits of trust: neither distance nor command residual is measured.
 struct NoTrust {};
 
-/// Means over windows. An acceleration is the slope of velocity or body rates over the window by least squares, which weighs
-/// the acceleration at time t by t (T - t); state and commands are weighed alike, and so all are of one instant, however noisy
-/// or rare the samples are. The commands are behind the rotors' lag. Windows begin at whole multiples of their length on the
-/// samples' clock: who sees a part of the ticks alone (replay) knows where.
+/// Means over windows of length T. An acceleration is the slope of velocity or body rates by least squares, which
+/// weighs the acceleration at time t by t (T - t). State and commands have the same weights, so that all are of one
+/// instant, however noisy or rare the samples are. The commands are behind the rotors' lag. Windows begin at whole
+/// multiples of T on the samples' clock, so that a replay of a part of the ticks knows where.
 class FlownMotion {
  public:
   static constexpr std::uint64_t window_us = 200'000;
@@ -30,11 +30,11 @@ class FlownMotion {
   void velocity(std::uint64_t time_us, const Vector3<float>& m_s) noexcept { take(time_us, m_s, velocity_); }
   void body_rates(std::uint64_t time_us, const Vector3<float>& rad_s) noexcept { take(time_us, rad_s, rates_); }
 
-  /// The window that goes on is none: other commands flew, or the estimator has moved its estimate.
+  /// Drops the open window: other commands flew, or the estimator was reset.
   void interrupt() noexcept { whole_ = false; }
 
-  /// One tick: the state, and the commands in force since the tick before. True if a window has ended: motion() and flown() are
-  /// its. `known`: these commands drove the motors, and state is fresh.
+  /// One tick: the state, and the commands in force since the tick before. True if a window has ended: motion() and
+  /// flown() are its. `known`: these commands drove the motors, and the state is fresh.
   bool tick(std::uint64_t now_us, bool known, const State<float>& state, const Commands<float>& commands) noexcept {
     const bool follows = now_us > before_us_ && now_us - before_us_ <= longest_tick_us;
     if (!(known && follows)) {
@@ -60,7 +60,7 @@ class FlownMotion {
   static constexpr float window_s = 1e-6f * static_cast<float>(window_us);
   static constexpr std::uint64_t longest_tick_us = 20'000;
 
-  /// Of samples (t, v), t from the middle of the window.
+  /// Sums over samples (t, v), t from the middle of the window.
   struct Slope {
     float count = 0, t = 0, tt = 0;
     Vector3<float> v = Vector3<float>::Zero(), tv = Vector3<float>::Zero();
@@ -146,7 +146,7 @@ class FlownMotion {
   Commands<float> flown_{};
 };
 
-/// Whether a model is to be trusted: `Trust` is what `pinnquad train` writes beside it, trust.hpp.
+/// The command residual of the model that flies. `Trust`: the struct of trust.hpp, or NoTrust.
 template <class Trust>
 class FlownTrust {
  public:
@@ -155,18 +155,18 @@ class FlownTrust {
   explicit FlownTrust(float rotor_lag_s) noexcept : motion_(rotor_lag_s) {}
 
   bool trusted() const noexcept { return monitor_.trusted(); }
-  float innovation() const noexcept { return monitor_.mean(); }
+  float command_residual() const noexcept { return monitor_.mean(); }
   FlownMotion& motion() noexcept { return motion_; }
-  void resume(float innovation, bool trusted) noexcept { monitor_.resume(innovation, trusted); }
+  void resume(float command_residual, bool trusted) noexcept { monitor_.resume(command_residual, trusted); }
 
-  /// Another model, or a vehicle that stood.
+  /// For another model, or on the ground.
   void reset() noexcept {
     monitor_.reset();
     motion_.interrupt();
   }
 
-  /// One tick, as FlownMotion's. Where the motion lies outside the envelope nothing is learnt: the guard declines it, and the
-  /// limits are of rows within.
+  /// One tick, as FlownMotion's. A motion outside the envelope changes nothing: the guard declines it, and the limits
+  /// are of rows within.
   template <class Inverse>
   void tick(std::uint64_t now_us, bool known_commands, const State<float>& state, const Commands<float>& commands,
             const Inverse& inverse) noexcept {
@@ -174,7 +174,7 @@ class FlownTrust {
   }
 
  private:
-  /// The innovation's limits are of updates every Trust::update_period_s; a window is as many of them.
+  /// The limits hold for updates every Trust::update_period_s; a window is as many of them.
   static int periods() noexcept {
     const double count = 1e-6 * static_cast<double>(FlownMotion::window_us) / Trust::update_period_s;
     return count >= 1.5 ? static_cast<int>(count + 0.5) : 1;
@@ -193,20 +193,13 @@ class FlownTrust {
   }
 
   FlownMotion motion_;
-  InnovationMonitor<Trust> monitor_{};
+  CommandResidualMonitor<Trust> monitor_{};
 };
 
-namespace detail {
-template <class Trust, class = void>
-struct HasTrainingData : std::false_type {};
-template <class Trust>
-struct HasTrainingData<Trust, std::void_t<decltype(Trust::training_data_hash)>> : std::true_type {};
-}  // namespace detail
-
-/// Of which the limits are; null where they don't say.
+/// Hash of the training data that the limits are of; null where they do not say.
 template <class Trust>
 const std::uint64_t* training_data() noexcept {
-  if constexpr (detail::HasTrainingData<Trust>::value) return &Trust::training_data_hash;
+  if constexpr (is_detected<pinnquad::detail::StaticTrainingDataHash, Trust>) return &Trust::training_data_hash;
   return nullptr;
 }
 
@@ -216,7 +209,7 @@ class FlownTrust<NoTrust> {
   static constexpr bool known = false;
   explicit FlownTrust(float /*rotor_lag_s*/) noexcept {}
   static constexpr bool trusted() noexcept { return true; }
-  static constexpr float innovation() noexcept { return 0; }
+  static constexpr float command_residual() noexcept { return 0; }
 };
 
 }  // namespace pinnquad::autopilot

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a flight stack tells the controller, sample by sample, and how old it may be. A bad sample is a sample that did
-// not come: the last good one stays and ages, so that silence and NaN meet the same limits.
+// The inputs of the controller: a flight stack's samples with their age limits, and its situation. A bad sample counts
+// as one that did not come: the last good one stays and ages, so that silence and NaN meet the same limits.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace pinnquad::autopilot {
 
-/// How old an input may be, each after its time stamp, and what follows from it (Reaction).
+/// The greatest age of each input, counted from its time stamp, and the Reaction beyond it.
 struct AgeLimits {
   std::uint64_t body_rates_us = 10'000;  ///< older: keeps its commands
   std::uint64_t attitude_us = 20'000;    ///< older: keeps its commands
@@ -22,12 +22,12 @@ struct AgeLimits {
   std::uint64_t level_us = 1'000'000;    ///< it levels this long without a position; then it gives up
 };
 
-/// What the controller does, from good to bad.
+/// A tick's reaction, from good to bad.
 enum class Reaction : std::uint8_t {
   flies,           ///< to the set point
   holds_position,  ///< no set point: stays where it was when the last one went stale
   levels,          ///< no position: level attitude, hover thrust
-  keeps_commands,  ///< no attitude or body rates, or neither network nor formula had an answer: the last commands again
+  keeps_commands,  ///< no attitude or body rates, or network and analytic inverse decline: the last commands again
   gives_up,        ///< no commands: the flight stack must take over
 };
 
@@ -42,13 +42,43 @@ constexpr const char* to_string(Reaction reaction) noexcept {
   return "unknown reaction";
 }
 
+/// Range of the motor commands, thrust over greatest thrust.
+struct OutputLimits {
+  float lower = 0.02f;  ///< rotors keep turning
+  float upper = 1.0f;
+};
+
+/// Greatest speeds towards a set point, and the time that thrust takes to come at take-off.
+struct SpeedLimits {
+  float horizontal_m_s = 12;
+  float climb_m_s = 5;
+  float descent_m_s = 3;
+  float take_off_s = 1;
+};
+
+/// The stack's own state.
+struct Situation {
+  bool drives_motors{false};  ///< this controller's commands reach them
+  bool landed{false};
+
+  /// The bias is estimated in flight alone.
+  bool in_flight() const noexcept { return drives_motors && !landed; }
+};
+
+/// A reset of the estimator: the step of its estimate, NED.
+struct EstimateJump {
+  Vector3<float> position_m = Vector3<float>::Zero();
+  Vector3<float> velocity_m_s = Vector3<float>::Zero();
+  float yaw_rad{0};
+};
+
 /// Position and velocity, NED.
 struct LocalState {
   Vector3<float> position_m = Vector3<float>::Zero();
   Vector3<float> velocity_m_s = Vector3<float>::Zero();
 };
 
-/// What no estimator or pilot means: their overflow would be infinity.
+/// A sample beyond it is refused: later sums would overflow.
 inline constexpr float most_plausible = 1e6f;
 
 /// `not_finite`, or `out_of_range` beyond most_plausible.
@@ -60,7 +90,7 @@ inline Status check_sample(const Vector3<float>& v) noexcept {
   return Status::ok;
 }
 
-/// Of what is asked for: a number that is not finite is not. `not_finite` if it is no position, no velocity and no acceleration.
+/// A number that is not finite is not asked for. `not_finite` if no position, velocity or acceleration is.
 inline Status check_set_point(const TrajectoryPoint<float>& wanted) noexcept {
   Status checked = Status::not_finite;
   for (const auto* v : {&wanted.position_m, &wanted.velocity_m_s, &wanted.acceleration_m_s2, &wanted.jerk_m_s3}) {
@@ -73,7 +103,7 @@ inline Status check_set_point(const TrajectoryPoint<float>& wanted) noexcept {
   return checked;
 }
 
-/// What is asked for, and where nothing is what the vehicle does already.
+/// The set point; where it asks for nothing, the vehicle's own motion.
 inline TrajectoryPoint<float> completed(const TrajectoryPoint<float>& wanted, const State<float>& now,
                                         float yaw_rad) noexcept {
   const auto or_else = [](float value, float otherwise) noexcept { return is_finite(value) ? value : otherwise; };
@@ -111,7 +141,7 @@ class Input {
     return came_ && now_us - time_us_ <= limit_us;
   }
   const Value& value() const noexcept { return value_; }
-  /// As old as it was.
+  /// Its age stays.
   void replace(const Value& value) noexcept { value_ = value; }
   std::uint32_t refused() const noexcept { return refused_; }
 

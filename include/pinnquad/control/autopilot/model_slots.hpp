@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The model that flies and the place for the next one: two slots, one atomic pointer. The control thread never waits;
-// another thread opens a block, tests the model and publishes it, or says why not and all stays as it was.
+// Two slots for models and one atomic pointer to the one that flies. The control thread never waits; another thread
+// opens a block, tests the model and publishes it, or says why not and nothing changes.
 #pragma once
 
 #include <atomic>
@@ -13,10 +13,9 @@
 
 namespace pinnquad::autopilot {
 
-/// `Inverse` is an InverseDynamics of a ModelView. A block that was accepted must stay where it is while its model
-/// flies.
-/// How the old slot is known to be unused: the control thread says at each tick which slot it took, and its loads of one
-/// atomic never go back in time; once it has said the new one it will not read the old one again.
+/// `Inverse`: an InverseDynamics of a ModelView. An accepted block must stay in place while its model flies.
+/// The old slot is free once the control thread has said that it took the new one: it says so at each tick, and its
+/// loads of one atomic never go back in time.
 template <class Inverse>
 class ModelSlots {
   using View = typename Inverse::Model;
@@ -25,26 +24,25 @@ class ModelSlots {
   explicit ModelSlots(const typename Inverse::Guard& guard) noexcept
       : slots_{Inverse(View{}, guard), Inverse(View{}, guard)} {}
 
-  /// Control thread, once per tick: the model of this tick, or null before the first was accepted.
+  /// Control thread, once per tick: the model of this tick; null before the first was accepted.
   const Inverse* take() noexcept {
     const Inverse* current = published_.load(std::memory_order_acquire);  // its numbers were written before
     taken_.store(current, std::memory_order_release);                     // reads of the other slot lie before this
     return current;
   }
 
-  /// Control thread: the checksum that the block of a model that take() gave has at its end, 0 for null.
+  /// Control thread: the checksum of the block whose model take() gave, 0 for null.
   std::uint32_t checksum(const Inverse* taken) const noexcept {
     return taken == nullptr ? 0 : checksums_[taken == &slots_[0] ? 0 : 1];
   }
 
-  /// The other thread. True once the control thread has taken the model accepted last: the block of the one before is
-  /// unused.
+  /// The other thread. True once the control thread has taken the model accepted last: the block before it is free.
   bool settled() const noexcept {
     return taken_.load(std::memory_order_acquire) == published_.load(std::memory_order_relaxed);
   }
 
-  /// The other thread. What ModelView::open() and self_test() say of the block; `out_of_range` while not settled(): try
-  /// again after the control thread's next tick; `block_incompatible` for other training data, where some are asked for.
+  /// The other thread. The Status of ModelView::open() or self_test(); `out_of_range` while not settled(): try again
+  /// after the control thread's next tick; `block_incompatible` for other training data, where a hash is given.
   Status offer(const void* block, std::size_t length, const std::uint64_t* training_data_hash = nullptr) noexcept {
     if (!settled()) return Status::out_of_range;
     const Inverse* current = published_.load(std::memory_order_relaxed);  // only this thread writes it
@@ -65,7 +63,7 @@ class ModelSlots {
  private:
   static_assert(std::atomic<const Inverse*>::is_always_lock_free);
 
-  /// Of a block that was opened: it says how long it is.
+  /// Of a block that was opened, so that its length is known.
   static std::uint32_t checksum_of(const void* block) noexcept {
     using Header = ModelBlockHeader;
     return number(block, number(block, Header::length) - Header::checksum_size);

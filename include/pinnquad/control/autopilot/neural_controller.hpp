@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The controller that px4_module and crazyflie_app share: state and set point -> wanted accelerations (FlightController)
-// -> motor commands (the network behind its guard, the formula where it declines) -> output limits.
-// NED, FRD, SI units; no heap, no exceptions, no clock of its own.
+// The controller of an autopilot's core: state and set point -> wanted accelerations (FlightController) -> motor
+// commands (the network behind its guard, the analytic inverse where it declines) -> output limits.
+// examples/px4_module and examples/crazyflie_app fly it. NED, FRD, SI units; no clock of its own.
 #pragma once
 
 #include <cmath>
@@ -21,10 +21,10 @@
 
 namespace pinnquad::autopilot {
 
-/// `Shape` says what a model block must hold: an exported header. `View` opens the block; on the ground it may be one whose
-/// network is known at run time alone (tools/model/replay_core.hpp). `VehicleType`: airframe and effects that the formula knows,
-/// a Quadrotor. `Trust`: limits of distance and innovation, trust.hpp beside the model (docs/trust.md): beyond them the
-/// formula flies.
+/// `Shape`: an exported header, whose blocks it flies. `View` opens a block; on the ground its network may be known at
+/// run time alone (tools/model/replay_core.hpp). `VehicleType`: a Quadrotor, airframe and effects of the analytic
+/// inverse. `Trust`: the struct of trust.hpp beside the model (docs/trust.md); beyond its limits the analytic inverse
+/// flies.
 template <class Shape, class View = ModelView<Shape>, class VehicleType = Quadrotor<float, QuadraticDrag>,
           class Trust = NoTrust>
 class NeuralController {
@@ -32,8 +32,8 @@ class NeuralController {
 
  public:
   using Vehicle = VehicleType;
-  using Formula = AnalyticInverse<Vehicle>;
-  /// Of the network. The formula is asked here, not by the guard: below it the network's stack is available again.
+  using Analytic = AnalyticInverse<Vehicle>;
+  /// Without Fallback: step() asks the analytic inverse itself, below which the network's stack is free again.
   using NetworkGuard =
       std::conditional_t<trusts, Extend<TrainingGuard, JointDistance<Trust>, RefuseCommands<AbsurdCommands>>,
                          Extend<TrainingGuard, RefuseCommands<AbsurdCommands>>>;
@@ -41,36 +41,28 @@ class NeuralController {
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
   static_assert(
       std::is_same_v<typename Shape::Features::template Inputs<float>, MotionInputs<float>>,
-      "this controller is told no altitude above ground and no extra column: it flies models that ask for the "
+      "this controller is given no altitude above ground and no extra column: it flies models that ask for the "
       "motion alone (pinnquad train --altitude no)");
 
-  explicit NeuralController(const AgeLimits& ages = {}, const OutputLimits& outputs = {},
-                            const FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
-                            const BiasSettings<float>& bias = {}) noexcept
-      : NeuralController(airframe_value<typename Shape::Vehicle, float>(), ages, outputs, gains, speeds, bias) {}
-  /// Of an airframe that is known at run time alone.
-  explicit NeuralController(const Airframe<float>& airframe, const AgeLimits& ages = {},
-                            const OutputLimits& outputs = {}, const FlightGains<float>& gains = {},
-                            const SpeedLimits& speeds = {}, const BiasSettings<float>& bias = {}) noexcept
-      : NeuralController(Vehicle(airframe), ages, outputs, gains, speeds, bias) {}
-  /// Of a vehicle whose effects have values of their own.
-  explicit NeuralController(const Vehicle& vehicle, const AgeLimits& ages = {}, const OutputLimits& outputs = {},
-                            const FlightGains<float>& gains = {}, const SpeedLimits& speeds = {},
-                            const BiasSettings<float>& bias = {}) noexcept
-      : ages_(ages),
-        outputs_(outputs),
+  explicit NeuralController(const ControllerSettings& settings = {}) noexcept
+      : NeuralController(Vehicle(airframe_value<typename Shape::Vehicle, float>()), settings) {}
+  /// For an airframe that is known at run time alone, or effects with values of their own.
+  explicit NeuralController(const Vehicle& vehicle, const ControllerSettings& settings = {}) noexcept
+      : ages_(settings.ages),
+        outputs_(settings.outputs),
         vehicle_(vehicle),
-        formula_(vehicle_),
-        outer_loop_(gains, flown_limits(vehicle_.airframe(), gains, speeds), vehicle_.site().gravity_m_s2),
+        analytic_(vehicle_),
+        outer_loop_(settings.gains, flown_limits(vehicle_.airframe(), settings.gains, settings.speeds),
+                    vehicle_.site().gravity_m_s2),
         models_(NetworkGuard{}),
-        bias_(bias),
-        take_off_(speeds.take_off_s),
+        bias_(settings.bias),
+        take_off_(settings.speeds.take_off_s),
         trust_(vehicle_.airframe().rise_time_constant_s(0)) {}
   NeuralController(const NeuralController&) = delete;  // slots are pointed to
   NeuralController& operator=(const NeuralController&) = delete;
 
-  /// At boot, and in flight from another thread: see ModelSlots::offer(). With limits of trust a model of other training data than
-  /// theirs is `block_incompatible`.
+  /// ModelSlots::offer(), at boot, and in flight from another thread. A model of other training data than that of the
+  /// limits of trust is `block_incompatible`.
   Status offer_model(const void* block, std::size_t length) noexcept {
     const Status status = models_.offer(block, length, training_data<Trust>());
     if (status == Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
@@ -80,7 +72,7 @@ class NeuralController {
   bool ready() const noexcept { return ready_; }
   bool model_settled() const noexcept { return models_.settled(); }
 
-  /// Each input: `not_finite`, `out_of_range`, `not_unit_quaternion` for a sample that is refused.
+  /// Inputs, each `not_finite`, `out_of_range` or `not_unit_quaternion` for a sample that is refused. rad/s, FRD.
   Status body_rates(std::uint64_t time_us, const Vector3<float>& rates_rad_s) noexcept {
     const Status status = rates_.accept(time_us, rates_rad_s, check_sample(rates_rad_s));
     if constexpr (trusts) {
@@ -88,7 +80,7 @@ class NeuralController {
     }
     return status;
   }
-  /// Normalised, where the norm is within unit_quaternion_tolerance of 1.
+  /// Body -> world; normalised, where the norm is within unit_quaternion_tolerance of 1.
   Status attitude(std::uint64_t time_us, const Quaternion<float>& q) noexcept {
     const float numbers[4] = {q.w, q.x, q.y, q.z};
     if (!all_finite(numbers, 4)) return attitude_.accept(time_us, q, Status::not_finite);
@@ -104,21 +96,20 @@ class NeuralController {
     }
     return status;
   }
-  /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point. `not_finite` if it asks for no
-  /// position, no velocity and no acceleration.
+  /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
   Status set_point(std::uint64_t time_us, const TrajectoryPoint<float>& wanted) noexcept {
     return set_point_.accept(time_us, wanted, check_set_point(wanted));
   }
 
-  /// Said before each step, by a stack that knows. Until then: its commands drive nothing, the vehicle is not on the ground.
-  /// Who takes over holds the place where that was, not one from before.
+  /// Given before each step, by a stack that knows. Until then the commands drive nothing and the vehicle is in the
+  /// air. A controller that takes over holds the place of that moment.
   void situation(const Situation& now) noexcept {
     if (now.drives_motors && !situation_.drives_motors) holding_ = false;
     situation_ = now;
   }
   const Situation& situation() const noexcept { return situation_; }
 
-  /// The estimator has moved its origin under the vehicle: what is held, or was asked for before, moves with it.
+  /// A reset of the estimator: the held place and the set point move with it.
   void jump(const EstimateJump& by) noexcept {
     TrajectoryPoint<float> wanted = set_point_.value();
     wanted.position_m += by.position_m;
@@ -131,28 +122,29 @@ class NeuralController {
   }
 
   const BiasEstimate<float>& bias() const noexcept { return bias_; }
-  /// 0 to 1: how much of its thrust it uses while it takes off.
+  /// Share of the thrust that it uses, 0 to 1: below 1 at take-off and landing.
   float lift() const noexcept { return take_off_.lift(); }
-  /// How wrong the model has lately been about what was flown, and whether it is trusted; 0 and true without limits of trust.
-  float innovation() const noexcept { return trust_.innovation(); }
+  /// Mean error of the model's commands about the flown motion; 0 without limits of trust.
+  float command_residual() const noexcept { return trust_.command_residual(); }
+  /// False while the command residual is above its limit.
   bool trusted() const noexcept { return trust_.trusted(); }
-  /// Whether the bias stood at its bound for too long: the formula flies, `distrusted`.
+  /// True while the bias has stood at its bound for too long: the analytic inverse flies, `distrusted`.
   bool bias_alarm() const noexcept { return bias_alarm_.raised(); }
-  /// Goes on from what was logged (replay).
+  /// Goes on from a logged tick (replay).
   void resume(const CoreRecord& logged) noexcept {
     const auto& b = logged.bias_m_s2;
     const auto& v = logged.predicted_velocity_m_s;
     bias_.resume({b[0], b[1], b[2]}, {v[0], v[1], v[2]});
     take_off_.resume(logged.lift);
     if constexpr (trusts) trust_.resume(logged.innovation, logged.trusted != 0);
-    // of a model that the innovation trusts `distrusted` is the bias' alarm
+    // where the command residual is below its limit, `distrusted` is the bias' alarm
     if (logged.trusted != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels) && logged.asked != 0) {
       bias_alarm_.resume(logged.cause == static_cast<std::uint8_t>(Status::distrusted));
     }
   }
 
   /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
-  /// the reaction is gives_up. The time between two calls does not matter; `now_us` is of the samples' clock.
+  /// the reaction is gives_up. `now_us` is of the samples' clock; any time may lie between two calls.
   Reaction step(std::uint64_t now_us, Commands<float>& commands, StepReport& report) noexcept {
     report = {};
     const Inverse* inverse = models_.take();
@@ -170,7 +162,7 @@ class NeuralController {
         if (lift < 1.0f) {
           for (float& u : last_commands_) u = outputs_.lower + lift * (u - outputs_.lower);
         }
-        expected_us_ = lift < 1.0f || at_an_end(last_commands_) ? 0 : now_us;
+        expected_us_ = lift < 1.0f || saturated(last_commands_, {outputs_.lower, outputs_.upper}) ? 0 : now_us;
         answered_us_ = now_us;
         answered_ = true;
       } else {
@@ -185,33 +177,39 @@ class NeuralController {
     return reaction;
   }
 
-  /// A tick in which the stack asks nothing: off, or flown by hand. For who writes down every tick (recorded_controller.hpp).
+  /// A tick in which the stack asks nothing: off, or flown by hand. A controller that records has one per tick.
   void skip(std::uint64_t /*now_us*/) noexcept {
     expected_us_ = 0;
     take_off_.skip(situation_);
     if constexpr (trusts) trust_.motion().interrupt();
   }
 
-  /// What it was made with.
+  /// The settings that it was made with.
   CoreSettings settings() const noexcept {
-    CoreSettings all = core_settings(ages_, outputs_, outer_loop_, take_off_, bias_);
-    add_effects(flown_effects(vehicle_), all);
+    const FlightLimits<float>& limits = outer_loop_.limits();
+    CoreSettings all = core_settings(
+        {ages_,
+         outputs_,
+         outer_loop_.gains(),
+         {limits.max_horizontal_speed_m_s, limits.max_climb_m_s, limits.max_descent_m_s, take_off_.duration_s()},
+         bias_.settings()},
+        flown_effects(vehicle_));
     if constexpr (trusts) {
-      all.distance_limit = static_cast<float>(Trust::distance_limit);
-      all.innovation_limit = static_cast<float>(Trust::innovation_limit);
+      all.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
+      all.innovation_limit = static_cast<float>(CommandResidualMonitor<Trust>::Limits::command_residual_limit);
     }
     return all;
   }
 
-  /// Of the block whose model the last step asked; 0: none.
+  /// Checksum of the block whose model the last step asked; 0: none.
   std::uint32_t model_checksum() const noexcept { return checksum_; }
 
-  /// How often the network was asked since the start, and what it came to; the rest fell back to the formula.
+  /// The network's answers since the start, by Status.
   const FallbackCount& count() const noexcept { return count_; }
   std::uint32_t refused_samples() const noexcept {
     return rates_.refused() + attitude_.refused() + local_.refused() + set_point_.refused();
   }
-  /// Fills what both stacks publish, in messages whose fields have the same names.
+  /// Fills a message of PX4 or the Crazyflie: their fields have the same names.
   template <class Message>
   void describe(const StepReport& report, Message& message) const noexcept {
     message.asked = count_.asked;
@@ -253,14 +251,8 @@ class NeuralController {
     return {local_.value().position_m, local_.value().velocity_m_s, attitude_.value(), rates_.value()};
   }
 
-  bool at_an_end(const Commands<float>& commands) const noexcept {
-    bool at_end = false;
-    for (const float u : commands) at_end = at_end || !(u > outputs_.lower && u < outputs_.upper);
-    return at_end;
-  }
-
-  /// Compares what the last answer was to do with what the vehicle did. Only in flight, off the actuators' ends, with a
-  /// velocity. Out of line, as target() is.
+  /// Compares the last answer's acceleration with the vehicle's: in flight, off the actuators' ends, with a velocity.
+  /// Out of line, as target() is.
   PINNQUAD_NOINLINE void estimate_bias(std::uint64_t now_us, Reaction reaction) noexcept {
     if (!situation_.in_flight()) bias_alarm_.reset();
     if (reaction <= Reaction::holds_position && situation_.in_flight() && expected_us_ != 0) {
@@ -273,14 +265,14 @@ class NeuralController {
     expected_us_ = 0;
   }
 
-  /// What the commands of the tick before came to. Out of line, as target() is.
+  /// Compares the model with the flown motion. Out of line, as target() is.
   PINNQUAD_NOINLINE void observe(std::uint64_t now_us, Reaction reaction, const Inverse* inverse) noexcept {
     if (!situation_.in_flight()) trust_.reset();
     const bool known = situation_.in_flight() && answered_ && reaction <= Reaction::holds_position;
     if (inverse != nullptr) trust_.tick(now_us, known, state(), last_commands_, *inverse);
   }
 
-  /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise. Without a set point it asks for neither.
+  /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
   VerticalMotion vertical_motion(Reaction reaction) const noexcept {
     constexpr float noise = 0.1f;
     VerticalMotion motion;
@@ -295,7 +287,7 @@ class NeuralController {
     return motion;
   }
 
-  /// The point of a trajectory that a reaction flies to; what was not asked for is what the vehicle does already.
+  /// The point of a trajectory that a reaction flies to; where nothing is asked for, the vehicle's own motion.
   PINNQUAD_NOINLINE TrajectoryPoint<float> target(Reaction reaction, const State<float>& now) noexcept {
     TrajectoryPoint<float> point;
     const Heading<float> heading = pinnquad::heading(now.attitude);
@@ -325,7 +317,7 @@ class NeuralController {
     count_.add(report.cause);
     if (has_output(report.cause)) return report.cause;
     Commands<float> replaced{};
-    Status status = formula_(wanted, replaced);
+    Status status = analytic_(wanted, replaced);
     if (has_output(status)) status = NetworkGuard::check_commands(replaced.data());
     if (!has_output(status)) return report.cause;
     commands = replaced;
@@ -342,8 +334,8 @@ class NeuralController {
     return status;
   }
 
-  /// The motion that a reaction wants. Out of line, as target() is: what it needs of the stack is available again below network and
-  /// formula, where the stack is as deep.
+  /// The motion that a reaction wants. Out of line, as target() is: its stack is free again below network and analytic
+  /// inverse, where the stack is deepest.
   PINNQUAD_NOINLINE Status want(Reaction reaction, MotionInputs<float>& motion) noexcept {
     const State<float> now = state();
     TrackingDemand<float> demand;
@@ -360,7 +352,7 @@ class NeuralController {
     Accelerations<float> wanted;
     wanted.linear_m_s2 = demand.reference.linear_m_s2 + demand.feedback_acceleration_m_s2;
     wanted.angular_rad_s2 = demand.reference.angular_rad_s2 + demand.feedback_angular_acceleration_rad_s2;
-    // rotors make no lateral force: what gravity and rotation leave of it is what the network has seen
+    // rotors make no lateral force: the network has seen what gravity and rotation leave of it
     const float gravity = vehicle_.site().gravity_m_s2;
     const Vector3<float> at_rest = body_derivative<float>(now, {0.0f, 0.0f, gravity});
     wanted.linear_m_s2[0] = at_rest[0];
@@ -373,7 +365,7 @@ class NeuralController {
   AgeLimits ages_;
   OutputLimits outputs_;
   Vehicle vehicle_;
-  Formula formula_;
+  Analytic analytic_;
   FlightController<float> outer_loop_;
   ModelSlots<Inverse> models_;
   Input<Vector3<float>> rates_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A controller that writes down what it is told and what it answers (core_record.hpp), for a module that logs it. A type of its
-// own, so that who logs nothing pays nothing: NeuralControl<Model, Recorded<NeuralController<Model>>>.
+// A controller that records its inputs and answers (core_record.hpp), for a module that logs them. It is a type of its
+// own: a module that logs nothing pays nothing.
 #pragma once
 
 #include "pinnquad/control/autopilot/core_record.hpp"
@@ -8,7 +8,7 @@
 
 namespace pinnquad::autopilot {
 
-/// `Controller` is a NeuralController; what it answers is the same.
+/// `Controller`: a NeuralController, whose answers stay the same.
 template <class Controller>
 class Recorded : public Controller {
  public:
@@ -71,7 +71,7 @@ class Recorded : public Controller {
     finish(now_us, {}, 0);
   }
 
-  /// Of the last tick.
+  /// The last tick.
   const CoreRecord& record() const noexcept { return record_; }
 
  private:
@@ -90,7 +90,7 @@ class Recorded : public Controller {
     begin();
     record_.came = static_cast<std::uint8_t>(record_.came | bit);
   }
-  /// Out of line: what it needs of the stack is free while the controller steps.
+  /// Out of line: its stack is free while the controller steps.
   PINNQUAD_NOINLINE void finish(std::uint64_t now_us, const StepReport& report, std::uint8_t asked) noexcept {
     begin();
     finished_ = true;
@@ -111,7 +111,7 @@ class Recorded : public Controller {
     record_.envelope_feature = static_cast<std::int8_t>(report.worst_feature);
     record_.envelope_excess = report.worst_excess;
     record_.squared_distance = report.squared_distance;
-    record_.innovation = Controller::innovation();
+    record_.innovation = Controller::command_residual();
     record_.trusted = Controller::trusted() ? 1 : 0;
     for (float& u : record_.commands) u = std::numeric_limits<float>::quiet_NaN();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a step of the controller did, and why.
+// The report of one step of the controller.
 #pragma once
 
 #include "pinnquad/control/autopilot/inputs.hpp"
@@ -7,18 +7,18 @@
 
 namespace pinnquad::autopilot {
 
-/// What a step did, and why.
+/// A step's reaction, and the reasons.
 struct StepReport {
   Reaction reaction{Reaction::gives_up};
   bool body_rates_stale{false};
   bool attitude_stale{false};
   bool local_stale{false};
   bool set_point_stale{false};
-  Status status{Status::ok};  ///< of outer loop and inverse; ok where neither was asked
-  Status cause{Status::ok};   ///< what the network alone came to
-  float worst_excess{0};      ///< how far outside its envelope, in half-widths; 0 inside
-  int worst_feature{-1};      ///< which feature, -1 if none
-  float squared_distance{0};  ///< from the training rows (JointDistance); 0 where none was measured
+  Status status{Status::ok};  ///< of outer loop and inverse; ok where none was asked
+  Status cause{Status::ok};   ///< the network's own
+  float worst_excess{0};      ///< of a feature beyond its envelope, in half-widths; 0 inside
+  int worst_feature{-1};      ///< that feature, -1 if none
+  float squared_distance{0};  ///< from the training rows (JointDistance); 0: none was measured
 
   /// As bits: 1 body rates, 2 attitude, 4 position and velocity, 8 set point.
   std::uint8_t stale_inputs() const noexcept {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// How much of its thrust a controller uses while it leaves the ground and when it is back. On the ground the rotors
-// idle until a set point asks to go up; then thrust comes over a while, in the air too until all of it is there. It
-// goes again only where the ground bears the vehicle, whatever a stack says of having landed. A vehicle that is taken
-// over in the air has it all.
+// The share of its thrust that a controller uses at take-off and landing. On the ground the rotors idle until a set
+// point asks to climb; then thrust comes over a while. It goes again only where the ground bears the vehicle, whatever
+// a stack says of having landed. A vehicle that is taken over in the air has all of it.
 #pragma once
 
-#include "pinnquad/control/autopilot/situation.hpp"
+#include "pinnquad/control/autopilot/inputs.hpp"
 
 namespace pinnquad::autopilot {
 
-/// A tick's demand along the vertical, and the motion that the vehicle has.
+/// A tick's demand along the vertical, and the vehicle's motion.
 struct VerticalMotion {
   bool asks_to_climb{false};
   float asked_sink_m_s{0};      ///< by the set point; positive down, as all here
@@ -19,8 +18,8 @@ struct VerticalMotion {
 
 class TakeOff {
  public:
-  /// Asked to sink by this, expected to fall by that, and at rest for so long: the ground bears it. Where it sinks all
-  /// the same while its thrust goes, nothing does. An estimate wanders by less.
+  /// Asked to sink by least_sink, expected to fall by least_fall and at rest for rests_us: the ground bears it. If it
+  /// sinks by falls_m_s while its thrust goes, nothing does.
   static constexpr float least_sink_m_s = 0.3f, least_fall_m_s2 = 1.0f, rests_m_s = 0.25f, falls_m_s = 0.5f;
   static constexpr std::uint64_t rests_us = 500'000;
 
@@ -29,12 +28,12 @@ class TakeOff {
   float duration_s() const noexcept { return duration_s_; }
   /// 0 to 1.
   float lift() const noexcept { return lift_; }
-  /// A lift that is not its own: that of a vehicle on the ground, or on its way up.
+  /// Goes on from a logged lift: 0 on the ground, more on the way up.
   void resume(float lift) noexcept {
     if (lift_ > lift || lift_ < lift) phase_ = lift > 0 ? Phase::air : Phase::ground;
     lift_ = lift;
   }
-  /// Nothing is asked of the controller: time does not count.
+  /// A tick in which the controller is not asked: time does not count.
   void skip(const Situation& situation) noexcept {
     before_us_ = 0;
     wait(situation);
@@ -62,7 +61,7 @@ class TakeOff {
  private:
   enum class Phase : std::uint8_t { ground, air, touches_down };
 
-  /// Others have the motors: it takes over as the stack says.
+  /// Others have the motors: landed or in the air, as the stack says.
   void wait(const Situation& situation) noexcept {
     phase_ = situation.landed ? Phase::ground : Phase::air;
     lift_ = situation.landed ? 0.0f : 1.0f;
@@ -99,7 +98,7 @@ class TakeOff {
   float lift_ = 1;
   Phase phase_ = Phase::air;
   std::uint64_t before_us_ = 0;
-  std::uint64_t rests_since_us_ = 0;  ///< 0: does not
+  std::uint64_t rests_since_us_ = 0;  ///< 0: it does not rest
 };
 
 }  // namespace pinnquad::autopilot

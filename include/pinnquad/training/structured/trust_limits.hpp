@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Limits of trust: the joint distribution of a model's training rows, and limits of distance and innovation (the mean
-// command residual) that validation flights pass with a chosen false-alarm rate (docs/trust.md).
+// Limits of trust: the joint distribution of a model's training rows, and limits of distance and command residual that validation flights pass with a chosen false-alarm rate (docs/trust.md).
 #pragma once
 
 #include <algorithm>
@@ -88,11 +87,11 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
   return result;
 }
 
-/// The demands on the two limits, and how fast the innovation's mean forgets.
+/// The demands on the two limits, and how fast the command residual's mean forgets.
 struct TrustSettings {
   double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
   double block_s = 10;              ///< alarms less than this apart are one
-  double innovation_factor = 0.2;
+  double command_residual_factor = 0.2;
   double shrinkage = usual_shrinkage;
 };
 
@@ -100,11 +99,11 @@ struct TrustSettings {
 template <int Size>
 struct FittedTrust {
   JointDistribution<Size> distribution{};
-  double distance_limit = 0;  ///< of the squared distance
-  double innovation_factor = 0;
-  double innovation_limit = 0;
-  double innovation_cleared = 0;  ///< half-way from the usual mean to the limit
-  double update_period_s = 0;     ///< of the rows that the innovation was fitted on
+  double squared_distance_limit = 0;  ///< of the squared distance
+  double command_residual_factor = 0;
+  double command_residual_limit = 0;
+  double command_residual_cleared = 0;  ///< half-way from the usual mean to the limit
+  double update_period_s = 0;           ///< of the rows that the command residual was fitted on
 };
 
 /// The greatest value of each `rows` values that follow each other; what is left at the end is no block.
@@ -144,8 +143,8 @@ inline double alarm_limit(std::vector<double> maxima, double blocks_per_alarm) {
   return start * std::pow(blocks_per_alarm * static_cast<double>(tail) / count, exponent);
 }
 
-/// m <- m + factor (e - m), from 0: InnovationMonitor's means of a flight's errors.
-inline std::vector<double> innovation_means(const std::vector<double>& errors, double factor) {
+/// m <- m + factor (e - m), from 0: CommandResidualMonitor's means of a flight's errors.
+inline std::vector<double> command_residual_means(const std::vector<double>& errors, double factor) {
   std::vector<double> means;
   double mean = 0;
   for (const double error : errors) means.push_back(mean += factor * (error - mean));
@@ -187,9 +186,9 @@ inline double mean_period_s(const RowSet& rows) {
   return steps > 0 ? lasts_s / steps : 0;
 }
 
-/// The innovation of a model that is as wrong as commands of 0 to 1 let it be, mean over the rows. A limit above it
+/// The command residual of a model that is as wrong as commands of 0 to 1 let it be, mean over the rows. A limit above it
 /// never triggers.
-inline double greatest_innovation(const RowSet& rows) {
+inline double greatest_command_residual(const RowSet& rows) {
   double sum = 0;
   for (const FlightRows& piece : rows.pieces()) {
     for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
@@ -217,28 +216,28 @@ double greatest_squared_distance(const JointDistribution<Size>& distribution, co
 }
 
 /// The distribution of the training rows, and limits by validation rows that the model was not trained on; each piece
-/// of a flight is a flight of its own to the innovation. Throws std::invalid_argument for rows that are too few, and
+/// of a flight is a flight of its own to the command residual. Throws std::invalid_argument for rows that are too few, and
 /// for a limit that could never trigger: the tail of few blocks, continued too far.
 template <class Model>
 FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
                                              const TrustSettings& settings = {}) {
   FittedTrust<Model::Features::size> trust;
   trust.distribution = fit_joint_distribution<typename Model::Features>(training, settings.shrinkage);
-  trust.innovation_factor = settings.innovation_factor;
+  trust.command_residual_factor = settings.command_residual_factor;
   trust.update_period_s = mean_period_s(validation);
   const auto rows = trust.update_period_s > 0
                         ? static_cast<std::size_t>(std::max(1.0, std::round(settings.block_s / trust.update_period_s)))
                         : std::size_t(1);
-  std::vector<double> distances, innovations, usual;
+  std::vector<double> distances, residuals, usual;
   for (const FlightRows& piece : validation.pieces()) {
     if (piece.rows.size() < 2) continue;
     const TrustSeries series = trust_series(model, trust.distribution, RowSet(*piece.flight, piece.rows));
-    const std::vector<double> means = innovation_means(series.errors, settings.innovation_factor);
+    const std::vector<double> means = command_residual_means(series.errors, settings.command_residual_factor);
     const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
       to.insert(to.end(), from.begin(), from.end());
     };
     append(distances, block_maxima(series.squared_distances, rows));
-    append(innovations, block_maxima(means, rows));
+    append(residuals, block_maxima(means, rows));
     append(usual, means);
   }
   const auto text = [](double value) {
@@ -247,29 +246,29 @@ FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& t
     return std::string(digits);
   };
   const std::string found = text(static_cast<double>(validation.size()) * trust.update_period_s) + " s (" +
-                            std::to_string(innovations.size()) + " whole blocks of " + text(settings.block_s) + " s)";
-  if (innovations.size() < least_alarm_blocks) {
+                            std::to_string(residuals.size()) + " whole blocks of " + text(settings.block_s) + " s)";
+  if (residuals.size() < least_alarm_blocks) {
     throw std::invalid_argument("limits of trust: expected at least " +
                                 text(static_cast<double>(least_alarm_blocks) * settings.block_s) +
                                 " s of validation rows, found " + found + ": more or longer flights make more");
   }
   const double blocks_per_alarm = settings.seconds_per_alarm / settings.block_s;
-  trust.distance_limit = alarm_limit(distances, blocks_per_alarm);
-  trust.innovation_limit = alarm_limit(innovations, blocks_per_alarm);
+  trust.squared_distance_limit = alarm_limit(distances, blocks_per_alarm);
+  trust.command_residual_limit = alarm_limit(residuals, blocks_per_alarm);
   const auto require_below = [&](const char* what, double limit, double greatest, const char* of) {
     if (limit < greatest) return;
     throw std::invalid_argument(std::string("limits of trust: expected a limit of the ") + what + " below " +
                                 text(greatest) + ", " + of + ", found " + text(limit) + " by validation rows of " +
                                 found + ": it could never trigger; more or longer flights make a better one");
   };
-  require_below("innovation", trust.innovation_limit, greatest_innovation(validation),
+  require_below("command residual", trust.command_residual_limit, greatest_command_residual(validation),
                 "the most that commands of 0 to 1 can be wrong by");
-  require_below("squared distance", trust.distance_limit,
+  require_below("squared distance", trust.squared_distance_limit,
                 greatest_squared_distance(trust.distribution, model.envelope_lower, model.envelope_upper),
                 "the most within the envelope");
   double sum = 0;
   for (const double mean : usual) sum += mean;
-  trust.innovation_cleared = (sum / static_cast<double>(usual.size()) + trust.innovation_limit) / 2;
+  trust.command_residual_cleared = (sum / static_cast<double>(usual.size()) + trust.command_residual_limit) / 2;
   return trust;
 }
 

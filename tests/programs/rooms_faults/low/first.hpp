@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Two faults: a room that comes later, and a header that is not there.
+// Three faults: a room that comes later, a header that is not there, an example.
 #pragma once
 
+#include "../../rooms_faults_examples/example.hpp"
 #include "high/second.hpp"
 #include "second.hpp"

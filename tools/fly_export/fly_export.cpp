@@ -13,9 +13,10 @@
 #include <type_traits>
 #include <vector>
 
+#include <model.hpp>  // the exported one, by the configuration
+
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
-#include "model.hpp"
 #include "pinnquad/flight.hpp"
 #include "pinnquad/io/regular_file.hpp"
 #include "pinnquad/simulation/tracking.hpp"
@@ -30,8 +31,8 @@ using Scalar = Model::Scalar;
 constexpr double agreement_tolerance = 1e-6;  // float rounding of another order of summation, commands in 0..1
 constexpr double fallback_limit = 0.05;       // more, and it is not the export that flies
 
-/// The exported model with all its numbers zero: what they contribute is what this one lacks. Of a format that says nothing
-/// of its numbers.
+/// The exported model with all its numbers zero: what they contribute is what this one lacks. Of a format that says
+/// nothing of its numbers.
 struct ZeroedModel : Model {
   static constexpr int format_version = 1;
   static constexpr std::array<Scalar, Model::parameters.size()> parameters{};
@@ -167,8 +168,9 @@ double reach(const char* name, double none) {
   return none;
 }
 
-/// A figure-eight that this airframe can fly: its sideways acceleration stays within 40 % of what thrust beyond hover allows.
-/// Near the ground it rises and sinks over most of the heights that the model was trained at, as slowly as its envelope asks for.
+/// A figure-eight that this airframe can fly: its sideways acceleration stays within 40 % of what thrust beyond hover
+/// allows. Near the ground it rises and sinks over most of the heights that the model was trained at, as slowly as its
+/// envelope asks for.
 FigureEight<double> trajectory_for(const Vehicle& vehicle) {
   FigureEight<double> eight;
   eight.center_m = {0, 0, -20};

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+// A fault: an example that includes the program.
+#include "low/first.hpp"
