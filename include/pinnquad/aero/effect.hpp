@@ -171,7 +171,6 @@ inline constexpr bool uses_rotor_wrench =
 /// something else: it would be passed over in silence. A `final` class is not looked into: C++ does not list its names.
 template <class Effect, class Scalar = double>
 constexpr bool is_whole_effect() noexcept {
-  using is_detected;
   if constexpr (std::is_class_v<Effect> && !std::is_final_v<Effect>) {
     return changes_surroundings<Effect> != is_detected<detail::NoSurroundings, Effect> &&
            makes_wrench<Effect> != is_detected<detail::NoWrench, Effect> &&
