@@ -1,0 +1,2 @@
+#include "pinnquad/nn/a.hpp"
+pinnquad::Needed needed;  // not Mentioned
