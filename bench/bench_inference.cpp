@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One prediction, batch 1: ours, what Eigen gives, and the time at which this machine's multiply-add units would be full.
-// Predict/* is latency (the output is fed into the next input), PredictThroughput/* independent inputs, Dense/<in>x<out> the
-// latency of one layer with ReLU.
+// One prediction, batch 1: ours, what Eigen gives, and the time at which this machine's multiply-add units would be
+// full. Predict/* is latency (the output is fed into the next input), PredictThroughput/* independent inputs,
+// Dense/<in>x<out> the latency of one layer with ReLU.
 #include <benchmark/benchmark.h>
 
 #include <string>

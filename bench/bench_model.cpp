@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a control loop pays for an exported model: features, guard, scaling and network together; the fallback; the self test
-// at boot; weights in a memory block.
+// Time that a control loop spends on an exported model: features, guard, scaling and network together; the fallback;
+// the self test at boot; weights in a memory block.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>

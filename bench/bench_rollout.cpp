@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Many predictions at once, and the Jacobian, beside one prediction and the peak of the same run. Batched/* counts time per
-// sample: `per_sample_ns`.
+// Many predictions at once, and the Jacobian, beside one prediction and the peak of the same run. Batched/* counts time
+// per sample: `per_sample_ns`.
 #include <benchmark/benchmark.h>
 
 #include <memory>

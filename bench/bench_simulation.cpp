@@ -29,8 +29,8 @@ VehicleState<Scalar> low_and_moving() {
   return state;
 }
 
-/// Each step starts from the last one's end; every 100 steps (0.1 s) the vehicle is put back, so that it stays in the ground
-/// effect however long the measurement takes.
+/// Each step starts from the last one's end; every 100 steps (0.1 s) the vehicle is put back, so that it stays in the
+/// ground effect however long the measurement takes.
 template <class Scalar, class... Effects>
 void simulation_step(benchmark::State& state) {
   constexpr int steps_per_flight = 100;

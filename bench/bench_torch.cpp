@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The same prediction in libtorch, one thread: layer by layer, as TorchScript, and frozen. Built where libtorch is installed
-// (Debian: libtorch-dev). The same weights, checked against ours before the first timing.
+// The same prediction in libtorch, one thread: layer by layer, as TorchScript, and frozen. Built where libtorch is
+// installed (Debian: libtorch-dev). The same weights, checked against ours before the first timing.
 #include <benchmark/benchmark.h>
 #include <torch/script.h>
 #include <torch/torch.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One epoch of training, 9,000 samples in batches of 64: the plain loss, the physics-informed one, both with batch norm,
-// and Eigen typed naively. bench/torch_training.py does the same in PyTorch.
+// One epoch of training, 9,000 samples in batches of 64: the plain loss, the physics-informed one, both with batch
+// norm, and Eigen typed naively. bench/torch_training.py does the same in PyTorch.
 #include <benchmark/benchmark.h>
 
 #include <memory>

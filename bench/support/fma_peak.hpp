@@ -9,9 +9,9 @@
 
 namespace pinnquad::bench {
 
-/// One iteration is `MultiplyAdds`, rounded up to whole rounds of twelve independent chains (latency 4 x 2 units = 8 are
-/// needed): its time is what a forward pass of so many would take at the machine's peak. The exact figure, without the
-/// rounding, is the counter `forward_pass_ns`.
+/// One iteration is `MultiplyAdds`, rounded up to whole rounds of twelve independent chains (latency 4 x 2 units = 8
+/// are needed): its time is what a forward pass of so many would take at the machine's peak. The exact figure, without
+/// the rounding, is the counter `forward_pass_ns`.
 template <class Pack, int MultiplyAdds>
 void fma_peak(benchmark::State& state) {
   constexpr int chains = 12;

@@ -69,7 +69,8 @@ std::array<Scalar, PaperNetwork::inputs> paper_input(std::uint64_t seed = 2) {
   return x;
 }
 
-/// Latency of anything with forward(const Scalar* x, Scalar* y) and the paper's sizes: the output is fed into the next input.
+/// Latency of anything with forward(const Scalar* x, Scalar* y) and the paper's sizes: the output is fed into the next
+/// input.
 template <class Model>
 void predict(benchmark::State& state, const Model& model) {
   using Scalar = typename Model::Scalar;
@@ -100,7 +101,8 @@ void predict_throughput(benchmark::State& state, const Model& model) {
   }
 }
 
-/// Ends the program unless the model gives the portable kernel's numbers in double, to rounding, over a few steps of feedback.
+/// Ends the program unless the model gives the portable kernel's numbers in double, to rounding, over a few steps of
+/// feedback.
 template <class Model>
 void require_paper_outputs(const char* name, const Model& model, const PaperNetwork& network) {
   using Scalar = typename Model::Scalar;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The yardstick of training: back-propagation as a user types it into Eigen, with sizes known at compile time, a sample per
-// column, `noalias` on every product and Adam on whole arrays. Shuffles and gathers like the trainer it is compared with.
+// The yardstick of training: back-propagation as a user types it into Eigen, with sizes known at compile time, a sample
+// per column, `noalias` on every product and Adam on whole arrays. Shuffles and gathers like the trainer it is compared
+// with.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The network of Eq. (4) that all benchmarks run, with weights that keep its activations alive: nothing dies, explodes or
-// becomes denormal, so the times are those of a trained network.
+// The network of Eq. (4) that all benchmarks run, with weights that keep its activations alive: nothing dies, explodes
+// or becomes denormal, so the times are those of a trained network.
 #pragma once
 
 #include <array>

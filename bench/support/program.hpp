@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the three benchmark programs share: the run's context, checks before the first timing, and main's last lines.
+// Common to the three benchmark programs: the run's context, checks before the first timing, and main's last lines.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -12,7 +12,8 @@
 
 namespace pinnquad::bench {
 
-/// Ends the program: a benchmark of wrong numbers is worth nothing. Writes to stderr, so that JSON on stdout stays whole.
+/// Ends the program: a benchmark of wrong numbers is worth nothing. Writes to stderr, so that JSON on stdout stays
+/// whole.
 inline void require_close(const char* name, double expected, double actual, double tolerance) {
   if (std::abs(expected - actual) <= tolerance) return;  // false for NaN
   std::fprintf(stderr, "%s computes something else: %.9g instead of %.9g (tolerance %.1g)\n", name, actual, expected,

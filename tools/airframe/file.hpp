@@ -57,8 +57,8 @@ inline pinnquad::RotorMount<double> rotor_of(const std::string& path, const toml
 
 }  // namespace detail
 
-/// The airframe of a file. Throws InputError, one line, for a file that can't be read, is no TOML, has a key that is unknown,
-/// missing or of another type, and for values that no quadrotor has.
+/// The airframe of a file. Throws InputError, one line, for a file that can't be read, is no TOML, has a key that is
+/// unknown, missing or of another type, and for values that no quadrotor has.
 inline NamedAirframe read_airframe_file(const std::string& path) {
   const toml::table root = read_toml_file(path, "an airframe");
   TomlTable table(path, root, detail::airframe_key);

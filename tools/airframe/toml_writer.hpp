@@ -35,7 +35,7 @@ inline std::string toml_quoted(const std::string& text) {
 
 }  // namespace detail
 
-/// What is as a plain rotor or a plain body has it is left out.
+/// Leaves out values of a plain rotor and a plain body.
 inline std::string airframe_toml(const NamedAirframe& airframe) {
   const pinnquad::Airframe<double>& a = airframe.value;
   std::string text =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What built this program and what runs it: for reports of measured figures.
+// Compiler and processor of this program: for reports of measured figures.
 #pragma once
 
 #include <ctime>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A command of a program: how it stands in the command line, and what it does when it was chosen. Each is a translation unit of
-// its own, `<room>/<name>_command.cpp`.
+// A command of a program: how it stands in the command line, and what it does when it was chosen. Each is a translation
+// unit of its own, `<room>/<name>_command.cpp`.
 #pragma once
 
 #include <functional>

@@ -41,8 +41,8 @@ inline void complete(CLI::App& command, const std::string& version) {
   }
 }
 
-/// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command does not
-/// know is handed up.
+/// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command
+/// does not know is handed up.
 inline void require_command(const CLI::App& program) {
   const CLI::App& command = chosen_command(program);
   const std::vector<std::string> unknown = program.remaining();
@@ -69,8 +69,8 @@ inline int run_chosen(const std::vector<Command>& commands) {
   throw std::logic_error("no command was chosen");
 }
 
-/// Adds --version and --config to a program whose commands are complete, and parses. Empty to go on; else the exit code. `name`
-/// becomes that of the command as soon as it is known: messages name it.
+/// Adds --version and --config to a program whose commands are complete, and parses. Empty to go on; else the exit
+/// code. `name` becomes that of the command as soon as it is known: messages name it.
 inline std::optional<int> choose_command(CLI::App& program, int argument_count, char** arguments, std::string& name) {
   detail::complete(program, program.get_name() + " " + PINNQUAD_VERSION);
   program

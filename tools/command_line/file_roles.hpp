@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which files a command reads and writes: an output never takes the place of an input or of another output.
+// Files that a command reads and writes: an output never takes the place of an input or of another output.
 #pragma once
 
 #include <filesystem>

@@ -10,7 +10,8 @@
 
 namespace programs {
 
-/// Breaks lines at spaces where they are longer than `width`; a line that begins with a space (an example) stays as it is.
+/// Breaks lines at spaces where they are longer than `width`; a line that begins with a space (an example) stays as it
+/// is.
 inline std::string wrapped(const std::string& text, std::size_t width) {
   std::string result;
   std::istringstream lines(text);

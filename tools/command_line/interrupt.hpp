@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ctrl-C as a wish: long work looks at it, stops in good order and keeps what is finished. A second Ctrl-C ends at once.
+// Ctrl-C as a wish: long work looks at it, stops in good order and keeps what is finished. A second Ctrl-C ends at
+// once.
 #pragma once
 
 #include <atomic>
@@ -28,8 +29,8 @@ inline void at_interrupt(void (*handler)(int)) {
 }
 }  // namespace detail
 
-/// From here on Ctrl-C (SIGTERM, SIGHUP) ends the program with exit_interrupted, at once: for what writes nothing that could
-/// be half there.
+/// From here on Ctrl-C (SIGTERM, SIGHUP) ends the program with exit_interrupted, at once: for what writes nothing that
+/// could be half there.
 inline void end_at_interrupt() { detail::at_interrupt(detail::end_interrupted); }
 
 /// From here on the first Ctrl-C (SIGTERM, SIGHUP) only sets a flag.

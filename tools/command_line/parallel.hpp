@@ -18,8 +18,8 @@ namespace programs {
 
 /// Calls `work(0)` to `work(count - 1)` on up to `threads` threads, in the order of the indices but not one after the
 /// other, and on fewer threads where the system gives no more; `job` and `share_done()`, 0..1, are for the progress
-/// line (no name: none). Once a call returned false or threw, no further index is started; the first exception is thrown again when all
-/// threads are back. The time that it took, s.
+/// line (no name: none). Once a call returned false or threw, no further index is started; the first exception is
+/// thrown again when all threads are back. The time that it took, s.
 template <class Work, class ShareDone>
 double run_parallel(const std::string& job, std::size_t count, std::size_t threads, const ShareDone& share_done,
                     const Work& work) {

@@ -73,8 +73,9 @@ inline void take_table(const std::string& path, const toml::table& table, CLI::A
 
 }  // namespace detail
 
-/// Options of the program's commands from a file, whichever command was chosen. Throws InputError or std::invalid_argument, one
-/// line with line and column: no TOML, a command or option that there is not, a value that the option refuses.
+/// Options of the program's commands from a file, whichever command was chosen. Throws InputError or
+/// std::invalid_argument, one line with line and column: no TOML, a command or option that there is not, a value that
+/// the option refuses.
 inline void take_settings(CLI::App& program, const std::string& path) {
   detail::take_table(path, read_toml_file(path, "options"), program);
 }

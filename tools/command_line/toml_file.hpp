@@ -51,7 +51,7 @@ inline std::string in_ascii(std::string content) {
 inline toml::table parse_toml(const std::string& content, const std::string& path) {
   detail::require_shallow(content, path, "TOML");
   try {
-    // toml++ 3.3 does not survive letters beyond ASCII where something is wrong: the tables are looked at without them first
+    // toml++ 3.3 does not survive letters beyond ASCII in a faulty file: the tables are read without them first
     const std::string plain = detail::in_ascii(content);
     if (plain != content) {
       detail::require_ascii_toml(content, path);
@@ -64,8 +64,8 @@ inline toml::table parse_toml(const std::string& content, const std::string& pat
   }
 }
 
-/// The tables of a file. Throws InputError: it can't be read, has more than 1 MiB where `what` ("an airframe") was expected, or
-/// is no TOML.
+/// The tables of a file. Throws InputError: it can't be read, has more than 1 MiB where `what` ("an airframe") was
+/// expected, or is no TOML.
 inline toml::table read_toml_file(const std::string& path, const std::string& what) {
   constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 20;
   pinnquad::require_regular_file(path);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A table of a TOML file, key by key: what is missing, unknown, or of another kind or range is said with line and column.
+// A table of a TOML file, key by key: what is missing, unknown, or of another kind or range is said with line and
+// column.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace programs {
 
-/// What a number of the file may be.
+/// Range of a number of the file.
 struct NumberRange {
   double least;
   double most;
@@ -26,8 +27,8 @@ inline constexpr NumberRange from_zero = {0, largest_number, "a value of 0 or mo
 inline constexpr NumberRange of_either_sign = {-largest_number, largest_number, "a value from -1e9 to 1e9"};
 inline constexpr NumberRange zero_to_one = {0, 1, "a value from 0 to 1"};
 
-/// A table of a file: asks for its keys one by one, and in the end for those that nobody asked for. `what` are its keys:
-/// "a key of an airframe".
+/// A table of a file: asks for its keys one by one, and in the end for those that nobody asked for. `what` are its
+/// keys: "a key of an airframe".
 class TomlTable {
  public:
   TomlTable(const std::string& path, const toml::table& table, const char* what)

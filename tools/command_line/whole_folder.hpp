@@ -18,9 +18,9 @@
 
 namespace programs {
 
-/// A folder to write into, `target.partial-N`, which takes the target's place on commit(). Without commit() the destructor
-/// removes it with all that is in it; one that a killed program left is taken up again by the next writer of that target.
-/// What stood at the target is there until then; whether it may be replaced is for the caller to say.
+/// A folder to write into, `target.partial-N`, which takes the target's place on commit(). Without commit() the
+/// destructor removes it with all that is in it; one that a killed program left is taken up again by the next writer of
+/// that target. The target keeps its contents until then; the caller says whether it may be replaced.
 class WholeFolder {
  public:
   /// Throws OutputError, one line: nothing can be made beside the target.

@@ -12,7 +12,7 @@
 
 namespace programs {
 
-/// Stands for a flight type in an argument list: `[](auto tag) { using PaperFlight = typename decltype(tag)::type; ... }`
+/// Stands for a flight type in an argument list: `[](auto tag) { using PaperFlight = typename decltype(tag)::type; }`
 template <class PaperFlight>
 struct FlightTag {
   using type = PaperFlight;

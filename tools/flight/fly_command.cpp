@@ -261,7 +261,7 @@ class ChosenFlight {
   std::optional<RecordedSticks> sticks_;
 };
 
-/// What contradicts itself; empty if nothing does.
+/// Options that contradict each other; empty if none do.
 std::string contradiction(const FlyOptions& o) {
   const bool single_output = !o.record_sticks.empty() || !o.pictures.empty() || !o.replay.empty();
   if (o.out.empty() && !single_output && o.statistics == 0) return "--out FILE.csv is needed (see --help)";

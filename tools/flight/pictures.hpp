@@ -325,8 +325,8 @@ inline bool plot_wind(const std::string& svg, const std::vector<TraceRow>& trace
 inline constexpr std::array<const char*, 4> flight_picture_names = {"trajectory.svg", "correlation.svg",
                                                                     "ground_effect.svg", "wind.svg"};
 
-/// All of them into a folder that is there: trajectory.svg, correlation.svg, ground_effect.svg where there is one, wind.svg
-/// if `windy`. False, after one line on stderr, where gnuplot is missing or
+/// All of them into a folder that is there: trajectory.svg, correlation.svg, ground_effect.svg where there is one,
+/// wind.svg if `windy`. False, after one line on stderr, where gnuplot is missing or
 /// failed; without that line after Ctrl-C.
 inline bool draw_flight(const std::string& folder, const pinnquad::Flight& flight, const std::vector<TraceRow>& trace,
                         const pinnquad::Airframe<double>& airframe, pinnquad::GroundEffectModel ground_effect,

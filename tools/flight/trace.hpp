@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a flight's pictures need and its CSV does not hold: places, and the aerodynamic forces taken apart.
+// Data of a flight's pictures that its CSV does not hold: places, and the aerodynamic forces taken apart.
 #pragma once
 
 #include <cmath>

@@ -63,7 +63,7 @@ inline std::string with_title(std::string svg, const std::string& title, const s
 }
 }  // namespace detail
 
-/// What a picture is to those who do not see it, and its size in pixels.
+/// Alternative text of a picture, and its size in pixels.
 struct Picture {
   int width = 0, height = 0;
   std::string title, description;

@@ -100,8 +100,8 @@ inline std::string exchange(Pipe& script, Pipe& picture, const std::string& text
 
 }  // namespace detail
 
-/// What gnuplot draws from a script that sets an SVG terminal. Nothing, after one line on stderr, if gnuplot is missing
-/// or fails, or if what it drew is not whole; without that line after Ctrl-C.
+/// The SVG that gnuplot draws from a script that sets an SVG terminal. Nothing, after one line on stderr, if gnuplot is
+/// missing or fails, or if what it drew is not whole; without that line after Ctrl-C.
 inline std::optional<std::string> run_gnuplot(const std::string& script_text) {
   detail::Pipe script, picture;
   pid_t process = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes a project of three files that trains, judges and exports a model whose feature set, network, loss and optimiser stand in it
-// as types.
+// Writes a project of three files that trains, judges and exports a model whose feature set, network, loss and
+// optimiser stand in it as types.
 //   pinnquad new my_training --model my_model/model.hpp --name MyModel
 #include "project/new_command.hpp"
 
@@ -73,8 +73,8 @@ std::string trained_network(const programs::HeaderFile& header) {
   return type;
 }
 
-/// "Network<float, InputSize<16>, Dense<25>, Relu, Dense<25>, Relu, Dense<4>>" as "Mlp<float, InputSize<16>, Hidden<2, 25>,
-/// OutputSize<4>, Relu>"; what has another form stays.
+/// "Network<float, InputSize<16>, Dense<25>, Relu, Dense<25>, Relu, Dense<4>>" as "Mlp<float, InputSize<16>, Hidden<2,
+/// 25>, OutputSize<4>, Relu>"; what has another form stays.
 std::string as_mlp(const std::string& network) {
   const std::string head = "Network<", dense = "Dense<";
   std::vector<std::string> parts;
@@ -96,7 +96,7 @@ std::string as_mlp(const std::string& network) {
          size(parts[2]) + ">, OutputSize<" + size(parts.back()) + ">, " + parts[3] + ">";
 }
 
-/// What the template says of an airframe of its own, whose struct stands before it.
+/// The template's text for an airframe of its own, whose struct stands before it.
 Filling own_airframe(const std::string& text, const std::string& name) {
   return {{"struct", text},
           {"airframe", "GivenAirframe"},
@@ -125,7 +125,7 @@ Filling airframe_of(const programs::HeaderFile& header) {
   return own.empty() ? library_airframe(library_type(header, "Vehicle")) : own_airframe(own, header.text("Vehicle"));
 }
 
-/// What the places of the template become.
+/// Values for the places of the template.
 Filling filling(const NewOptions& options) {
   std::string name = "TrainedQuadModel", airframe = options.airframe;
   Filling places, types = {{"features", "PaperFeatures"},

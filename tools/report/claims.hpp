@@ -12,7 +12,7 @@
 
 namespace programs {
 
-/// What the columns of a claim's figures hold: two figures and what lies between them.
+/// Columns of a claim's figures: two figures and what lies between them.
 struct ClaimColumns {
   const char* from;
   const char* to;

@@ -18,7 +18,7 @@ namespace programs {
 
 constexpr double significance = 0.05;
 
-/// What a comparison says, by rule: `better` and `worse` need p < 0.05, the `lower` mean alone is a lean.
+/// Verdict of a comparison, by rule: `better` and `worse` need p < 0.05, the `lower` mean alone is a lean.
 enum class Outcome { better, leans_better, leans_worse, worse };
 
 inline Outcome outcome(const pinnquad::PairedComparison& result) {

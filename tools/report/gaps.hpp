@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a study lacks: of Table 2, of its own plan, and of what a study runs if it is told nothing else.
+// Gaps of a study: against Table 2, its own plan, and a study's defaults.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace programs {
 
-/// What a whole study would have and this one has not, one line each.
+/// Parts of a whole study that this one lacks, one line each.
 inline std::vector<std::string> missing_lines(const Study& study, const StudySettings& settings) {
   std::vector<std::string> lines;
   std::string absent_models;
@@ -56,7 +56,7 @@ inline std::vector<std::string> missing_lines(const Study& study, const StudySet
   return lines;
 }
 
-/// What a study has less of than by default: "12 epochs of 300", "2 seeds of 20". A model that lacks seeds of a study that
+/// Counts of a study below the defaults: "12 epochs of 300", "2 seeds of 20". A model that lacks seeds of a study that
 /// has them is told by missing_lines.
 inline std::vector<std::string> smaller_than_default(const Study& study, const StudySettings& settings) {
   std::uint64_t epochs = paper_epochs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a study's report is made of, as it lies in the study's folder.
+// Input of a study's report, as it lies in the study's folder.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace programs {
 namespace detail {
 
-/// What a study's report is made of.
+/// Input of a study's report.
 struct ReportInput {
   std::string folder;
   StudySettings settings;

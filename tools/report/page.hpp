@@ -75,7 +75,7 @@ inline nlohmann::json drawings(const ReportInput& input, const std::vector<Compa
 
 }  // namespace detail
 
-/// What the page says, as report.json: figures are text in the signs of the page; table3.csv, comparisons.csv and claims.csv
+/// The page as report.json: figures are text in the signs of the page; table3.csv, comparisons.csv and claims.csv
 /// have all their digits.
 inline nlohmann::json report_figures(const detail::ReportInput& input, const std::vector<Comparison>& comparisons,
                                      const std::vector<FlightsComparison>& flights, const JudgedClaims& claims) {

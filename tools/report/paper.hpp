@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the paper says: Table 2 (its models), Table 3 (its results) and the training times of Sec. 5.4. Typed once, here.
-// Gu, Primatesta, Rizzo: Physics-informed Neural Network for Quadrotor Dynamical Modeling, Robotics and Autonomous
-// Systems 171 (2024).
+// Figures of the paper: Table 2 (its models), Table 3 (its results) and the training times of Sec. 5.4. Typed once,
+// here. Gu, Primatesta, Rizzo: Physics-informed Neural Network for Quadrotor Dynamical Modeling, Robotics and
+// Autonomous Systems 171 (2024).
 #pragma once
 
 #include <array>
@@ -30,7 +30,8 @@ enum class PhysicsTerm { none, constant, annealed };
 /// A flight, and which share of it trains and tests.
 enum class PaperData { d1, d1_test_40, d1_test_80, d2, d3 };
 
-/// A line of Table 2. docs/paper.md, deviation 16: models 7-10 are printed alike; the caption of Fig. 7 tells them apart.
+/// A line of Table 2. docs/paper.md, deviation 16: models 7-10 are printed alike; the caption of Fig. 7 tells them
+/// apart.
 struct PaperModel {
   int id;
   Structure structure;
@@ -134,7 +135,7 @@ inline const PaperEntry& paper_entry(int model, std::size_t measure) {
 /// 10. They are marked, and no claim is judged by them.
 constexpr bool suspect_entry(int model, std::size_t measure) { return measure == 2 && (model == 3 || model == 10); }
 
-/// Which model is compared with which: candidate against baseline, on the same seeds.
+/// Pairs to compare: candidate against baseline, on the same seeds.
 struct ModelPair {
   int baseline;
   int candidate;

@@ -118,7 +118,8 @@ inline void require_whole_errors(const RowCells& at, const StudyRow& row) {
 /// Reads rows.csv; columns by name, in any order, others ignored. Throws InputError with file, line and column: no
 /// readable file, a missing column, a row of other length, a cell that is not what its column holds, a training twice
 /// or one that the study has not.
-/// A last line without an end (a run was killed while it wrote) is left out and counted in `cut_rows` if it is not whole.
+/// A last line without an end (a run was killed while it wrote) is left out and counted in `cut_rows` if it is not
+/// whole.
 inline std::vector<StudyRow> read_study_rows(const std::string& path, const StudySettings& settings,
                                              std::size_t& cut_rows) {
   cut_rows = 0;
@@ -182,7 +183,8 @@ inline std::vector<StudyRow> read_study_rows(const std::string& path, const Stud
   return rows;
 }
 
-/// The rows of a study with the choices that make a report: the flight each model is judged on first, and which weights.
+/// The rows of a study with the choices that make a report: the flight each model is judged on first, and which
+/// weights.
 struct Study {
   std::vector<StudyRow> rows;
   std::size_t cut_rows = 0;
@@ -242,8 +244,8 @@ struct Study {
   }
 };
 
-/// Sorts rows into a study. `listed` are the flights of study.json, in its order: the first that a model has rows for is
-/// its first; without a list the order of the rows decides.
+/// Sorts rows into a study. `listed` are the flights of study.json, in its order: the first that a model has rows for
+/// is its first; without a list the order of the rows decides.
 inline Study make_study(std::vector<StudyRow> rows, const std::vector<StudyFlight>& listed,
                         const std::string& weights) {
   Study study;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes beyond the paper, each idea beside the paper's network on the same rows.
+// Ideas beyond the paper, each beside the paper's network on the same rows.
 //   pinnquad study beyond --seeds 10 --out DIR
 #include "study/beyond_command.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the models of `study beyond` are trained and judged on: a condition is a flight or two, rows that train,
-// validate and test, and the airframe that a model is told.
+// Conditions that the models of `study beyond` are trained and judged on: a condition is a flight or two, rows that
+// train, validate and test, and the airframe that a model is told.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Condition {
   std::vector<std::string> flights;                             ///< names for fly_for_beyond()
   /// Rows of these flights, in the order of `flights`; views of them.
   std::function<pinnquad::RowSplit(const std::vector<const pinnquad::Flight*>&)> split;
-  /// What flies in the closed loop; none: no flight.
+  /// The flight of the closed loop; none: no flight.
   std::optional<pinnquad::Airframe<double>> in_loop{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who competes in `study beyond`, its types hidden: a name and a function that trains. A further idea is a line of the
+// Contenders of `study beyond`, their types hidden: a name and a function that trains. A further idea is a line of the
 // list in beyond_models.cpp.
 #pragma once
 
@@ -53,7 +53,7 @@ class JudgedModelOf : public JudgedModel {
   Model model_;
 };
 
-/// What is to be trained, on what.
+/// The training to do: models and data.
 struct BeyondTask {
   const pinnquad::RowSplit& split;
   pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;  ///< as the model is told it
@@ -62,7 +62,7 @@ struct BeyondTask {
   std::function<bool()> goes_on;  ///< asked before each epoch
 };
 
-/// What came of it.
+/// Its results.
 struct BeyondTraining {
   std::shared_ptr<const JudgedModel> model;  ///< none: it was stopped
   bool best_weights = false;                 ///< the validation rows chose the epoch

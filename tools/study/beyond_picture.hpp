@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `study beyond` found as a picture: errors over those of the paper's network, and how far off the closed loop flies.
+// Picture of `study beyond`: errors over those of the paper's network, and how far off the closed loop flies.
 #pragma once
 
 #include <array>

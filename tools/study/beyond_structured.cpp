@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Models that are monotone by construction (training/structured/residual_fit.hpp) and no recipe's: with other features, on
-// the rigid body's inverse, with a network that is shown the angular acceleration.
+// Models that are monotone by construction (training/structured/residual_fit.hpp) and no recipe's: with other features,
+// on the rigid body's inverse, with a network that is shown the angular acceleration.
 #include <random>
 
 #include "pinnquad/features/motion_parts.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `study beyond` found: a table per condition on the terminal, on a page and as JSON, each model beside the
+// Results of `study beyond`: a table per condition on the terminal, on a page and as JSON, each model beside the
 // paper's network of the same flight and seed.
 #pragma once
 
@@ -63,8 +63,8 @@ inline std::pair<std::vector<double>, std::vector<double>> figure_pairs(const Be
   return pairs;
 }
 
-/// {condition: {model: {figure: {mean, deviation, count, and of a paired one ratio, wins, pairs, p_value}}}}. Paired: the
-/// error, and those of the closed loop.
+/// {condition: {model: {figure: {mean, deviation, count, and of a paired one ratio, wins, pairs, p_value}}}}. Paired:
+/// the error, and those of the closed loop.
 inline nlohmann::json beyond_json(const StoredRows& stored) {
   std::vector<std::string> paired = {"mean_absolute_error"};
   for (const char* trajectory : loop_trajectories) paired.push_back(std::string(trajectory) + "_rmse_m");

@@ -92,7 +92,7 @@ class StudyFolder {
   const std::string& path() const { return path_; }
 
  private:
-  /// What a killed run was writing; a report that is being written holds its own.
+  /// Files that a killed run was writing; a report that is being written holds its own.
   void remove_partial_files() const {
     std::error_code error;
     for (const std::string& folder : {path_, path_ + "/series"}) {
@@ -109,7 +109,7 @@ class StudyFolder {
   programs::FolderLock lock_;
 };
 
-/// What a model predicts on its test rows, beside what was flown.
+/// Predictions of a model on its test rows, beside the commands flown.
 inline void write_series(const std::string& path, const pinnquad::Flight& flight, const Outcome& outcome) {
   pinnquad::CsvTable table;
   table.header = {"time_s", "wdot_x", "wdot_y", "wdot_z", "u1", "u2", "u3", "u4", "p1", "p2", "p3", "p4"};

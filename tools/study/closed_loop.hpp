@@ -11,8 +11,8 @@
 
 namespace study {
 
-/// What is flown: the demo's figure-eight (4.8 m/s), one of 5.1 m/s whose nose swings by 0.5 rad, a circle (4.2 m/s); 30 s
-/// each, calm air.
+/// Trajectories flown: the demo's figure-eight (4.8 m/s), one of 5.1 m/s whose nose swings by 0.5 rad, a circle (4.2
+/// m/s); 30 s each, calm air.
 inline constexpr std::array<const char*, 3> loop_trajectories = {"eight", "yaw_eight", "circle"};
 
 /// Of each trajectory; NaN where none was flown, or the flight ended early.
@@ -25,8 +25,8 @@ struct LoopFigures {
 /// Commands of a row, NaN where the model declines.
 using RowPredictions = std::function<programs::Predictions(const pinnquad::RowSet&)>;
 
-/// Flies `flown`. Where the model declines, the hover's commands of `told`, the airframe as the model was told it, stand in.
-/// The feedback is the same for all models.
+/// Flies `flown`. Where the model declines, the hover's commands of `told`, the airframe as the model was told it,
+/// stand in. The feedback is the same for all models.
 LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<double>& flown,
                         const pinnquad::Airframe<double>& told);
 

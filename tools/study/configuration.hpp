@@ -29,7 +29,7 @@ inline const std::set<std::string>& run_facts() {
   return names;
 }
 
-/// What decides the rows. `kind` is "table 2", "ablation" or "beyond".
+/// The settings that decide the rows. `kind` is "table 2", "ablation" or "beyond".
 struct Plan {
   std::string kind;
   std::vector<Contender> contenders;

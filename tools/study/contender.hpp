@@ -66,7 +66,7 @@ class Materials {
   std::map<programs::StudyFlight, std::unique_ptr<Material<DataSet>>> made_;
 };
 
-/// What all trainings share. Safe to use from many threads.
+/// Data that all trainings share. Safe to use from many threads.
 class Workshop {
  public:
   explicit Workshop(Flights flights) : flights_(std::move(flights)) {}
@@ -100,7 +100,7 @@ struct Assignment {
   int patience = 0;
 };
 
-/// What came of it.
+/// Its results.
 struct Outcome {
   programs::Judgement test;
   double validation_mae = std::numeric_limits<double>::quiet_NaN();  ///< NaN where nothing is left to validate with

@@ -17,7 +17,7 @@
 
 namespace study {
 
-/// What flies in the study.
+/// Flights of the study.
 using Airframe = pinnquad::PaperQuadrotor;
 
 /// Flies `fly NAME --seed SEED`. Throws std::runtime_error, one line, if the flight ends early.

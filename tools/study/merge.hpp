@@ -67,8 +67,8 @@ inline Part read_part(const std::string& path) {
   return part;
 }
 
-/// A row of each training in `part` into `rows`. Throws std::invalid_argument: rows of another study, or figures that are not
-/// those of a part before.
+/// A row of each training in `part` into `rows`. Throws std::invalid_argument: rows of another study, or figures that
+/// are not those of a part before.
 inline void add_rows(const Part& part, std::map<RowId, std::string>& rows) {
   require_own_rows(part.path + "/rows.csv", part.stored, part.own, part.configuration.value("weights", "") == "best");
   for (const auto& [id, row] : part.stored.rows) {
@@ -79,7 +79,7 @@ inline void add_rows(const Part& part, std::map<RowId, std::string>& rows) {
   }
 }
 
-/// What the folder to write holds already. Throws InputError: rows without settings.
+/// Contents of the folder to write. Throws InputError: rows without settings.
 inline std::optional<Part> held_before(const StudyFolder& folder) {
   std::error_code error;
   if (std::filesystem::exists(folder.configuration(), error)) return read_part(folder.path());
@@ -129,8 +129,8 @@ inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
 }  // namespace detail
 
 /// Joins the parts `paths` with what `out` holds already; `out` itself may be among them. Exit code: 0, 1 if trainings
-/// are missing, or that of an interrupt, which leaves `out` as it was. Throws InputError, OutputError; std::invalid_argument for parts of different studies and for two different
-/// rows of one training.
+/// are missing, or that of an interrupt, which leaves `out` as it was. Throws InputError, OutputError;
+/// std::invalid_argument for parts of different studies and for two different rows of one training.
 inline int merge(const std::vector<std::string>& paths, const std::string& out) {
   std::vector<detail::Part> parts;
   std::map<RowId, std::string> rows;

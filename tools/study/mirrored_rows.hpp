@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rows of a training beside their mirror images about the vehicle's x-z plane, or under other headings: a loss then asks for
-// the symmetry. Not where wind, a side load or a crooked vehicle tell left from right or north from east.
+// Rows of a training beside their mirror images about the vehicle's x-z plane, or under other headings: a loss then
+// asks for the symmetry. Not where wind, a side load or a crooked vehicle tell left from right or north from east.
 #pragma once
 
 #include <memory>
@@ -105,8 +105,8 @@ Flight changed_flight(const Flight& flight, const char* what, const Change& chan
 }
 }  // namespace detail
 
-/// Throws std::invalid_argument, one line, for an airframe that is not its own mirror image, and for a flight with extra
-/// columns.
+/// Throws std::invalid_argument, one line, for an airframe that is not its own mirror image, and for a flight with
+/// extra columns.
 template <class Scalar>
 Flight mirrored(const Flight& flight, const Airframe<Scalar>& airframe) {
   const RotorMirror mirror = mirror_of(airframe);

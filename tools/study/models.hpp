@@ -84,8 +84,8 @@ using TypeOf = std::tuple_element_t<static_cast<std::size_t>(Enumerator), std::t
 
 }  // namespace detail
 
-/// A row of Table 2 (report/paper.hpp), counted from 0. `more_flights`: part of the main comparison, which is repeated on
-/// further flights.
+/// A row of Table 2 (report/paper.hpp), counted from 0. `more_flights`: part of the main comparison, which is repeated
+/// on further flights.
 template <std::size_t Row>
 struct Model {
   static constexpr programs::PaperModel entry = programs::table2[Row];

@@ -16,7 +16,8 @@
 namespace study {
 
 /// Flies d1, d2 and d3 of one seed again, forces taken apart, and draws `folder`/flights/{d1,d2,d3}/*.svg as
-/// `fly NAME --pictures` does. False, after one line on stderr, where gnuplot is missing or failed; the report then leaves them out.
+/// `fly NAME --pictures` does. False, after one line on stderr, where gnuplot is missing or failed; the report then
+/// leaves them out.
 inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
   using namespace pinnquad;
   const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();

@@ -26,7 +26,7 @@
 
 namespace study {
 
-/// What tells one training from another.
+/// Key of a training.
 struct RowId {
   std::string model;
   std::string flight;
@@ -45,7 +45,7 @@ inline std::string to_string(const RowId& id) {
          std::to_string(id.seed);
 }
 
-/// Which weights were judged: those after the last epoch, or those of the least validation error.
+/// Weights judged: those after the last epoch, or those of the least validation error.
 inline const char* weights_name(bool best) { return best ? "best" : "final"; }
 
 /// The first line of rows.csv, without a line end.
@@ -65,7 +65,7 @@ inline std::string table_row(const RowId& id, int epochs, const Outcome& outcome
   return text + "," + number_text(outcome.validation_mae) + "," + number_text(outcome.training_s);
 }
 
-/// What a study's rows.csv says of a training: its first six columns are those of study_columns(), its last the time.
+/// A training in a study's rows.csv: its first six columns are those of study_columns(), its last the time.
 struct RowFormat {
   std::string header = rows_header();
   std::string (*text)(const RowId&, int epochs, const Outcome&) = table_row;
@@ -83,7 +83,7 @@ inline bool parse_seed(std::string_view text, std::uint64_t& value) {
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
 }
 
-/// Which training a line holds. False if the line is not whole.
+/// Reads the training that a line holds. False if the line is not whole.
 inline bool parse_row(const std::string& line, std::size_t columns, RowId& id) {
   std::vector<std::string_view> fields;
   pinnquad::split_fields(line, fields);

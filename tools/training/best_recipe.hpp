@@ -25,11 +25,12 @@
 //     22.4, constant lambda 20.7; at 1e-4 gain 10 18.0, lambda 0.03 17.8; at 3e-4, three seeds, gain 10 17.3, lambda
 //     0.03 17.3
 //
-// Ellipse angles had no say. They fall apart for vanilla where the decay grows (roll on these flights' test rows: 3.8 degrees
-// at 1e-5, 8.6 at 3e-5, 27 at 1e-4, 45 at 3e-4), and stay for physics-informed (4.7, -, 4.3, 4.3).
+// Ellipse angles had no say. They fall apart for vanilla where the decay grows (roll on these flights' test rows: 3.8
+// degrees at 1e-5, 8.6 at 3e-5, 27 at 1e-4, 45 at 3e-4), and stay for physics-informed (4.7, -, 4.3, 4.3).
 //
 // So each kind has the decay that suits it best (*), and the paper's lambda, cycles and hold stay. With batch norm the
-// decay matters little (three seeds, 1e-5 to 1e-3: vanilla 33.0 to 35.2, physics-informed 31.4 to 32.7): the same is used.
+// decay matters little (three seeds, 1e-5 to 1e-3: vanilla 33.0 to 35.2, physics-informed 31.4 to 32.7): the same is
+// used.
 #pragma once
 
 #include <tuple>

@@ -70,8 +70,8 @@ Scaler scaler_of(const Numbers& mean, const Numbers& spread) {
   return result;
 }
 
-/// Of a network, or a sum of some, between its scalers, exact, worked out in double whatever the network's own scalar is.
-/// Of features with a window: by an angular acceleration that is another at all taps at once.
+/// Of a network, or a sum of some, between its scalers, exact, worked out in double whatever the network's own scalar
+/// is. Of features with a window: by an angular acceleration that is another at all taps at once.
 template <class FeatureSet, class Outputs>
 class NetworkDerivatives {
   using Map = pinnquad::OutputMap<Outputs>;

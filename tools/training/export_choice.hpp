@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which of the trained models is exported, and in words why, or why none is.
+// Chooses the trained model to export; says in words why, or why none is.
 #pragma once
 
 #include <cstdio>
@@ -19,7 +19,7 @@ inline std::string four_digits(double value) {
   return text;
 }
 
-/// What is chosen for the export, a result of the kind `loss`.
+/// The model chosen for the export, a result of the kind `loss`.
 struct Chosen {
   LossName loss;
   std::optional<std::size_t> best;  ///< of the results; none: nothing is there to be exported

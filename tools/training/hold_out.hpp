@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which flights of a dataset judge, which validate, which train: whole flights, repeats of a trajectory never on both sides.
+// Deals a dataset's flights to judging, validation and training: whole flights, repeats of a trajectory never on both
+// sides.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,7 @@
 
 namespace programs {
 
-/// What is held out in turn, where no names are given.
+/// The groups held out in turn, where no names are given.
 enum class HoldOutEach { flight, trajectory };
 
 struct HoldOutChoice {
@@ -142,9 +143,9 @@ inline void require_no_leak(const Fold& fold) {
   }
 }
 
-/// The partings that a choice asks for; views of the dataset. A flight that is held out takes the repeats of its trajectory
-/// with it. Throws std::invalid_argument, one line: a name that is no flight and no trajectory (with the nearest that are), too
-/// few flights, a flight that comes twice.
+/// The partings that a choice asks for; views of the dataset. A flight that is held out takes the repeats of its
+/// trajectory with it. Throws std::invalid_argument, one line: a name that is no flight and no trajectory (with the
+/// nearest that are), too few flights, a flight that comes twice.
 inline std::vector<Fold> folds_of(const pinnquad::Dataset& dataset, const HoldOutChoice& choice) {
   const std::vector<detail::FlightGroup> groups = detail::flight_groups(dataset);
   const auto others = [&](const auto& is_out) {
@@ -199,7 +200,7 @@ inline std::vector<Fold> folds_of(const pinnquad::Dataset& dataset, const HoldOu
 }
 std::vector<Fold> folds_of(const pinnquad::Dataset&&, const HoldOutChoice&) = delete;  // its rows would be gone
 
-/// What trains and validates the model that is exported after a rotation: all flights, the group closest to a fifth validates.
+/// Rows of the model exported after a rotation: all flights, the group closest to a fifth validates.
 inline Fold fold_of_all(const pinnquad::Dataset& dataset) {
   const std::vector<detail::FlightGroup> groups = detail::flight_groups(dataset);
   std::vector<const detail::FlightGroup*> all;

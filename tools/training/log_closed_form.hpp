@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Models of logged flights that are solved in closed form, for the features that a translation unit compiles them with. They
-// need no rows to stop by: all that are not held out are fitted, the penalty by leaving out trajectories.
+// Models of logged flights that are solved in closed form, for the features that a translation unit compiles them with.
+// They need no rows to stop by: all that are not held out are fitted, the penalty by leaving out trajectories.
 #pragma once
 
 #include <memory>

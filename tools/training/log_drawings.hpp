@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The drawings of a report on logged flights: errors flight by flight, errors over speed, battery and height, and commands about
-// a moment.
+// The drawings of a report on logged flights: errors flight by flight, errors over speed, battery and height, and
+// commands about a moment.
 #pragma once
 
 #include <algorithm>

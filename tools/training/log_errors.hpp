@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How far a model is off on held-out flights, and how much of that is a bias that stands still over a flight (battery, trim).
+// How far a model is off on held-out flights, and how much of that is a bias that stands still over a flight (battery,
+// trim).
 #pragma once
 
 #include <array>
@@ -18,7 +19,8 @@ using MotorFigures = std::array<double, pinnquad::rotor_count>;
 /// Errors e = predicted - flown command of the rows that count, per motor. With t the flown commands:
 ///   r2                     = 1 - sum e^2 / sum (t - mean t)^2              mean t: over all rows
 ///   r2_flight_bias_removed = 1 - sum (e - mean e)^2 / sum (t - mean t)^2   both means: of the row's own flight
-///   r2_start_bias_removed  = 1 - sum (e - b)^2 / sum (t - mean t)^2        b: mean error of the flight's first 4 s; rows after
+///   r2_start_bias_removed  = 1 - sum (e - b)^2 / sum (t - mean t)^2        b: mean error of the flight's first 4 s;
+///   rows after
 /// 0 is as good as the mean of the held-out commands; the second is 0 for a model that answers with a constant.
 struct LogErrors {
   std::size_t rows = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which of the judged models is exported, and the files it becomes.
+// Chooses the judged model to export, and writes its files.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace programs {
 
-/// What `--export` may say besides a model's key.
+/// Values of `--export` besides a model's key.
 inline constexpr const char* export_causal = "causal";
 inline constexpr const char* export_centred = "centred";
 
@@ -34,9 +34,9 @@ inline double mean_validation_error(const JudgedKind& kind) {
 
 }  // namespace detail
 
-/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. After a rotation by their
-/// held-out error: every flight was held out once, and the export is fitted anew. Else by their error on the validation flights:
-/// the flights held out have no say.
+/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. After a
+/// rotation by their held-out error: every flight was held out once, and the export is fitted anew. Else by their error
+/// on the validation flights: the flights held out have no say.
 /// Throws std::invalid_argument for the key of a kind that was not judged.
 inline std::vector<std::size_t> kinds_to_export(const LogJudgement& judged, const std::string& choice, bool rotated) {
   for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
@@ -53,8 +53,8 @@ inline std::vector<std::size_t> kinds_to_export(const LogJudgement& judged, cons
   return order;
 }
 
-/// Of the fits of a kind the one with the least error on the validation flights, of one that was fitted to them the first; none
-/// if no such error is finite.
+/// Of the fits of a kind the one with the least error on the validation flights, of one that was fitted to them the
+/// first; none if no such error is finite.
 inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind, bool takes_validation) {
   const FinishedFit* best = nullptr;
   for (const FinishedFit& fit : fits) {
@@ -83,7 +83,7 @@ inline pinnquad::Verdict exported_verdict(const LogJudgement& judged, std::size_
   return verdict;
 }
 
-/// What the header says of where the model comes from; one that the validation rows do not stop was fitted to them too.
+/// The header's provenance; a model that the validation rows do not stop was fitted to them too.
 inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Dataset& dataset, double lag_removed_s,
                                           const LogModelKind& kind, std::uint64_t seed, int epochs,
                                           const pinnquad::Verdict& verdict) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a model of logged flights is told: the feature sets, by what the logs have measured and by how far a model looks.
+// Feature sets of models of logged flights, by what the logs have measured and by how far a model looks.
 #pragma once
 
 #include <algorithm>

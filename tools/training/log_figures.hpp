@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The figures of a judged kind by their names, for report.json, the printed table and the page: one list behind all three.
+// The figures of a judged kind by their names, for report.json, the printed table and the page: one list behind all
+// three.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Finished fits in a folder, so that a training that was interrupted goes on where it was: what each answered, not the model
-// itself, which the same rows and seed give again.
+// Finished fits in a folder, so that a training that was interrupted goes on where it was: what each answered, not the
+// model itself, which the same rows and seed give again.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,8 @@ class LogFitStore {
   LogFitStore(std::string folder, const LogPlan& plan)
       : folder_(std::move(folder)), plan_(plan), of_plan_(plan_hash(plan)) {}
 
-  /// Fills a job that an earlier run of this very program has finished on the same rows. False if there is none; a file that is
-  /// not whole, or of another training, is none.
+  /// Fills a job that an earlier run of this very program has finished on the same rows. False if there is none; a file
+  /// that is not whole, or of another training, is none.
   bool load(FinishedFit& job) const {
     std::ifstream file(path_of(job), std::ios::binary);
     Head head{};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fits every kind of model to every parting of a dataset, from every seed, over the cores; Ctrl-C keeps what is finished.
+// Fits every kind of model to every parting of a dataset, from every seed, over the cores; Ctrl-C keeps what is
+// finished.
 #pragma once
 
 #include <array>
@@ -94,9 +95,9 @@ inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const
   return {airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()};
 }
 
-/// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose flights held
-/// out have no say), one that takes the validation rows for fitting is fitted without them too, from the first seed. False if
-/// interrupted. Throws what the kind's fit() throws.
+/// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose
+/// flights held out have no say), one that takes the validation rows for fitting is fitted without them too, from the
+/// first seed. False if interrupted. Throws what the kind's fit() throws.
 inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
   const LogModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];
@@ -123,8 +124,8 @@ inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
   return true;
 }
 
-/// All of a plan. `known(job)` fills a fit that an earlier run has finished, true if it did; `keep(job)` is told of each that
-/// this one finishes, from the thread that did it.
+/// All of a plan. `known(job)` fills a fit that an earlier run has finished, true if it did; `keep(job)` is told of
+/// each that this one finishes, from the thread that did it.
 template <class Known, class Keep>
 LogFits fit_all(const LogPlan& plan, const Known& known, const Keep& keep) {
   LogFits fits;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model of logged flights in a closed loop: the vehicle that the logs show flies a figure-eight inside what they have flown, with
-// the model as feed-forward, beside the inverse by formula and none.
+// A model of logged flights in a closed loop: the vehicle that the logs show flies a figure-eight inside what they have
+// flown, with the model as feed-forward, beside the inverse by formula and none.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +29,8 @@ namespace programs {
 
 using LoggedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, LoggedTorque>;
 
-/// The model as a feed-forward policy: asked with the rows of the last instants as a flight, as it was judged. Where it has no
-/// answer (its window is not complete) the formula of the vehicle answers, and that is counted.
+/// The model as a feed-forward policy: asked with the rows of the last instants as a flight, as it was judged. Where it
+/// has no answer (its window is not complete) the formula of the vehicle answers, and that is counted.
 class LoggedFeedForward {
  public:
   /// Extra columns are held at the medians of the training rows.
@@ -94,7 +94,7 @@ class LoggedFeedForward {
   std::size_t asked_ = 0, answered_ = 0;
 };
 
-/// What flights have reached in all but their last hundredths.
+/// Limits that flights have reached in all but their last hundredths.
 struct FlownEnvelope {
   double speed_m_s = 0, tilt_rad = 0, turning_rad_s = 0, angular_acceleration_rad_s2 = 0;
 };
@@ -117,8 +117,8 @@ inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows) {
   return {reached(values[0]), reached(values[1]), reached(values[2]), reached(values[3])};
 }
 
-/// The fastest figure-eight of its size, within the envelope; speed counts for nothing where it was not logged. None if not even
-/// a slow one is.
+/// The fastest figure-eight of its size, within the envelope; speed counts for nothing where it was not logged. None if
+/// not even a slow one is.
 inline std::optional<pinnquad::FigureEight<double>> eight_within(const FlownEnvelope& envelope, bool has_velocity) {
   constexpr double slowest_s = 60, slower = 1.05;
   pinnquad::FigureEight<double> eight;
@@ -143,7 +143,7 @@ inline std::optional<pinnquad::FigureEight<double>> eight_within(const FlownEnve
   return {};
 }
 
-/// What came of the flight, for report.json and the page; `why_not` alone where there was none.
+/// Results of the flight, for report.json and the page; `why_not` alone where there was none.
 inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& model, TimeReach reach,
                                  const pinnquad::RowSet& training, const NamedAirframe& airframe,
                                  const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs,
@@ -190,7 +190,8 @@ inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& mo
   return result;
 }
 
-/// Whether the model lost the vehicle: the flight ended, or went further off than the figure is long and no feed-forward is off.
+/// Whether the model lost the vehicle: the flight ended, or went further off than the figure is long and no
+/// feed-forward is off.
 inline bool lost_vehicle(const nlohmann::json& flown) {
   if (!flown.contains("model")) return false;
   const nlohmann::json& model = flown["model"];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a training on logs begins with: the kinds of models and the dataset that were asked for, sound enough to fit and to judge.
+// Input of a training on logs: the kinds of models and the dataset that were asked for, sound enough to fit and to
+// judge.
 #pragma once
 
 #include <algorithm>

@@ -96,8 +96,8 @@ inline std::string percent(double share) { return std::to_string(std::lround(100
 
 }  // namespace detail
 
-/// Rows that a kind leaves without an answer (a window that is not complete) count for no kind. A kind that leaves more than half
-/// of a parting's rows without one is not judged.
+/// Rows that a kind leaves without an answer (a window that is not complete) count for no kind. A kind that leaves more
+/// than half of a parting's rows without one is not judged.
 inline LogJudgement judge_fits(const LogPlan& plan, const LogFits& fits) {
   constexpr double least_answered = 0.5;
   LogJudgement result;

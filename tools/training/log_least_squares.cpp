@@ -18,7 +18,7 @@ pinnquad::RegressionSums sum_of(const std::vector<pinnquad::RegressionSums>& gro
   return all;
 }
 
-/// What the thrust and the torques about x, y, z depend on.
+/// The columns that the thrust and the torques about x, y, z depend on.
 const std::array<std::vector<std::string>, 4> physics_terms = {{{"s_z", "v_bz", "vv_bz", "battery_voltage"},
                                                                 {"wdot_x", "w_yz", "w_x", "v_by"},
                                                                 {"wdot_y", "w_zx", "w_y", "v_bx"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A kind of model that `train` fits to logged flights and compares with the others: one entry of a table. Each kind is a
-// translation unit of its own.
+// A kind of model that `train` fits to logged flights and compares with the others: one entry of a table. Each kind is
+// a translation unit of its own.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,11 @@
 
 namespace programs {
 
-/// What a kind of model sees of the motion. Ranked apart: a centred model looks ahead, and flies planned trajectories only.
+/// Times of the motion that a kind of model sees. Ranked apart: a centred model looks ahead, and flies planned
+/// trajectories only.
 enum class TimeReach { present, causal, centred };
 
-/// What a model is fitted to.
+/// The target of a fit.
 struct LogFit {
   const NamedAirframe& airframe;
   const pinnquad::RowSet& training;
@@ -37,14 +38,15 @@ struct LogModelKind {
   std::string (*not_applicable)(const LogFit&);
   /// Throws std::invalid_argument, one line, where the data leave it without an answer. Null if interrupted.
   std::shared_ptr<const TrainedNetwork> (*fit)(const LogFit&);
-  /// fit() is fitted to the validation rows too: what it says of them is no measure of it. Without them it does as well.
+  /// fit() is fitted to the validation rows too: what it says of them is no measure of it. Without them it does as
+  /// well.
   bool takes_validation = false;
 };
 
-/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, structured; ridge and
-/// structured also with "_causal" and "_centred" windows.
-/// Those that validation rows stop (vanilla, physics_informed) train on the training rows; those that choose by leaving out
-/// trajectories in turn have to be left nothing else.
+/// All kinds, the simplest first: constant, physics, linear, linearized, ridge, vanilla, physics_informed, structured;
+/// ridge and structured also with "_causal" and "_centred" windows.
+/// Those that validation rows stop (vanilla, physics_informed) train on the training rows; those that choose by leaving
+/// out trajectories in turn have to be left nothing else.
 const std::vector<LogModelKind>& log_model_kinds();
 
 }  // namespace programs

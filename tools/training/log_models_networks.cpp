@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's network on the paper's features, plain and physics-informed, trained as the study does; of its epochs the one
-// counts that is best on the validation flights.
+// The paper's network on the paper's features, plain and physics-informed, trained as the study does; of its epochs the
+// one counts that is best on the validation flights.
 #include <algorithm>
 #include <memory>
 #include <random>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Closed forms that see the present instant: the mean of the commands, physics with fitted parameters, ridge regression.
+// Closed forms that see the present instant: the mean of the commands, physics with fitted parameters, ridge
+// regression.
 #include "training/log_closed_form.hpp"
 #include "training/log_kinds.hpp"
 

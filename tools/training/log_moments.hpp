@@ -128,7 +128,8 @@ inline std::vector<LogMoment> worst_moments(const std::vector<Fold>& folds,
   return all;
 }
 
-/// What was unusual for that flight within half a second of the moment, in a few words; "nothing that stands out" else.
+/// Everything unusual for that flight within half a second of the moment, in a few words; "nothing that stands out"
+/// else.
 inline std::string what_happened(const LogMoment& moment, const ImportedDataset& dataset) {
   constexpr double unusual = 0.95, nearly_full = 0.97, nearly_idle = 0.03;
   const pinnquad::Flight& flight = *moment.flight;

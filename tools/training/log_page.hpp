@@ -18,7 +18,7 @@
 
 namespace programs {
 
-/// What a page is made of.
+/// Contents of a page.
 struct LogPageInput {
   const LogPlan& plan;
   const ImportedDataset& dataset;
@@ -42,7 +42,7 @@ inline std::vector<const Predictions*> shown_predictions(const LogPageInput& in,
   return result;
 }
 
-/// What is exported, the simpler kind that comes nearest to it, the best that looks ahead.
+/// The exported kind, the simpler kind nearest to it, the best that looks ahead.
 inline std::vector<std::size_t> shown_kinds(const LogPageInput& in) {
   std::vector<std::size_t> shown;
   const auto show = [&shown](std::size_t k) {

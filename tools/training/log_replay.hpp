@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A logged flight as a page that replays it in 3D. A dataset has no positions: the path is integrated from the velocity.
+// A logged flight as a page that replays it in 3D. A dataset has no positions: the path is integrated from the
+// velocity.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,8 @@
 
 namespace programs {
 
-/// Without a velocity the vehicle stays in its place and turns. Times are those of the flight: page.html#t=12.5 is its second 12.5.
+/// Without a velocity the vehicle stays in its place and turns. Times are those of the flight: page.html#t=12.5 is its
+/// second 12.5.
 inline void write_log_replay(const std::string& path, const pinnquad::Flight& flight, const ImportedDataset& dataset,
                              const pinnquad::Airframe<double>& airframe) {
   const bool has_altitude = !dataset.lacks("altitude");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// report.json of a training on logs: what was held out, every model of the table with its figures and its verdict, what was
-// exported, all warnings.
+// report.json of a training on logs: what was held out, every model of the table with its figures and its verdict, what
+// was exported, all warnings.
 #pragma once
 
 #include <cstddef>
@@ -148,7 +148,7 @@ class LogReport {
     }
   }
 
-  /// What is wrong but no reason to stop: told on stderr too.
+  /// A warning: no reason to stop; printed on stderr too.
   void warn(const std::string& text) {
     std::fprintf(stderr, "train: warning: %s\n", pinnquad::printable(text).c_str());
     json_["warnings"].push_back(pinnquad::printable(text));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Does a model of any kind command more torque where more angular acceleration is wanted? Asked from outside, so that all kinds
-// are asked alike: the angular acceleration of every row is moved, and with it that of a window's other taps.
+// Does a model of any kind command more torque where more angular acceleration is wanted? Asked from outside, so that
+// all kinds are asked alike: the angular acceleration of every row is moved, and with it that of a window's other taps.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A ridge and a small network on what it leaves, for the features that a translation unit compiles it with; monotone by
 // construction (model/axis_aligned.hpp): each signed sum's ridge sees its own angular acceleration alone, the network
-// sees none. Whole trajectories left out say how long the network is trained and what share of each output counts: none,
-// where it has learnt nothing that holds on each path that it has not seen. Then both are fitted to all rows that are not
-// held out.
+// sees none. Whole trajectories left out say how long the network is trained and what share of each output counts:
+// none, where it has learnt nothing that holds on each path that it has not seen. Then both are fitted to all rows that
+// are not held out.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/checkpoint.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/optimizer.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "training/log_closed_form.hpp"
 
@@ -88,7 +88,7 @@ class LogStructured {
   static constexpr int last_width = 48;
   static constexpr std::ptrdiff_t last_layer = last_width * 4 + 4;  ///< parameters of the last layer
 
-  /// What a network says of residuals that it has not seen, group by group.
+  /// Predictions of residuals by a network that has not seen them, group by group.
   class Agreement {
    public:
     void begin_group() { groups_.emplace_back(); }
@@ -98,8 +98,8 @@ class LogStructured {
       of.product += said * truth;
       of.square += said * said;
     }
-    /// The share of the answer that leaves the least squared error: by least squares, of 0 to 1; 0 where it does not lower
-    /// that of each group.
+    /// The share of the answer that leaves the least squared error: by least squares, of 0 to 1; 0 where it does not
+    /// lower that of each group.
     double share(int output) const {
       Sums all;
       for (const auto& group : groups_) all += group[static_cast<std::size_t>(output)];
@@ -134,7 +134,7 @@ class LogStructured {
     std::vector<std::array<Sums, static_cast<std::size_t>(Network::outputs)>> groups_;
   };
 
-  /// What a ridge leaves of rows, as the network is shown it.
+  /// The residual that a ridge leaves of rows, as the network is shown it.
   Data what_is_left(const pinnquad::AffineMap& ridge, const pinnquad::RowSet& rows) const {
     auto data = pinnquad::standardised<float>(context_, rows);
     pinnquad::take_away(ridge, data);

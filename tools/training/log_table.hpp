@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The table of models on standard output: those that fly on measured motion, then those that look ahead, then those that can't be
-// judged, each with its verdict.
+// The table of models on standard output: those that fly on measured motion, then those that look ahead, then those
+// that can't be judged, each with its verdict.
 #pragma once
 
 #include <cmath>

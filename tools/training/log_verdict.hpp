@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What may be said of a kind of model beside the simpler ones, by paired tests over held-out flights. A model that is worse than
-// a simpler one, or no better, is no success; with too few flights to tell, that is what is said.
+// The verdict on a kind of model beside the simpler ones, by paired tests over held-out flights. A model that is worse
+// than a simpler one, or no better, is no success; with too few flights to tell, that is what is said.
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A vehicle that turns and climbs by its commands as the flights of a log do: what a model of these logs can be flown on. Its mass
-// is 1 kg and its arms are as they are given, for the logs say nothing of them: thrust and drag per mass, torque per inertia are
-// theirs.
+// A vehicle that turns and climbs by its commands as the flights of a log do: what a model of these logs can be flown
+// on. Its mass is 1 kg and its arms are as they are given, for the logs say nothing of them: thrust and drag per mass,
+// torque per inertia are theirs.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace programs {
 
-/// What all four commands do together, and the air, by least squares.
+/// The effect of all four commands together, and of the air, by least squares.
 struct LoggedEffects {
   double thrust_m_s2 = 0;              ///< specific force along -z per sum of the commands
   std::array<double, 3> drag_per_m{};  ///< specific force along x, y, z per -|v_i| v_i; 0 where that is no drag
@@ -103,8 +103,8 @@ inline LoggedEffects logged_effects(const pinnquad::RowSet& rows,
   return effects;
 }
 
-/// The arms and the motor order of `like`, the effects of the rows. None where the rows show no vehicle: a command that does not
-/// lift or turns the wrong way, or one that can't hover.
+/// The arms and the motor order of `like`, the effects of the rows. None where the rows show no vehicle: a command that
+/// does not lift or turns the wrong way, or one that can't hover.
 inline std::optional<pinnquad::Airframe<double>> logged_vehicle(const pinnquad::Airframe<double>& like,
                                                                 const LoggedEffects& effects) {
   constexpr double propeller_m = 0.2, rev_s = 100, pi = 3.141592653589793;

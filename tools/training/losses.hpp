@@ -58,7 +58,7 @@ inline std::string with_kind(const LossName& loss) {
   return std::string(loss.title) + (is_structured(loss) ? " model" : " network");
 }
 
-/// What a kind is compared with, seed by seed, of what was asked for: a network with the vanilla ones, a structured
+/// The kind to compare with, seed by seed, among those asked for: a network with the vanilla ones, a structured
 /// model with the physics-informed networks before those; null for the baseline itself.
 inline const LossName* compared_with(const std::vector<LossName>& losses, const LossName& loss) {
   const LossName* baseline = nullptr;
@@ -78,7 +78,7 @@ inline LossName exported_network(const std::vector<LossName>& losses) {
   return informed == losses.end() ? losses.front() : *informed;
 }
 
-/// Whose best model is exported: the structured ones', whose signs are proven; a network's only where there are none.
+/// The kind to export: the structured ones, whose signs are proven; a network only where there are none.
 inline LossName exported_kind(const std::vector<LossName>& losses) {
   return std::any_of(losses.begin(), losses.end(), is_structured) ? structured : exported_network(losses);
 }

@@ -26,7 +26,7 @@ namespace programs {
 
 using pinnquad::AltitudeRule;
 
-/// What is to be trained, on what.
+/// The training to do: models and data.
 struct TrainingPlan {
   pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;
   bool library_airframe = false;  ///< see NetworkOfModel

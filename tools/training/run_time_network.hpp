@@ -118,7 +118,7 @@ inline int sized(std::string_view text, std::string_view name) {
   return std::max(0, whole_number(digits, 1));
 }
 
-/// What stands between "name<" and ">"; nothing where the text is something else.
+/// The text between "name<" and ">"; nothing where the text is something else.
 inline std::optional<std::string_view> inside_of(std::string_view text, std::string_view name) {
   if (text.size() < name.size() + 2 || text.substr(0, name.size()) != name || text[name.size()] != '<' ||
       text.back() != '>') {
@@ -138,8 +138,8 @@ inline std::vector<int> whole_numbers(std::string_view numbers) {
   return all;
 }
 
-/// "features,place,place,...": the features and the places of threes into the spec. False where it is something else, or
-/// the threes overlap.
+/// "features,place,place,...": the features and the places of threes into the spec. False where it is something else,
+/// or the threes overlap.
 inline bool take_threes(std::string_view numbers, NetworkSpec& spec) {
   const std::vector<int> all = whole_numbers(numbers);
   spec.inputs = all.front();
@@ -195,8 +195,7 @@ inline std::optional<NetworkSpec> parse_network(const std::string& description) 
   }
   if (const auto inside = detail::inside_of(text, "pinnquad::PathBounded")) {
     std::optional<NetworkSpec> spec = parse_network(std::string(*inside));
-    if (!spec || spec->bounded || !spec->threes.empty() || spec->path_bounded ||
-        !detail::has_path_bound(*spec)) {
+    if (!spec || spec->bounded || !spec->threes.empty() || spec->path_bounded || !detail::has_path_bound(*spec)) {
       return {};
     }
     spec->path_bounded = true;

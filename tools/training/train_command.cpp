@@ -158,7 +158,7 @@ void warn_of_better_network(const std::vector<programs::LossName>& losses, const
               "), but nothing is proven of its signs; --recipe paper exports it");
 }
 
-/// What is proven of an export's signs, as `certify` finds it in the header.
+/// Proof of an export's signs, as `certify` finds it in the header.
 void say_certificate(const TrainOptions& options, const programs::TrainedNetwork& network,
                      const ContextAirframe<GivenAirframe>& airframe, programs::TrainingReport& report) {
   const std::optional<Certificate> certificate = network.certificate();
@@ -328,7 +328,7 @@ void require_separate_files(const TrainOptions& options) {
   roles.writes("--block", options.block);
 }
 
-/// What logs and flights have in common, as training on logs takes it; `given(name)`: the option is in the command line.
+/// Options common to logs and flights; `given(name)`: the option is in the command line.
 template <class Given>
 programs::LogTrainingOptions log_options(const TrainOptions& options, const Given& given) {
   programs::LogTrainingOptions logs = options.logs;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `train` on flights of a real vehicle: an imported dataset, or logs that it imports first. Whole flights are held out, every kind
-// of model is judged on them beside the simpler ones, the best is exported.
+// `train` on flights of a real vehicle: an imported dataset, or logs that it imports first. Whole flights are held out,
+// every kind of model is judged on them beside the simpler ones, the best is exported.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@
 
 namespace programs {
 
-/// What is proven of a trained model by its structure; none of one without.
+/// Certificate of a trained model's structure; none of a model without.
 template <class Model>
 std::optional<pinnquad::Certificate> certificate_of_structure(const Model& model) {
   if constexpr (pinnquad::has_certificate<Model>) return pinnquad::certificate_of_trained(model);
@@ -34,16 +34,16 @@ class TrainedNetwork {
   virtual Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
-  /// What is proven of it by its structure; none of a model without.
+  /// Certificate of its structure; none of a model without.
   virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
   /// Writes `struct <name>` and its block. Limits of trust are of a structured model alone.
   virtual pinnquad::Exported export_to(const pinnquad::ModelFiles& files, const std::string& name,
                                        const pinnquad::RowSplit& split,
                                        const pinnquad::Provenance& provenance) const = 0;
   /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
-  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the feature set asks for it,
-  /// predicted u (4), flown u (4). Of a feature set that asks for more "pinnquad-replay-features", and X in the place of the
-  /// first 16.
+  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the feature set asks
+  /// for it, predicted u (4), flown u (4). Of a feature set that asks for more "pinnquad-replay-features", and X in the
+  /// place of the first 16.
   virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
 };
 

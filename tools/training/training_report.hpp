@@ -43,7 +43,7 @@ inline void write_report(const std::string& path, nlohmann::json settings, const
   file.commit();
 }
 
-/// What is known so far. A training that fails later leaves what was written last.
+/// The report so far. A training that fails later leaves what was written last.
 class TrainingReport {
  public:
   TrainingReport(std::string path, const Recipe& recipe, const TrainingPlan& plan, const pinnquad::Dataset& dataset)
@@ -61,7 +61,7 @@ class TrainingReport {
     if (is_structured(losses_.back())) settings_["structured"]["slopes"] = plan.pinned_slopes ? "pinned" : "learned";
   }
 
-  /// What is wrong but no reason to stop: told on stderr too.
+  /// A warning: no reason to stop; printed on stderr too.
   void warn(const std::string& text) {
     std::fprintf(stderr, "train: warning: %s\n", text.c_str());
     more_["warnings"].push_back(text);

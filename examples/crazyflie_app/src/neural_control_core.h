@@ -60,9 +60,9 @@ struct CrazyflieReport {
  * A later model takes the place of the one that flies, at the next step. */
 uint8_t pinnquad_flight_offer_model(const void* block, size_t length);
 
-/* The first call of all, whoever makes it; a later one changes nothing. `most_thrust_N`: what the platform gives of one motor,
- * where its normalised force is 1; forces stay within it. What a force of pinnquad_flight_step is to be multiplied by,
- * to be one of the platform: the greatest thrust of a rotor of the model's airframe over the platform's. */
+/* The first call of all, whoever makes it; a later one changes nothing. `most_thrust_N`: the platform's thrust of one
+ * motor where its normalised force is 1; forces stay within it. Returns the factor from a force of pinnquad_flight_step
+ * to one of the platform: the greatest thrust of a rotor of the model's airframe over the platform's. */
 float pinnquad_flight_start(float most_thrust_N);
 
 /* True once a model was accepted. */

@@ -10,7 +10,7 @@
 // which is its wrench as if the condition lay on that branch.
 // Optional:
 //   static constexpr VariesWith varies_with    less than place_and_time lets an inverse go without them
-//   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, worked out for the airframe
+//   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, of the airframe
 //   Status status(const Airframe<Scalar>&)     whether its values make sense and its model holds for the airframe: a
 //                                              vehicle whose effect is not ok neither steps nor inverts
 #pragma once

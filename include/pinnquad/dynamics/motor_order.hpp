@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The numbering of motors: by the convention of a flight stack, or by the places of an airframe's rotors, whatever their spin.
+// The numbering of motors: by the convention of a flight stack, or by the places of an airframe's rotors, whatever
+// their spin.
 #pragma once
 
 #include <array>

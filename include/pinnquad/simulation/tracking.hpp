@@ -17,7 +17,7 @@ struct TrackingPlan {
   int steps_per_control{2};  ///< the commands are held over these
 };
 
-/// What came of it.
+/// Its results.
 template <class Scalar>
 struct TrackingResult {
   Status status{Status::ok};  ///< what ended the flight early
