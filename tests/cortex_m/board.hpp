@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a measurement needs of the machine: text to the host, instructions executed, stack used. On a Cortex-M by
+// The machine as a measurement needs it: text to the host, instructions executed, stack used. On a Cortex-M by
 // semihosting, SysTick and a painted stack, without a C library; on the host only the text.
 #pragma once
 
@@ -98,7 +98,7 @@ inline void print_bits(float value) {
 
 }  // namespace board
 
-/// What a measurement does.
+/// A measurement.
 extern "C" int board_main();
 
 #if !defined(__ARM_ARCH_7EM__)

@@ -39,7 +39,7 @@ void board_reset() {
   leave(static_cast<std::uint32_t>(board_main()));
 }
 
-// What a C library may ask for when something planted by a test pulls it in; what needs them has failed anyway.
+// Functions that a C library asks for when a test's planted fault pulls it in; such a test has failed anyway.
 void _exit(int code) { leave(static_cast<std::uint32_t>(code)); }
 
 }  // extern "C"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is measured, behind C functions in a file of its own: compiled as firmware compiles it, called from
+// The code measured, behind C functions in a file of its own: compiled as firmware compiles it, called from
 // measure_*.cpp.
 #pragma once
 

@@ -51,7 +51,7 @@ Flight with_cell(std::size_t row, std::size_t field, double value) {
   return flight;
 }
 
-/// What require_plausible() says; the file's columns are in the order of the library.
+/// The complaint of require_plausible(); the file's columns are in the order of the library.
 std::string refusal(const Flight& flight) {
   try {
     require_plausible("no/such/flight.csv", flight);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is written into an exported header reads back bit for bit, and names what it was made of.
+// An exported header reads back bit for bit, and names its sources.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A ridge through a window over a part of its features, alone and with a network on top, from rows to what flies: header text,
-// block, guard, self test, Jacobian.
+// A ridge through a window over a part of its features, alone and with a network on top, from rows to what flies:
+// header text, block, guard, self test, Jacobian.
 #include <doctest/doctest.h>
 
 #include <random>

@@ -162,7 +162,7 @@ TEST_CASE("the arm is half the diagonal motor spacing over sqrt(2)") {
 
 namespace {
 
-/// What the sources of an airframe's header state, in the units that they state it in.
+/// Values of an airframe's sources, in the sources' units.
 struct Published {
   double mass_kg, jx, jy, jz, forward_m, right_m;
   double newton_per_rad_s_squared, newton_metre_per_rad_s_squared, max_rad_s, time_constant_s;

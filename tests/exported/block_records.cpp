@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The records of a block: read back, refused where they say another thing than shape and caller, skipped where unknown and
-// optional; whatever their bytes are, none beyond the block is read and a refused block leaves the view as it was.
+// The records of a block: read back, refused where they say another thing than shape and caller, skipped where unknown
+// and optional; whatever their bytes are, none beyond the block is read and a refused block leaves the view as it was.
 #include "pinnquad/exported/block_records.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a certificate says against samples of the model as it flies, against differences, and where the numbers deserve
+// Certificates against samples of the model as it flies, against differences, and where the numbers deserve
 // none. Its bounds against interval arithmetic: certificate_intervals.cpp.
 #include "pinnquad/exported/certificate.hpp"
 

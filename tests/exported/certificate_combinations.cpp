@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A certificate's slopes against finite differences of the whole model, for every combination of features, formula that
-// the sums are added to, structure of the answer and centre of gravity that compiles. What does not compile has no
-// certificate.
+// the sums are added to, structure of the answer and centre of gravity that compiles. A combination that does not
+// compile has no certificate.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// More than a million hostile inputs (a fifth where nothing is optimised) against every kind of guard, float and double: NaN,
-// infinities, denormals, random bits, attitudes that are none. What must hold is counted by an eye of its own (std::isfinite,
-// memcmp), not by the guard's.
+// More than a million hostile inputs (a fifth where nothing is optimised) against every kind of guard, float and
+// double: NaN, infinities, denormals, random bits, attitudes that are none. The rules are counted by code of their own
+// (std::isfinite, memcmp), not by the guard's.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -58,7 +58,7 @@ class Hostility {
     return size * (Scalar(2) * static_cast<Scalar>(engine_() >> 40) / static_cast<Scalar>(1 << 24) - Scalar(1));
   }
 
-  /// What no sensor should say.
+  /// Values that no sensor should give.
   Scalar value() {
     using Limits = std::numeric_limits<Scalar>;
     const Scalar sign = below(2) == 0 ? Scalar(1) : Scalar(-1);
@@ -140,7 +140,7 @@ struct WideCommands {
   static constexpr double upper = 50.0;
 };
 
-/// What went wrong, by rule; all must stay 0.
+/// Faults, by rule; all must stay 0.
 struct Broken {
   int not_finite_written = 0;  ///< a command that is NaN or infinite
   int touched = 0;             ///< commands changed though the Status has no output

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a model block holds is read back to the bit, and a block that is not sound is refused with the view untouched.
+// A model block is read back to the bit, and a block that is not sound is refused with the view untouched.
 #include "pinnquad/exported/model_view.hpp"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Every number of a model made NaN or infinite in turn: no self test passes, no block opens, and a NaN weight reaches the
-// commands. A verdict with such a number lets no model fly. Compiled by check.sh with and without -ffast-math, so nothing
-// here may ask a floating-point number whether it is NaN.
+// Every number of a model made NaN or infinite in turn: no self test passes, no block opens, and a NaN weight reaches
+// the commands. A verdict with such a number lets no model fly. Compiled by check.sh with and without -ffast-math, so
+// nothing here may ask a floating-point number whether it is NaN.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

@@ -61,8 +61,8 @@ bool same(const MotionInputs<Scalar>& a, const MotionInputs<Scalar>& b) {
          a.body_rates_rad_s == b.body_rates_rad_s && p.w == q.w && p.x == q.x && p.y == q.y && p.z == q.z;
 }
 
-/// A sample within the tolerance is taken for the tap, and line() changes by up to 20 per second; a turn of 0.03 rad per sample
-/// is a straight line to 1e-7.
+/// A sample within the tolerance is taken for the tap, and line() changes by up to 20 per second; a turn of 0.03 rad
+/// per sample is a straight line to 1e-7.
 constexpr double straight = 20 * Past::Window::tolerance_s + 1e-6;
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compiled, never run: count_instructions.cmake compiles one CASE at a time and counts. What is not named must not be paid for.
+// Compiled, never run: count_instructions.cmake compiles one CASE at a time and counts. An effect that is not named
+// must cost nothing.
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"

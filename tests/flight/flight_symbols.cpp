@@ -26,7 +26,7 @@ using Everything =
                         pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::CheesemanBennettRotorGroundEffect,
                         pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
 
-/// What no rotor can do, but a network may ask for.
+/// Commands that no rotor can do, but a network may ask for.
 struct WideCommands {
   static constexpr double lower = -0.5;
   static constexpr double upper = 1.5;

@@ -73,7 +73,7 @@ void step_pid(Pid& of, control_t* control, const setpoint_t* setpoint, const sta
   control->thrust = setpoint->mode.z == modeDisable ? setpoint->thrust : 30000 + of.integral;
 }
 
-/// What the deck driver writes to a uSD card of the events that config.txt names: a head that says their variables,
+/// A uSD card as the deck driver writes it, of the events that config.txt names: a head that says their variables,
 /// then each with its time, then a checksum.
 class Card {
  public:

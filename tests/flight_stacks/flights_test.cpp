@@ -156,7 +156,7 @@ TEST_CASE("without faults the network flies, and tracks") {
   calm<CrazyflieStack>("random_places", RandomPlaces(1), 0.8, 0.06f);
 }
 
-/// What these flights prove: with the age limits out of reach the same outage, alone, ends on the ground.
+/// The proof of these flights: with the age limits out of reach the same outage, alone, ends on the ground.
 TEST_CASE("without the age limits a module falls") {
   AgeLimits none;
   none.body_rates_us = none.attitude_us = none.local_us = none.set_point_us = 1'000'000'000;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The same messages through both cores, in a program that is built twice: as everything here, and as PX4 builds with
-// -funsafe-math-optimizations. What is compared are commands, within a tolerance, and reactions, exactly.
+// -funsafe-math-optimizations. Compared are commands, within a tolerance, and reactions, exactly.
 //   replay FILE            writes
 //   replay FILE TOLERANCE  compares; exit code 1 if anything is further off
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// libFuzzer target over the reader of logs that are CSV tables: whatever the bytes, there is a topic whose columns are as long as
-// its clock, or one line that says what is wrong; what was read, written down and read again is the same. Build and run:
-// scripts/heavy/fuzz.
+// libFuzzer target over the reader of logs that are CSV tables: whatever the bytes, there is a topic whose columns are
+// as long as its clock, or one line that says what is wrong; what was read, written down and read again is the same.
+// Build and run: scripts/heavy/fuzz.
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every fuzzer needs: a rule whose breach stops it, and how often its inputs were accepted.
+// Common to all fuzzers: a rule whose breach stops it, and how often its inputs were accepted.
 #pragma once
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// libFuzzer target over mappings of flight logs: whatever the bytes, there is a mapping or one line that says what is wrong; and
-// what a mapping makes of a small table and of a log of topics are rows of finite numbers, or one line. Build and run:
-// scripts/heavy/fuzz.
+// libFuzzer target over mappings of flight logs: whatever the bytes, there is a mapping or one line that says what is
+// wrong; and what a mapping makes of a small table and of a log of topics are rows of finite numbers, or one line.
+// Build and run: scripts/heavy/fuzz.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -66,12 +66,12 @@ std::uint32_t plain_crc32(const unsigned char* bytes, std::size_t length) {
   return ~remainder;
 }
 
-/// What stands between header and scalars, by the counts that the block states.
+/// Bytes between header and scalars, by the counts that the block states.
 std::size_t record_bytes(const unsigned char* block) {
   return block[Header::version] < 2 ? 0 : BlockRecordLayout::counts + detail::read_u32(block + Header::size + 4);
 }
 
-/// What was accepted, looked at again and flown.
+/// An accepted block, looked at again and flown.
 template <class Shape, class Model>
 void fly(const Model& model) {
   using Scalar = typename Shape::Scalar;

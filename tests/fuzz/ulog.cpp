@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// libFuzzer target over the reader of ULog files: whatever the bytes, there is a log whose columns are as long as its clock, with
-// what was lost said in one line each, or one line that says what is wrong. The mutator works on whole messages: chance would
-// break their sizes. Build and run: scripts/heavy/fuzz.
+// libFuzzer target over the reader of ULog files: whatever the bytes, there is a log whose columns are as long as its
+// clock, with what was lost said in one line each, or one line that says what is wrong. The mutator works on whole
+// messages: chance would break their sizes. Build and run: scripts/heavy/fuzz.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -40,7 +40,7 @@ void check(const FlightLog& log, std::size_t size) {
   expect(log.warnings.size() <= 22, "warnings are few");
 }
 
-/// What is wanted alone is what it was among the others.
+/// A topic read alone is as it was among the others.
 void check_selection(const FlightLog& log, std::string_view bytes) {
   programs::LogSelection selection;
   selection.topics = {log.topics.back().name};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Chooses among three objects by what the processor has, and predicts with the one chosen, which argv[1] names: "avx2_".
+// Chooses among three objects by what the processor has, and predicts with the one chosen, which argv[1] names:
+// "avx2_".
 #include <cmath>
 #include <cstdio>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What prediction code must not do: functions of the standard library that an unoptimised build emits out of line. The gate
-// has to name them, and the program that mixes instruction sets has to die of the square root.
+// Faults that prediction code must not have: functions of the standard library that an unoptimised build emits out of
+// line. The gate has to name them, and the program that mixes instruction sets has to die of the square root.
 #include <array>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Calls the baseline's prediction and compares it with plain loops. The other instruction sets' are linked in, not called:
-// if the linker took one of their functions for the baseline's, this program dies on a machine without them.
+// Calls the baseline's prediction and compares it with plain loops. The other instruction sets' are linked in, not
+// called: if the linker took one of their functions for the baseline's, this program dies on a machine without them.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -46,7 +46,8 @@ bool agrees(const std::vector<std::size_t>& sizes, const Parameters& parameters,
   return true;
 }
 
-/// Gelu, SiLU, softplus and sine between five dense layers, in double; four ways to the same outputs and two to a Jacobian.
+/// Gelu, SiLU, softplus and sine between five dense layers, in double; four ways to the same outputs and two to a
+/// Jacobian.
 bool agrees_smoothly(const float* x, const float* y) {
   const auto p = instruction_sets::some_parameters<instruction_sets::SmoothNet>();
   std::vector<double> values(x, x + 16);

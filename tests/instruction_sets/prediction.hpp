@@ -76,11 +76,11 @@ struct ResidualModel : Model {
 extern unsigned char block[];
 extern std::size_t block_bytes;
 
-/// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel, y[12, 16) of the exported model,
-/// y[16, 20) of its outputs as speeds, y[20, 28) from its block: in place, loaded; y[28, 32) with batch norm,
-/// y[32, 36) of smooth activations by the vector unit, y[36, 40) by the portable kernel, y[40, 44) in a batch, y[44, 48) beside
-/// the Jacobian, y[48] the largest difference of its entries to those of the portable pass; y[49, 53) of the exported model's
-/// outputs as a wrench, y[53, 57) as a residual.
+/// y[0, 4) in registers, y[4, 8) from memory to memory, y[8, 12) by the portable kernel, y[12, 16) of the exported
+/// model, y[16, 20) of its outputs as speeds, y[20, 28) from its block: in place, loaded; y[28, 32) with batch norm,
+/// y[32, 36) of smooth activations by the vector unit, y[36, 40) by the portable kernel, y[40, 44) in a batch, y[44,
+/// 48) beside the Jacobian, y[48] the largest difference of its entries to those of the portable pass; y[49, 53) of the
+/// exported model's outputs as a wrench, y[53, 57) as a residual.
 inline constexpr int outputs = 57;
 
 }  // namespace instruction_sets

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A vehicle whose thrust sags with its battery, and the feature sets that know of it: shared by what trains and what flies.
+// A vehicle whose thrust sags with its battery, and the feature sets that know of it: shared by what trains and what
+// flies.
 #pragma once
 
 #include "pinnquad/dynamics/airframe_value.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flies what train.cpp has exported, with nothing of the trainer: self test, closed loop on a sagging battery; with the voltage
-// measured, and told that the pack is full.
+// Flies what train.cpp has exported, with nothing of the trainer: self test, closed loop on a sagging battery; with the
+// voltage measured, and told that the pack is full.
 #include <doctest/doctest.h>
 
 #include "battery.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flights with batteries of many charges, recorded as CSV with the voltage, read, split by flight, trained on and exported: a model
-// with the voltage as an input, and one that sees it and the motion twice, 50 ms apart.
+// Flights with batteries of many charges, recorded as CSV with the voltage, read, split by flight, trained on and
+// exported: a model with the voltage as an input, and one that sees it and the motion twice, 50 ms apart.
 //   train_measured_inputs FOLDER     writes voltage_model.hpp and window_model.hpp
 #include <cstdio>
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The path bound of a network that is shown the angular acceleration, against its exact derivatives at many inputs, against
-// interval arithmetic with directed rounding, and against the least that a network can do where that is known.
+// The path bound of a network that is shown the angular acceleration, against its exact derivatives at many inputs,
+// against interval arithmetic with directed rounding, and against the least that a network can do where that is known.
 #include "pinnquad/model/path_bound.hpp"
 
 #include <doctest/doctest.h>

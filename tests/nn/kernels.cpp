@@ -24,7 +24,7 @@ using pinnquad::test::rounding;
 
 namespace {
 
-/// What padding holds before a kernel runs, and what it must not read.
+/// Contents of padding before a kernel runs; it must not read them.
 constexpr double canary = 1e30;
 
 /// Rows x Columns of a matrix under test.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which layers a walk takes as one, in which order, and how often they repeat: on types, before any kernel runs them.
+// Layers that a walk takes as one, in which order, and how often they repeat: on types, before any kernel runs them.
 #include "pinnquad/nn/walk.hpp"
 
 #include <doctest/doctest.h>

@@ -141,7 +141,7 @@ TEST_CASE("what is an output schema") {
 
 namespace {
 
-/// What a header says of its outputs where they all have one unit.
+/// Text of a header about its outputs where they all have one unit.
 template <class Schema, const char* const& Unit>
 struct OneUnit {
   using Outputs = Schema;

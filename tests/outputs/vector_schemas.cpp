@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Schemas of wrenches and accelerations on an airframe whose rotors differ, tilt and have curves, and whose inertia has products:
-// there and back, and slopes against central differences.
+// Schemas of wrenches and accelerations on an airframe whose rotors differ, tilt and have curves, and whose inertia has
+// products: there and back, and slopes against central differences.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Models of six accelerations, of a wrench and of a residual on another inverse: everything that is done with a model of four
-// commands is done with them, and nothing here asks which of them it has.
+// Models of six accelerations, of a wrench and of a residual on another inverse: everything that is done with a model
+// of four commands is done with them, and nothing here asks which of them it has.
 #include <doctest/doctest.h>
 
 #include <accelerations.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trains the paper's network in double for 200 steps and writes all that PyTorch needs to do the same, and every weight after
-// every step. Read by compare.py; run by scripts/heavy/pytorch.
+// Trains the paper's network in double for 200 steps and writes all that PyTorch needs to do the same, and every weight
+// after every step. Read by compare.py; run by scripts/heavy/pytorch.
 //   train FOLDER mse|paper plain|batch_norm adam|adam_w_cosine
 #include <cstdint>
 #include <cstdio>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Signals of real and simulated logs whose truth is known from elsewhere: derivatives, lags, and checks that have nothing to find.
+// Signals of real and simulated logs whose truth is known from elsewhere: derivatives, lags, and checks that have
+// nothing to find.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,7 +24,8 @@ std::string logs_folder() { return test::reference_folder() + "/flight_logs/"; }
 std::string circle_folder() { return test::reference_folder() + "/sih/test_circle_csv/test_circle_"; }
 bool absent(const std::string& path) { return !std::ifstream(path); }
 
-/// Flights of ../shared/reference/flight_logs, parted where a row is missing; commands as logged, in the order of the airframe.
+/// Flights of ../shared/reference/flight_logs, parted where a row is missing; commands as logged, in the order of the
+/// airframe.
 std::vector<Flight> logged_flights(const std::string& name, double period_s) {
   const test::ReferenceTable table(name, logs_folder());
   std::vector<Flight> flights(1);
@@ -115,8 +117,8 @@ TEST_CASE("arpl: the lag, and nothing to complain of" * doctest::skip(absent(log
   check_nothing_found(flights, 0.005, lag.lag_s);
 }
 
-/// Motors of 50 ms and one sample of transport (README of the flights): from the true rates the time constant comes back; the
-/// gyro's filter adds 6 ms, and its noise, which comes back as commands in this calm flight, some more.
+/// Motors of 50 ms and one sample of transport (README of the flights): from the true rates the time constant comes
+/// back; the gyro's filter adds 6 ms, and its noise, which comes back as commands in this calm flight, some more.
 TEST_CASE("SIH: derivative of the gyro against the truth, lag and time constant of the motors" *
           doctest::skip(absent(circle_folder() + "vehicle_angular_velocity_0.csv"))) {
   const auto table = [&](const char* topic) {

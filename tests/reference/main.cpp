@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Own main: without all rows of the independent simulator only the test suite "shipped rows" has something to test; 77 says
-// "skipped" to CTest.
+// Own main: without all rows of the independent simulator only the test suite "shipped rows" has something to test; 77
+// says "skipped" to CTest.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Runs with given commands, the rows that are 1 ms apart: the rotor lag, and one step of the simulator's own integrator taken
-// with the library's dynamics.
+// Runs with given commands, the rows that are 1 ms apart: the rotor lag, and one step of the simulator's own integrator
+// taken with the library's dynamics.
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <string>
 
-#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/dynamics/actuator.hpp"
+#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "reference/reference_rows.hpp"
 #include "support/compare_with_plain.hpp"
 
@@ -175,7 +175,8 @@ void fly_run(const char* name, double speed_tolerance) {
 }  // namespace
 
 TEST_CASE("whole runs under constant commands: RK4 against the simulator's first-order integrator") {
-  // h/2 times the acceleration that a step begins with, 5e-4 s * 10 m/s^2 in a fall; what that lag becomes in the others
+  // h/2 times the acceleration that a step begins with, 5e-4 s * 10 m/s^2 in a fall; what that lag becomes in the
+  // others
   fly_run<>("drop_terminal", 9.6e-3);
   fly_run<>("hover", 9.4e-6);
   fly_run<>("coast8_fwd", 2.7e-4);

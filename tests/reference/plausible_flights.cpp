@@ -14,7 +14,7 @@ namespace {
 using pinnquad::Flight;
 using pinnquad::Vector3;
 
-/// What is wrong with a flight, in words; empty for none.
+/// The fault of a flight, in words; empty for none.
 std::string complaint(const Flight& flight) {
   const auto found = pinnquad::find_implausible(flight);
   if (!found) return "";

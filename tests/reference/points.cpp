@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// 1000 random states for each ground effect model, one evaluation each: force, torque, acceleration, density, and the way back.
-// Every tenth of them ships with the tests (test suite "shipped rows").
+// 1000 random states for each ground effect model, one evaluation each: force, torque, acceleration, density, and the
+// way back. Every tenth of them ships with the tests (test suite "shipped rows").
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ using pinnquad::test::Statistics;
 
 namespace {
 
-/// How far a row may be off, twice what the worst one is: the simulator's constants are float32 and so are some of its intermediate
-/// values, 6e-8 each. Accelerations are what is left of forces and torques that cancel.
+/// How far a row may be off, twice what the worst one is: the simulator's constants are float32 and so are some of its
+/// intermediate values, 6e-8 each. Accelerations are what is left of forces and torques that cancel.
 struct Quantity {
   const char* name;
   double Differences::*of;
@@ -57,7 +57,7 @@ plain::Point point(const ReferenceTable& table, std::size_t row) {
   return p;
 }
 
-/// What the simulator computed. fg holds the ground effect only where a model is on; v_dot_B is derived from a.
+/// Results of the simulator. fg holds the ground effect only where a model is on; v_dot_B is derived from a.
 plain::Result result(const ReferenceTable& table, std::size_t row) {
   plain::Result out{};
   const auto copy = [&](double(&to)[3], const char* prefix) {
@@ -88,7 +88,7 @@ double gain(const plain::Point& p) {
   return std::fabs((ratio - 1.0) * (1.0 - 2.0 * (p.qx * p.qx + p.qy * p.qy)));
 }
 
-/// What the pole alone allows a row's ground effect.
+/// The greatest ground effect that the pole allows a row.
 double tolerance_at_pole(const plain::Point& p) {
   const double x = height_over_radius(p);
   return p.ground_effect == plain::GroundEffect::cheeseman_bennett && x > 0.25 ? pole_tolerance * 0.5 / (x - 0.25)
@@ -174,8 +174,8 @@ TEST_CASE("the library in float agrees with the simulator to float's digits") {
 
 namespace {
 
-/// Commands recovered from the simulator's accelerations, where no rotor was clipped. A row may be left out only where the
-/// thrust equation has two solutions (rotor_equation.hpp) and the simulator flew the other one.
+/// Commands recovered from the simulator's accelerations, where no rotor was clipped. A row may be left out only where
+/// the thrust equation has two solutions (rotor_equation.hpp) and the simulator flew the other one.
 template <class... Ground>
 void recover(const ReferenceTable& table, const char* file, std::size_t fewest_rows) {
   const auto airframe = airframe_of_simulator();

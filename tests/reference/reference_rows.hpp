@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rows of the independent simulator (PINNQUAD_REFERENCE_DIR/airlib, see its README), and the statistics that are printed.
+// Rows of the independent simulator (PINNQUAD_REFERENCE_DIR/airlib, see its README), and the statistics that are
+// printed.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ridge under bounds: the free fit where it keeps them, else the least cost on the border, against many other weights that keep
-// them.
+// Ridge under bounds: the free fit where it keeps them, else the least cost on the border, against many other weights
+// that keep them.
 #include "pinnquad/regression/bounded_ridge.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ridge regression against NumPy, closed forms, its normal equations, and the refits that leaving out a group stands for.
+// Ridge regression against NumPy, closed forms, its normal equations, and the refits that leaving out a group stands
+// for.
 #include "pinnquad/regression/ridge.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a vehicle can do, for pilots: the rotor with most to do decides, in thrust and not in commands.
+// Limits of a vehicle, for pilots: the rotor with most to do decides, in thrust and not in commands.
 #include "pinnquad/simulation/fitted_style.hpp"
 
 #include <doctest/doctest.h>
@@ -42,8 +42,8 @@ TEST_CASE(
 
 namespace {
 
-/// The share of its greatest thrust that a vehicle with this drag needs on its way up or down at constant speed, in air of the
-/// rated density, from the drag's own formula.
+/// The share of its greatest thrust that a vehicle with this drag needs on its way up or down at constant speed, in air
+/// of the rated density, from the drag's own formula.
 struct Vertical {
   explicit Vertical(const Airframe<double>& airframe)
       : hover(1 / airframe.thrust_to_weight()),

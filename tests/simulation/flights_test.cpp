@@ -29,7 +29,8 @@ RecordedFlight flown(std::uint64_t seed) {
   return fly<PaperFlight>(airframe_value<PaperQuadrotor, double>(), std::mt19937_64(seed));
 }
 
-/// Of seeds 1 to 200 (docs/flights.md), a little wider: how far the steepest row leans, and rows with a rotor at its end.
+/// Of seeds 1 to 200 (docs/flights.md), a little wider: how far the steepest row leans, and rows with a rotor at its
+/// end.
 struct Bounds {
   std::size_t rows;
   double least_tilt_deg, most_tilt_deg;

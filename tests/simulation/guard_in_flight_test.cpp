@@ -120,7 +120,7 @@ TEST_CASE("agreement with the formula: ordinary flights stay the network's" * pi
 
 namespace {
 
-/// What the guard alone, with agreement and with nothing but a comparison make of a roll demand, rad/s^2, in level hover.
+/// Results of the guard alone, with agreement and with a comparison alone, for a roll demand, rad/s^2, in level hover.
 template <class Limit>
 void check_roll_demand(float roll_rad_s2) {
   CAPTURE(roll_rad_s2);

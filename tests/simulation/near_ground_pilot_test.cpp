@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The near-ground pilot as a policy: bounded, smooth in height, turned back at the borders, repeatable, all phases flown.
+// The near-ground pilot as a policy: bounded, smooth in height, turned back at the borders, repeatable, all phases
+// flown.
 #include "pinnquad/simulation/near_ground_pilot.hpp"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What flies keeps the order: more angular acceleration asked for about an axis never means less of that axis' signed
-// command sum, across the envelope's edge too. Guard, clipping and fallback together; motions of flights, rays in every
-// direction.
+// Every inverse that flies keeps the order: more angular acceleration asked for about an axis never means less of that
+// axis' signed command sum, across the envelope's edge too. Guard, clipping and fallback together; motions of flights,
+// rays in every direction.
 // Here and not beside the guard, because inference may not include simulation.
 #include <doctest/doctest.h>
 

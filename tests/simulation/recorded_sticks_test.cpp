@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stick recordings: written and read bit for bit, flown again as they were flown, refused in one line where they are wrong.
+// Stick recordings: written and read bit for bit, flown again as they were flown, refused in one line where they are
+// wrong.
 #include "pinnquad/simulation/recorded_sticks.hpp"
 
 #include <doctest/doctest.h>

@@ -280,7 +280,7 @@ TEST_CASE("a recorder is told the commands of each tick, and asked for a row aft
 
 namespace {
 
-/// What the first rotor's speed controller says: its thrust grows with the square of its speed.
+/// Equation of the first rotor's speed controller: its thrust grows with the square of its speed.
 struct FirstRotor {
   static constexpr const char* name = "n1";
   static constexpr const char* unit = "rev/s";

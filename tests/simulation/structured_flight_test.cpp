@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The shipped structured model as feed-forward, in the demo's closed loop: as good as the formula, never asked outside its
-// envelope, and better than the formula of a vehicle whose parameters are wrong. And one that knows the altitude, near the
-// ground.
+// The shipped structured model as feed-forward, in the demo's closed loop: as good as the formula, never asked outside
+// its envelope, and better than the formula of a vehicle whose parameters are wrong. And one that knows the altitude,
+// near the ground.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -85,7 +85,7 @@ namespace {
 
 using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
 
-/// What the model is told its altitude is.
+/// The altitude given to the model.
 struct Altimeter {
   bool stuck;  ///< at a height where the ground is hardly felt
 

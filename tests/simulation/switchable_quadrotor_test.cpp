@@ -49,7 +49,7 @@ SimulationSettings low_start() {
   return settings;
 }
 
-/// What a simulator does from a state on, written anew from its parts; rows at multiples of 0.05 s.
+/// A simulator's steps from a state on, written anew from its parts; rows at multiples of 0.05 s.
 template <class Vehicle>
 Flight flown_on(const Vehicle& quadrotor, Pilot pilot, VehicleState<double> vehicle, std::size_t first_row,
                 std::size_t rows) {

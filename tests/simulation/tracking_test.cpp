@@ -139,7 +139,8 @@ TEST_CASE("one way to fall back: the guard's, in the loop too") {
   CHECK(fallen.fallback.asked == 15000);
   CHECK(fallen.fallback.of(Status::outside_envelope) == 15000);
 
-  // without a fallback the policy declines: the rigid body and the feedback fly on, worse by the air that it does not know
+  // without a fallback the policy declines: the rigid body and the feedback fly on, worse by the air that it does not
+  // know
   using Declining = InverseDynamics<test::NowhereTrained>;
   const TrackingResult<double> declined = tracked(NetworkInverse<Declining>(Declining{}));
   CHECK(analytic.declined == Status::ok);
@@ -215,8 +216,8 @@ TEST_CASE("a circle, and a hover that stays") {
 
 namespace {
 
-/// Another policy's commands; what the loop asked it with is written down, and every fourth time all rotors are told to give all
-/// they have and more.
+/// Another policy's commands; what the loop asked it with is written down, and every fourth time all rotors are told to
+/// give all they have and more.
 struct Witness {
   struct Seen {
     State<double> state;

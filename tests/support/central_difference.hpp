@@ -10,7 +10,7 @@
 
 namespace pinnquad::test {
 
-/// What a gradient in double must reach: |gradient - central difference| <= this * max|gradient|.
+/// Tolerance of a gradient in double: |gradient - central difference| <= this * max|gradient|.
 inline constexpr double gradient_tolerance = 1e-6;
 
 /// Step of the central differences: truncation h^2 f'''/6 and rounding 1e-16 f / h are both near 1e-11 here, five

@@ -75,7 +75,8 @@ plain::Result evaluate(const Airframe<Scalar>& airframe, const plain::Point& p) 
   return evaluate_with<Scalar>(airframe, p);
 }
 
-/// |difference| / |reference| per vector; ground effect relative to the rotor force (it may be zero), as is drag below 1 mN.
+/// |difference| / |reference| per vector; ground effect relative to the rotor force (it may be zero), as is drag below
+/// 1 mN.
 struct Differences {
   double density, rotor_force, rotor_torque, drag_force, ground_force, acceleration, body_derivative, angular;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Values whose end is the end of a page, with nothing readable behind it: one scalar too far is a segmentation fault, which doctest
-// reports, at any optimisation and in code that no sanitizer sees.
+// Values whose end is the end of a page, with nothing readable behind it: one scalar too far is a segmentation fault,
+// which doctest reports, at any optimisation and in code that no sanitizer sees.
 #pragma once
 
 #include <sys/mman.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tests of predictions ask and look at: motions of a chosen size, their features, inputs that are no numbers, and
+// Common to the tests of predictions: motions of a chosen size, their features, inputs that are no numbers, and
 // commands that show whether they were touched; a fallback of one answer.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model's commands by its features, as central differences of the same numbers in double: what predict_with_jacobian() owes in
-// each column, without the rounding of a float network over the step.
+// A model's commands by its features, as central differences of the same numbers in double: what
+// predict_with_jacobian() owes in each column, without the rounding of a float network over the step.
 #pragma once
 
 #include <array>
@@ -96,8 +96,8 @@ std::vector<double> jacobian_by_differences(const typename Header::Scalar* x) {
   return jacobian;
 }
 
-/// The largest |a - b| of a column over the largest |b| of that column, of all columns the worst; infinite where a column of b is
-/// zero and that of a is not.
+/// The largest |a - b| of a column over the largest |b| of that column, of all columns the worst; infinite where a
+/// column of b is zero and that of a is not.
 template <class Scalar>
 double worst_column(const Scalar* a, const std::vector<double>& b) {
   const std::size_t size = b.size() / rotor_count;

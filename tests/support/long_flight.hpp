@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A mark for tests that fly for minutes to judge a statistic: shorter flights run the same code, and under the sanitizers, where
-// code is what is tested, a flight takes twenty times as long.
+// A mark for tests that fly for minutes to judge a statistic: shorter flights run the same code, and under the
+// sanitizers, where code is what is tested, a flight takes twenty times as long.
 #pragma once
 
 #include <doctest/doctest.h>

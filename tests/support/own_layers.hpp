@@ -91,7 +91,8 @@ struct Reciprocal {
   using Bind = ReciprocalLayer<Scalar, In>;
 };
 
-/// y = v^2: two inputs have the same output, so the slope is asked with the input. Packs too, without a call: it runs in registers.
+/// y = v^2: two inputs have the same output, so the slope is asked with the input. Packs too, without a call: it runs
+/// in registers.
 template <class ScalarType, int Size>
 struct SquareLayer : ElementwiseLayer<SquareLayer<ScalarType, Size>, ScalarType, Size> {
   template <class Value>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The dynamics a second time, written straight from the paper's Eqs. (1) and (2) and the simulator's constants:
-// rotation matrices, plain doubles, nothing of the library. test_reference confirms it against the independent simulator.
+// rotation matrices, plain doubles, nothing of the library. test_reference confirms it against the independent
+// simulator.
 #pragma once
 
 #include <cmath>
@@ -20,7 +21,7 @@ struct Point {
   double wind_x, wind_y, wind_z;
 };
 
-/// What acts, and what follows from it.
+/// Forces and torques, and the motion that follows.
 struct Result {
   double rho;
   double rotor_force[3];      ///< NED, N

@@ -41,7 +41,8 @@ class RandomStates {
     return {Scalar(q.w), Scalar(q.x), Scalar(q.y), Scalar(q.z)};
   }
 
-  /// Position within 100 m (height 5 to 105 m above the origin), velocity within 8 m/s and rates within 6 rad/s per axis.
+  /// Position within 100 m (height 5 to 105 m above the origin), velocity within 8 m/s and rates within 6 rad/s per
+  /// axis.
   template <class Scalar>
   State<Scalar> state() {
     State<Scalar> result;

@@ -45,7 +45,7 @@ struct NowhereTrained : SmallModel {
   static constexpr std::array<float, 16> envelope_upper{};
 };
 
-/// What is read at run time: weights and all else can be changed, and a fault put in.
+/// Members read at run time: weights and all else can be changed, and a fault put in.
 struct SmallInstance {
   using Scalar = float;
   using Network = SmallModel::Network;

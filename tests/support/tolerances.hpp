@@ -9,7 +9,8 @@
 
 namespace pinnquad::test {
 
-/// Rounding of a chain of `operations` operations on values of order 1: each adds at most half an ulp, and the bound is linear.
+/// Rounding of a chain of `operations` operations on values of order 1: each adds at most half an ulp, and the bound is
+/// linear.
 template <class Scalar>
 constexpr double rounding(double operations) noexcept {
   return operations * static_cast<double>(std::numeric_limits<Scalar>::epsilon());

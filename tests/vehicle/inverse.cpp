@@ -83,7 +83,8 @@ TEST_CASE_TEMPLATE("commands -> motion -> commands, with density, wind and drag"
 }
 
 TEST_CASE_TEMPLATE("commands -> motion -> commands in ground effect", Scalar, float, double) {
-  // commands above 0.2: the equation is solved relative to the thrust. Tilt below 60 degrees, ratios below 1.5: one solution
+  // commands above 0.2: the equation is solved relative to the thrust. Tilt below 60 degrees, ratios below 1.5: one
+  // solution
   RandomStates random(102);
   const NearGroundCheesemanBennett<Scalar> cheeseman_bennett(
       pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), pinnquad::StandardAtmosphere{},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rows computed by the plain formula (support/plain_dynamics.hpp) at random states of the 1.5 kg reference vehicle, with and
-// without wind; in every fourth row rotors clip; the last eight are in ground effect.
+// Rows computed by the plain formula (support/plain_dynamics.hpp) at random states of the 1.5 kg reference vehicle,
+// with and without wind; in every fourth row rotors clip; the last eight are in ground effect.
 #pragma once
 
 #include "support/plain_dynamics.hpp"

@@ -292,7 +292,8 @@ TEST_CASE_TEMPLATE("thrust and torque scale with the density over that of sea le
 TEST_CASE_TEMPLATE("a short step follows the motion that evaluate() gives", Scalar, float, double) {
   RandomStates random(98);
   const Full<Scalar> vehicle = full_vehicle<Scalar>({2.0, -1.0, 0.5});
-  // the motion changes by its own derivative, some 1e3 m/s^3 and rad/s^3, over the step; rounding of 10 m/s is divided by it
+  // the motion changes by its own derivative, some 1e3 m/s^3 and rad/s^3, over the step; rounding of 10 m/s is divided
+  // by it
   const Scalar step = sizeof(Scalar) == 4 ? Scalar(1e-4) : Scalar(1e-7);
   const double tolerance =
       1e3 * static_cast<double>(step) + pinnquad::test::rounding<Scalar>(40) / static_cast<double>(step);

@@ -58,7 +58,7 @@ std::string base64_of(const std::vector<Value>& values) {
 ///   page.write(path);
 ///
 /// A row takes 51 bytes of the page: time, position (float), velocity (16 bit of the fastest component, below 1 mm/s in
-/// flights up to 32 m/s), quaternion (16 bit, 0.003 deg), commands (16 bit). What a screen shows needs no more.
+/// flights up to 32 m/s), quaternion (16 bit, 0.003 deg), commands (16 bit). A screen needs no more.
 class ReplayPage {
  public:
   /// Where the page without a flight is: where the build puts it, or beside the program where that was installed.

@@ -103,7 +103,7 @@ inline bool parse_row(const std::string& line, std::size_t columns, RowId& id) {
 
 }  // namespace detail
 
-/// Rows by training. What is not a whole row is left out and counted: its training has to be run again.
+/// Rows by training. A row that is not whole is left out and counted: its training has to be run again.
 struct StoredRows {
   std::map<RowId, std::string> rows;
   std::size_t broken = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The figures of a model that scripts read, by their names: of one model (`pinnquad evaluate --json`), and of a kind of
-// model over its seeds (`report.json` of `pinnquad train`). What is not finite is null.
+// model over its seeds (`report.json` of `pinnquad train`). Figures that are not finite are null.
 #pragma once
 
 #include <array>

@@ -88,7 +88,7 @@ class Quadrotor {
 
  public:
   /// The vehicle of an airframe known when compiled, `Quadrotor<double, QuadraticDrag>::of<Crazyflie>(site)`: what
-  /// airframe_value() refuses is a compile error. What the effects say of the airframe is in status().
+  /// airframe_value() refuses is a compile error. status() says whether the effects suit the airframe.
   template <class Vehicle>
   static Quadrotor of(const Site<Scalar>& site, const Effects&... effects) noexcept {
     return Quadrotor(airframe_value<Vehicle, Scalar>(), site, effects...);

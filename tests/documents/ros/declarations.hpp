@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A stand-in of what docs/ros2.md uses of ROS 2, as its documentation has it: with it the document's node is compiled against
-// pinnquad's own names and run (run.cpp). Nothing is said of rclcpp itself.
+// A stand-in of what docs/ros2.md uses of ROS 2, as its documentation has it: with it the document's node is compiled
+// against pinnquad's own names and run (run.cpp). Nothing is said of rclcpp itself.
 #pragma once
 
 #include <cstdint>
@@ -71,7 +71,7 @@ struct Clock {
 };
 struct SensorDataQoS {};
 
-/// What is sent and who listens, by topic; the time of all.
+/// Messages and listeners, by topic; the time of all.
 struct Graph {
   std::map<std::string, std::function<void(const void*)>> listens;
   std::map<std::string, int> sent;

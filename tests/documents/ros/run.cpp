@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the node of docs/ros2.md is sent, and when it may answer: with a state of the last 20 ms alone.
+// Messages to the node of docs/ros2.md, and when it may answer: with a state of the last 20 ms alone.
 #include <cstdio>
 #include <cstdlib>
 

@@ -38,7 +38,8 @@ typedef uint32_t stabilizerStep_t;
 #define LOG_GROUP_STOP(name)
 #define LOG_ADD(type, name, address)
 
-/* Events with a payload: what a uSD card's log is made of. Variables lie packed in `payload`, in the order of the description. */
+/* Events with a payload: the records of a uSD card's log. Variables lie packed in `payload`, in the
+ * order of the description. */
 enum eventtriggerType_e {
   eventtriggerType_uint8 = 1,
   eventtriggerType_uint16,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a module of PX4 is made of, in our own words: a clock, a work queue of one item, the shell's start and stop,
+// Parts of a PX4 module, in our own words: a clock, a work queue of one item, the shell's start and stop,
 // parameters.
 #pragma once
 
@@ -38,7 +38,7 @@ inline uint64_t hrt_absolute_time() { return World::now_us; }
 
 namespace px4 {
 
-/// What was said by PX4_ERR or to the ground station, line by line.
+/// Text of PX4_ERR and of messages to the ground station, line by line.
 inline std::vector<std::string>& complaints() {
   static std::vector<std::string> all;
   return all;

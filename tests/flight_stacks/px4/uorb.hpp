@@ -80,7 +80,7 @@ class Subscription {
   Subscription(const Subscription&) = delete;
 
   bool updated() { return attach() && nodes()[topic_].generation != generation_; }
-  /// The next message, or false. What was overwritten is skipped: see lost().
+  /// The next message, or false. Overwritten messages are skipped: see lost().
   template <class Message>
   bool update(Message* message) {
     if (!updated()) return false;

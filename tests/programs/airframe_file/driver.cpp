@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Airframes from TOML files and as written structs: the same bits as compiled ones; what is wrong with a file in one line.
+// Airframes from TOML files and as written structs: the same bits as compiled ones; what is wrong with a file in one
+// line.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -55,7 +56,7 @@ std::string content(const std::string& path) {
   return text.str();
 }
 
-/// What is said of the paper's airframe with one piece of its file replaced: behind the path.
+/// The complaint about the paper's airframe with one piece of its file replaced, behind the path.
 std::string said_of(const std::string& piece, const std::string& instead) {
   std::string text = content(folder + "/paper_quadrotor.toml");
   const std::size_t at = text.find(piece);

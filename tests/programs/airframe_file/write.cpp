@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes the airframes of the folder given, and one with nothing equal, as structs: written_airframes.hpp of the driver.
+// Writes the airframes of the folder given, and one with nothing equal, as structs: written_airframes.hpp of the
+// driver.
 #include <cstdio>
 #include <fstream>
 #include <string>

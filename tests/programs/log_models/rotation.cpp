@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The kinds of models on logged flights of a Crazyflie (NanoBench): each of the five types of trajectory held out in turn, all its
-// repeats and speeds together. What a study reached with other code is asked of the windowed ridge and of the network on it.
+// The kinds of models on logged flights of a Crazyflie (NanoBench): each of the five types of
+// trajectory held out in turn, all its repeats and speeds together. The windowed ridge and the network on it must reach
+// what a study reached with other code.
 //   log_model_rotation CSV ridge|residual|all      77 where there is no such file
 #include <algorithm>
 #include <array>

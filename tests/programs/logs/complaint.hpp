@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a reader says of a file that it refuses: one line.
+// The one line that a reader says of a file that it refuses.
 #pragma once
 
 #include <doctest/doctest.h>

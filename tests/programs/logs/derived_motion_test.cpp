@@ -10,7 +10,8 @@
 
 namespace {
 
-/// Stands at `start_m`, flies 10 m above it, lands on `end_m`; a cell without a number among the first. A row each second.
+/// Stands at `start_m`, flies 10 m above it, lands on `end_m`; a cell without a number among the first. A row each
+/// second.
 double ground_of(double start_m, double end_m, bool says_landed) {
   programs::CommonRows rows;
   rows.period_s = 1;

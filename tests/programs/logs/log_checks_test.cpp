@@ -132,7 +132,8 @@ TEST_CASE("each of the 24 orders of motors is found and its convention named; th
     CHECK_FALSE(check.ambiguous);
     CHECK(check.permutation == order);
     CHECK(check.finding.has_value() == (order != std::array<std::size_t, 4>{0, 1, 2, 3}));
-    // Betaflight's 1 rear right, 2 front right, 3 rear left, 4 front left; ours front right, rear left, front left, rear right
+    // Betaflight's 1 rear right, 2 front right, 3 rear left, 4 front left; ours front right, rear left, front left,
+    // rear right
     CHECK((check.convention == "betaflight") == (order == std::array<std::size_t, 4>{1, 2, 3, 0}));
   } while (std::next_permutation(order.begin(), order.end()));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Real ULog files and folders against what pyulog made of them, value by value. Own main: where they are absent, 77 says "skipped"
-// to CTest.
+// Real ULog files and folders against what pyulog made of them, value by value. Own main: where they are absent, 77
+// says "skipped" to CTest.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -50,8 +50,8 @@ struct Cells {
 
 bool same_bits(double a, double b) { return (std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof a) == 0; }
 
-/// Every cell of a table; returns how many are compared. A value of a ULog file that is a float has the table's decimals, and
-/// so the bits of the nearest float; all else has those of the nearest double.
+/// Every cell of a table; returns how many are compared. A value of a ULog file that is a float has the table's
+/// decimals, and so the bits of the nearest float; all else has those of the nearest double.
 std::size_t compare(const LogTopic& topic, const std::string& path, bool floats) {
   const Cells cells(path);
   INFO(path);

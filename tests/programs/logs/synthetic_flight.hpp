@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A vehicle small enough to know everything of: commands at random, motors behind a lag and a delay, rotation by Euler's equation
-// without gyroscopic terms, attitude by the exponential map at a fine step. All along one uniform clock.
+// A vehicle small enough to know everything of: commands at random, motors behind a lag and a delay, rotation by
+// Euler's equation without gyroscopic terms, attitude by the exponential map at a fine step. All along one uniform
+// clock.
 #pragma once
 
 #include <algorithm>

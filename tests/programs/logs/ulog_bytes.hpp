@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// ULog files byte by byte, as the format's description has them: nothing of the reader is used, so that both can be wrong only
-// in the same way by chance.
+// ULog files byte by byte, as the format's description has them: nothing of the reader is used, so that both can be
+// wrong only in the same way by chance.
 #pragma once
 
 #include <cstdint>

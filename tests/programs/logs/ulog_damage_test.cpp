@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// ULog files that were cut, damaged, or made to do harm: what is whole is read, what is lost is said, and a small file asks for
-// little memory.
+// ULog files that were cut, damaged, or made to do harm: what is whole is read, what is lost is said, and a small file
+// asks for little memory.
 #include <doctest/doctest.h>
 
 #include <algorithm>

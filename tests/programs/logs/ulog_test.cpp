@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a ULog file says, message by message, in files made by hand: types, nesting, padding, instances, parameters, appended data.
+// ULog files made by hand, message by message: types, nesting, padding, instances, parameters, appended data.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ double only_value(const LogTopic& topic, const std::string& name) {
   return values(topic, name)[0];
 }
 
-/// What is wrong with a file.
+/// The fault of a file.
 std::string complaint(const std::string& bytes) {
   return pinnquad_test::complaint_of([&] { parse_ulog(bytes, "x.ulg"); });
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model that was trained on an airframe from a file, flown with nothing of the trainer: its header brings the airframe.
+// A model that was trained on an airframe from a file, flown with nothing of the trainer: its header brings the
+// airframe.
 //   replay <replay.txt> <model.block>
 #include <cmath>
 #include <cstdio>

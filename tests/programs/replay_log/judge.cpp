@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What `pinnquad replay` must say of a flight: compiled models asked row by row, each by InverseDynamics with the guard that a
-// user would write. One is an exported header; the others are made here and written as blocks: one of double with further
-// features and another output schema, one as `train` fits it to logs, whose window a control loop's InputHistory fills.
+// The judge of `pinnquad replay`: compiled models asked row by row, each by InverseDynamics with the guard that a
+// user would write. One is an exported header; the others are made here and written as blocks: one of double with
+// further features and another output schema, one as `train` fits it to logs, whose window a control loop's
+// InputHistory fills.
 //   replay_log_judge FLIGHT.csv FOLDER
 #include <algorithm>
 #include <cmath>

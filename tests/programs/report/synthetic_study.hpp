@@ -15,8 +15,8 @@
 
 namespace synthetic {
 
-/// Table 3 as it is planted: error, then angles in roll, pitch, yaw. Between the members of a pair every seed differs by
-/// the same sign, except where `alternates` says that the signs take turns.
+/// Table 3 as it is planted: error, then angles in roll, pitch, yaw. Between the members of a pair every seed differs
+/// by the same sign, except where `alternates` says that the signs take turns.
 inline double planted_mean(int model, std::size_t measure) {
   static constexpr std::array<std::array<double, 4>, 14> means = {{
       {0.102, 0.40, 5.0, 0.05},    // 1: poor error, good angles

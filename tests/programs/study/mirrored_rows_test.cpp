@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Mirror images and turned flights against the equations of motion: what a vehicle does under the mirrored commands is the
-// mirror image of what it does, and a heading changes nothing in the body's frame.
+// Mirror images and turned flights against the equations of motion: what a vehicle does under the mirrored commands is
+// the mirror image of what it does, and a heading changes nothing in the body's frame.
 #include "study/mirrored_rows.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is held out is never trained on: whole flights, repeats together, no copy under another name.
+// Rows held out are never trained on: whole flights, repeats together, no copy under another name.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Errors against a computation by hand, and verdicts on models whose worth is known: one that is secretly the mean, one that is
-// spoiled, one that knows the commands.
+// Errors against a computation by hand, and verdicts on models whose worth is known: one that is secretly the mean, one
+// that is spoiled, one that knows the commands.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -52,7 +52,8 @@ TEST_CASE("R^2 plain, without a flight's bias, and without the bias of its first
   CHECK(errors.mean_absolute[2] == doctest::Approx(1.2 / 8));
   // mean errors 0.15 and -0.15: left 4 x 0.0025, and 3 x 0.0025 + 0.0225; targets about 0.5 and 0.2: 0.2 and 0.04
   CHECK(errors.r2_flight_bias_removed[3] == doctest::Approx(1 - 0.04 / 0.24));
-  // biases of the rows before 4 s: 0.1 and -0.1; left at 4 and 6 s 0.1 0.1 and 0 -0.2: 0.06. Targets 0.6 0.8 0.1 0.3 about 0.45
+  // biases of the rows before 4 s: 0.1 and -0.1; left at 4 and 6 s 0.1 0.1 and 0 -0.2: 0.06. Targets 0.6 0.8 0.1 0.3
+  // about 0.45
   CHECK(errors.r2_start_bias_removed[0] == doctest::Approx(1 - 0.06 / (0.0225 + 0.1225 + 0.1225 + 0.0225)));
 
   // a row that does not count is in no sum

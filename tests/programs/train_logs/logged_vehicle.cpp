@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The vehicle that logs show: found again in flights of one that is known, and turned down where the commands do not fly it.
+// The vehicle that logs show: found again in flights of one that is known, and turned down where the commands do not
+// fly it.
 #include <doctest/doctest.h>
 
 #include <cmath>

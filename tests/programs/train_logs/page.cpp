@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The report page of judged flights says what was held out, what each model is worth, and where it was wrong. The page stays in
-// the working folder, to be looked at.
+// The report page of judged flights says what was held out, what each model is worth, and where it was wrong. The page
+// stays in the working folder, to be looked at.
 #include <doctest/doctest.h>
 
 #include <fstream>

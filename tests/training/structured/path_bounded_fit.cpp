@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A network that is shown the angular acceleration, trained beside a base: what it may not do, however much the rows ask
-// for it; what it learns that one which is not shown it can't; and what a projection leaves alone. Rows that say what a
-// derivative should be.
+// A network that is shown the angular acceleration, trained beside a base: what it may not do, however much the rows
+// ask for it; what it learns that one which is not shown it can't; and what a projection leaves alone. Rows that say
+// what a derivative should be.
 #include "pinnquad/training/structured/residual_fit.hpp"
 
 #include <doctest/doctest.h>
