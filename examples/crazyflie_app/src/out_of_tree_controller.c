@@ -33,10 +33,10 @@
 #endif
 #ifndef CONFIG_ENABLE_THRUST_BAT_COMPENSATED
 #error \
-    "pinnquad: needs CONFIG_ENABLE_THRUST_BAT_COMPENSATED: else controlModeForce sets voltages, not thrusts (app-config)"
+    "pinnquad: needs CONFIG_ENABLE_THRUST_BAT_COMPENSATED: else controlModeForce sets voltages (app-config)"
 #endif
-/* The stack of a step below the stabilizer's own frames, and that of those, of interrupts and of the PID controller. The
- * first is checked against the compiler's own count (tests/flight_stacks/stack_depth.py). */
+/* The stack of a step below the stabilizer's own frames, and that of those, of interrupts and of the PID controller.
+ * The first is checked against the compiler's own count (tests/flight_stacks/stack_depth.py). */
 #define PINNQUAD_STEP_STACK_BYTES 1400
 #define STABILIZER_OWN_STACK_BYTES 400
 _Static_assert(STABILIZER_TASK_STACKSIZE * sizeof(StackType_t) >=
@@ -114,9 +114,9 @@ static void copy(float to[3], float x, float y, float z) {
   to[2] = z;
 }
 
-/* The firmware calls it flying until 2 s after any motor turned above the firmware's idle thrust, 0 on most platforms: also
- * while the core idles on the ground. So it stands since the firmware said so, until the core uses more than that, or the PID
- * controller does where it flies. */
+/* The firmware calls it flying until 2 s after any motor turned above the firmware's idle thrust, 0 on most platforms:
+ * also while the core idles on the ground. So it stands since the firmware said so, until the core uses more than that, or
+ * the PID controller does where it flies. */
 static bool stands_still(bool drives_motors, bool pid_is_asked) {
   if (!supervisorIsFlying()) {
     stands = 1;
