@@ -115,8 +115,8 @@ static void copy(float to[3], float x, float y, float z) {
 }
 
 /* The firmware calls it flying until 2 s after any motor turned above the firmware's idle thrust, 0 on most platforms:
- * also while the core idles on the ground. So it stands since the firmware said so, until the core uses more than that, or
- * the PID controller does where it flies. */
+ * also while the core idles on the ground. So it stands since the firmware said so, until the core uses more than that,
+ * or the PID controller does where it flies. */
 static bool stands_still(bool drives_motors, bool pid_is_asked) {
   if (!supervisorIsFlying()) {
     stands = 1;
