@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The records of a block: read back, refused where they say another thing than shape and caller, skipped where unknown
+// The records of a block: read back, refused where they say another thing than the shape, skipped where unknown
 // and optional; whatever their bytes are, none beyond the block is read and a refused block leaves the view as it was.
 #include "pinnquad/exported/block_records.hpp"
 
@@ -88,8 +88,8 @@ Status opened(const BlockBytes& block, ModelView<Shape>& view) {
   const Status status = ModelView<Shape>::open(block.data(), block.size(), view);
   if (status != Status::ok) {
     CHECK(view.parameters() == before.parameters());
-    CHECK(view.records.terms.stated == before.records.terms.stated);
-    CHECK(view.records.terms.sample_period_ns == before.records.terms.sample_period_ns);
+    CHECK(view.records.stated == before.records.stated);
+    CHECK(view.records.sample_period_ns == before.records.sample_period_ns);
     CHECK(view.records.judged == before.records.judged);
     CHECK(view.records.distance == before.records.distance);
     CHECK(view.input.mean == before.input.mean);
@@ -103,18 +103,13 @@ Status opened(const BlockBytes& block) {
 }
 
 /// A shape without weights.
-template <class CallerType>
-struct ShapeFor {
+struct BareShape {
   using Scalar = float;
   using Network = DescribedModel::Network;
   using Features = PaperFeatures;
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;
-  using Caller = CallerType;
 };
-
-template <CommandMeaning Meaning, class Period = AnyPeriod>
-using CallerOfPaper = Caller<Meaning, PaperQuadrotor, Period>;
 
 Record& find(std::vector<Record>& records, BlockRecord type) {
   for (Record& record : records) {
@@ -133,12 +128,12 @@ TEST_CASE("terms are read back from a block") {
   LoadedModel<RecordedModel> loaded;
   REQUIRE(loaded.load(view) == Status::ok);
   for (const auto& records : {view.records, loaded.records}) {
-    CHECK(records.terms.stated);
-    CHECK(records.terms.command_meaning == CommandMeaning::thrust);
-    CHECK(records.terms.command_lower == 0.0f);
-    CHECK(records.terms.command_upper == 1.0f);
-    CHECK(records.terms.sample_period_ns == 4000000u);
-    CHECK(records.terms.lag_removed_ns == 12500000u);
+    CHECK(records.stated);
+    CHECK(records.command_meaning == CommandMeaning::thrust);
+    CHECK(records.command_lower == 0.0f);
+    CHECK(records.command_upper == 1.0f);
+    CHECK(records.sample_period_ns == 4000000u);
+    CHECK(records.lag_removed_ns == 12500000u);
     CHECK_FALSE(records.has_verdict);
     CHECK_FALSE(records.has_slope_signs);
     CHECK_FALSE(records.has_residual_range);
@@ -146,45 +141,38 @@ TEST_CASE("terms are read back from a block") {
   }
 }
 
-TEST_CASE("a block of version 1 opens, and says nothing of its terms") {
+TEST_CASE("a block of version 1 opens, and states no records") {
   const BlockBytes block = first_version(model_block<RecordedModel>());
   CHECK(block.size() == ModelBlockLayout<RecordedModel>::length(6));
   ModelView<RecordedModel> view;
   REQUIRE(opened(block, view) == Status::ok);
-  CHECK_FALSE(view.records.terms.stated);
+  CHECK_FALSE(view.records.stated);
   CHECK(self_test(InverseDynamics<ModelView<RecordedModel>>(view)) == Status::ok);
-  CHECK(opened<ShapeFor<AnyCaller>>(block) == Status::ok);
-  // to a caller that asks, silence is no answer
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust>>>(block) == Status::block_incompatible);
+  CHECK(opened<BareShape>(block) == Status::ok);
 }
 
-TEST_CASE("a block of other terms than its caller's does not open") {
-  const BlockBytes block(model_block<RecordedModel>());
-  using Thrust = CallerOfPaper<CommandMeaning::thrust>;
-  CHECK(opened<ShapeFor<Thrust>>(block) == Status::ok);
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::pulse_width>>>(block) == Status::block_incompatible);
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::speed>>>(block) == Status::block_incompatible);
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4000>>>>(block) == Status::ok);
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4030>>>>(block) == Status::ok);
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4100>>>>(block) ==
-        Status::block_incompatible);
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<2000>>>>(block) ==
-        Status::block_incompatible);
-  // a header of format 2 says no period: a block of it has none for a caller that keeps one
+TEST_CASE("a block of other terms than its header's does not open; a shape without weights takes any") {
+  const Bytes bytes = model_block<RecordedModel>();
+  const BlockBytes recorded(bytes);
   const BlockBytes described(model_block<DescribedModel>());
-  CHECK(opened<ShapeFor<Thrust>>(described) == Status::ok);
-  CHECK(opened<ShapeFor<CallerOfPaper<CommandMeaning::thrust, PeriodMicroseconds<4000>>>>(described) ==
-        Status::block_incompatible);
-  // nor does it fit a header of format 3 as a shape
+  CHECK(opened<BareShape>(recorded) == Status::ok);
+  CHECK(opened<BareShape>(described) == Status::ok);
+  // a header of format 2 says no period: a block of it has none for a header that does
   CHECK(opened<RecordedModel>(described) == Status::block_incompatible);
-  // what opened for a caller flies for it
-  using Shape = ShapeFor<Thrust>;
-  ModelView<Shape> view;
-  REQUIRE(opened(block, view) == Status::ok);
-  CHECK(self_test(InverseDynamics<ModelView<Shape>, TrainingGuard, Thrust>(view)) == Status::ok);
-  ModelView<RecordedModel> of_header;
-  REQUIRE(opened(block, of_header) == Status::ok);
-  CHECK(self_test(InverseDynamics<ModelView<RecordedModel>, TrainingGuard, Thrust>(of_header)) == Status::ok);
+  const auto with_commands = [&](CommandMeaning meaning, std::uint32_t period_ns) {
+    auto records = records_of(bytes);
+    find(records, BlockRecord::commands).bytes[0] = static_cast<unsigned char>(meaning);
+    for (std::size_t i = 0; i < 4; ++i) {
+      find(records, BlockRecord::clock).bytes[i] = static_cast<unsigned char>(period_ns >> (8 * i));
+    }
+    return with_records(bytes, records);
+  };
+  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::thrust, 4000000)) == Status::ok);
+  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::thrust, 4030000)) == Status::ok);
+  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::thrust, 4100000)) == Status::block_incompatible);
+  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::thrust, 2000000)) == Status::block_incompatible);
+  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::pulse_width, 4000000)) == Status::block_incompatible);
+  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::speed, 4000000)) == Status::block_incompatible);
 }
 
 TEST_CASE("an unknown record is refused if it is mandatory, else skipped") {
@@ -195,7 +183,7 @@ TEST_CASE("an unknown record is refused if it is mandatory, else skipped") {
       records.insert(records.begin() + 1, Record{type, Bytes(length, 0xab)});
       ModelView<RecordedModel> view;
       REQUIRE(opened(with_records(block, records), view) == Status::ok);
-      CHECK(view.records.terms.sample_period_ns == 4000000u);
+      CHECK(view.records.sample_period_ns == 4000000u);
       records[1].type |= mandatory_record;
       CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
     }
@@ -329,7 +317,7 @@ TEST_CASE("window, columns and period of a feature set with a past are records")
   const Bytes block = model_block(model, {Shape::FeatureVector{}}, {});
   ModelView<Shape> view;
   REQUIRE(opened(BlockBytes(block), view) == Status::ok);
-  CHECK(view.records.terms.sample_period_ns == 10000000u);
+  CHECK(view.records.sample_period_ns == 10000000u);
   auto records = records_of(block);
   CHECK(detail::read_u32(find(records, BlockRecord::window).bytes.data()) == 2);
   const std::string columns = std::string("battery_voltage") + '\0' + "V" + '\0';

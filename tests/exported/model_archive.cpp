@@ -63,8 +63,7 @@ TEST_CASE(
   static_assert(DemoQuadrotorV3::format_version == 3 && OwnRacerV3::format_version == 3);
   replay<DemoQuadrotorV3, test::KnownDemoQuadrotorV3>();
   replay<OwnRacerV3, test::KnownOwnRacerV3>();
-  using Mine = Caller<CommandMeaning::pulse_width, OwnRacerV3Airframe, PeriodMicroseconds<10000>>;
-  CHECK(self_test(InverseDynamics<OwnRacerV3, TrainingGuard, Mine>{}) == Status::ok);
+  CHECK(self_test(InverseDynamics<OwnRacerV3>{}) == Status::ok);
   // one that is monotone, and is shown the altitude
   static_assert(NearGroundQuadModel::format_version == 3);
   CHECK(self_test(InverseDynamics<NearGroundQuadModel>{}) == Status::ok);

@@ -29,6 +29,7 @@ constexpr std::uint32_t not_a_number = 0x7fc00000u, infinity = 0x7f800000u, nega
 
 /// The demo model as a header has it, but with numbers that a test may change; the portable kernel.
 struct Instance {
+  static constexpr ModelKind kind = ModelKind::instance;
   using Scalar = Model::Scalar;
   using Network = Model::Network;
   using Features = Model::Features;

@@ -46,6 +46,7 @@ struct InDouble<Saturated<Inner>> {
 /// A header's numbers in double, in an instance.
 template <class Header>
 struct DoubleInstance {
+  static constexpr ModelKind kind = ModelKind::instance;
   using Scalar = double;
   using Network = InDoubleOf<typename Header::Network>;
   using Features = typename Header::Features;

@@ -40,6 +40,7 @@ using ForceWindowedModel = MonotoneShape<ForceWindow, MonotonePredictor<ForceWin
 /// Numbers of a model of a shape, as an exported header's, in an instance.
 template <class Shape>
 struct MonotoneModel {
+  static constexpr ModelKind kind = ModelKind::instance;
   using Scalar = typename Shape::Scalar;
   using Network = typename Shape::Network;
   using Features = typename Shape::Features;

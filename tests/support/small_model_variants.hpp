@@ -47,6 +47,7 @@ struct NowhereTrained : SmallModel {
 
 /// Members read at run time: weights and all else can be changed, and a fault put in.
 struct SmallInstance {
+  static constexpr ModelKind kind = ModelKind::instance;
   using Scalar = float;
   using Network = SmallModel::Network;
   using Features = SmallModel::Features;

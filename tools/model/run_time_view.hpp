@@ -56,6 +56,7 @@ struct RunTimeShape {
 template <class FeatureSet, class ScalarType>
 class RunTimeView {
  public:
+  static constexpr pinnquad::ModelKind kind = pinnquad::ModelKind::function;
   using Shape = RunTimeShape<FeatureSet, ScalarType>;
   using Scalar = ScalarType;
   using Features = typename Shape::Features;

@@ -106,7 +106,7 @@ ExportedTerms header_records() {
   const auto airframe = airframe_value<typename M::Vehicle, double>();
   ExportedTerms terms;
   terms.allocation = allocation(airframe);
-  if constexpr (HasRecords<M>::value) {
+  if constexpr (is_detected<RecordsOf, M>) {
     terms.command_meaning = M::command_meaning;
     terms.command_lower = M::command_lower;
     terms.command_upper = M::command_upper;
@@ -116,15 +116,15 @@ ExportedTerms header_records() {
     terms.command_meaning = command_meaning_of(airframe);
     terms.sample_period_s = WindowOf<typename M::Features>::period_s;
   }
-  if constexpr (HasVerdict<M>::value) {
+  if constexpr (is_detected<StatedVerdictOf, M>) {
     terms.judged = (M::worse_than_mean ? Judged::worse_than_mean : 0u) |
                    (M::beats_linear_regression ? Judged::beats_linear_regression : 0u);
   }
-  if constexpr (HasSlopeSigns<M>::value) terms.slope_signs = M::slope_signs;
-  if constexpr (HasResidualRange<M>::value) {
+  if constexpr (is_detected<SlopeSignsOf, M>) terms.slope_signs = M::slope_signs;
+  if constexpr (is_detected<ResidualRangeOf, M>) {
     terms.residual_range = ResidualRange{as_doubles(M::residual_lower), as_doubles(M::residual_upper)};
   }
-  if constexpr (HasDistance<M>::value) {
+  if constexpr (is_detected<DistanceStatisticsOf, M>) {
     terms.distance = DistanceStatistics{as_doubles(M::distance_mean), as_doubles(M::distance_inverse_cholesky),
                                         static_cast<double>(M::distance_limit)};
   }

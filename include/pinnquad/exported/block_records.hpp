@@ -10,7 +10,7 @@
 
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/status.hpp"
-#include "pinnquad/exported/caller.hpp"
+#include "pinnquad/exported/model.hpp"
 
 namespace pinnquad {
 
@@ -78,10 +78,15 @@ struct BytesMatch {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// What the records of a block say, as far as it isn't compared with the shape. As made, nothing.
+/// A block's records, as far as they are not compared with the shape. As made, none is stated.
 template <class Scalar, int Features, int Outputs>
 struct ModelRecords {
-  ModelTerms<Scalar> terms{};
+  bool stated = false;  ///< false for a block of version 1: the next five are not said
+  CommandMeaning command_meaning = CommandMeaning::thrust;
+  Scalar command_lower = Scalar(0);
+  Scalar command_upper = Scalar(1);
+  std::uint32_t sample_period_ns = 0;  ///< 0: not said
+  std::uint32_t lag_removed_ns = 0;    ///< of the rotors, taken out of the commands before the training
   std::uint32_t judged = 0;  ///< bits of Judged
   bool has_verdict = false;
   bool has_slope_signs = false;
@@ -109,7 +114,7 @@ class BlockRecordReader {
 
   /// `first` is behind the fixed header, `available` the bytes from there to the checksum; `size` becomes those of the records
   /// with their counts. `block_corrupt`: they do not fit there, or contradict themselves. `block_incompatible`: a mandatory
-  /// one is unknown, or one says another thing than the shape or its caller.
+  /// one is unknown, or one says another thing than the shape.
   static Status read(const unsigned char* first, std::size_t available, Records& records, std::size_t& size) noexcept {
     using Layout = BlockRecordLayout;
     if (available < Layout::counts) return Status::block_corrupt;
@@ -139,11 +144,8 @@ class BlockRecordReader {
     }
     if (left != 0) return Status::block_corrupt;
     size = Layout::counts + bytes;
-    return complete(seen) ? fits_caller(records.terms) : Status::block_incompatible;
+    return complete(seen) && fits_header(records) ? Status::ok : Status::block_incompatible;
   }
-
-  /// A block without records: version 1.
-  static Status read_none() noexcept { return fits_caller(ModelTerms<Scalar>{}); }
 
  private:
   static constexpr std::uint32_t known_types = 10;
@@ -166,20 +168,20 @@ class BlockRecordReader {
         const Scalar* range = scalars(8);
         if (!all_finite(range, 2) || !(range[0] <= range[1])) return Status::block_corrupt;
         if (meaning >= command_meaning_count) return Status::block_incompatible;
-        to.terms.stated = true;
-        to.terms.command_meaning = static_cast<CommandMeaning>(meaning);
-        to.terms.command_lower = range[0];
-        to.terms.command_upper = range[1];
+        to.stated = true;
+        to.command_meaning = static_cast<CommandMeaning>(meaning);
+        to.command_lower = range[0];
+        to.command_upper = range[1];
         return Status::ok;
       }
       case BlockRecord::clock:
         if (length != 8) return Status::block_corrupt;
-        to.terms.sample_period_ns = detail::read_u32(bytes);
-        to.terms.lag_removed_ns = detail::read_u32(bytes + 4);
-        if (to.terms.sample_period_ns > longest_time_ns || to.terms.lag_removed_ns > longest_time_ns) {
+        to.sample_period_ns = detail::read_u32(bytes);
+        to.lag_removed_ns = detail::read_u32(bytes + 4);
+        if (to.sample_period_ns > longest_time_ns || to.lag_removed_ns > longest_time_ns) {
           return Status::block_corrupt;
         }
-        return holds(window_ns == 0 || detail::same_period_ns(to.terms.sample_period_ns, window_ns));
+        return holds(window_ns == 0 || detail::same_period_ns(to.sample_period_ns, window_ns));
       case BlockRecord::window:
         if (length != 8) return Status::block_corrupt;
         return holds(detail::read_u32(bytes) == std::uint32_t(Window::taps) &&
@@ -265,23 +267,14 @@ class BlockRecordReader {
            (column_count == 0 || said(BlockRecord::columns));
   }
 
-  /// In the terms of the shape's caller, which a block must state; or of the header that is the shape, which a block of
-  /// version 1 need not.
-  static Status fits_caller(const ModelTerms<Scalar>& terms) noexcept {
-    using Caller = typename detail::CallerOf<Shape>::type;
-    bool fits = true;
-    if constexpr (detail::says_something<Caller>) {
-      detail::require_motor_order<Caller, typename Shape::Vehicle>();
-      constexpr std::uint32_t period = detail::caller_period_ns<Caller>;
-      fits = terms.stated && terms.command_meaning == Caller::command_meaning &&
-             (period == 0 || detail::same_period_ns(terms.sample_period_ns, period));
-    } else if constexpr (is_model<Shape>) {
-      constexpr ModelTerms<Scalar> header = detail::header_terms<Shape>();
-      constexpr std::uint32_t period = header.sample_period_ns;
-      fits = !terms.stated || (terms.command_meaning == header.command_meaning &&
-                               (period == 0 || detail::same_period_ns(terms.sample_period_ns, period)));
+  /// Where the shape is an exported header: its commands mean the same, as often.
+  static bool fits_header(const Records& records) noexcept {
+    if constexpr (is_model<Shape>) {
+      constexpr std::uint32_t period = detail::header_period_ns<Shape>();
+      return records.command_meaning == detail::header_command_meaning<Shape>() &&
+             (period == 0 || detail::same_period_ns(records.sample_period_ns, period));
     }
-    return fits ? Status::ok : Status::block_incompatible;
+    return true;
   }
 };
 

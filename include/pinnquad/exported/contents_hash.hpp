@@ -156,10 +156,8 @@ constexpr bool is_hashed(std::string_view name) noexcept {
   return false;
 }
 
-template <class M, class = void>
-struct HasContentsHash : std::false_type {};
 template <class M>
-struct HasContentsHash<M, std::void_t<decltype(std::uint64_t{M::contents_hash})>> : std::true_type {};
+using ContentsHashOf = decltype(std::uint64_t{M::contents_hash});
 
 /// The value that the header's constant must have, from its members as they are.
 template <class M>
@@ -168,8 +166,8 @@ constexpr std::uint64_t contents_hash_of() noexcept {
   const auto add = [&sum](std::string_view name, const auto& value) { sum += constant_hash(name, value); };
   add("format_version", M::format_version);
   add("training_data_hash", M::training_data_hash);
-  if constexpr (HasTrainingRows<M>::value) add("training_rows", M::training_rows);
-  if constexpr (HasVerdict<M>::value) {
+  if constexpr (is_detected<TrainingRowsOf, M>) add("training_rows", M::training_rows);
+  if constexpr (is_detected<StatedVerdictOf, M>) {
     add("worse_than_mean", M::worse_than_mean);
     add("beats_linear_regression", M::beats_linear_regression);
   }
@@ -177,7 +175,7 @@ constexpr std::uint64_t contents_hash_of() noexcept {
   add("feature_names", M::feature_names);
   add("feature_units", M::feature_units);
   add("output_names", M::output_names);
-  if constexpr (HasOutputUnits<M>::value) {
+  if constexpr (is_detected<OutputUnitsOf, M>) {
     add("output_units", M::output_units);
   } else {
     add("output_unit", M::output_unit);
@@ -185,7 +183,7 @@ constexpr std::uint64_t contents_hash_of() noexcept {
   add("vehicle_name", M::vehicle_name);
   add("motor_torque_signs", M::motor_torque_signs);
   add("Vehicle", airframe_value<typename M::Vehicle, double>());
-  if constexpr (HasRecords<M>::value) {
+  if constexpr (is_detected<RecordsOf, M>) {
     add("records", M::records);
     add("answer", M::answer);
     add("command_meaning", M::command_meaning);
@@ -200,12 +198,12 @@ constexpr std::uint64_t contents_hash_of() noexcept {
     add("allocation", M::allocation);
     add("base", M::base);
   }
-  if constexpr (HasSlopeSigns<M>::value) add("slope_signs", M::slope_signs);
-  if constexpr (HasResidualRange<M>::value) {
+  if constexpr (is_detected<SlopeSignsOf, M>) add("slope_signs", M::slope_signs);
+  if constexpr (is_detected<ResidualRangeOf, M>) {
     add("residual_lower", M::residual_lower);
     add("residual_upper", M::residual_upper);
   }
-  if constexpr (HasDistance<M>::value) {
+  if constexpr (is_detected<DistanceStatisticsOf, M>) {
     add("distance_mean", M::distance_mean);
     add("distance_inverse_cholesky", M::distance_inverse_cholesky);
     add("distance_limit", M::distance_limit);
@@ -223,7 +221,7 @@ constexpr std::uint64_t contents_hash_of() noexcept {
 /// True for a header that says no hash, as those of before did, and where the compiler can't read the bits of a constant.
 template <class M>
 constexpr bool same_contents() noexcept {
-  if constexpr (HasContentsHash<M>::value && reads_bits_of_constants) {
+  if constexpr (is_detected<ContentsHashOf, M> && reads_bits_of_constants) {
     return M::contents_hash == contents_hash_of<M>();
   } else {
     return true;

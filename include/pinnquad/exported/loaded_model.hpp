@@ -41,6 +41,7 @@ inline constexpr std::size_t loaded_golden_vectors = 8;
 template <class ShapeType>
 class LoadedModel : public ModelScales<ShapeType> {
  public:
+  static constexpr ModelKind kind = ModelKind::loaded;
   using Scales = ModelScales<ShapeType>;
   using typename Scales::Features;
   using typename Scales::Network;

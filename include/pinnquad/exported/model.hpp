@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/exported/contents_hash.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
@@ -41,40 +42,46 @@ inline constexpr const char* model_frame = "body FRD, world NED";
 /// about ten to spare.
 inline constexpr double golden_tolerance = 1e-5;
 
+/// Where a model in memory keeps its numbers. A type says its own as `static constexpr ModelKind kind`; an exported
+/// header says none.
+enum class ModelKind {
+  header,    ///< constants of the compiler: an exported header
+  instance,  ///< members of the instance, `parameters` among them, and a forward() of its own
+  function,  ///< a forward() of its own, for a Shape; no weights to show
+  view,      ///< for a Shape; weights in a block, behind parameters(): ModelView
+  loaded,    ///< for a Shape; weights of its own, behind parameters() and packed(): LoadedModel
+};
+
 namespace detail {
-template <class S, class = void>
-struct HasShape : std::false_type {};
 template <class S>
-struct HasShape<S, std::void_t<typename S::Scalar, typename S::Network, typename S::Features, typename S::Outputs,
-                               typename S::Vehicle>> : std::true_type {};
+using ShapeTypes = std::void_t<typename S::Scalar, typename S::Network, typename S::Features, typename S::Outputs,
+                                 typename S::Vehicle>;
+template <class S>
+inline constexpr bool has_shape = is_detected<ShapeTypes, S>;
 
-/// A model made at run time for a shape: exported/model_view.hpp, loaded_model.hpp.
-template <class M, class = void>
-struct IsMadeForShape : std::false_type {};
 template <class M>
-struct IsMadeForShape<M, std::void_t<typename M::Shape>> : HasShape<typename M::Shape> {};
+using KindOf = decltype(M::kind);
 
-template <class M, class = void>
-struct IsModel : std::false_type {};
 template <class M>
-struct IsModel<M,
-               std::void_t<std::enable_if_t<HasShape<M>::value>, decltype(M::format_version), decltype(M::parameters),
-                           decltype(M::input), decltype(M::output), decltype(M::envelope_lower),
-                           decltype(M::envelope_upper), decltype(M::golden_features), decltype(M::golden_commands)>>
-    : std::true_type {};
+using ModelMembers = std::void_t<ShapeTypes<M>, decltype(M::format_version), decltype(M::parameters), decltype(M::input),
+                decltype(M::output), decltype(M::envelope_lower), decltype(M::envelope_upper),
+                decltype(M::golden_features), decltype(M::golden_commands)>;
 
-template <class M, class = void>
-struct DescribesItself : std::false_type {};
 template <class M>
-struct DescribesItself<M, std::void_t<decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
-                                      decltype(M::output_names), decltype(M::vehicle_name),
-                                      decltype(M::motor_torque_signs), decltype(std::uint64_t{M::training_data_hash})>>
-    : std::true_type {};
+using DescriptionOf = std::void_t<decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
+                                decltype(M::output_names), decltype(M::vehicle_name), decltype(M::motor_torque_signs),
+                                decltype(std::uint64_t{M::training_data_hash})>;
+template <class M>
+using OutputUnitOf = decltype(M::output_unit);
 
-template <class M, class = void>
-struct HasOutputUnit : std::false_type {};
 template <class M>
-struct HasOutputUnit<M, std::void_t<decltype(M::output_unit)>> : std::true_type {};
+constexpr ModelKind kind_of() noexcept {
+  if constexpr (is_detected<KindOf, M>) {
+    return M::kind;
+  } else {
+    return ModelKind::header;
+  }
+}
 
 /// All texts are one.
 template <class Texts>
@@ -89,7 +96,7 @@ constexpr bool one_unit(const Texts& texts) noexcept {
 template <class M>
 constexpr bool same_output_units() noexcept {
   using Map = OutputMap<typename M::Outputs>;
-  if constexpr (HasOutputUnits<M>::value) {
+  if constexpr (is_detected<OutputUnitsOf, M>) {
     return same_texts(M::output_units, Map::units);
   } else {
     return one_unit(Map::units) && same_text(M::output_unit, Map::units[0]);
@@ -136,7 +143,7 @@ constexpr bool all_positive(const Array& values) noexcept {
 /// What a header of format 2 or 3 says of itself, against what its types say.
 template <class M>
 constexpr void require_description() noexcept {
-  constexpr bool described = DescribesItself<M>::value && (HasOutputUnits<M>::value || HasOutputUnit<M>::value);
+  constexpr bool described = is_detected<DescriptionOf, M> && (is_detected<OutputUnitsOf, M> || is_detected<OutputUnitOf, M>);
   static_assert(
       described,
       "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of the "
@@ -183,14 +190,17 @@ constexpr void require_description() noexcept {
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class M>
-inline constexpr bool is_model = detail::IsModel<M>::value;
+inline constexpr bool is_model = is_detected<detail::ModelMembers, M>;
+
+template <class M>
+inline constexpr ModelKind model_kind = detail::kind_of<M>();
 
 /// Checks, at compile time and by rule, that the types of a model fit together, wherever its weights are.
 template <class S>
 constexpr bool require_shape() noexcept {
-  static_assert(detail::HasShape<S>::value,
+  static_assert(detail::has_shape<S>,
                 "pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle (exported/model.hpp)");
-  if constexpr (detail::HasShape<S>::value) {
+  if constexpr (detail::has_shape<S>) {
     static_assert(
         is_predictor<typename S::Network>,
         "pinnquad: the model's Network is neither a pinnquad::Network nor another predictor (model/predictor.hpp)");
@@ -219,18 +229,18 @@ constexpr bool require_shape() noexcept {
                     "(outputs/base.hpp)");
     }
   }
-  return detail::HasShape<S>::value;
+  return detail::has_shape<S>;
 }
 
-/// The same for a whole exported model: its types, its arrays, and what it says of itself. For a model made at run
-/// time, the types: the numbers were checked when its block was opened.
+/// The same for a whole model. Of a header: its types, its arrays, and its description. Of a model made for a shape: the
+/// types; its numbers were checked when its block was opened. An instance is checked by the code that made it.
 template <class M>
 constexpr bool require_model() noexcept {
-  constexpr bool made_for_shape = detail::IsMadeForShape<M>::value;
+  constexpr bool made_for_shape = model_kind<M> > ModelKind::instance;
   static_assert(is_model<M> || made_for_shape, "pinnquad: this type is not an exported model (exported/model.hpp)");
   if constexpr (made_for_shape) {
     return require_shape<typename M::Shape>();
-  } else if constexpr (is_model<M>) {
+  } else if constexpr (is_model<M> && model_kind<M> == ModelKind::header) {
     static_assert(M::format_version <= model_format_version,
                   "pinnquad: the model was exported by a newer pinnquad than this one; update the library");
     static_assert(M::format_version >= oldest_model_format_version,

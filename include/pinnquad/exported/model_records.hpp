@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/dynamics/command_meaning.hpp"
@@ -169,55 +170,57 @@ constexpr bool knows_records() noexcept {
   return true;
 }
 
-template <class M, class = void>
-struct NamesRecords : std::false_type {};
 template <class M>
-struct NamesRecords<M, std::void_t<decltype(M::records)>> : std::true_type {};
-
-template <class M, class = void>
-struct HasRecords : std::false_type {};
+using RecordNamesOf = decltype(M::records);
 template <class M>
-struct HasRecords<
-    M, std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower),
-                   decltype(M::command_upper), decltype(M::sample_period_s), decltype(M::lag_removed_s),
-                   decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
-                   decltype(M::allocation), decltype(M::base)>> : std::true_type {};
-
-template <class M, class = void>
-struct HasTrainingRows : std::false_type {};
+using RecordsOf = std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower),
+                decltype(M::command_upper), decltype(M::sample_period_s), decltype(M::lag_removed_s),
+                decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
+                decltype(M::allocation), decltype(M::base)>;
 template <class M>
-struct HasTrainingRows<M, std::void_t<decltype(int{M::training_rows})>> : std::true_type {};
-
-template <class M, class = void>
-struct HasOutputUnits : std::false_type {};
+using TrainingRowsOf = decltype(int{M::training_rows});
 template <class M>
-struct HasOutputUnits<M, std::void_t<decltype(M::output_units)>> : std::true_type {};
-
-template <class M, class = void>
-struct HasVerdict : std::false_type {};
+using OutputUnitsOf = decltype(M::output_units);
 template <class M>
-struct HasVerdict<M, std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>> : std::true_type {
-};
+using StatedVerdictOf = std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>;
 
-/// Optional constants, for whoever has a use for them:
+/// Optional constants:
 ///   slope_signs                        of du_i/d(angular acceleration), rotor by rotor about x, y, z, where proven, else 0
-///   residual_lower, residual_upper     between which a residual's outputs stay
+///   residual_lower, residual_upper     the bounds of a residual's outputs
 ///   distance_mean, distance_inverse_cholesky, distance_limit    z = L^-1 (x - mean), rows of the triangle one after the
 ///     other; |z| no larger than the limit is near the training features
-template <class M, class = void>
-struct HasSlopeSigns : std::false_type {};
 template <class M>
-struct HasSlopeSigns<M, std::void_t<decltype(M::slope_signs)>> : std::true_type {};
-template <class M, class = void>
-struct HasResidualRange : std::false_type {};
+using SlopeSignsOf = decltype(M::slope_signs);
 template <class M>
-struct HasResidualRange<M, std::void_t<decltype(M::residual_lower), decltype(M::residual_upper)>> : std::true_type {};
-template <class M, class = void>
-struct HasDistance : std::false_type {};
+using ResidualRangeOf = std::void_t<decltype(M::residual_lower), decltype(M::residual_upper)>;
 template <class M>
-struct HasDistance<
-    M, std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky), decltype(M::distance_limit)>>
-    : std::true_type {};
+using DistanceStatisticsOf = std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky), decltype(M::distance_limit)>;
+
+constexpr std::uint32_t nanoseconds(double seconds) noexcept { return static_cast<std::uint32_t>(seconds * 1e9 + 0.5); }
+
+constexpr bool same_period_ns(std::uint32_t a, std::uint32_t b) noexcept {
+  const std::uint32_t difference = a < b ? b - a : a - b;
+  return difference <= b / std::uint32_t(1.0 / period_tolerance);
+}
+
+/// Of an exported header. One of format 1 or 2 does not state it: its commands are those of its vehicle's curves.
+template <class M>
+constexpr CommandMeaning header_command_meaning() noexcept {
+  if constexpr (is_detected<RecordsOf, M>) {
+    return M::command_meaning;
+  } else {
+    return command_meaning_of(M::Vehicle::template value<double>());
+  }
+}
+/// Of its rows, 0 if not said; of format 1 or 2, of its window.
+template <class M>
+constexpr std::uint32_t header_period_ns() noexcept {
+  if constexpr (is_detected<RecordsOf, M>) {
+    return nanoseconds(M::sample_period_s);
+  } else {
+    return nanoseconds(WindowOf<typename M::Features>::period_s);
+  }
+}
 
 /// Numbers in the lower triangle of a Size x Size matrix.
 constexpr std::size_t triangle(std::size_t size) noexcept { return size * (size + 1) / 2; }
@@ -261,7 +264,7 @@ constexpr bool true_residual_range() noexcept {
 
 template <class M>
 constexpr void require_optional_records() noexcept {
-  if constexpr (HasSlopeSigns<M>::value) {
+  if constexpr (is_detected<SlopeSignsOf, M>) {
     constexpr bool three = M::slope_signs.size() == std::size_t(rotor_count) && M::slope_signs[0].size() == 3;
     static_assert(three, "pinnquad: the model's slope signs are not three per rotor (slope_signs)");
     if constexpr (three) {
@@ -270,7 +273,7 @@ constexpr void require_optional_records() noexcept {
                     "(slope_signs)");
     }
   }
-  if constexpr (HasResidualRange<M>::value) {
+  if constexpr (is_detected<ResidualRangeOf, M>) {
     constexpr bool numbers = M::residual_lower.size() == std::size_t(M::Network::outputs) &&
                              M::residual_upper.size() == std::size_t(M::Network::outputs) &&
                              all_finite_constants(M::residual_lower) && all_finite_constants(M::residual_upper);
@@ -282,7 +285,7 @@ constexpr void require_optional_records() noexcept {
                     "parameters (residual_lower, residual_upper)");
     }
   }
-  if constexpr (HasDistance<M>::value) {
+  if constexpr (is_detected<DistanceStatisticsOf, M>) {
     constexpr auto size = static_cast<std::size_t>(M::Features::size);
     constexpr bool numbers = M::distance_mean.size() == size && M::distance_inverse_cholesky.size() == triangle(size) &&
                              all_finite_constants(M::distance_mean) &&
@@ -305,10 +308,10 @@ constexpr void require_optional_records() noexcept {
 /// What a header of format 3 says of itself beyond format 2, against what its types say.
 template <class M>
 constexpr void require_records() noexcept {
-  static_assert(NamesRecords<M>::value && HasRecords<M>::value,
+  static_assert(is_detected<RecordNamesOf, M> && is_detected<RecordsOf, M>,
                 "pinnquad: the model lacks what format 3 demands: records, answer, commands, clock, window, columns, "
                 "allocation, base (exported/model_records.hpp)");
-  if constexpr (NamesRecords<M>::value && HasRecords<M>::value) {
+  if constexpr (is_detected<RecordNamesOf, M> && is_detected<RecordsOf, M>) {
     static_assert(knows_records<M>(),
                   "pinnquad: the model has a record that must be understood and that this pinnquad does not know "
                   "(records); update the library");

@@ -68,13 +68,14 @@ class BlockRows {
 };
 
 /// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
-/// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle, which may name its Caller.
+/// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle.
 /// Lifetime: scalers and envelope are copied; weights and golden vectors are read in the block each time. A copy of a
 /// view looks into the same block. As made, a view declines: its envelope is empty, its self test fails, forward()
 /// gives NaN.
 template <class ShapeType>
 class ModelView : public ModelScales<ShapeType> {
  public:
+  static constexpr ModelKind kind = ModelKind::view;
   using Scales = ModelScales<ShapeType>;
   using typename Scales::Features;
   using typename Scales::Network;
@@ -85,7 +86,7 @@ class ModelView : public ModelScales<ShapeType> {
 
   /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
   /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
-  /// another shape or caller, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
+  /// another shape, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
   /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a spread that is not
   /// positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
   /// (exported/model_agreement.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
@@ -103,7 +104,7 @@ class ModelView : public ModelScales<ShapeType> {
     decltype(view.records) records{};
     std::size_t record_bytes = 0;
     const Status read = detail::read_u32(bytes + Header::version) < 2
-                            ? RecordReader::read_none()
+                            ? Status::ok  // version 1 has none
                             : RecordReader::read(bytes + Header::size, whole - Header::size - Header::checksum_size,
                                                  records, record_bytes);
     if (read != Status::ok) return read;

@@ -33,8 +33,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// physical units, commands[i * samples + s] its command i, statuses[s] its Status. Commands of a sample are written only if
 /// has_output(statuses[s]). Of the guard, all but its fallback applies. Any model that shows its weights: a header's, a
 /// ModelView, a LoadedModel. No heap; stack for 2 packs of samples.
-template <class Model, class GuardType, class CallerType>
-void predict_batch(const InverseDynamics<Model, GuardType, CallerType>& inverse, const typename Model::Scalar* x,
+template <class Model, class GuardType>
+void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
   static_assert(GuardType::refuses_outside_envelope,
                 "pinnquad: a batch refuses what is outside the envelope; take a guard with TrainingEnvelope");

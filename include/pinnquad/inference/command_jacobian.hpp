@@ -15,8 +15,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// Of the guard, the envelope, the distance and the checks of the commands apply; a fallback has no derivatives here and is not asked. Where
 /// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a
 /// header's, a ModelView, a LoadedModel. Both outputs are untouched unless has_output(status).
-template <class Model, class GuardType, class CallerType>
-Status predict_with_jacobian(const InverseDynamics<Model, GuardType, CallerType>& inverse,
+template <class Model, class GuardType>
+Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse,
                              const typename Model::Scalar* x, typename Model::Scalar* commands,
                              typename Model::Scalar* jacobian) noexcept {
   static_assert(GuardType::refuses_outside_envelope,

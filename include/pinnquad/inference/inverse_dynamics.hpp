@@ -3,7 +3,6 @@
 // No heap, bounded time; weights stay where the exported header put them, and the object is empty then.
 #pragma once
 
-#include "pinnquad/exported/caller.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/inference/fallback.hpp"
 #include "pinnquad/inference/guard.hpp"
@@ -20,19 +19,13 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Model>
 inline constexpr PackedNetwork<typename Model::Network> packed_model{Model::parameters};
 
-template <class Model, class = void>
-struct HasOwnPacking : std::false_type {};
-template <class Model>
-struct HasOwnPacking<Model, std::void_t<decltype(std::declval<const Model&>().packed())>> : std::true_type {};
-
 /// True where the vector unit's kernel predicts, from packed_weights(): the model's own, or the compiler's.
 template <class Model>
 inline constexpr bool is_packed = has_vector_unit<typename Model::Scalar>&& is_network<typename Model::Network> &&
-                                  (HasOwnPacking<Model>::value ||
-                                   (HasConstantParameters<Model>::value && !HasOwnForward<Model>::value));
+                                  (model_kind<Model> == ModelKind::header || model_kind<Model> == ModelKind::loaded);
 template <class Model>
 PINNQUAD_ALWAYS_INLINE const PackedNetwork<typename Model::Network>& packed_weights(const Model& model) noexcept {
-  if constexpr (HasOwnPacking<Model>::value) {
+  if constexpr (model_kind<Model> == ModelKind::loaded) {
     return model.packed();
   } else {
     return packed_model<Model>;
@@ -51,27 +44,16 @@ constexpr bool require_distribution_of_model() noexcept {
   return true;
 }
 
-/// A model that brings its own forward() is an instance with weights elsewhere, checked by whoever loads it.
-template <class Model>
-constexpr bool check_model() noexcept {
-  if constexpr (is_model<Model> && HasOwnForward<Model>::value) {
-    return true;
-  } else {
-    return require_model<Model>();
-  }
-}
-
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// An exported network as an inverse-dynamics model: motion wanted -> commands, in the terms of a caller
-/// (exported/caller.hpp). Every function leaves the commands untouched unless has_output(status).
-template <class ModelType, class GuardType = TrainingGuard, class CallerType = AnyCaller>
+/// An exported network as an inverse-dynamics model: motion wanted -> commands.
+/// Every function leaves the commands untouched unless has_output(status).
+template <class ModelType, class GuardType = TrainingGuard>
 class InverseDynamics : private detail::Held<ModelType>, private detail::Held<GuardType> {
-  static_assert(detail::check_model<ModelType>());
-  static_assert(detail::require_caller<ModelType, CallerType>());
+  static_assert(require_model<ModelType>());
   static_assert(is_guard<GuardType>,
                 "pinnquad: the second argument of InverseDynamics is a Guard (inference/guard.hpp)");
   static_assert(detail::require_distribution_of_model<ModelType, GuardType>());
@@ -79,7 +61,6 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
  public:
   using Model = ModelType;
   using Guard = GuardType;
-  using Caller = CallerType;
   using Scalar = typename Model::Scalar;
   using Features = typename Model::Features;
   using Inputs = typename Features::template Inputs<Scalar>;
@@ -195,7 +176,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// The bare network, standardised in and out: the model's own forward() if it has one; else the vector unit's kernel where
   /// there is one, else the portable one. Out of line: all ways to the network share its code.
   PINNQUAD_NOINLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
-    if constexpr (detail::HasOwnForward<Model>::value) {
+    if constexpr (model_kind<Model> != ModelKind::header) {
       model().forward(standardised, outputs);
     } else if constexpr (has_vector_unit<Scalar> && is_network<Network>) {
       detail::packed_model<Model>.forward(standardised, outputs);

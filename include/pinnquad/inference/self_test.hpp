@@ -54,7 +54,7 @@ PINNQUAD_ALWAYS_INLINE void copy_row(const AnyRows& rows, std::size_t row, Scala
 /// The model's first weight that is NaN or infinite, -1 if it has none or shows none.
 template <class Model>
 int first_broken_weight(const Model& model) noexcept {
-  if constexpr (ShowsWeights<Model>::value) {
+  if constexpr (model_kind<Model> != ModelKind::function) {
     const typename Model::Scalar* weights = row_major_weights(model);
     for (int i = 0; weights != nullptr && i < Model::Network::parameter_count; ++i) {
       if (!is_finite(weights[i])) return i;
@@ -88,8 +88,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// wrong kernel, compiler flag or bit in flash, or no golden vector. Every NaN and infinity is found, under -ffast-math too,
 /// where a prediction may lose it on its way to the commands. A wrong bit of a weight is found if it moves a golden command by
 /// more than the tolerance: a bit that matters less than rounding is for a checksum to find.
-template <class Model, class Guard, class Caller>
-Status self_test(const InverseDynamics<Model, Guard, Caller>& inverse,
+template <class Model, class Guard>
+Status self_test(const InverseDynamics<Model, Guard>& inverse,
                  SelfTestReport<typename Model::Scalar>& report) noexcept {
   using Scalar = typename Model::Scalar;
   report = {};
@@ -138,8 +138,8 @@ Status self_test(const InverseDynamics<Model, Guard, Caller>& inverse,
   return Status::ok;
 }
 
-template <class Model, class Guard, class Caller>
-Status self_test(const InverseDynamics<Model, Guard, Caller>& inverse) noexcept {
+template <class Model, class Guard>
+Status self_test(const InverseDynamics<Model, Guard>& inverse) noexcept {
   SelfTestReport<typename Model::Scalar> report;
   return self_test(inverse, report);
 }

@@ -16,7 +16,6 @@ namespace {
 using namespace pinnquad;
 
 using Model = TrainedQuadModel;
-using Mine = Caller<CommandMeaning::thrust, Model::Vehicle>;
 constexpr double agreement = 1e-6;  // float rounding of another order of summation, commands in 0..1
 
 // what the file says, and the library's airframe of that shape does not
@@ -60,7 +59,7 @@ int agreeing(const char* path, const Inverse& inverse) {
 
 int main(int argument_count, char** arguments) {
   if (argument_count != 3) return 2;
-  const InverseDynamics<Model, TrainingGuard, Mine> inverse;
+  const InverseDynamics<Model> inverse;
   if (self_test(inverse) != Status::ok) return std::puts("the self test failed"), 1;
   if (agreeing(arguments[1], inverse) <= 0) return 1;
 
@@ -70,6 +69,6 @@ int main(int argument_count, char** arguments) {
   const Status opened = ModelView<Model>::open(bytes.data(), bytes.size(), view);  // operator new aligns to 16
   std::printf("block: %s\n", to_string(opened));
   if (opened != Status::ok) return 1;
-  const InverseDynamics<ModelView<Model>, TrainingGuard, Mine> viewed(view);
+  const InverseDynamics<ModelView<Model>> viewed(view);
   return self_test(viewed) == Status::ok && agreeing(arguments[1], viewed) > 0 ? 0 : 1;
 }
