@@ -73,7 +73,7 @@ Provenance provenance() {
     from.sample_period_s = Header::sample_period_s;
     from.lag_removed_s = Header::lag_removed_s;
   }
-  if constexpr (detail::HasDistance<Header>::value) {
+  if constexpr (is_detected<detail::DistanceStatisticsOf, Header>) {
     const auto numbers = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
     from.slope_signs = Header::slope_signs;
     from.residual_range = ResidualRange{numbers(Header::residual_lower), numbers(Header::residual_upper)};

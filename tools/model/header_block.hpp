@@ -19,11 +19,6 @@ namespace programs {
 
 namespace detail {
 
-/// What a block says beyond its scalars.
-struct HeaderTerms : pinnquad::detail::BlockTerms {
-  std::string answer;
-};
-
 /// 3 x 4 numbers of a header, rotor by rotor.
 inline std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs_of(const HeaderFile& header,
                                                                          const std::string& name) {
@@ -34,31 +29,31 @@ inline std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs_of(const H
 }
 
 /// What a header of any format may say.
-inline void take_optional_terms(const HeaderFile& header, HeaderTerms& terms) {
+inline void take_optional_records(const HeaderFile& header, pinnquad::detail::WrittenRecords& records) {
   if (header.has("worse_than_mean") && header.has("beats_linear_regression")) {
-    terms.judged = (header.truth("worse_than_mean") ? pinnquad::Judged::worse_than_mean : 0u) |
-                   (header.truth("beats_linear_regression") ? pinnquad::Judged::beats_linear_regression : 0u);
+    records.judged = (header.truth("worse_than_mean") ? pinnquad::Judged::worse_than_mean : 0u) |
+                     (header.truth("beats_linear_regression") ? pinnquad::Judged::beats_linear_regression : 0u);
   }
-  if (header.has("slope_signs")) terms.slope_signs = signs_of(header, "slope_signs");
+  if (header.has("slope_signs")) records.slope_signs = signs_of(header, "slope_signs");
   if (header.has("residual_lower")) {
-    terms.residual_range = {header.numbers("residual_lower"), header.numbers("residual_upper")};
+    records.residual_range = {header.numbers("residual_lower"), header.numbers("residual_upper")};
   }
   if (header.has("distance_mean")) {
-    terms.distance = {header.numbers("distance_mean"), header.numbers("distance_inverse_cholesky"),
-                      header.number("distance_limit")};
+    records.distance = {header.numbers("distance_mean"), header.numbers("distance_inverse_cholesky"),
+                        header.number("distance_limit")};
   }
 }
 
 /// Of a header of format 3, which says all of it.
-inline HeaderTerms stated_terms(const HeaderFile& header) {
-  HeaderTerms terms;
-  terms.answer = header.quoted("answer");
+inline pinnquad::detail::WrittenRecords stated_records(const HeaderFile& header) {
+  pinnquad::detail::WrittenRecords records;
+  records.answer = header.quoted("answer");
   const std::string& meaning = header.text("command_meaning");
   bool known = false;
   for (const pinnquad::CommandMeaning one :
        {pinnquad::CommandMeaning::thrust, pinnquad::CommandMeaning::pulse_width, pinnquad::CommandMeaning::speed}) {
     if (meaning != std::string("pinnquad::CommandMeaning::") + pinnquad::to_string(one)) continue;
-    terms.command_meaning = one;
+    records.command_meaning = one;
     known = true;
   }
   if (!known) header.refuse("command_meaning", "a meaning of commands", "`" + pinnquad::printable(meaning) + "`");
@@ -68,34 +63,34 @@ inline HeaderTerms stated_terms(const HeaderFile& header) {
       header.refuse("records", "records that are known", "`" + pinnquad::printable(record) + "`");
     }
   }
-  terms.command_lower = header.number("command_lower");
-  terms.command_upper = header.number("command_upper");
-  terms.sample_period_s = header.number("sample_period_s");
-  terms.lag_removed_s = header.number("lag_removed_s");
+  records.command_lower = header.number("command_lower");
+  records.command_upper = header.number("command_upper");
+  records.sample_period_s = header.number("sample_period_s");
+  records.lag_removed_s = header.number("lag_removed_s");
   for (const char* time : {"sample_period_s", "lag_removed_s"}) {
     if (pinnquad::is_clock_time(header.number(time))) continue;
     header.refuse(time, "a time of 0 to 4 s", pinnquad::number_text(header.number(time)));
   }
-  terms.window_taps = static_cast<std::uint32_t>(header.number("window_taps"));
-  terms.causal = header.truth("causal");
-  terms.column_names = header.texts("column_names");
-  terms.column_units = header.texts("column_units");
-  if (terms.column_names.size() != terms.column_units.size()) {
-    header.refuse("column_units", "a unit for each column", std::to_string(terms.column_units.size()));
+  records.window_taps = static_cast<std::uint32_t>(header.number("window_taps"));
+  records.causal = header.truth("causal");
+  records.column_names = header.texts("column_names");
+  records.column_units = header.texts("column_units");
+  if (records.column_names.size() != records.column_units.size()) {
+    header.refuse("column_units", "a unit for each column", std::to_string(records.column_units.size()));
   }
   const std::vector<double> allocation = header.numbers("allocation", 16);
-  for (std::size_t i = 0; i < allocation.size(); ++i) terms.allocation[i / 4][i % 4] = allocation[i];
-  terms.base = header.texts("base").empty() ? "" : header.quoted("base");
-  return terms;
+  for (std::size_t i = 0; i < allocation.size(); ++i) records.allocation[i / 4][i % 4] = allocation[i];
+  records.base = header.texts("base").empty() ? "" : header.quoted("base");
+  return records;
 }
 
 /// Of a header of format 2: what its types imply, where they are the library's.
-inline HeaderTerms implied_terms(const HeaderFile& header) {
-  HeaderTerms terms;
-  terms.answer = header.text("Network");
+inline pinnquad::detail::WrittenRecords implied_records(const HeaderFile& header) {
+  pinnquad::detail::WrittenRecords records;
+  records.answer = header.text("Network");
   const std::string before = "pinnquad::InputSize<", now = "pinnquad::Inputs<";  // its name in descriptions
-  const std::size_t inputs = terms.answer.find(before);
-  if (inputs != std::string::npos) terms.answer.replace(inputs, before.size(), now);
+  const std::size_t inputs = records.answer.find(before);
+  if (inputs != std::string::npos) records.answer.replace(inputs, before.size(), now);
   const std::string& features = header.text("Features");
   if (features != "pinnquad::PaperFeatures" && features != "pinnquad::PaperFeaturesWithAltitude") {
     header.refuse("Features", "a feature set of the library in a header of format 2",
@@ -107,9 +102,9 @@ inline HeaderTerms implied_terms(const HeaderFile& header) {
                   "`" + pinnquad::printable(outputs) + "`");
   }
   const pinnquad::Airframe<double> airframe = chosen_airframe(header.quoted("vehicle_name")).value;
-  terms.command_meaning = pinnquad::command_meaning_of(airframe);
-  terms.allocation = pinnquad::allocation(airframe);
-  return terms;
+  records.command_meaning = pinnquad::command_meaning_of(airframe);
+  records.allocation = pinnquad::allocation(airframe);
+  return records;
 }
 
 /// The hash by which a reader knows the block's shape (pinnquad::detail::hash_of_shape), from the texts of the header.
@@ -123,7 +118,7 @@ inline std::uint64_t shape_hash_of(const HeaderFile& header, const std::string& 
   return fnv.hash;
 }
 
-inline HeaderTerms terms_of(const HeaderFile& header) {
+inline pinnquad::detail::WrittenRecords records_of(const HeaderFile& header) {
   const auto format = static_cast<int>(header.number("format_version"));
   constexpr int oldest = 2;  // format 1 does not check its own names
   if (format < oldest || format > pinnquad::model_format_version) {
@@ -134,14 +129,14 @@ inline HeaderTerms terms_of(const HeaderFile& header) {
     header.refuse("frame", std::string("the frame `") + pinnquad::model_frame + "`",
                   "`" + pinnquad::printable(header.quoted("frame")) + "`");
   }
-  HeaderTerms terms = format == oldest ? implied_terms(header) : stated_terms(header);
-  take_optional_terms(header, terms);
-  return terms;
+  pinnquad::detail::WrittenRecords records = format == oldest ? implied_records(header) : stated_records(header);
+  take_optional_records(header, records);
+  return records;
 }
 
 template <class Scalar>
 std::vector<unsigned char> block_of(const HeaderFile& header) {
-  const HeaderTerms terms = terms_of(header);
+  const pinnquad::detail::WrittenRecords records = records_of(header);
   const std::size_t inputs = header.texts("feature_names").size(), outputs = header.texts("output_names").size();
   const std::vector<double> golden_features = header.numbers("golden_features"),
                             parameters = header.numbers("parameters");
@@ -160,10 +155,11 @@ std::vector<unsigned char> block_of(const HeaderFile& header) {
   add(golden_features);
   add(header.numbers("golden_commands", golden * pinnquad::rotor_count));
   add(parameters);
-  return pinnquad::detail::whole_block({sizeof(Scalar), inputs, outputs, parameters.size(), golden,
-                                        static_cast<std::uint64_t>(header.number("training_rows")),
-                                        shape_hash_of(header, terms.answer), header.hexadecimal("training_data_hash")},
-                                       pinnquad::detail::block_records<Scalar>(terms), scalars);
+  return pinnquad::detail::whole_block(
+      {sizeof(Scalar), inputs, outputs, parameters.size(), golden,
+       static_cast<std::uint64_t>(header.number("training_rows")), shape_hash_of(header, records.answer),
+       header.hexadecimal("training_data_hash")},
+      pinnquad::detail::block_records<Scalar>(records), scalars);
 }
 
 }  // namespace detail
@@ -178,6 +174,6 @@ inline std::vector<unsigned char> block_of(const HeaderFile& header) {
 }
 
 /// The network as a description; what a block only hashes.
-inline std::string answer_of(const HeaderFile& header) { return detail::terms_of(header).answer; }
+inline std::string answer_of(const HeaderFile& header) { return detail::records_of(header).answer; }
 
 }  // namespace programs

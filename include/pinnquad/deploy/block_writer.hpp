@@ -59,17 +59,9 @@ class LittleEndianBytes {
   std::vector<unsigned char> bytes;
 };
 
-/// What a block says of its model beyond its scalars.
-struct BlockTerms : ExportedTerms {
-  std::uint32_t window_taps = 1;  ///< 1: the present alone
-  bool causal = true;
-  std::vector<std::string> column_names, column_units;
-  std::string base;  ///< description of what the outputs add to; empty: nothing
-};
-
 /// The records of a block: their counts, then each.
 template <class Scalar>
-std::vector<unsigned char> block_records(const BlockTerms& terms) {
+std::vector<unsigned char> block_records(const WrittenRecords& records) {
   constexpr std::size_t longest = std::numeric_limits<std::uint16_t>::max();
   LittleEndianBytes out;
   std::uint32_t count = 0;
@@ -88,56 +80,56 @@ std::vector<unsigned char> block_records(const BlockTerms& terms) {
     for (const double value : values) to.add(static_cast<Scalar>(value));
   };
   record(BlockRecord::commands, true, [&](LittleEndianBytes& to) {
-    to.add_unsigned(static_cast<std::uint32_t>(terms.command_meaning));
+    to.add_unsigned(static_cast<std::uint32_t>(records.command_meaning));
     to.add_unsigned(std::uint32_t{0});
-    scalars(to, {terms.command_lower, terms.command_upper});
+    scalars(to, {records.command_lower, records.command_upper});
   });
   record(BlockRecord::clock, true, [&](LittleEndianBytes& to) {
-    to.add_unsigned(nanoseconds(terms.sample_period_s));
-    to.add_unsigned(nanoseconds(terms.lag_removed_s));
+    to.add_unsigned(nanoseconds(records.sample_period_s));
+    to.add_unsigned(nanoseconds(records.lag_removed_s));
   });
   record(BlockRecord::window, true, [&](LittleEndianBytes& to) {
-    to.add_unsigned(terms.window_taps);
-    to.add_unsigned(std::uint32_t{terms.causal});
+    to.add_unsigned(records.window_taps);
+    to.add_unsigned(std::uint32_t{records.causal});
   });
-  if (!terms.column_names.empty()) {
+  if (!records.column_names.empty()) {
     record(BlockRecord::columns, true, [&](LittleEndianBytes& to) {
-      for (std::size_t i = 0; i < terms.column_names.size(); ++i) {
-        to.add_text(terms.column_names[i]);
-        to.add_text(terms.column_units.at(i));
+      for (std::size_t i = 0; i < records.column_names.size(); ++i) {
+        to.add_text(records.column_names[i]);
+        to.add_text(records.column_units.at(i));
       }
     });
   }
   record(BlockRecord::allocation, true, [&](LittleEndianBytes& to) {
-    for (const auto& row : terms.allocation) scalars(to, {row.begin(), row.end()});
+    for (const auto& row : records.allocation) scalars(to, {row.begin(), row.end()});
   });
-  if (!terms.base.empty()) {
-    record(BlockRecord::base, true, [&](LittleEndianBytes& to) { to.add_bytes(terms.base); });
+  if (!records.base.empty()) {
+    record(BlockRecord::base, true, [&](LittleEndianBytes& to) { to.add_bytes(records.base); });
   }
-  if (terms.judged) {
+  if (records.judged) {
     record(BlockRecord::verdict, false, [&](LittleEndianBytes& to) {
-      to.add_unsigned(*terms.judged);
+      to.add_unsigned(*records.judged);
       to.add_unsigned(std::uint32_t{0});
     });
   }
-  if (terms.slope_signs) {
+  if (records.slope_signs) {
     record(BlockRecord::slope_signs, false, [&](LittleEndianBytes& to) {
-      for (const TorqueSigns& rotor : *terms.slope_signs) {
+      for (const TorqueSigns& rotor : *records.slope_signs) {
         for (const int sign : rotor) to.bytes.push_back(static_cast<unsigned char>(sign));
       }
     });
   }
-  if (terms.residual_range) {
+  if (records.residual_range) {
     record(BlockRecord::residual_range, false, [&](LittleEndianBytes& to) {
-      scalars(to, terms.residual_range->lower);
-      scalars(to, terms.residual_range->upper);
+      scalars(to, records.residual_range->lower);
+      scalars(to, records.residual_range->upper);
     });
   }
-  if (terms.distance) {
+  if (records.distance) {
     record(BlockRecord::distance, false, [&](LittleEndianBytes& to) {
-      scalars(to, terms.distance->mean);
-      scalars(to, terms.distance->inverse_cholesky);
-      scalars(to, {terms.distance->limit});
+      scalars(to, records.distance->mean);
+      scalars(to, records.distance->inverse_cholesky);
+      scalars(to, {records.distance->limit});
     });
   }
   LittleEndianBytes all;

@@ -64,7 +64,7 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
 /// The records of a trained model; of one with a certificate what is proven is among them. Throws std::invalid_argument where
 /// nothing is proven of a model that has the structure.
 template <class Model>
-ExportedTerms exported_terms(const Model& model, Provenance provenance) {
+WrittenRecords records_of_training(const Model& model, Provenance provenance) {
   const Airframe<double> airframe = model.template airframe<double>();
   if constexpr (has_certificate<Model>) {
     const Certificate certificate = certificate_of_trained(model);
@@ -84,7 +84,8 @@ ExportedTerms exported_terms(const Model& model, Provenance provenance) {
     for (const double bound : certificate.residual_upper) range.upper.push_back(outward(bound, 1e30));
     provenance.residual_range = range;
   }
-  return exported_terms<typename Model::Features, typename Model::Outputs>(provenance, airframe);
+  return records_of_training<typename Model::Network, typename Model::Features, typename Model::Outputs>(provenance,
+                                                                                                         airframe);
 }
 
 }  // namespace detail
@@ -103,7 +104,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   using Scalar = typename Model::Scalar;
   if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
   const auto golden_commands = detail::golden_commands(model, golden);
-  const auto terms = detail::exported_terms(model, provenance);
+  const auto records = detail::records_of_training(model, provenance);
   constexpr bool own_airframe = std::is_same_v<typename Model::Vehicle, GivenAirframe>;
   const std::string vehicle_name = model.airframe_name();
   std::ostringstream out;
@@ -167,7 +168,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   write.text("vehicle_name", vehicle_name);
   out << "  // rotor by rotor: signs of its torque about x, y, z\n";
   write.table("int", "motor_torque_signs", motor_torque_signs(model.template airframe<double>()));
-  detail::write_header_records<NetworkType, typename Model::Features, typename Model::Outputs>(out, write, terms);
+  detail::write_header_records<Scalar>(out, write, records);
   out << "\n  // standardisation: (value - mean) / spread\n";
   write.scaler(scalar, "input", model.input);
   write.scaler(scalar, "output", model.output);

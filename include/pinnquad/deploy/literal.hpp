@@ -39,6 +39,7 @@ inline std::string quoted(const std::string& text) {
   return result + '"';
 }
 inline std::string literal(const char* text) { return quoted(text); }
+inline std::string literal(const std::string& text) { return quoted(text); }
 inline std::string literal(int value) { return std::to_string(value); }
 
 /// Values in braces, several to a line.

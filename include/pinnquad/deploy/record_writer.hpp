@@ -31,8 +31,8 @@ std::string description_text() {
   return sink.text;
 }
 
-/// What the records of a model say that its types don't.
-struct ExportedTerms {
+/// The records of a model, as header and block state them.
+struct WrittenRecords {
   CommandMeaning command_meaning = CommandMeaning::thrust;
   double command_lower = 0, command_upper = 1, sample_period_s = 0, lag_removed_s = 0;
   AllocationMatrix<double> allocation{};
@@ -40,17 +40,38 @@ struct ExportedTerms {
   std::optional<std::array<TorqueSigns, rotor_count>> slope_signs{};
   std::optional<ResidualRange> residual_range{};
   std::optional<DistanceStatistics> distance{};
+  std::uint32_t window_taps = 1;  ///< 1: the present alone
+  bool causal = true;
+  std::vector<std::string> column_names, column_units;
+  std::string answer;  ///< description of what the parameters are of
+  std::string base;    ///< description of the outputs' base; empty: none
 };
+
+/// Those that the model's types say.
+template <class Network, class Features, class Outputs>
+WrittenRecords records_of_types() {
+  using Window = WindowOf<Features>;
+  const auto& names = extra_column_names<Features>;
+  const auto& units = extra_column_units<Features>;
+  WrittenRecords records;
+  records.window_taps = static_cast<std::uint32_t>(Window::taps);
+  records.causal = Window::causal;
+  records.column_names.assign(names.begin(), names.end());
+  records.column_units.assign(units.begin(), units.end());
+  records.answer = description_text<Network>();
+  records.base = description_text<typename BaseOf<Outputs>::type>();
+  return records;
+}
 
 /// Of a training. Throws std::invalid_argument for a range that is none, a time beyond 0 to 4 s, another period than the
 /// window's, and for statistics of another length than the model's, or that are not finite.
-template <class Features, class Outputs>
-ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& airframe) {
+template <class Network, class Features, class Outputs>
+WrittenRecords records_of_training(const Provenance& from, const Airframe<double>& airframe) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
-  ExportedTerms terms;
-  terms.command_meaning = from.command_meaning ? *from.command_meaning : command_meaning_of(airframe);
-  terms.command_lower = from.command_lower;
-  terms.command_upper = from.command_upper;
+  WrittenRecords records = records_of_types<Network, Features, Outputs>();
+  records.command_meaning = from.command_meaning ? *from.command_meaning : command_meaning_of(airframe);
+  records.command_lower = from.command_lower;
+  records.command_upper = from.command_upper;
   if (!is_finite(from.command_lower) || !is_finite(from.command_upper) || !(from.command_lower <= from.command_upper)) {
     refuse("the range of the commands is none");
   }
@@ -60,14 +81,14 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
   if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
     refuse("the sample period is not that of the features' window");
   }
-  terms.sample_period_s = window_s > 0 ? window_s : from.sample_period_s;
-  terms.lag_removed_s = from.lag_removed_s;
-  terms.allocation = allocation(airframe);
+  records.sample_period_s = window_s > 0 ? window_s : from.sample_period_s;
+  records.lag_removed_s = from.lag_removed_s;
+  records.allocation = allocation(airframe);
   if (from.verdict) {
-    terms.judged = (from.verdict->worse_than_mean() ? Judged::worse_than_mean : 0u) |
-                   (from.verdict->beats_linear_regression() ? Judged::beats_linear_regression : 0u);
+    records.judged = (from.verdict->worse_than_mean() ? Judged::worse_than_mean : 0u) |
+                     (from.verdict->beats_linear_regression() ? Judged::beats_linear_regression : 0u);
   }
-  terms.slope_signs = from.slope_signs;
+  records.slope_signs = from.slope_signs;
   if (from.residual_range) {
     constexpr auto outputs = static_cast<std::size_t>(OutputMap<Outputs>::size);
     const ResidualRange& range = *from.residual_range;
@@ -79,7 +100,7 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
     for (std::size_t i = 0; i < outputs; ++i) {
       if (!(range.lower[i] <= range.upper[i])) refuse("a lower bound of the residual lies above the upper one");
     }
-    terms.residual_range = range;
+    records.residual_range = range;
   }
   if (from.distance) {
     constexpr auto size = static_cast<std::size_t>(Features::size);
@@ -90,9 +111,9 @@ ExportedTerms exported_terms(const Provenance& from, const Airframe<double>& air
     require_finite(distance.mean, "the means of the distance");
     require_finite(distance.inverse_cholesky, "the triangle of the distance");
     if (!is_finite(distance.limit) || !(distance.limit > 0)) refuse("the limit of the distance is no number above 0");
-    terms.distance = distance;
+    records.distance = distance;
   }
-  return terms;
+  return records;
 }
 
 template <class Array>
@@ -102,33 +123,33 @@ std::vector<double> as_doubles(const Array& values) {
 
 /// Of an exported header, of whatever format.
 template <class M>
-ExportedTerms header_records() {
+WrittenRecords records_of_header() {
   const auto airframe = airframe_value<typename M::Vehicle, double>();
-  ExportedTerms terms;
-  terms.allocation = allocation(airframe);
+  WrittenRecords records = records_of_types<typename M::Network, typename M::Features, typename M::Outputs>();
+  records.allocation = allocation(airframe);
   if constexpr (is_detected<RecordsOf, M>) {
-    terms.command_meaning = M::command_meaning;
-    terms.command_lower = M::command_lower;
-    terms.command_upper = M::command_upper;
-    terms.sample_period_s = M::sample_period_s;
-    terms.lag_removed_s = M::lag_removed_s;
+    records.command_meaning = M::command_meaning;
+    records.command_lower = M::command_lower;
+    records.command_upper = M::command_upper;
+    records.sample_period_s = M::sample_period_s;
+    records.lag_removed_s = M::lag_removed_s;
   } else {
-    terms.command_meaning = command_meaning_of(airframe);
-    terms.sample_period_s = WindowOf<typename M::Features>::period_s;
+    records.command_meaning = command_meaning_of(airframe);
+    records.sample_period_s = WindowOf<typename M::Features>::period_s;
   }
   if constexpr (is_detected<StatedVerdictOf, M>) {
-    terms.judged = (M::worse_than_mean ? Judged::worse_than_mean : 0u) |
-                   (M::beats_linear_regression ? Judged::beats_linear_regression : 0u);
+    records.judged = (M::worse_than_mean ? Judged::worse_than_mean : 0u) |
+                     (M::beats_linear_regression ? Judged::beats_linear_regression : 0u);
   }
-  if constexpr (is_detected<SlopeSignsOf, M>) terms.slope_signs = M::slope_signs;
+  if constexpr (is_detected<SlopeSignsOf, M>) records.slope_signs = M::slope_signs;
   if constexpr (is_detected<ResidualRangeOf, M>) {
-    terms.residual_range = ResidualRange{as_doubles(M::residual_lower), as_doubles(M::residual_upper)};
+    records.residual_range = ResidualRange{as_doubles(M::residual_lower), as_doubles(M::residual_upper)};
   }
   if constexpr (is_detected<DistanceStatisticsOf, M>) {
-    terms.distance = DistanceStatistics{as_doubles(M::distance_mean), as_doubles(M::distance_inverse_cholesky),
-                                        static_cast<double>(M::distance_limit)};
+    records.distance = DistanceStatistics{as_doubles(M::distance_mean), as_doubles(M::distance_inverse_cholesky),
+                                          static_cast<double>(M::distance_limit)};
   }
-  return terms;
+  return records;
 }
 
 /// The same numbers in a model's Scalar.
@@ -219,41 +240,38 @@ class ConstantWriter {
 };
 
 /// Writes the constants of format 3 into a struct, whose texts around them are `out`'s.
-template <class Network, class Features, class Outputs>
-void write_header_records(std::ostream& out, ConstantWriter& write, const ExportedTerms& terms) {
-  using Scalar = typename Network::Scalar;
+template <class Scalar>
+void write_header_records(std::ostream& out, ConstantWriter& write, const WrittenRecords& records) {
   const std::string scalar = std::is_same_v<Scalar, float> ? "float" : "double";
-  using Window = WindowOf<Features>;
   out << "\n  // records: a reader that does not know one of them must not fly the model "
          "(exported/model_records.hpp)\n";
   std::vector<std::string> names;
   for (const std::string_view record : known_records) names.emplace_back(record);
-  std::vector<const char*> records;
-  for (const std::string& name : names) records.push_back(name.c_str());
-  write.list("const char*", "records", records);
-  write.text("answer", description_text<Network>());
+  write.list("const char*", "records", names);
+  write.text("answer", records.answer);
   write.constant("auto", "command_meaning",
-                 std::string("pinnquad::CommandMeaning::") + to_string(terms.command_meaning), terms.command_meaning);
-  write.number("command_lower", terms.command_lower);
-  write.number("command_upper", terms.command_upper);
-  write.number("sample_period_s", terms.sample_period_s);
-  write.number("lag_removed_s", terms.lag_removed_s);
-  write.number("window_taps", Window::taps);
-  write.truth("causal", Window::causal);
-  write.list("const char*", "column_names", extra_column_names<Features>);
-  write.list("const char*", "column_units", extra_column_units<Features>);
+                 std::string("pinnquad::CommandMeaning::") + to_string(records.command_meaning),
+                 records.command_meaning);
+  write.number("command_lower", records.command_lower);
+  write.number("command_upper", records.command_upper);
+  write.number("sample_period_s", records.sample_period_s);
+  write.number("lag_removed_s", records.lag_removed_s);
+  write.number("window_taps", static_cast<int>(records.window_taps));
+  write.truth("causal", records.causal);
+  write.list("const char*", "column_names", records.column_names);
+  write.list("const char*", "column_units", records.column_units);
   out << "  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density\n";
-  write.table("double", "allocation", terms.allocation);
-  write.text("base", description_text<typename BaseOf<Outputs>::type>());
-  if (terms.slope_signs) write.table("int", "slope_signs", *terms.slope_signs);
-  if (terms.residual_range) {
-    write.list(scalar, "residual_lower", rounded<Scalar>(terms.residual_range->lower));
-    write.list(scalar, "residual_upper", rounded<Scalar>(terms.residual_range->upper));
+  write.table("double", "allocation", records.allocation);
+  write.text("base", records.base);
+  if (records.slope_signs) write.table("int", "slope_signs", *records.slope_signs);
+  if (records.residual_range) {
+    write.list(scalar, "residual_lower", rounded<Scalar>(records.residual_range->lower));
+    write.list(scalar, "residual_upper", rounded<Scalar>(records.residual_range->upper));
   }
-  if (terms.distance) {
-    write.list(scalar, "distance_mean", rounded<Scalar>(terms.distance->mean));
-    write.list(scalar, "distance_inverse_cholesky", rounded<Scalar>(terms.distance->inverse_cholesky));
-    const auto limit = static_cast<Scalar>(terms.distance->limit);
+  if (records.distance) {
+    write.list(scalar, "distance_mean", rounded<Scalar>(records.distance->mean));
+    write.list(scalar, "distance_inverse_cholesky", rounded<Scalar>(records.distance->inverse_cholesky));
+    const auto limit = static_cast<Scalar>(records.distance->limit);
     write.constant(scalar.c_str(), "distance_limit", literal(limit), limit);
   }
 }

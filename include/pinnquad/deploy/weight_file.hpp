@@ -17,28 +17,12 @@ namespace pinnquad {
 
 namespace detail {
 
-/// What a block says of a model of this shape.
-template <class Shape>
-BlockTerms block_terms(const ExportedTerms& exported) {
-  using Window = WindowOf<typename Shape::Features>;
-  BlockTerms terms;
-  static_cast<ExportedTerms&>(terms) = exported;
-  terms.window_taps = static_cast<std::uint32_t>(Window::taps);
-  terms.causal = Window::causal;
-  const auto& names = extra_column_names<typename Shape::Features>;
-  const auto& units = extra_column_units<typename Shape::Features>;
-  terms.column_names.assign(names.begin(), names.end());
-  terms.column_units.assign(units.begin(), units.end());
-  terms.base = description_text<typename BaseOf<typename Shape::Outputs>::type>();
-  return terms;
-}
-
 /// `model` has scalers and envelope, as an object or as static members.
 template <class Shape, class Model, class GoldenFeatures, class GoldenCommands, class Parameters>
 std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& golden_features,
                                     const GoldenCommands& golden_commands, const Parameters& parameters,
-                                    const ExportedTerms& terms, std::uint64_t shape, std::uint64_t training_data_hash,
-                                    std::uint64_t training_rows) {
+                                    const WrittenRecords& records, std::uint64_t shape,
+                                    std::uint64_t training_data_hash, std::uint64_t training_rows) {
   using Layout = ModelBlockLayout<Shape>;
   using Scalar = typename Shape::Scalar;
   LittleEndianBytes scalars;
@@ -53,7 +37,7 @@ std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& go
   scalars.add(parameters);
   return whole_block({sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, golden_features.size(),
                       training_rows, shape, training_data_hash},
-                     block_records<Scalar>(block_terms<Shape>(terms)), scalars);
+                     block_records<Scalar>(records), scalars);
 }
 
 }  // namespace detail
@@ -67,10 +51,10 @@ std::vector<unsigned char> model_block(
     const Provenance& provenance) {
   using Model = TrainedModel<NetworkType, ContextType>;
   const auto golden_commands = detail::golden_commands(model, golden);
-  const auto terms = detail::exported_terms(model, provenance);
+  const auto records = detail::records_of_training(model, provenance);
   const std::uint64_t shape = detail::hash_of_shape<Model>(printable(model.airframe_name()),
                                                            motor_torque_signs(model.template airframe<double>()));
-  return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, terms, shape,
+  return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, records, shape,
                                  provenance.training_data_hash, provenance.training_rows);
 }
 
@@ -81,7 +65,7 @@ std::vector<unsigned char> model_block() {
   static_assert(Model::format_version >= 2,
                 "pinnquad: a header of format 1 does not check its own names; export it again");
   return detail::block_of<Model>(Model{}, Model::golden_features, Model::golden_commands, Model::parameters,
-                                 detail::header_records<Model>(), shape_hash<Model>, Model::training_data_hash,
+                                 detail::records_of_header<Model>(), shape_hash<Model>, Model::training_data_hash,
                                  static_cast<std::uint64_t>(Model::training_rows));
 }
 
