@@ -29,8 +29,9 @@
 #include "pinnquad/dynamics/airframes/px4_sih.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
-#include "pinnquad/simulation/fly.hpp"
-#include "pinnquad/simulation/noisy_recorder.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/recorder.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
 
 namespace {

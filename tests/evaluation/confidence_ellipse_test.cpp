@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <pinnquad/core/random.hpp>
-#include <pinnquad/evaluation/confidence_ellipse.hpp>
+#include <pinnquad/evaluation/physical_consistency.hpp>
 #include <random>
 #include <stdexcept>
 #include <vector>

@@ -7,7 +7,6 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/evaluation/errors.hpp"
-#include "pinnquad/evaluation/verdict.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/evaluation/verdict.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ridge under bounds: the free fit where it keeps them, else the least cost on the border, against many other weights that keep
 // them.
-#include "pinnquad/regression/bounded_ridge.hpp"
+#include "pinnquad/regression/ridge.hpp"
 
 #include <doctest/doctest.h>
 

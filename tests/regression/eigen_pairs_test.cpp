@@ -9,7 +9,7 @@
 #include <random>
 
 #include "pinnquad/core/random.hpp"
-#include "pinnquad/regression/symmetric_system.hpp"
+#include "pinnquad/regression/ridge.hpp"
 
 using namespace pinnquad;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/regression/symmetric_system.hpp"
+#include "pinnquad/regression/ridge.hpp"
 
 #include <doctest/doctest.h>
 

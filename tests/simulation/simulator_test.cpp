@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The running simulation: in any portions the same flight, ended where it must, copied as a whole.
 #include "pinnquad/simulation/simulator.hpp"
+#include "pinnquad/simulation/flights.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +13,6 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/fly.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/simulation/thumbs.hpp"
+#include "pinnquad/simulation/pilot.hpp"
 
 #include <doctest/doctest.h>
 

@@ -10,7 +10,7 @@
 
 #include "logs/finding.hpp"
 #include "logs/specific_force.hpp"
-#include "pinnquad/data/degrees.hpp"
+#include "pinnquad/data/motion_checks.hpp"
 
 namespace pinnquad {
 

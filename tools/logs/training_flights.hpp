@@ -18,7 +18,7 @@
 #include "command_line/progress_line.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/plausibility.hpp"
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 
 namespace programs {
 

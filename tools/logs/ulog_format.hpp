@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "logs/ulog_types.hpp"
-#include "pinnquad/io/csv_cells.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace programs::ulog {
 

@@ -10,7 +10,7 @@
 
 #include "pictures/drawing.hpp"
 #include "pictures/numbers.hpp"
-#include "pinnquad/evaluation/confidence_ellipse.hpp"
+#include "pinnquad/evaluation/physical_consistency.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {

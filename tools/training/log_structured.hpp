@@ -13,15 +13,15 @@
 #include <vector>
 
 #include "command_line/interrupt.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/clip.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/checkpoint.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/optimizer.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "training/log_closed_form.hpp"
 

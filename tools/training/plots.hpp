@@ -12,7 +12,7 @@
 
 #include "command_line/listed.hpp"
 #include "pictures/gnuplot.hpp"
-#include "pinnquad/evaluation/confidence_ellipse.hpp"
+#include "pinnquad/evaluation/physical_consistency.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {

@@ -18,7 +18,7 @@
 
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/data/sample.hpp"
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad {
 

@@ -14,10 +14,9 @@
 #include <system_error>
 #include <vector>
 
-#include "pinnquad/data/acceleration_columns.hpp"
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/degrees.hpp"
-#include "pinnquad/data/sample_period.hpp"
+#include "pinnquad/data/motion_checks.hpp"
+#include "pinnquad/data/row_set.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/io/csv_table.hpp"

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
-// How far predictions are from targets: mean absolute error, root mean square error, coefficient of determination,
-// per motor and as their mean over motors.
+// How far predictions are from targets, per motor and as their mean over motors: mean absolute error, root mean square
+// error, coefficient of determination. The verdict sets them beside the two predictors that cost nothing: the mean of
+// the commands, and linear regression on the same features.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
@@ -66,6 +69,36 @@ PredictionErrors<Motors> prediction_errors(const std::vector<std::array<double, 
     errors.mean.r_squared += measures.r_squared / motors;
   }
   return errors;
+}
+
+/// Coefficients of determination on the test rows (evaluation/errors.hpp); but for the worst motor's the mean over the
+/// commands.
+struct Verdict {
+  double test_r_squared = 0;               ///< of the model
+  double linear_regression_r_squared = 0;  ///< of evaluation/linear_regression.hpp, fitted on the model's training rows
+  /// Of the model, the least of the motors; NaN if one is, or if nothing is said of it.
+  double worst_motor_r_squared = std::numeric_limits<double>::quiet_NaN();
+
+  /// Answering always with the mean command would have been better; so too if R^2 is NaN. Such a model is not for
+  /// flight.
+  bool worse_than_mean() const noexcept { return !(is_finite(test_r_squared) && test_r_squared >= 0); }
+  /// The same of one motor: a good mean may hide it.
+  bool has_poor_motor() const noexcept { return is_finite(worst_motor_r_squared) && worst_motor_r_squared < 0; }
+  /// False if the plain linear map predicts the commands as well or better: the network has learned nothing beyond it.
+  bool beats_linear_regression() const noexcept {
+    return is_finite(test_r_squared) &&
+           (!is_finite(linear_regression_r_squared) || test_r_squared > linear_regression_r_squared);
+  }
+};
+
+/// The verdict on a model by its errors on the test rows.
+template <std::size_t Motors>
+Verdict verdict_on(const PredictionErrors<Motors>& errors, double linear_regression_r_squared) noexcept {
+  double worst = errors.per_motor[0].r_squared;
+  for (const ErrorMeasures& motor : errors.per_motor) {
+    if (is_finite(worst) && (!is_finite(motor.r_squared) || motor.r_squared < worst)) worst = motor.r_squared;
+  }
+  return {errors.mean.r_squared, linear_regression_r_squared, worst};
 }
 
 }  // namespace pinnquad

@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/linear_regression.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
-#include "pinnquad/evaluation/verdict.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
 #include "pinnquad/training/context_airframe.hpp"

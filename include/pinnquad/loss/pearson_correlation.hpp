@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "pinnquad/loss/signed_command_sum.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
 
 namespace pinnquad {
 

@@ -8,7 +8,6 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/simulation/pilot.hpp"
-#include "pinnquad/simulation/thumbs.hpp"
 
 namespace pinnquad {
 

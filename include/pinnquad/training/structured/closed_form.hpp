@@ -16,8 +16,7 @@
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
-#include "pinnquad/regression/bounded_ridge.hpp"
-#include "pinnquad/regression/regression_sums.hpp"
+#include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/regression/symmetric_system.hpp"
+#include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/training_data.hpp"
 
