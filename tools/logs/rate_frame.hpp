@@ -98,7 +98,7 @@ inline std::optional<Finding> check_degrees(const std::vector<Flight>& segments)
       all.push_back(sample);
     }
   }
-  const DegreesFound found = find_degrees_by_motion(all);
+  const auto found = find_degrees_by_motion(all);
   constexpr std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
   std::string columns;
   double number = 0;

@@ -81,7 +81,7 @@ inline std::vector<ColumnName> extra_columns_in(const std::string& path) {
 template <class Observer>
 void write_flight_csv(const std::string& path, const Flight& flight, const Observer& after_row) {
   const std::vector<std::string> columns = detail::flight_columns(flight.columns());
-  CsvWriter writer(path, columns);
+  detail::CsvWriter writer(path, columns);
   std::vector<double> values(columns.size());
   for (std::size_t i = 0; i < flight.size(); ++i) {
     const SampleValues sample = to_values(flight[i]);

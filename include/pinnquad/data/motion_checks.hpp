@@ -18,13 +18,21 @@
 
 namespace pinnquad {
 
+namespace detail {
+
+/// A value that cannot be, or a whole column that is wrong.
+struct Implausible {
+  std::size_t row = 0;    ///< from 0
+  std::size_t field = 0;  ///< index in `sample_field_names`
+  std::string expected;   ///< "the derivative of w_x"
+  std::string found;      ///< "that of w_y negated"
+};
+
 /// Which columns are in degrees.
 struct DegreesFound {
   std::array<bool, 3> angle{};  ///< roll, pitch, yaw
   bool body_rates = false;      ///< all three
 };
-
-namespace detail {
 
 /// Body rates, mean over a step of `dt_s`, that turn the attitude (roll, pitch, yaw, rad) of its begin into that of its end.
 inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const std::array<double, 3>& end, double dt_s) {
@@ -87,7 +95,7 @@ void for_each_turning_step(const Flight& flight, Visit&& visit) {
 /// of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to row. Degrees are
 /// found only where radians explain next to nothing (0.8 is left or more) and degrees more than half: a flight that hardly
 /// turns, noise and gaps in time decide nothing.
-inline DegreesFound find_degrees_by_motion(const Flight& flight) {
+inline detail::DegreesFound find_degrees_by_motion(const Flight& flight) {
   constexpr double unexplained = 0.8, explained = 0.5;
   constexpr double smallest_rates = 1e-6;  // mean square
   constexpr std::size_t choices = 8;
@@ -111,7 +119,7 @@ inline DegreesFound find_degrees_by_motion(const Flight& flight) {
     }
   };
   detail::for_each_turning_step(flight, judge);
-  DegreesFound found;
+  detail::DegreesFound found;
   if (!(rates > smallest_rates * steps) || !(residual[0][0] > unexplained * rates)) return found;
   std::size_t best = 0, best_rates = 0;
   for (std::size_t choice = 0; choice < choices; ++choice) {
@@ -127,13 +135,6 @@ inline DegreesFound find_degrees_by_motion(const Flight& flight) {
   found.body_rates = best_rates == 1;
   return found;
 }
-
-/// A column of accelerations that is not what its name says.
-struct AccelerationMistake {
-  std::size_t field = 0;  ///< index in `sample_field_names`
-  std::string expected;   ///< "the derivative of w_x"
-  std::string found;      ///< "that of w_y negated"
-};
 
 namespace detail {
 
@@ -174,8 +175,8 @@ Vector3<double> integral(const Flight& flight, std::size_t first, std::size_t la
 }
 
 /// The first of three columns that follows another axis, or its own against the sign, or in another unit.
-inline std::optional<AccelerationMistake> wrong_axis(const AccelerationSums& sums, std::size_t first_field,
-                                                     std::size_t first_integrated_field) {
+inline std::optional<Implausible> wrong_axis(const AccelerationSums& sums, std::size_t first_field,
+                                             std::size_t first_integrated_field) {
   constexpr double follows = 0.35, better = 0.25;      // correlations
   constexpr double straight = 0.9, most_factor = 4.0;  // of a column that is its axis's but for a factor
   const auto axis_name = [&](Eigen::Index axis) {
@@ -191,12 +192,12 @@ inline std::optional<AccelerationMistake> wrong_axis(const AccelerationSums& sum
     const std::size_t field = first_field + static_cast<std::size_t>(column);
     const std::string expected = "the derivative of " + axis_name(column);
     if (std::abs(fits) > follows && std::abs(fits) > own + better) {
-      return AccelerationMistake{field, expected, "that of " + axis_name(best) + (fits < 0 ? " negated" : "")};
+      return Implausible{0, field, expected, "that of " + axis_name(best) + (fits < 0 ? " negated" : "")};
     }
     const double factor = own > straight ? sums.integrals[column] / sums.products(column, column) : 1;
     if (factor > most_factor || factor < 1 / most_factor) {
-      return AccelerationMistake{field, expected,
-                                 "about " + number_text(std::round(factor * 100) / 100) + " times that (its unit?)"};
+      return Implausible{0, field, expected,
+                         "about " + number_text(std::round(factor * 100) / 100) + " times that (its unit?)"};
     }
   }
   return std::nullopt;
@@ -226,7 +227,7 @@ inline std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const 
 /// the independent simulator's above 0.97 and 0.12, real logs above 0.73 and 0.45 (or 1.00 and 0.8); under gyro noise
 /// that drowns the motion 0 and 0.03.
 /// Limits: a column that noise drowns, an axis that hardly moves and a flight of few rows decide nothing.
-inline std::optional<AccelerationMistake> find_acceleration_mistake(const Flight& flight) {
+inline std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
   constexpr std::size_t linear_field = 1, angular_field = 4, velocity_field = 7, rates_field = 10;
   constexpr double unexplained = 0.3, better = 0.25;
   detail::AccelerationSums angular, linear;
@@ -251,7 +252,7 @@ inline std::optional<AccelerationMistake> find_acceleration_mistake(const Flight
   }
   if (auto mistake = detail::wrong_axis(angular, angular_field, rates_field)) return mistake;
   if (left[0] > unexplained * linear.changes.sum() && left[best] < better * left[0]) {
-    return AccelerationMistake{linear_field, "the derivative of the velocity in the body's axes",
+    return detail::Implausible{0, linear_field, "the derivative of the velocity in the body's axes",
                                detail::acceleration_kind_texts[best]};
   }
   return detail::wrong_axis(linear, linear_field, velocity_field);

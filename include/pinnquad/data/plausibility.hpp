@@ -24,6 +24,8 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// What a column of `sample_field_names` may hold. The range is what any multirotor can reach, not what is usual.
 struct ColumnPlausibility {
   const char* unit;
@@ -33,10 +35,12 @@ struct ColumnPlausibility {
   double smallest_scale;
 };
 
+}  // namespace detail
+
 /// Per column, in the order of `sample_field_names`. Angles may be unwrapped. Commands are 0 to 1, with a float's
 /// rounding to spare.
 // clang-format off
-inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plausibility = {{
+inline constexpr std::array<detail::ColumnPlausibility, sample_value_count> column_plausibility = {{
     {"s", -1e12, 1e12, 0},
     {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1},
     {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20},
@@ -51,14 +55,6 @@ inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plaus
 /// far, is no measurement: what moves is there for more than one row. The flights of the paper's pilots, those of an
 /// independent simulator and real logs stay below 8, an angle that wraps round below 26.
 inline constexpr double most_robust_spreads = 30;
-
-/// The first thing that can't be, or what is wrong with a whole column.
-struct Implausible {
-  std::size_t row = 0;    ///< from 0
-  std::size_t field = 0;  ///< index in `sample_field_names`
-  std::string expected;
-  std::string found;
-};
 
 namespace detail {
 
@@ -215,7 +211,7 @@ inline InputError implausible_in_file(const std::string& path, const Implausible
 /// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of another
 /// unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its neighbours,
 /// accelerations that are not the derivatives of rates and velocity. None for a flight.
-inline std::optional<Implausible> find_implausible(const Flight& flight) {
+inline std::optional<detail::Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
   if (auto found = detail::find_degrees(flight)) return found;
@@ -223,11 +219,12 @@ inline std::optional<Implausible> find_implausible(const Flight& flight) {
   for (std::size_t field = 0; field < sample_value_count; ++field) {
     if (auto found = detail::find_outlier(flight, field)) return found;
   }
-  if (const auto mistake = find_acceleration_mistake(flight)) {
-    return Implausible{0, mistake->field, mistake->expected + " " + detail::column_text(mistake->field),
-                       mistake->found + ", by how rates and velocity change from row to row"};
+  auto mistake = find_acceleration_mistake(flight);
+  if (mistake) {
+    mistake->expected += " " + detail::column_text(mistake->field);
+    mistake->found += ", by how rates and velocity change from row to row";
   }
-  return std::nullopt;
+  return mistake;
 }
 
 /// Throws InputError where find_implausible() finds something in a flight that was read from `path`:

@@ -11,30 +11,27 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/detected.hpp"
+
 namespace pinnquad {
 
 namespace detail {
-template <class T, class = void>
-struct ChecksSettings : std::false_type {};
 template <class T>
-struct ChecksSettings<T, std::void_t<decltype(std::declval<const T&>().check())>>
-    : std::is_void<decltype(std::declval<const T&>().check())> {};
-/// Whether a class has a member of this name, whatever it is: two of one name can't be told apart.
+using CheckOf = std::enable_if_t<std::is_void_v<decltype(std::declval<const T&>().check())>>;
+/// A class that has a member `check`, whatever it is, and joins CheckName has two of one name: `&check` is ambiguous.
 struct CheckName {
   void check();
 };
 template <class T>
 struct JoinedWithCheck : T, CheckName {};
-template <class T, class = void>
-struct NamesCheck : std::true_type {};
 template <class T>
-struct NamesCheck<T, std::void_t<decltype(&JoinedWithCheck<T>::check)>> : std::false_type {};
+using OnlyCheckOf = decltype(&JoinedWithCheck<T>::check);
 
 /// False where a policy has a check that isn't `void check() const`. A `final` class is not looked into.
 template <class T>
 constexpr bool has_whole_check() noexcept {
   if constexpr (std::is_class_v<T> && !std::is_final_v<T>) {
-    return ChecksSettings<T>::value == NamesCheck<T>::value;
+    return is_detected<CheckOf, T> != is_detected<OnlyCheckOf, T>;
   } else {
     return true;
   }
@@ -67,7 +64,7 @@ constexpr void check_settings(const Policy& policy) {
       detail::has_whole_check<Policy>(),
       "pinnquad: a policy's check() must be `void check() const` without parameters; this one would be passed "
       "over (data/settings.hpp)");
-  if constexpr (detail::ChecksSettings<Policy>::value) policy.check();
+  if constexpr (is_detected<detail::CheckOf, Policy>) policy.check();
 }
 
 }  // namespace pinnquad

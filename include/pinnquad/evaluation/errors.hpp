@@ -16,6 +16,8 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// Errors e_i = prediction_i - target_i of one output over n rows, t its targets:
 ///   mean_absolute    = sum |e_i| / n               in the unit of the output; Delta Y of Table 3
 ///   root_mean_square = sqrt(sum e_i^2 / n)         in the unit of the output
@@ -26,11 +28,13 @@ struct ErrorMeasures {
   double r_squared = 0;
 };
 
+}  // namespace detail
+
 /// Errors per motor, and the arithmetic mean of each measure over the motors.
 template <std::size_t Motors>
 struct PredictionErrors {
-  std::array<ErrorMeasures, Motors> per_motor{};
-  ErrorMeasures mean;
+  std::array<detail::ErrorMeasures, Motors> per_motor{};
+  detail::ErrorMeasures mean;
 };
 
 /// Compares predictions with targets, row by row. A NaN in a column gives NaN for that motor and the mean.
@@ -58,7 +62,7 @@ PredictionErrors<Motors> prediction_errors(const std::vector<std::array<double, 
       squares += error * error;
       squares_of_mean += (target[i] - mean_target) * (target[i] - mean_target);
     }
-    ErrorMeasures& measures = errors.per_motor[motor];
+    detail::ErrorMeasures& measures = errors.per_motor[motor];
     measures.mean_absolute = absolute / rows;
     measures.root_mean_square = std::sqrt(squares / rows);
     measures.r_squared = squares_of_mean > 0 ? 1 - squares / squares_of_mean : not_a_number;
@@ -95,7 +99,7 @@ struct Verdict {
 template <std::size_t Motors>
 Verdict verdict_on(const PredictionErrors<Motors>& errors, double linear_regression_r_squared) noexcept {
   double worst = errors.per_motor[0].r_squared;
-  for (const ErrorMeasures& motor : errors.per_motor) {
+  for (const detail::ErrorMeasures& motor : errors.per_motor) {
     if (is_finite(worst) && (!is_finite(motor.r_squared) || motor.r_squared < worst)) worst = motor.r_squared;
   }
   return {errors.mean.r_squared, linear_regression_r_squared, worst};

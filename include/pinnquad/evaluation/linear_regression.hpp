@@ -13,6 +13,8 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// y = intercept + C x with C of OutputCount rows and InputCount columns; x and y in their own units.
 template <std::size_t InputCount, std::size_t OutputCount>
 struct LinearRegression {
@@ -28,8 +30,6 @@ struct LinearRegression {
     return y;
   }
 };
-
-namespace detail {
 
 /// Gauss-Jordan on the symmetric matrix of moments, of which only the features' rows are needed: one feature after
 /// another, the one that varies most beside those before it first. Features that those before explain up to `threshold`
@@ -65,7 +65,7 @@ int sweep(std::array<std::array<double, Size>, InputCount>& moments, std::array<
 /// Throws std::invalid_argument for no rows or tables of different length.
 /// Source: Goodnight, A tutorial on the SWEEP operator (1979).
 template <std::size_t InputCount, std::size_t OutputCount>
-LinearRegression<InputCount, OutputCount> fit_linear_regression(
+detail::LinearRegression<InputCount, OutputCount> fit_linear_regression(
     const std::vector<std::array<double, InputCount>>& features,
     const std::vector<std::array<double, OutputCount>>& outputs) {
   constexpr double rank_threshold = 1e-9;
@@ -96,7 +96,7 @@ LinearRegression<InputCount, OutputCount> fit_linear_regression(
       for (std::size_t j = 0; j < size; ++j) moments[i][j] += z[i] * z[j] / rows;
     }
   }
-  LinearRegression<InputCount, OutputCount> fit;
+  detail::LinearRegression<InputCount, OutputCount> fit;
   std::array<bool, InputCount> taken{};
   fit.rank = detail::sweep(moments, taken, rank_threshold);
   for (std::size_t k = 0; k < OutputCount; ++k) {

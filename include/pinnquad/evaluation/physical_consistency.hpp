@@ -33,7 +33,7 @@ struct ConfidenceEllipse {
 /// The ellipse of given moments: semi-axes are `sigmas` times the roots of the eigenvalues of the covariance matrix,
 ///   angle = atan2(2 cov, var_x - var_y) / 2.
 /// NaN moments give a NaN ellipse; points on a line give semi_minor 0.
-inline ConfidenceEllipse covariance_ellipse(const JointMoments& moments, double sigmas = 3) {
+inline ConfidenceEllipse covariance_ellipse(const detail::JointMoments& moments, double sigmas = 3) {
   const double half_sum = (moments.variance_x + moments.variance_y) / 2;
   const double half_difference = (moments.variance_x - moments.variance_y) / 2;
   const double root = std::hypot(half_difference, moments.covariance);
@@ -59,16 +59,20 @@ inline ConfidenceEllipse confidence_ellipse(const std::vector<double>& x, const 
   return covariance_ellipse(joint_moments(x, y), sigmas);
 }
 
+namespace detail {
+
 /// Standard deviation along each axis: the units in which a standardised ellipse is measured.
 struct AxisDeviation {
   double x = 1;
   double y = 1;
 };
 
+}  // namespace detail
+
 /// The standard deviations of the points (x[i], y[i]); to be taken from the target, for the target's and the
 /// prediction's ellipse.
-inline AxisDeviation axis_deviation(const std::vector<double>& x, const std::vector<double>& y) {
-  const JointMoments moments = joint_moments(x, y);
+inline detail::AxisDeviation axis_deviation(const std::vector<double>& x, const std::vector<double>& y) {
+  const detail::JointMoments moments = joint_moments(x, y);
   return {std::sqrt(moments.variance_x), std::sqrt(moments.variance_y)};
 }
 
@@ -78,8 +82,8 @@ inline AxisDeviation axis_deviation(const std::vector<double>& x, const std::vec
 /// degree, where its differences are 20 to 30 (docs/paper.md, deviation 12). NaN ellipse if a deviation is 0 or NaN.
 /// Throws std::invalid_argument for series of different length.
 inline ConfidenceEllipse standardized_confidence_ellipse(const std::vector<double>& x, const std::vector<double>& y,
-                                                         const AxisDeviation& deviation, double sigmas = 3) {
-  JointMoments moments = joint_moments(x, y);
+                                                         const detail::AxisDeviation& deviation, double sigmas = 3) {
+  detail::JointMoments moments = joint_moments(x, y);
   if (!(deviation.x > 0) || !(deviation.y > 0)) return {};
   moments.mean_x /= deviation.x;
   moments.mean_y /= deviation.y;
@@ -166,7 +170,7 @@ struct PhysicalConsistency {
 inline PhysicalConsistency physical_consistency(const std::vector<double>& target_sum,
                                                 const std::vector<double>& predicted_sum,
                                                 const std::vector<double>& angular_acceleration, double sigmas = 3) {
-  const AxisDeviation deviation = axis_deviation(angular_acceleration, target_sum);
+  const detail::AxisDeviation deviation = axis_deviation(angular_acceleration, target_sum);
   PhysicalConsistency result;
   result.target = confidence_ellipse(angular_acceleration, target_sum, sigmas);
   result.predicted = confidence_ellipse(angular_acceleration, predicted_sum, sigmas);

@@ -65,8 +65,6 @@ inline void require_equal_length(const char* who, std::size_t first, std::size_t
   }
 }
 
-}  // namespace detail
-
 /// First and second moments of paired series x, y: means, and the 2x2 covariance matrix (divisor n - 1).
 struct JointMoments {
   double mean_x = not_a_number;
@@ -76,11 +74,13 @@ struct JointMoments {
   double covariance = not_a_number;
 };
 
+}  // namespace detail
+
 /// Moments of the pairs (x[i], y[i]). Variances and covariance are NaN for fewer than two pairs.
 /// Throws std::invalid_argument for series of different length.
-inline JointMoments joint_moments(const std::vector<double>& x, const std::vector<double>& y) {
+inline detail::JointMoments joint_moments(const std::vector<double>& x, const std::vector<double>& y) {
   detail::require_equal_length("joint_moments", x.size(), y.size());
-  JointMoments moments;
+  detail::JointMoments moments;
   moments.mean_x = detail::mean_of(x);
   moments.mean_y = detail::mean_of(y);
   if (x.size() < 2) return moments;
@@ -106,7 +106,7 @@ inline JointMoments joint_moments(const std::vector<double>& x, const std::vecto
 /// than two pairs, a constant series (or one whose variance underflows), NaN or Inf in the data. Throws
 /// std::invalid_argument for series of different length.
 inline double pearson_correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  const JointMoments moments = joint_moments(x, y);
+  const detail::JointMoments moments = joint_moments(x, y);
   if (!(moments.variance_x > 0) || !(moments.variance_y > 0)) return not_a_number;
   const double correlation = moments.covariance / (std::sqrt(moments.variance_x) * std::sqrt(moments.variance_y));
   return std::isnan(correlation) ? correlation : std::clamp(correlation, -1.0, 1.0);

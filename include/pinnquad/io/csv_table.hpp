@@ -339,6 +339,8 @@ inline CsvTable read_csv(const std::string& path, const std::vector<std::string>
   return table;
 }
 
+namespace detail {
+
 /// Writes a table row by row; the file appears whole, on commit(), or not at all. NaN and Inf are written as nan and inf
 /// (gnuplot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
 /// std::invalid_argument for a row of other length than the header and a column without a name.
@@ -383,10 +385,12 @@ class CsvWriter {
   std::string text_;  ///< what is not yet handed to the file
 };
 
+}  // namespace detail
+
 /// Writes a table that stands in memory; see CsvWriter.
 inline void write_csv(const std::string& path, const std::vector<std::string>& header,
                       const std::vector<std::vector<double>>& rows) {
-  CsvWriter writer(path, header);
+  detail::CsvWriter writer(path, header);
   for (const std::vector<double>& row : rows) writer.row(row.data(), row.size());
   writer.commit();
 }

@@ -11,6 +11,8 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// Both series over the samples of a batch, and how the first depends on the predictions. No heap.
 template <class Axis, class Context, class Batch>
 struct SignedCommandSum {
@@ -70,6 +72,8 @@ struct SignedCommandSum {
     return Scalar(context.output.mean[static_cast<std::size_t>(output)]);
   }
 };
+
+}  // namespace detail
 
 /// Step function tanh(gain x): differentiable sign. A gain of 3 on standardised series trains well; the
 /// paper prints gain 1 on raw series.
@@ -225,7 +229,7 @@ struct LocalMonotonicity {
   typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
                                   Gradient& gradient) const {
     using Scalar = typename Batch::Scalar;
-    using Series = SignedCommandSum<Axis, Context, Batch>;
+    using Series = detail::SignedCommandSum<Axis, Context, Batch>;
     constexpr auto axis = static_cast<std::size_t>(Axis::axis);
     Series series(context, batch, Form::physical_units ? Scalar(1) : Scalar(context.signed_sum_spread[axis]));
     if constexpr (Form::physical_units) {

@@ -34,7 +34,7 @@ struct PearsonCorrelation {
   typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
                                   Gradient& gradient) const {
     using Scalar = typename Batch::Scalar;
-    using Series = SignedCommandSum<Axis, Context, Batch>;
+    using Series = detail::SignedCommandSum<Axis, Context, Batch>;
     const Series series(context, batch, Scalar(1));
     typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
     const Scalar value = pearson_loss(series.commands, series.angular_acceleration, weight, by_commands);

@@ -20,8 +20,6 @@
 
 namespace pinnquad {
 
-using DynamicMatrix = Eigen::MatrixXd;
-
 /// y = intercept + weights x.
 struct AffineMap {
   int inputs = 0, outputs = 0;
@@ -43,7 +41,7 @@ class RegressionSums {
   RegressionSums(int inputs, int outputs)
       : inputs_(inputs),
         outputs_(outputs),
-        products_(DynamicMatrix::Zero(1 + inputs + outputs, 1 + inputs + outputs)) {}
+        products_(Eigen::MatrixXd::Zero(1 + inputs + outputs, 1 + inputs + outputs)) {}
 
   void add(const double* x, const double* y) {
     Eigen::VectorXd row(products_.rows());
@@ -78,30 +76,34 @@ class RegressionSums {
   /// Means of x and of y, in this order.
   Eigen::VectorXd means() const { return products_.col(0).tail(inputs_ + outputs_) / rows(); }
   /// Covariances of x and y, divisor n.
-  DynamicMatrix covariances() const {
+  Eigen::MatrixXd covariances() const {
     const Eigen::VectorXd mean = means();
-    DynamicMatrix all = products_.bottomRightCorner(inputs_ + outputs_, inputs_ + outputs_) / rows();
+    Eigen::MatrixXd all = products_.bottomRightCorner(inputs_ + outputs_, inputs_ + outputs_) / rows();
     all.triangularView<Eigen::StrictlyUpper>() = all.transpose();
     return all - mean * mean.transpose();
   }
 
  private:
   int inputs_, outputs_;
-  DynamicMatrix products_;  ///< lower triangle
+  Eigen::MatrixXd products_;  ///< lower triangle
 };
+
+namespace detail {
 
 /// A = V diag(values) V', V orthogonal: a column per eigenvalue, in no order.
 struct EigenPairs {
   Eigen::VectorXd values;
-  DynamicMatrix vectors;
+  Eigen::MatrixXd vectors;
 };
+
+}  // namespace detail
 
 /// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit that fits
 /// a ridge four seconds longer to compile, for a case that is rare.
-inline EigenPairs eigen_pairs(DynamicMatrix a) {
+inline detail::EigenPairs eigen_pairs(Eigen::MatrixXd a) {
   constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
   const Eigen::Index size = a.rows();
-  DynamicMatrix vectors = DynamicMatrix::Identity(size, size);
+  Eigen::MatrixXd vectors = Eigen::MatrixXd::Identity(size, size);
   const double negligible = size > 0 ? std::numeric_limits<double>::epsilon() * a.cwiseAbs().maxCoeff() : 0.0;
   for (int sweep = 0, turned = 1; sweep < most_sweeps && turned > 0; ++sweep) {
     turned = 0;
@@ -122,15 +124,15 @@ inline EigenPairs eigen_pairs(DynamicMatrix a) {
 
 /// X of A X = B, of all that come closest to it the one of least norm: what A does not tell is 0. A: symmetric, no eigenvalue
 /// below 0 but by rounding; its diagonal of one order of magnitude, or 0.
-inline DynamicMatrix solve_symmetric(const DynamicMatrix& a, const DynamicMatrix& b) {
+inline Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(a.rows());
-  const Eigen::LLT<DynamicMatrix> factors(a);
+  const Eigen::LLT<Eigen::MatrixXd> factors(a);
   // Far above rounding: what is left of a variance that the other columns explain is a difference of equals.
   constexpr double enough = 1e4;
   if (factors.info() == Eigen::Success && factors.rcond() > enough * rounding) return factors.solve(b);
-  const EigenPairs pairs = eigen_pairs(a);
+  const detail::EigenPairs pairs = eigen_pairs(a);
   const double largest = a.rows() > 0 ? pairs.values.maxCoeff() : 0.0;
-  DynamicMatrix x = DynamicMatrix::Zero(b.rows(), b.cols());
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(b.rows(), b.cols());
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     if (!(pairs.values[i] > enough * rounding * largest)) continue;
     const auto axis = pairs.vectors.col(i);
@@ -141,11 +143,11 @@ inline DynamicMatrix solve_symmetric(const DynamicMatrix& a, const DynamicMatrix
 
 /// Lower triangular W with W A W' = 1: the inverse of Cholesky's factor. A: symmetric, its lower triangle is read. Empty where
 /// A is not positive definite, by rounding too, or not finite.
-inline std::optional<DynamicMatrix> whitening_of(const DynamicMatrix& a) {
-  const Eigen::LLT<DynamicMatrix> factors(a);
+inline std::optional<Eigen::MatrixXd> whitening_of(const Eigen::MatrixXd& a) {
+  const Eigen::LLT<Eigen::MatrixXd> factors(a);
   // Eigen takes NaN and infinity for positive; a row's reach its diagonal.
   if (factors.info() != Eigen::Success || !factors.matrixLLT().diagonal().allFinite()) return {};
-  return factors.matrixL().solve(DynamicMatrix::Identity(a.rows(), a.cols()));
+  return factors.matrixL().solve(Eigen::MatrixXd::Identity(a.rows(), a.cols()));
 }
 
 namespace detail {
@@ -166,15 +168,15 @@ inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std
   for (int i = 0; i < sums.inputs(); ++i) {
     if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);
   }
-  const DynamicMatrix covariances = sums.covariances();
+  const Eigen::MatrixXd covariances = sums.covariances();
   const auto size = static_cast<Eigen::Index>(columns.size());
-  DynamicMatrix a(size, size), b(size, sums.outputs());
+  Eigen::MatrixXd a(size, size), b(size, sums.outputs());
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(columns[std::size_t(i)], columns[std::size_t(j)]);
     a(i, i) += penalty;
     for (int k = 0; k < sums.outputs(); ++k) b(i, k) = covariances(columns[std::size_t(i)], sums.inputs() + k);
   }
-  const DynamicMatrix solution = solve_symmetric(a, b);
+  const Eigen::MatrixXd solution = solve_symmetric(a, b);
   const Eigen::VectorXd mean = sums.means();
   AffineMap map;
   map.inputs = sums.inputs();
@@ -194,7 +196,7 @@ inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std
 
 /// Sum of (y - map(x))^2 over the rows and outputs of these sums.
 inline double squared_error(const RegressionSums& sums, const AffineMap& map) {
-  const DynamicMatrix covariances = sums.covariances();
+  const Eigen::MatrixXd covariances = sums.covariances();
   const Eigen::VectorXd mean = sums.means();
   const int n = map.inputs;
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -214,17 +216,21 @@ inline std::vector<double> usual_penalties() {
   return {1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0};
 }
 
+namespace detail {
+
 struct PenaltyChoice {
   double penalty = 0;  ///< of the least error; of equals the largest
   std::vector<double>
       mean_squared_error;  ///< of each candidate, over all rows, each predicted by a fit without its group
 };
 
+}  // namespace detail
+
 /// The penalty that predicts best what was left out: each group of rows (a trajectory with its repeats) by the fit to all
 /// others. Throws std::invalid_argument for fewer than two groups or no candidate.
-inline PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
-                                    const std::vector<double>& candidates = usual_penalties(),
-                                    const std::vector<bool>& taken = {}) {
+inline detail::PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
+                                            const std::vector<double>& candidates = usual_penalties(),
+                                            const std::vector<bool>& taken = {}) {
   if (groups.size() < 2) {
     throw std::invalid_argument("ridge: expected two groups of rows or more, to leave one out in turn, found " +
                                 std::to_string(groups.size()));
@@ -232,7 +238,7 @@ inline PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
   if (candidates.empty()) throw std::invalid_argument("ridge: expected a penalty to choose, found none");
   RegressionSums all = groups.front();
   for (std::size_t i = 1; i < groups.size(); ++i) all += groups[i];
-  PenaltyChoice choice;
+  detail::PenaltyChoice choice;
   choice.mean_squared_error.assign(candidates.size(), 0.0);
   for (const RegressionSums& left_out : groups) {
     RegressionSums others = all;
@@ -251,6 +257,8 @@ inline PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
   return choice;
 }
 
+namespace detail {
+
 /// sum of factor x weight over `terms` >= least, or = least.
 struct WeightBound {
   std::vector<std::pair<int, double>> terms;  ///< feature and factor
@@ -258,12 +266,14 @@ struct WeightBound {
   bool pinned = false;
 };
 
+}  // namespace detail
+
 /// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Each choice of bounds that hold with equality is solved; of those that keep all bounds the one of least cost
 /// is taken, which is the minimum: the cost is convex. Throws std::invalid_argument for no rows, several outputs, a
 /// penalty that is no number from 0, more than 8 bounds, a bound of a feature that is not taken, and where no choice
 /// keeps all.
 inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken,
-                                   const std::vector<WeightBound>& bounds) {
+                                   const std::vector<detail::WeightBound>& bounds) {
   constexpr std::size_t most_bounds = 8;
   if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
   if (sums.outputs() != 1) {
@@ -271,7 +281,7 @@ inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, c
   }
   detail::require_penalty(penalty);
   if (bounds.size() > most_bounds) throw std::invalid_argument("ridge: expected 8 bounds at most");
-  const DynamicMatrix covariances = sums.covariances();
+  const Eigen::MatrixXd covariances = sums.covariances();
   const Eigen::VectorXd mean = sums.means();
   std::vector<int> columns, place(static_cast<std::size_t>(sums.inputs()), -1);
   for (int i = 0; i < sums.inputs(); ++i) {
@@ -281,7 +291,7 @@ inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, c
   }
   const auto size = static_cast<Eigen::Index>(columns.size());
   const auto count = static_cast<Eigen::Index>(bounds.size());
-  DynamicMatrix a(size, size), right = DynamicMatrix::Zero(size, 1 + count);  // the free fit, then each bound's
+  Eigen::MatrixXd a(size, size), right = Eigen::MatrixXd::Zero(size, 1 + count);  // the free fit, then each bound's
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(columns[std::size_t(i)], columns[std::size_t(j)]);
     a(i, i) += penalty;
@@ -295,8 +305,8 @@ inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, c
       right(row, 1 + k) = factor;
     }
   }
-  const DynamicMatrix solution = solve_symmetric(a, right);
-  const DynamicMatrix by = right.rightCols(count), moved = solution.rightCols(count);
+  const Eigen::MatrixXd solution = solve_symmetric(a, right);
+  const Eigen::MatrixXd by = right.rightCols(count), moved = solution.rightCols(count);
   const Eigen::VectorXd free = solution.col(0);
   constexpr double tolerance = 1e-9;  // of a bound that holds with equality, after rounding
   Eigen::VectorXd best;
@@ -313,13 +323,13 @@ inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, c
     Eigen::VectorXd weights = free;
     if (!held.empty()) {
       const auto rows = static_cast<Eigen::Index>(held.size());
-      DynamicMatrix gram(rows, rows), missing(rows, 1);
+      Eigen::MatrixXd gram(rows, rows), missing(rows, 1);
       for (Eigen::Index i = 0; i < rows; ++i) {
         for (Eigen::Index j = 0; j < rows; ++j)
           gram(i, j) = by.col(held[std::size_t(i)]).dot(moved.col(held[std::size_t(j)]));
         missing(i, 0) = bounds[std::size_t(held[std::size_t(i)])].least - by.col(held[std::size_t(i)]).dot(free);
       }
-      const DynamicMatrix forces = solve_symmetric(gram, missing);
+      const Eigen::MatrixXd forces = solve_symmetric(gram, missing);
       for (Eigen::Index i = 0; i < rows; ++i) weights += forces(i, 0) * moved.col(held[std::size_t(i)]);
     }
     bool keeps = true;

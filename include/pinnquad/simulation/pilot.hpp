@@ -5,24 +5,24 @@
 
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-template <class Pilot, class = void>
-struct IsPilot : std::false_type {};
 template <class Pilot>
-struct IsPilot<Pilot, std::void_t<decltype(std::declval<Pilot&>()(std::declval<const State<double>&>(), 0.0))>>
-    : std::is_same<SetPoint<double>, decltype(std::declval<Pilot&>()(std::declval<const State<double>&>(), 0.0))> {};
+using SetPointOf = std::enable_if_t<
+    std::is_same_v<SetPoint<double>, decltype(std::declval<Pilot&>()(std::declval<const State<double>&>(), 0.0))>>;
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class Pilot>
-inline constexpr bool is_pilot = detail::IsPilot<Pilot>::value;
+inline constexpr bool is_pilot = is_detected<detail::SetPointOf, Pilot>;
 
 /// Asks for the same all the time; by default for a hover.
 struct SteadyPilot {
@@ -30,6 +30,8 @@ struct SteadyPilot {
 
   SetPoint<double> operator()(const State<double>& /*state*/, double /*time_s*/) const { return set_point; }
 };
+
+namespace detail {
 
 /// How the thumbs move.
 struct ThumbStyle {
@@ -39,8 +41,12 @@ struct ThumbStyle {
   double yaw_spread_rad_s{0.062};
 };
 
+}  // namespace detail
+
 /// The share of its way to a target that a first-order lag goes in a time; all of it without lag.
 inline double lag_share(double elapsed_s, double lag_s) { return lag_s == 0 ? 1 : elapsed_s / (lag_s + elapsed_s); }
+
+namespace detail {
 
 /// Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between frames.
 /// Three draws per frame: roll, pitch, yaw.
@@ -71,5 +77,7 @@ class Thumbs {
   Vector3<double> spread_rad_s_;
   double next_frame_s_{0};
 };
+
+}  // namespace detail
 
 }  // namespace pinnquad

@@ -21,7 +21,7 @@ struct PilotStyle {
   double velocity_lag_s{0.45};  ///< the velocity asked for follows its target with this lag
   double max_yaw_rate_rad_s{1.0};
   double yaw_rate_lag_s{0.4};
-  ThumbStyle thumbs{};
+  detail::ThumbStyle thumbs{};
   double lowest_m{10};  ///< box, heights above ground and distances from the origin
   double highest_m{60};
   double farthest_m{60};
@@ -99,7 +99,7 @@ class RandomPilot {
   Engine engine_;
   PilotStyle style_;
   double ground_z_m_;
-  Thumbs thumbs_;
+  detail::Thumbs thumbs_;
   double time_s_{0};
   double next_target_s_{0};
   Vector3<double> target_velocity_m_s_ = Vector3<double>::Zero();

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
@@ -25,53 +26,34 @@
 namespace pinnquad {
 
 namespace detail {
-template <class Recorder, class = void>
-struct Holds : std::false_type {};
 template <class Recorder>
-struct Holds<Recorder,
-             std::void_t<decltype(std::declval<Recorder&>().hold(std::declval<const Commands<double>&>(), 0.0))>>
-    : std::true_type {};
-template <class Recorder, class = void>
-struct MakesRows : std::false_type {};
+using HoldOf = decltype(std::declval<Recorder&>().hold(std::declval<const Commands<double>&>(), 0.0));
 template <class Recorder>
-struct MakesRows<Recorder, std::void_t<decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
-                                                                          std::declval<const VehicleState<double>&>(),
-                                                                          std::declval<const Commands<double>&>()))>>
-    : std::is_same<Sample, decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
+using RowOf = std::enable_if_t<
+    std::is_same_v<Sample, decltype(std::declval<Recorder&>()(std::declval<const Quadrotor<double>&>(),
                                                               std::declval<const VehicleState<double>&>(),
-                                                              std::declval<const Commands<double>&>()))> {};
-/// A recorder whose settings can be wrong has `Status status() const noexcept`; ok for one that has none.
-template <class Recorder, class = void>
-struct RecorderStatus {
-  static Status of(const Recorder&) noexcept { return Status::ok; }
-};
+                                                              std::declval<const Commands<double>&>()))>>;
 template <class Recorder>
-struct RecorderStatus<Recorder, std::void_t<decltype(std::declval<const Recorder&>().status())>> {
-  static Status of(const Recorder& recorder) noexcept { return recorder.status(); }
-};
-/// A recorder of motion alone has no extra columns.
-template <class Recorder, class = void>
-struct RecorderColumns {
-  static constexpr bool has_columns = false;
-  static std::vector<ColumnName> of(const Recorder&) { return {}; }
-  template <class Quadrotor>
-  static void measure(Recorder&, const Quadrotor&, const VehicleState<double>&, double*) {}
-};
+using RecorderStatusOf = decltype(std::declval<const Recorder&>().status());
 template <class Recorder>
-struct RecorderColumns<Recorder, std::void_t<decltype(std::declval<const Recorder&>().columns())>> {
-  static constexpr bool has_columns = true;
-  static std::vector<ColumnName> of(const Recorder& recorder) { return recorder.columns(); }
-  template <class Quadrotor>
-  static void measure(Recorder& recorder, const Quadrotor& quadrotor, const VehicleState<double>& vehicle,
-                      double* values) {
-    recorder.measure(quadrotor, vehicle, values);
+using RecorderColumnsOf = decltype(std::declval<const Recorder&>().columns());
+template <class Recorder>
+inline constexpr bool has_columns = is_detected<RecorderColumnsOf, Recorder>;
+
+/// A recorder whose settings cannot be wrong has no status(): ok.
+template <class Recorder>
+Status recorder_status(const Recorder& recorder) noexcept {
+  if constexpr (is_detected<RecorderStatusOf, Recorder>) {
+    return recorder.status();
+  } else {
+    return Status::ok;
   }
-};
+}
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class Recorder>
-inline constexpr bool is_recorder = detail::Holds<Recorder>::value&& detail::MakesRows<Recorder>::value;
+inline constexpr bool is_recorder = is_detected<detail::HoldOf, Recorder>&& is_detected<detail::RowOf, Recorder>;
 
 /// The vehicle's row at its present time, without error. Accelerations come from the dynamics (docs/paper.md, deviation
 /// 14) with the rotors as they turn now, behind their lag, not from differences. Commands are what was held up to this
@@ -107,7 +89,7 @@ struct ExactRecorder {
 /// `double operator()(const Quadrotor&, const VehicleState<double>&)`: what its sensor shows at the present instant.
 template <class Recorder, class... Column>
 class ColumnRecorder {
-  static_assert(!detail::RecorderColumns<Recorder>::has_columns,
+  static_assert(!detail::has_columns<Recorder>,
                 "pinnquad: this recorder has columns of its own already: name all in one ColumnRecorder");
 
  public:
@@ -120,7 +102,7 @@ class ColumnRecorder {
                     const Commands<double>& commands) {
     return recorder_(quadrotor, vehicle, commands);
   }
-  Status status() const noexcept { return detail::RecorderStatus<Recorder>::of(recorder_); }
+  Status status() const noexcept { return detail::recorder_status(recorder_); }
 
   std::vector<ColumnName> columns() const { return {ColumnName{Column::name, Column::unit}...}; }
   template <class... Effects>

@@ -12,6 +12,7 @@
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/simulation/pilot.hpp"
 #include "pinnquad/simulation/recorder.hpp"
@@ -45,12 +46,8 @@ decltype(auto) with_quadrotor(const Quadrotor<double, Effects...>& quadrotor, Fu
 }
 
 namespace detail {
-template <class Vehicle, class Model, class = void>
-struct HasGroundEffectSwitch : std::false_type {};
 template <class Vehicle, class Model>
-struct HasGroundEffectSwitch<Vehicle, Model,
-                             std::void_t<decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()))>>
-    : std::true_type {};
+using GroundEffectSwitchOf = decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()));
 }  // namespace detail
 
 /// Flies `Vehicle` (a Quadrotor<double, Effects...> or a SwitchableQuadrotor) as `Pilot` asks and records it by
@@ -78,7 +75,7 @@ class Simulator {
         settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
     Status status = Status::out_of_range;
     if (clocks_run) status = with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); });
-    if (status == Status::ok) status = detail::RecorderStatus<Recorder>::of(recorder_);
+    if (status == Status::ok) status = detail::recorder_status(recorder_);
     if (status != Status::ok) decline(status);
   }
 
@@ -149,7 +146,7 @@ class Simulator {
   /// SwitchableQuadrotor only.
   template <class Model>
   void set_ground_effect(Model model) {
-    static_assert(detail::HasGroundEffectSwitch<Vehicle, Model>::value,
+    static_assert(is_detected<detail::GroundEffectSwitchOf, Vehicle, Model>,
                   "pinnquad: this vehicle's effects are its type; a ground effect that is set in flight needs a "
                   "SwitchableQuadrotor (simulation/switchable_quadrotor.hpp)");
     quadrotor_.set_ground_effect(model);
@@ -217,7 +214,7 @@ class Simulator {
       return;
     }
     const Sample sample = recorder_(quadrotor, vehicle_, commands_);
-    detail::RecorderColumns<Recorder>::measure(recorder_, quadrotor, vehicle_, extra_.data());
+    if constexpr (detail::has_columns<Recorder>) recorder_.measure(quadrotor, vehicle_, extra_.data());
     if (!all_finite(to_values(sample)) || !all_finite(extra_)) {
       decline(Status::output_not_finite);
       return;
@@ -226,8 +223,8 @@ class Simulator {
   }
 
   void begin_recording() {
-    for (const ColumnName& column : detail::RecorderColumns<Recorder>::of(recorder_)) {
-      recording_.add_column({column, {}});
+    if constexpr (detail::has_columns<Recorder>) {
+      for (const ColumnName& column : recorder_.columns()) recording_.add_column({column, {}});
     }
     extra_.resize(recording_.columns().size());
   }
