@@ -10,6 +10,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/simulation/random_pilot.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Are attitudes read as the log wrote them? Asked of the motion: an attitude turns with the body rates, and the specific force
-// that it turns into the world holds the vehicle up on average.
+// Are attitudes read as the log wrote them? Asked of the motion: an attitude turns with the body rates, and the
+// specific force that it turns into the world holds the vehicle up on average.
 #pragma once
 
 #include <algorithm>
@@ -74,11 +74,12 @@ inline std::string difference_sentence(const AttitudeConvention& log, const Atti
 
 }  // namespace detail
 
-/// Series on one uniform clock, rows with a NaN left out; `q`: w, x, y, z of the attitudes as they were read. In each convention:
-/// the share of the body rates' squares that the turning of the attitude over 0.2 s leaves, and the distance of the mean specific
-/// force in the world to -g, in g (at most 1 each). A finding where the convention of `read` misses by 0.5 or more in sum, and
-/// another by less than a third of that. number: the sum. Limits: a vehicle that neither turns nor tilts says only which way is
-/// up; heading is not judged (no magnetic field is known); rates and force must be in FRD.
+/// Series on one uniform clock, rows with a NaN left out; `q`: w, x, y, z of the attitudes as they were read. In each
+/// convention: the share of the body rates' squares that the turning of the attitude over 0.2 s leaves, and the
+/// distance of the mean specific force in the world to -g, in g (at most 1 each). A finding where the convention of
+/// `read` misses by 0.5 or more in sum, and another by less than a third of that. number: the sum. Limits: a vehicle
+/// that neither turns nor tilts says only which way is up; heading is not judged (no magnetic field is known); rates
+/// and force must be in FRD.
 inline std::optional<Finding> check_attitude(double period_s, const AttitudeConvention& read,
                                              const std::array<const std::vector<double>*, 4>& q,
                                              const std::array<const std::vector<double>*, 3>& body_rates_rad_s,

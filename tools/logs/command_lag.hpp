@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How long after a command the vehicle moves, by how well the delayed commands explain the motion; and commands moved by it.
+// How long after a command the vehicle moves, by how well the delayed commands explain the motion; and commands moved
+// by it.
 #pragma once
 
 #include <algorithm>
@@ -123,14 +124,15 @@ inline double total_say(const CommandLag& lag) noexcept {
 
 }  // namespace detail
 
-/// The lag at which the four commands explain angular accelerations and vertical specific force best: the multiple correlation,
-/// so that neither the order of the motors nor the battery has to be known; a constant and the body rates (damping) explain what
-/// they can first. Both sides are compared as they are, up to 15 Hz and up to 8 Hz, without phase, and the band in which
-/// most is explained is taken: gyro noise that comes back through the controller as commands pulls the plain correlation to
-/// shorter lags, by tens of milliseconds in calm flights.
+/// The lag at which the four commands explain angular accelerations and vertical specific force best: the multiple
+/// correlation, so that neither the order of the motors nor the battery has to be known; a constant and the body rates
+/// (damping) explain what they can first. Both sides are compared as they are, up to 15 Hz and up to 8 Hz, without
+/// phase, and the band in which most is explained is taken: gyro noise that comes back through the controller as
+/// commands pulls the plain correlation to shorter lags, by tens of milliseconds in calm flights.
 /// Segments of one log, each on a uniform clock of `period_s`, commands as they were logged, idle and ground left out.
-/// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands change: 36 to
-/// 40 ms for a time constant of 50 ms; MotorLag says more. A filter's delay in what was measured counts as lag.
+/// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands
+/// change: 36 to 40 ms for a time constant of 50 ms; MotorLag says more. A filter's delay in what was measured counts
+/// as lag.
 inline CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s,
                                        const LagSearch& search = {}) {
   constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
@@ -162,7 +164,8 @@ inline CommandLag estimate_command_lag(const std::vector<Flight>& segments, doub
   return best;
 }
 
-/// A series on a uniform clock, each row with the value of `lag_s` earlier, by lines between rows; NaN where there is none.
+/// A series on a uniform clock, each row with the value of `lag_s` earlier, by lines between rows; NaN where there is
+/// none.
 inline std::vector<double> remove_lag(const std::vector<double>& series, double period_s, double lag_s) {
   constexpr double rounding = 1e-6;  // of a period
   std::vector<double> result(series.size(), std::nan(""));
@@ -178,7 +181,8 @@ inline std::vector<double> remove_lag(const std::vector<double>& series, double 
   return result;
 }
 
-/// The commands of each row replaced by those of `lag_s` earlier; rows that have none are gone. Extra columns stay as they are.
+/// The commands of each row replaced by those of `lag_s` earlier; rows that have none are gone. Extra columns stay as
+/// they are.
 inline Flight remove_lag(Flight segment, double period_s, double lag_s) {
   std::vector<double> commands(segment.size());
   for (std::size_t k = 0; k < rotor_count; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// All quantities of a log on one clock: the table's own rows where the log is one table of even steps, else a uniform clock
-// onto which every topic is resampled. NaN where a quantity has none.
+// All quantities of a log on one clock: the table's own rows where the log is one table of even steps, else a uniform
+// clock onto which every topic is resampled. NaN where a quantity has none.
 #pragma once
 
 #include <algorithm>
@@ -157,8 +157,8 @@ inline std::vector<const Signal*> needed_signals(const BoundLog& log) {
   return needed;
 }
 
-/// That of the slowest of commands, body rates and force, at most 100 Hz: a usual one where it is within a tenth of it (loggers
-/// whose rate is 50 Hz drop a row now and then), else a whole number of microseconds.
+/// That of the slowest of commands, body rates and force, at most 100 Hz: a usual one where it is within a tenth of it
+/// (loggers whose rate is 50 Hz drop a row now and then), else a whole number of microseconds.
 inline double usual_period_s(const BoundLog& log) {
   constexpr double shortest_s = 0.01, near = 0.1;
   double period_s = shortest_s;

@@ -232,10 +232,10 @@ inline void set_clock(LogTopic& topic, const Table& table, const LogSelection& s
 
 }  // namespace csv_log
 
-/// The rows of a CSV table. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation marks as in
-/// RFC 4180: accepted. An empty cell and `nan` are NaN, `inf` is infinite; a column with a cell that is no number is text.
-/// Throws pinnquad::InputError, one line: no header, names that come twice, a row of other length, cells between semicolons or
-/// tabs, decimal commas, a clock that is missing or no number.
+/// The rows of a CSV table. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation
+/// marks as in RFC 4180: accepted. An empty cell and `nan` are NaN, `inf` is infinite; a column with a cell that is no
+/// number is text. Throws pinnquad::InputError, one line: no header, names that come twice, a row of other length,
+/// cells between semicolons or tabs, decimal commas, a clock that is missing or no number.
 inline LogTopic read_csv_topic(const std::string& path, const LogSelection& selection = {}) {
   csv_log::Table table(path, selection);
   LogTopic topic = table.read();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a log leaves to compute: angular acceleration from body rates, specific force from accelerations or velocities, body
-// velocity from that in the world or from positions, height above ground; and the rows of a flight of all of it.
+// What a log leaves to compute: angular acceleration from body rates, specific force from accelerations or velocities,
+// body velocity from that in the world or from positions, height above ground; and the rows of a flight of all of it.
 //   specific force f = v_dot + omega x v - R^T g, whichever of the three was logged
 #pragma once
 
@@ -21,7 +21,8 @@ namespace programs {
 
 using Series3 = std::array<std::vector<double>, 3>;
 
-/// A log's rows as those of a flight, gaps in time where rows were incomplete; beside them whether the vehicle was landed.
+/// A log's rows as those of a flight, gaps in time where rows were incomplete; beside them whether the vehicle was
+/// landed.
 struct LogRows {
   pinnquad::Flight flight;
   std::vector<bool> landed;  ///< by what the log says; empty if it says nothing

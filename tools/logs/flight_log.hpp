@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A log as its file has it: topics, each with columns over a clock of its own. What its columns mean in a flight's terms is said
-// by a mapping, not here.
+// A log as its file has it: topics, each with columns over a clock of its own. What its columns mean in a flight's
+// terms is said by a mapping, not here.
 #pragma once
 
 #include <cstddef>

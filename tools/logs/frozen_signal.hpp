@@ -30,10 +30,10 @@ inline std::vector<IndexRange> frozen_rows(const std::vector<double>& time_s, co
   return runs;
 }
 
-/// Of a signal that is measured and in motion: body rates, specific force, attitude in the air. Not of commands (they saturate),
-/// battery voltage (it is coarse), nor of rows on the ground. number: seconds that are frozen.
-/// Limits: a signal of few digits that hardly moves looks frozen; one that is held longer than it is measured (a topic copied at
-/// a higher rate) does so only from `longest_s` on.
+/// Of a signal that is measured and in motion: body rates, specific force, attitude in the air. Not of commands (they
+/// saturate), battery voltage (it is coarse), nor of rows on the ground. number: seconds that are frozen.
+/// Limits: a signal of few digits that hardly moves looks frozen; one that is held longer than it is measured (a topic
+/// copied at a higher rate) does so only from `longest_s` on.
 inline std::optional<Finding> check_frozen(const std::string& name, const std::vector<double>& time_s,
                                            const std::vector<double>& values, double longest_s = 0.3) {
   const std::vector<IndexRange> runs = frozen_rows(time_s, values, longest_s);

@@ -393,7 +393,8 @@ class Import {
     }
   }
 
-  /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no velocity.
+  /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no
+  /// velocity.
   void require_plausible_flight(const pinnquad::Flight& flight, const std::string& source) const {
     const auto found = pinnquad::find_implausible(flight);
     if (!found) return;

@@ -101,8 +101,8 @@ inline Explained explained_beyond_rates(LagMoments moments) {
   return result;
 }
 
-/// For each lag of `first` to `last` rows (commands that many rows before the motion; `first` may be negative), all over the
-/// same rows, at most about `most_rows` of them. `rows`: how many.
+/// For each lag of `first` to `last` rows (commands that many rows before the motion; `first` may be negative), all
+/// over the same rows, at most about `most_rows` of them. `rows`: how many.
 inline std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, int first, int last, int stride,
                                                std::size_t& rows) {
   constexpr std::size_t most_rows = 8000;

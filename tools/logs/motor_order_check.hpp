@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Are the commands in the order of the airframe's motors? Asked of the motion: each order is fitted to roll, pitch and yaw
-// acceleration with the signs that the airframe's allocation gives it, and the one that explains them says which it is.
+// Are the commands in the order of the airframe's motors? Asked of the motion: each order is fitted to roll, pitch and
+// yaw acceleration with the signs that the airframe's allocation gives it, and the one that explains them says which it
+// is.
 #pragma once
 
 #include <algorithm>
@@ -85,12 +86,12 @@ inline OrderMoments order_moments(const std::vector<LagSeries>& segments) {
 
 }  // namespace detail
 
-/// Of all 24 orders the one whose signed sums explain roll and pitch acceleration best, gains positive; yaw, which is weak,
-/// only tells whether the propellers turn as the airframe says. As they are, or below 8 Hz: gyro noise that comes back as
-/// commands hides the order in calm flights. A finding where that order is not the one that stands, which explains less than
-/// three quarters of it (R^2, mean of both axes). Segments on one uniform clock, lag-aligned (remove_lag()).
-/// Limits: body axes that are x forward, y left, z up look like motors exchanged front for rear, for the commands cannot tell
-/// the two apart: check_rate_frame() can, and is to be asked first.
+/// Of all 24 orders the one whose signed sums explain roll and pitch acceleration best, gains positive; yaw, which is
+/// weak, only tells whether the propellers turn as the airframe says. As they are, or below 8 Hz: gyro noise that comes
+/// back as commands hides the order in calm flights. A finding where that order is not the one that stands, which
+/// explains less than three quarters of it (R^2, mean of both axes). Segments on one uniform clock, lag-aligned
+/// (remove_lag()). Limits: body axes that are x forward, y left, z up look like motors exchanged front for rear, for
+/// the commands cannot tell the two apart: check_rate_frame() can, and is to be asked first.
 inline MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const Airframe<double>& airframe) {
   constexpr double least_explained = 0.05, stands = 0.75, alike = 0.8, yaw_explained = 0.1, corner_Hz = 8;
   using Order = std::array<std::size_t, rotor_count>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How the power of a series is spread over frequency: mean periodogram of overlapping pieces (Welch), never across a gap.
+// How the power of a series is spread over frequency: mean periodogram of overlapping pieces (Welch), never across a
+// gap.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +12,9 @@
 
 namespace pinnquad {
 
-/// Power of each bin k, k = 0..size-1, at frequency k step_Hz, up to half the sampling rate: of white noise of variance s^2 each
-/// has s^2 / (size - 1) (its two ends half that), so that the sum is the variance of the series without its trend.
+/// Power of each bin k, k = 0..size-1, at frequency k step_Hz, up to half the sampling rate: of white noise of variance
+/// s^2 each has s^2 / (size - 1) (its two ends half that), so that the sum is the variance of the series without its
+/// trend.
 struct PowerSpectrum {
   double step_Hz = 0;
   std::vector<double> power;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Are body rates those of the body, in FRD and rad/s? Asked of the motion: over a step of time the attitude turns by them.
+// Are body rates those of the body, in FRD and rad/s? Asked of the motion: over a step of time the attitude turns by
+// them.
 #pragma once
 
 #include <algorithm>
@@ -49,11 +50,11 @@ inline std::array<Vector3<double>, rate_frames> logged_rates(const Sample& a, co
 
 }  // namespace detail
 
-/// Compares, over steps of 0.2 s, what the logged rates would be in each frame with what they are: per axis the share of the rates'
-/// squares that is left unexplained, mean of the three. A finding where body rates leave 0.3 or more, and another frame less than
-/// a third of that. number: the share that body rates leave.
-/// Limits: where the vehicle stays near level and at one heading near north the frames agree, and nothing is found; an attitude
-/// that is wrong by itself shows here, see check_attitude().
+/// Compares, over steps of 0.2 s, what the logged rates would be in each frame with what they are: per axis the share
+/// of the rates' squares that is left unexplained, mean of the three. A finding where body rates leave 0.3 or more, and
+/// another frame less than a third of that. number: the share that body rates leave.
+/// Limits: where the vehicle stays near level and at one heading near north the frames agree, and nothing is found; an
+/// attitude that is wrong by itself shows here, see check_attitude().
 inline std::optional<Finding> check_rate_frame(const std::vector<Flight>& segments) {
   constexpr double unexplained = 0.3, better = 1.0 / 3, smallest_rates = 1e-3;  // mean square, (rad/s)^2
   std::array<Vector3<double>, detail::rate_frames> residual;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A topic's values on another clock: lines between neighbours, the last value held, a local mean where the topic is faster than
-// the clock, attitudes along the shorter arc. NaN where the topic has none: in gaps and outside its time.
+// A topic's values on another clock: lines between neighbours, the last value held, a local mean where the topic is
+// faster than the clock, attitudes along the shorter arc. NaN where the topic has none: in gaps and outside its time.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,14 @@
 namespace pinnquad {
 
 enum class Resampling {
-  linear,  ///< between the neighbours: signals that are smooth at their own rate
-  hold,    ///< the last one before: commands, set points, flags
-  low_pass,  ///< least-squares line under a triangle of +- one period of the new clock: a noisy signal that is faster than it
+  linear,    ///< between the neighbours: signals that are smooth at their own rate
+  hold,      ///< the last one before: commands, set points, flags
+  low_pass,  ///< line under a triangle of +- one period of the new clock: a noisy signal that is faster than it
 };
 
-/// What suits a topic: a signal at more than 1.5 times the new clock's rate is low-passed, or what it has above half the new
-/// rate would fold into the band (the triangle's gain is 0.41 at half the new rate, below 0.05 beyond it once and a half;
-/// no phase). Held signals too: their mean over a period is what the motor saw.
+/// What suits a topic: a signal at more than 1.5 times the new clock's rate is low-passed, or what it has above half
+/// the new rate would fold into the band (the triangle's gain is 0.41 at half the new rate, below 0.05 beyond it once
+/// and a half; no phase). Held signals too: their mean over a period is what the motor saw.
 constexpr Resampling resampling_of(double topic_period_s, double new_period_s, bool held) noexcept {
   if (topic_period_s > 0 && topic_period_s * 1.5 < new_period_s) return Resampling::low_pass;
   return held ? Resampling::hold : Resampling::linear;
@@ -67,8 +67,8 @@ struct LocalLine {
 
 }  // namespace detail
 
-/// `values` by the topic's own row, as in its file; a cell that is NaN is a row that the topic does not have, so that a step
-/// over it may become too long to bridge. `largest_gap_s`: of bridged_gap_s().
+/// `values` by the topic's own row, as in its file; a cell that is NaN is a row that the topic does not have, so that a
+/// step over it may become too long to bridge. `largest_gap_s`: of bridged_gap_s().
 inline std::vector<double> resample(const CleanClock& clock, const std::vector<double>& values, const UniformClock& to,
                                     Resampling kind, double largest_gap_s) {
   std::vector<double> time_s, y;
@@ -116,9 +116,9 @@ inline std::vector<double> resample(const CleanClock& clock, const std::vector<d
   return result;
 }
 
-/// w, x, y, z by row. Between neighbours q and the one of +-q' that is nearer, along the great arc (by the normalised line where
-/// they are within 1e-6 rad, where both agree to rounding). What is no unit quaternion (up to 5 %; it is normalised) is a
-/// missing row. Sign-continuous from row to row.
+/// w, x, y, z by row. Between neighbours q and the one of +-q' that is nearer, along the great arc (by the normalised
+/// line where they are within 1e-6 rad, where both agree to rounding). What is no unit quaternion (up to 5 %; it is
+/// normalised) is a missing row. Sign-continuous from row to row.
 inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& clock,
                                                             const std::array<const std::vector<double>*, 4>& wxyz,
                                                             const UniformClock& to, double largest_gap_s) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rows of a flight that nothing should be learned from: motors at their limits, the vehicle on the ground, values like none of
-// their neighbours.
+// Rows of a flight that nothing should be learned from: motors at their limits, the vehicle on the ground, values like
+// none of their neighbours.
 #pragma once
 
 #include <algorithm>
@@ -21,9 +21,9 @@ inline std::size_t count(const RowMask& rows) noexcept {
   return static_cast<std::size_t>(std::count(rows.begin(), rows.end(), true));
 }
 
-/// A command at `lowest` or `highest`, to a thousandth, or at its own extreme where that was held for `held_rows` rows somewhere (a
-/// limit of the mapping or the mixer below 1): the motor may have been asked for more than the log shows. To be asked of commands as
-/// they were logged: a mean over rows is hardly ever at the limit.
+/// A command at `lowest` or `highest`, to a thousandth, or at its own extreme where that was held for `held_rows` rows
+/// somewhere (a limit of the mapping or the mixer below 1): the motor may have been asked for more than the log shows.
+/// To be asked of commands as they were logged: a mean over rows is hardly ever at the limit.
 inline RowMask saturated_rows(const Flight& flight, double lowest = 0, double highest = 1, std::size_t held_rows = 5) {
   constexpr double close = 1e-3;
   RowMask mask(flight.size(), false);
@@ -60,12 +60,12 @@ struct GroundRules {
   double shortest_air_s = 2;  ///< between two contacts; a shorter hop counts as ground
 };
 
-/// Rows where something else than the rotors bears the vehicle: the specific force along z is what the commands make in the air
-/// (the median ratio of rows with 60 % or more of the usual high collective) and, on the ground, what it bears; a vehicle that
-/// stands with idle motors reads the same 9.81 m/s^2 as one that hovers. There the whole force is the weight, and the speed low:
-/// what air bears in a fast descent is neither. Needs no land detector and no height.
-/// Limits: commands whose thrust is strongly curved (rotor speed) need `held_share` of 0.5; spool-up just before lift-off is only
-/// covered by `margin_s`; a log of which less than a fiftieth is in the air has no usual collective.
+/// Rows where something else than the rotors bears the vehicle: the specific force along z is what the commands make in
+/// the air (the median ratio of rows with 60 % or more of the usual high collective) and, on the ground, what it bears;
+/// a vehicle that stands with idle motors reads the same 9.81 m/s^2 as one that hovers. There the whole force is the
+/// weight, and the speed low: what air bears in a fast descent is neither. Needs no land detector and no height.
+/// Limits: commands whose thrust is strongly curved (rotor speed) need `held_share` of 0.5; spool-up just before
+/// lift-off is only covered by `margin_s`; a log of which less than a fiftieth is in the air has no usual collective.
 inline RowMask grounded_rows(const Flight& flight, double period_s, const GroundRules& rules = {}) {
   constexpr double high = 0.98, share_of_high = 0.6;
   const std::size_t rows = flight.size();
@@ -131,8 +131,8 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
 }
 
 namespace detail {
-/// What outlier_rows() looks at: accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign does not
-/// jump, for near a pitch of 90 degrees roll and yaw do; each with the spread that counts at least.
+/// What outlier_rows() looks at: accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign
+/// does not jump, for near a pitch of 90 degrees roll and yaw do; each with the spread that counts at least.
 struct JudgedColumn {
   std::vector<double> values;
   double smallest_scale;
@@ -158,8 +158,8 @@ inline std::vector<JudgedColumn> judged_columns(const Flight& flight) {
 }  // namespace detail
 
 /// Rows with a value of a measured column that none of its neighbours comes near: further from the median of seven rows
-/// than `spreads` robust spreads of such distances (and of half of what plausibility.hpp calls the smallest scale), with both
-/// neighbours not half as far. Time and commands, which may jump, are not judged.
+/// than `spreads` robust spreads of such distances (and of half of what plausibility.hpp calls the smallest scale),
+/// with both neighbours not half as far. Time and commands, which may jump, are not judged.
 /// Limits: two wrong rows in succession are taken for motion.
 inline RowMask outlier_rows(const Flight& flight, double spreads = 12) {
   constexpr std::size_t around = 3;

@@ -16,8 +16,8 @@ namespace programs {
 
 using pinnquad::RowMask;
 
-/// True where the vehicle stands on the ground: the log says landed, it is lower than the mapping says, or something else than
-/// the rotors bears it.
+/// True where the vehicle stands on the ground: the log says landed, it is lower than the mapping says, or something
+/// else than the rotors bears it.
 inline RowMask on_the_ground(const LogRows& rows, const Mapping& mapping, double period_s) {
   const pinnquad::Flight& flight = rows.flight;
   RowMask out(flight.size(), false);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Order and window of a Savitzky-Golay filter from the series itself: its spectrum says what is signal and what noise, and the
-// filter whose derivative would have the least squared error is taken.
+// Order and window of a Savitzky-Golay filter from the series itself: its spectrum says what is signal and what noise,
+// and the filter whose derivative would have the least squared error is taken.
 #pragma once
 
 #include <algorithm>
@@ -39,8 +39,9 @@ inline double gain(const std::vector<double>& weights, int half_window, int deri
 /// Takes, of orders 2 and 4 and all half windows up to an eighth of the longest segment, 0.5 s and 100 rows, the least
 ///   sum over frequency of (H - |omega|^d)^2 signal + H^2 noise,
 /// H the filter's gain, signal and noise of noise_floor(): the expected squared error of the derivative, bias and noise
-/// together, for noise of any colour that noise_floor() sees. A piece is an eighth to a sixteenth of the longest segment, 1024 rows at most: of a
-/// signal slower than a piece the error is smaller than expected, and a still wider window might be better. Without a segment of 32 rows: order 2, half window 2.
+/// together, for noise of any colour that noise_floor() sees. A piece is an eighth to a sixteenth of the longest
+/// segment, 1024 rows at most: of a signal slower than a piece the error is smaller than expected, and a still wider
+/// window might be better. Without a segment of 32 rows: order 2, half window 2.
 inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& series,
                                                  const std::vector<IndexRange>& segments, double period_s,
                                                  int derivative) {

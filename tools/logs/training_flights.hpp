@@ -22,8 +22,8 @@
 
 namespace programs {
 
-/// Flights, each named by its file, with the extra columns asked for. Throws InputError, and std::invalid_argument for too few rows in all and
-/// for a flight that comes twice: it would be tested on what it was trained on.
+/// Flights, each named by its file, with the extra columns asked for. Throws InputError, and std::invalid_argument for
+/// too few rows in all and for a flight that comes twice: it would be tested on what it was trained on.
 inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows,
                                       const std::vector<pinnquad::ColumnName>& extra = {}) {
   const bool one = paths.size() == 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a ULog file is made of, as PX4's public description of the format has it (docs.px4.io, "ULog File Format"): numbers in
-// little-endian order, messages behind a header of three bytes, basic types of fields.
+// What a ULog file is made of, as PX4's public description of the format has it (docs.px4.io, "ULog File Format"):
+// numbers in little-endian order, messages behind a header of three bytes, basic types of fields.
 #pragma once
 
 #include <algorithm>

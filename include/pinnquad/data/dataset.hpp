@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recorded flights: rows in time order with whatever else was measured, many flights as one dataset, and the number that names
-// their content. The number goes into exported headers: it says what a model was trained on.
+// Recorded flights: rows in time order with extra columns, many flights as one dataset, and the hash of their content.
+// Exported headers hold the hash: it says on which data a model was trained.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@
 
 namespace pinnquad {
 
-/// What a flight has measured besides the numbers of a Sample: battery voltage, rotor speed, anything with a name and a unit.
+/// A measurement besides the numbers of a Sample: battery voltage, rotor speed, anything with a name and a unit.
 struct ColumnName {
   std::string name;  ///< "battery_voltage"
   std::string unit;  ///< "V"
@@ -33,17 +33,17 @@ struct ExtraColumn : ColumnName {
   std::vector<double> values;
 };
 
-/// Rows of one flight on one clock, time strictly increasing (CSV files and Dataset insist on it), and its extra columns.
+/// Rows of one flight on one clock, time strictly increasing (CSV files and Dataset insist on it), and its extra
+/// columns.
 class Flight {
  public:
   using value_type = Sample;
   using iterator = std::vector<Sample>::iterator;
   using const_iterator = std::vector<Sample>::const_iterator;
 
-  std::string name;  ///< by which a dataset, a message or a report means this flight
-  std::string
-      trajectory;  ///< what was flown; of flights that name the same one, a split by trajectory parts none. May be empty
-  double weight = 1;  ///< how often its rows are seen in training, relative to those of other flights
+  std::string name;        ///< by which a dataset, a message or a report means this flight
+  std::string trajectory;  ///< a split by trajectory parts no flights of one trajectory. May be empty
+  double weight = 1;       ///< how often its rows are seen in training, relative to those of other flights
 
   Flight() = default;
   explicit Flight(std::size_t rows) : samples_(rows) {}
@@ -97,7 +97,8 @@ class Flight {
     }
     return nullptr;
   }
-  /// Throws std::invalid_argument for a column without a name, of a name that is taken, or of another length than the flight.
+  /// Throws std::invalid_argument for a column without a name, of a name that is taken, or of another length than the
+  /// flight.
   void add_column(ExtraColumn column) {
     if (column.name.empty()) throw std::invalid_argument("flight: an extra column needs a name");
     for (const std::string_view taken : sample_field_names) {
@@ -127,8 +128,8 @@ class Dataset {
   /// A flight alone is a dataset.
   explicit Dataset(Flight flight) { add(std::move(flight)); }
 
-  /// Throws std::invalid_argument, one line, and adds nothing: a name that another flight has, time that does not increase from
-  /// row to row, a weight that is no positive number.
+  /// Throws std::invalid_argument, one line, and adds nothing: a name that another flight has, time that does not
+  /// increase from row to row, a weight that is no positive number.
   void add(Flight flight) {
     for (const Flight& other : flights_) {
       if (other.name == flight.name) {
@@ -174,8 +175,8 @@ inline void absorb_number(Fnv1a& fnv, double value) {
 }  // namespace detail
 
 /// Provenance of a flight: 64-bit FNV-1a over the number of rows and the IEEE 754 bits of every value, each as eight
-/// bytes, least significant first, rows in order, values in the order of `sample_field_names`; then extra column by extra
-/// column, its name, its unit and its values. Name, trajectory and weight are no content.
+/// bytes, least significant first, rows in order, values in the order of `sample_field_names`; then extra column by
+/// extra column, its name, its unit and its values. Name, trajectory and weight are no content.
 /// The same on every compiler and byte order. All NaNs count as one; 0 and -0 differ. No protection against forgery.
 inline std::uint64_t content_hash(const Flight& flight) {
   detail::Fnv1a fnv;
@@ -191,7 +192,8 @@ inline std::uint64_t content_hash(const Flight& flight) {
   return fnv.hash;
 }
 
-/// Provenance of a dataset: of one flight that flight's, of several the FNV-1a of their number and of each one's, in order.
+/// Provenance of a dataset: of one flight that flight's, of several the FNV-1a of their number and of each one's, in
+/// order.
 inline std::uint64_t content_hash(const Dataset& dataset) {
   if (dataset.size() == 1) return content_hash(dataset[0]);
   detail::Fnv1a fnv;

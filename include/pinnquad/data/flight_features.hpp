@@ -53,9 +53,9 @@ std::array<Scalar, static_cast<std::size_t>(Features::size)> sample_features(con
 }
 
 /// Reads Inputs from consecutive rows of one flight. Contract of a specialisation: made of the rows, which may throw
-/// std::invalid_argument, one line, for what the flight has not measured; `bool read(row, inputs) const`, row an index of the
-/// flight within the rows: false where the rows do not hold what these inputs need, and then nothing is written. It never
-/// looks beyond its rows.
+/// std::invalid_argument, one line, for what the flight has not measured; `bool read(row, inputs) const`, row an index
+/// of the flight within the rows: false where the rows do not hold what these inputs need, and then nothing is written.
+/// It never looks beyond its rows.
 /// This one, for every Inputs that has a SampleInputs, looks at the row alone.
 template <class Inputs>
 class FlightInputs {
@@ -71,8 +71,7 @@ class FlightInputs {
   const Flight* flight_;
 };
 
-/// Inputs with extra columns, each found in the flight by its name. Throws std::invalid_argument for a column that the flight
-/// has not, or has in another unit.
+/// Inputs with extra columns, found by name. Throws std::invalid_argument for one that is absent or in another unit.
 template <class Base, class Scalar, class... Column>
 class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
  public:
@@ -103,8 +102,8 @@ class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
   std::array<const std::vector<double>*, sizeof...(Column)> columns_;
 };
 
-/// Windows about a row, which is their present instant; the taps are interpolated as in flight (features/input_history.hpp).
-/// False where a tap lies beyond these rows or behind a gap: no window crosses a border.
+/// Windows about a row, which is their present instant; the taps are interpolated as in flight
+/// (features/input_history.hpp). False where a tap lies beyond these rows or behind a gap: no window crosses a border.
 template <class Tap, class Scalar, class Window>
 class FlightInputs<WindowInputs<Tap, Scalar, Window>> {
  public:

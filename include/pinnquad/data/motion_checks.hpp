@@ -28,13 +28,14 @@ struct Implausible {
   std::string found;      ///< "that of w_y negated"
 };
 
-/// Which columns are in degrees.
+/// Columns in degrees.
 struct DegreesFound {
   std::array<bool, 3> angle{};  ///< roll, pitch, yaw
   bool body_rates = false;      ///< all three
 };
 
-/// Body rates, mean over a step of `dt_s`, that turn the attitude (roll, pitch, yaw, rad) of its begin into that of its end.
+/// Body rates, mean over a step of `dt_s`, that turn the attitude (roll, pitch, yaw, rad) of its begin into that of its
+/// end.
 inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const std::array<double, 3>& end, double dt_s) {
   const auto quaternion = [](const std::array<double, 3>& angles) {
     return from_euler(EulerAngles<double>{angles[0], angles[1], angles[2]});
@@ -91,10 +92,10 @@ void for_each_turning_step(const Flight& flight, Visit&& visit) {
 
 }  // namespace detail
 
-/// Tries every choice of angles in degrees with rates in rad/s and in deg/s: the share of the rates' squares that the turning
-/// of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to row. Degrees are
-/// found only where radians explain next to nothing (0.8 is left or more) and degrees more than half: a flight that hardly
-/// turns, noise and gaps in time decide nothing.
+/// Tries every choice of angles in degrees with rates in rad/s and in deg/s: the share of the rates' squares that the
+/// turning of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to
+/// row. Degrees are found only where radians explain next to nothing (0.8 is left or more) and degrees more than half:
+/// a flight that hardly turns, noise and gaps in time decide nothing.
 inline detail::DegreesFound find_degrees_by_motion(const Flight& flight) {
   constexpr double unexplained = 0.8, explained = 0.5;
   constexpr double smallest_rates = 1e-6;  // mean square
@@ -221,8 +222,8 @@ inline std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const 
 
 /// Correlates, over steps of 0.04 s or of a row, the change of each body rate and velocity with the integral of each
 /// acceleration. A mistake where a column follows another axis, or its own negated, by 0.25 better than its own; where
-/// it follows its own in another unit; where vdot leaves 0.3 or more of the change of v unexplained, and another meaning
-/// of it less than a quarter of that.
+/// it follows its own in another unit; where vdot leaves 0.3 or more of the change of v unexplained, and another
+/// meaning of it less than a quarter of that.
 /// Measured, correlation of a column with its own axis, and most with another: the paper's flights above 0.88 and 0.17,
 /// the independent simulator's above 0.97 and 0.12, real logs above 0.73 and 0.45 (or 1.00 and 0.8); under gyro noise
 /// that drowns the motion 0 and 0.03.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Can this be a recorded flight? Per column its unit and physical range, a robust search for cells that fit no neighbour, and
-// the mistakes of unit that logs have: commands as pulse widths or percent, angles in degrees. A network trains on nonsense
-// without complaint; what it learned then flies.
+// Checks that a flight can be one: per column its unit and physical range, a robust search for cells that fit no
+// neighbour, and the mistakes of unit that logs have: commands as pulse widths or percent, angles in degrees. A network
+// trains on nonsense without complaint, and then flies it.
 #pragma once
 
 #include <algorithm>
@@ -26,12 +26,12 @@ namespace pinnquad {
 
 namespace detail {
 
-/// What a column of `sample_field_names` may hold. The range is what any multirotor can reach, not what is usual.
+/// The values that a column of `sample_field_names` may hold: all that any multirotor can reach.
 struct ColumnPlausibility {
   const char* unit;
   double lowest;
   double highest;
-  /// A robust spread below this counts as this much, for a column that hardly varies. 0: no outliers are sought.
+  /// Least robust deviation, for a column that hardly varies. 0: no outliers are sought.
   double smallest_scale;
 };
 
@@ -51,10 +51,10 @@ inline constexpr std::array<detail::ColumnPlausibility, sample_value_count> colu
     {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}}};
 // clang-format on
 
-/// A cell further than this many robust spreads from its column's median, both of whose neighbours in time are not half as
-/// far, is no measurement: what moves is there for more than one row. The flights of the paper's pilots, those of an
-/// independent simulator and real logs stay below 8, an angle that wraps round below 26.
-inline constexpr double most_robust_spreads = 30;
+/// A cell further than this many robust deviations from its column's median, both of whose neighbours in time are not
+/// half as far, is no measurement: motion lasts longer than a row. The paper's pilots, an independent simulator and
+/// real logs stay below 8, an angle that wraps round below 26.
+inline constexpr double most_robust_deviations = 30;
 
 namespace detail {
 
@@ -74,8 +74,8 @@ inline double median_of(std::vector<double> series) {
   return *middle;
 }
 
-/// What commands outside 0..1 most likely are, and how to convert them; empty if nothing known. Judged by nine cells in ten,
-/// so that a single wrong cell does not hide the rest.
+/// The likely unit of commands outside 0..1, and how to convert them; empty if unknown. Nine cells in ten decide: a
+/// single wrong cell does not hide the rest.
 inline std::string command_mistake(const Flight& flight) {
   std::vector<double> cells;
   for (const Sample& sample : flight) cells.insert(cells.end(), sample.commands.begin(), sample.commands.end());
@@ -112,7 +112,8 @@ inline std::optional<Implausible> find_implausible_command(const Flight& flight)
   return std::nullopt;
 }
 
-/// The first cell outside its column's physical range; NaN and infinity are outside every range, as is what no float holds.
+/// The first cell outside its column's physical range; NaN and infinity are outside every range, as is what no float
+/// holds.
 inline std::optional<Implausible> find_out_of_range(const Flight& flight) {
   for (std::size_t row = 0; row < flight.size(); ++row) {
     const SampleValues values = to_values(flight[row]);
@@ -137,7 +138,7 @@ inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t
   for (const double value : values) distance.push_back(std::abs(value - median));
   const double scale = std::max(normal * median_of(distance), column.smallest_scale);
   std::optional<Implausible> worst;
-  double furthest = most_robust_spreads * scale;
+  double furthest = most_robust_deviations * scale;
   for (std::size_t row = 0; row < distance.size(); ++row) {
     if (!(distance[row] > furthest)) continue;
     const double before = row > 0 ? distance[row - 1] : 0;
@@ -190,8 +191,7 @@ inline std::optional<Implausible> find_degrees(const Flight& flight) {
   return std::nullopt;
 }
 
-/// InputError at the value of a flight that was read from `path`; where that is no file (any more), at the place that the
-/// value has in one of ours.
+/// InputError at the value of a flight that was read from `path`; without the file, at its place in one of ours.
 inline InputError implausible_in_file(const std::string& path, const Implausible& found) {
   constexpr std::size_t lines_before_rows = 1;
   std::size_t rows = 0, in_line = found.row + lines_before_rows + 1, in_column = found.field + 1;
@@ -208,9 +208,9 @@ inline InputError implausible_in_file(const std::string& path, const Implausible
 
 }  // namespace detail
 
-/// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of another
-/// unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its neighbours,
-/// accelerations that are not the derivatives of rates and velocity. None for a flight.
+/// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of
+/// another unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its
+/// neighbours, accelerations that are not the derivatives of rates and velocity. None for a flight.
 inline std::optional<detail::Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
@@ -233,8 +233,8 @@ inline void require_plausible(const std::string& path, const Flight& flight) {
   if (const auto found = find_implausible(flight)) throw detail::implausible_in_file(path, *found);
 }
 
-/// Throws InputError where a command stands still in a block of a flight that was read from `path`: nothing to learn there,
-/// and nothing to judge by. `block_name` as in "training rows".
+/// Throws InputError where a command stands still in a block of a flight that was read from `path`: it teaches nothing.
+/// `block_name`: "training".
 inline void require_varied_commands(const std::string& path, const Flight& flight, const IndexRange& block,
                                     const std::string& block_name) {
   constexpr double smallest_range = 1e-6;  // a float's rounding

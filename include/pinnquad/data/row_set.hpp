@@ -27,16 +27,16 @@ struct FlightRows {
   IndexRange rows;
 };
 
-/// Pieces of flights in the order in which they were added. Where two meet there is a border: rows on its two sides are no
-/// neighbours in time, whatever their stamps say.
+/// Pieces of flights in the order in which they were added. Rows of two pieces are no neighbours in time, whatever
+/// their stamps say.
 class RowSet {
  public:
   RowSet() = default;
   RowSet(const Flight& flight, const IndexRange& rows) { add(flight, rows); }
   RowSet(const Flight&&, const IndexRange&) = delete;  // the flight would be gone
 
-  /// Rows of a flight, none of them a part of the set yet; no rows add nothing. Throws std::invalid_argument for rows that the
-  /// flight does not have.
+  /// Rows of a flight, none of them a part of the set yet; no rows add nothing. Throws std::invalid_argument for rows
+  /// that the flight does not have.
   void add(const Flight& flight, const IndexRange& rows) {
     if (rows.begin > rows.end || rows.end > flight.size()) {
       throw std::invalid_argument("row set: expected rows of a flight of " + std::to_string(flight.size()) +
@@ -65,9 +65,9 @@ class RowSet {
   std::vector<std::size_t> ends_;  ///< per piece: rows up to and including it
 };
 
-/// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of two
-/// pieces differ by more than `tolerance` of the first: then there is no one period. To the nanosecond, as a block holds it:
-/// times are sums of steps.
+/// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of
+/// two pieces differ by more than `tolerance` of the first: then there is no one period. To the nanosecond, as a block
+/// holds it: times are sums of steps.
 inline double sample_period_s(const RowSet& rows, double tolerance = 0.01) {
   double period = 0;
   for (const FlightRows& piece : rows.pieces()) {

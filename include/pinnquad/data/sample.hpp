@@ -12,7 +12,8 @@
 namespace pinnquad {
 
 /// One row of a recorded flight: the motion at one instant and the commands that cause it.
-/// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world. docs/guide.md has the same as columns of a CSV.
+/// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world. docs/guide.md has the same as columns of a
+/// CSV.
 struct Sample {
   double time_s = 0;  ///< strictly increasing from row to row; any start
   /// Derivative of the body-frame velocity, FRD: v_dot_B = R^T a_world - omega x v_B (Eq. (1)).
@@ -24,8 +25,8 @@ struct Sample {
   double pitch_rad = 0;
   double yaw_rad = 0;
   double altitude_m = 0;  ///< of the vehicle's centre above the ground below it, positive up
-  /// u_i, 0..1, as told to the motor at this instant, before its lag: (n_i / n_max)^2, which is thrust over the greatest thrust,
-  /// unless the airframe's rotors have a curve (dynamics/actuator.hpp).
+  /// u_i, 0..1, as given to the motor at this instant, before its lag: (n_i / n_max)^2, which is thrust over the
+  /// greatest thrust, unless the airframe's rotors have a curve (dynamics/actuator.hpp).
   /// Front right, rear left, front left, rear right: the order of Eq. (2).
   Commands<double> commands{};
 };

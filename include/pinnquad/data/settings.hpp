@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Numbers of a training's policies (losses, schedules, optimisers) that make no sense. A policy that can hold such numbers has
-// `void check() const`, which throws std::invalid_argument, its text one line; a policy made of others asks them. The Trainer
-// asks before it begins.
+// Checks of the numbers of a training's policies (losses, schedules, optimisers). A policy with numbers that could make
+// no sense has `void check() const`, which throws std::invalid_argument, one line; a policy made of others checks them.
+// The Trainer checks before it begins.
 #pragma once
 
 #include <limits>
@@ -57,7 +57,7 @@ constexpr void expect_from_zero(const char* setting, double value) {
 }
 }  // namespace detail
 
-/// Asks a policy for its numbers; one without check() has none that could be wrong.
+/// Runs a policy's check(), if it has one.
 template <class Policy>
 constexpr void check_settings(const Policy& policy) {
   static_assert(

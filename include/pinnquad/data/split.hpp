@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Training, validation and test rows: of one flight in contiguous blocks (Figs. 5 and 6), of a dataset by whole flights,
-// by whole trajectories, or by a contiguous part of each flight. No row is in two blocks.
+// Training, validation and test rows: of one flight in contiguous blocks (Figs. 5 and 6), of a dataset by whole
+// flights, by whole trajectories, or by a contiguous part of each flight. No row is in two blocks.
 // Blocks, not a random draw: neighbouring rows are alike, and a draw would leak training rows into the test.
 #pragma once
 
@@ -81,8 +81,8 @@ struct RowSplit {
   RowSet test;
 };
 
-/// Each flight into three contiguous blocks, as split_contiguous() does it: the end of every flight is tested. A dataset of one
-/// flight is split as that flight. Throws what split_contiguous() throws.
+/// Each flight into three contiguous blocks, as split_contiguous() does it: the end of every flight is tested. A
+/// dataset of one flight is split as that flight. Throws what split_contiguous() throws.
 inline RowSplit split_each_flight(const Dataset& dataset, const SplitShares& shares = {}) {
   RowSplit split;
   for (const Flight& flight : dataset.flights()) {
@@ -97,8 +97,8 @@ RowSplit split_each_flight(const Dataset&&, const SplitShares& = {}) = delete;  
 
 namespace detail {
 
-/// Groups of flights, each group whole, in order of `groups`: the first ones train, the next validate, the last test. The
-/// borders are where the shares of the rows are met best, so that each block with a share above 0 has a group.
+/// Groups of flights, each group whole, in order of `groups`: the first ones train, the next validate, the last test.
+/// The borders are where the shares of the rows are met best, so that each block with a share above 0 has a group.
 inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& groups, const SplitShares& shares,
                              const char* what) {
   require_shares(shares);
@@ -143,9 +143,9 @@ inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& grou
 
 }  // namespace detail
 
-/// Whole flights, in the dataset's order: the first ones train, then come those that validate, and the last ones test. Each block
-/// takes as many flights as come closest to its share of the rows, and one at least; a flight without rows is in none.
-/// Throws std::invalid_argument, one line: shares that are no shares; fewer flights than blocks.
+/// Whole flights, in the dataset's order: the first ones train, then come those that validate, and the last ones test.
+/// Each block takes as many flights as come closest to its share of the rows, and one at least; a flight without rows
+/// is in none. Throws std::invalid_argument, one line: shares that are no shares; fewer flights than blocks.
 inline RowSplit split_by_flight(const Dataset& dataset, const SplitShares& shares = {}) {
   std::vector<std::vector<const Flight*>> groups;
   for (const Flight& flight : dataset.flights()) {
@@ -155,8 +155,8 @@ inline RowSplit split_by_flight(const Dataset& dataset, const SplitShares& share
 }
 RowSplit split_by_flight(const Dataset&&, const SplitShares& = {}) = delete;
 
-/// The same with whole trajectories, in the order in which the dataset names them first: what is tested was never flown in
-/// training. A flight that names no trajectory is one of its own.
+/// The same with whole trajectories, in the order in which the dataset names them first: what is tested was never flown
+/// in training. A flight that names no trajectory is one of its own.
 inline RowSplit split_by_trajectory(const Dataset& dataset, const SplitShares& shares = {}) {
   std::vector<std::vector<const Flight*>> groups;
   for (const Flight& flight : dataset.flights()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Does a prediction respect angular momentum? About each axis the signed command sum S (a row of Eq. (2)) and the angular
-// acceleration must run alike. Measures: the covariance confidence ellipse (CCE) of the cloud, drawn at 3 sigma (Figs. 2
-// and 8), the angle of its principal axis, whose difference from target to prediction is the paper's Delta m, the slope
-// and the signs of steps.
+// Does a prediction respect angular momentum? About each axis the signed command sum S (a row of Eq. (2)) and the
+// angular acceleration must run alike. Measures: the covariance confidence ellipse (CCE) of the cloud, drawn at 3 sigma
+// (Figs. 2 and 8), the angle of its principal axis, whose difference from target to prediction is the paper's Delta m,
+// the slope and the signs of steps.
 #pragma once
 
 #include <algorithm>

@@ -115,8 +115,8 @@ class PartialFile {
 };
 
 /// Writes `path.partial-N` in the folder of `path` and renames it to `path` on commit(). A file that was there stays as
-/// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file; one that
-/// a killed program left is taken up again by the next writer of that path, one of a living writer is left alone.
+/// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file; one
+/// that a killed program left is taken up again by the next writer of that path, one of a living writer is left alone.
 /// A link is followed: its target is replaced. Whole after a crash of the program, not after a loss of power (no sync).
 /// Throws OutputError, one line: folder missing or not writable, a folder, a device, a write-protected file, disk full.
 class AtomicFile {

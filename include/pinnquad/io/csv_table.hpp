@@ -63,12 +63,12 @@ class QuotationState {
   Place place_ = Place::begin;
 };
 
-/// The cells of a record in which there are quotation marks; `unquoted` holds the text of those that are quoted.
-/// A cell that goes on behind its closing mark is taken as it stands, marks and all.
+/// The cells of a record with quotation marks; `unquoted` holds the text of the quoted ones. A cell that goes on behind
+/// its closing mark is taken as it stands.
 inline void split_quoted_fields(std::string_view record, std::vector<std::string_view>& fields, std::string& unquoted) {
   fields.clear();
   unquoted.clear();
-  unquoted.reserve(record.size());  // what is appended never moves
+  unquoted.reserve(record.size());  // then an append moves nothing
   for (;;) {
     std::string_view rest = record;
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
@@ -119,8 +119,7 @@ inline std::string csv_cell(std::string_view text) {
   return cell + '"';
 }
 
-/// Records of so many cells that a file holds at most: no more than its lines, and a record has a digit and a separator per
-/// cell.
+/// Most records of so many cells that a file can hold: one per line, a digit and a separator per cell.
 inline std::size_t most_records(const std::string& path, std::size_t cells) {
   TextFile file(path);
   std::size_t bytes = 0, ends = 0;
@@ -133,8 +132,8 @@ inline std::size_t most_records(const std::string& path, std::size_t cells) {
   return std::min(ends, bytes / (2 * cells)) + 1;
 }
 
-/// The records of a comma-separated file, one after the other: a line each, or more where a quoted cell holds line ends.
-/// A byte order mark is skipped. No more of the file is held than a block and a record.
+/// The records of a comma-separated file: a line each, or more where a quoted cell holds line ends. A byte order mark
+/// is skipped. Memory holds a block and a record.
 class CsvRecords {
  public:
   explicit CsvRecords(const std::string& path) : file_(path), buffer_(read_block) {
@@ -221,8 +220,8 @@ struct CsvTable {
   std::vector<std::vector<double>> rows;
 };
 
-/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column that is
-/// missing or there twice, and for cells between semicolons or tabs.
+/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column
+/// that is missing or there twice, and for cells between semicolons or tabs.
 inline std::vector<std::size_t> locate_columns(const std::string& path, const std::vector<std::string_view>& header,
                                                const std::vector<std::string>& columns) {
   std::vector<std::size_t> fields;
@@ -265,7 +264,7 @@ inline std::vector<std::string> csv_header(const std::string& path) {
 }
 
 /// Reads the named columns and calls `on_row(values, line, fields)` for each row: its values in the order of `columns`,
-/// its line, and the field index (from 0) of each column. Returns nothing: the callee keeps what it wants.
+/// its line, and the field index (from 0) of each column.
 template <class OnRow>
 void for_each_csv_row(const std::string& path, const std::vector<std::string>& columns, std::size_t minimum_rows,
                       OnRow on_row) {
@@ -325,9 +324,10 @@ void for_each_csv_row(const std::string& path, const std::vector<std::string>& c
 }  // namespace detail
 
 /// Reads the named columns of a table, in the order asked for. In the file they may stand in any order; other columns
-/// are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation marks
-/// as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled column, a row of other
-/// length, a cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than `minimum_rows` rows.
+/// are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end,
+/// quotation marks as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled
+/// column, a row of other length, a cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than
+/// `minimum_rows` rows.
 inline CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
                          std::size_t minimum_rows = 1) {
   CsvTable table;
@@ -341,8 +341,8 @@ inline CsvTable read_csv(const std::string& path, const std::vector<std::string>
 
 namespace detail {
 
-/// Writes a table row by row; the file appears whole, on commit(), or not at all. NaN and Inf are written as nan and inf
-/// (gnuplot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
+/// Writes a table row by row; the file appears whole, on commit(), or not at all. NaN and Inf are written as nan and
+/// inf (gnuplot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
 /// std::invalid_argument for a row of other length than the header and a column without a name.
 class CsvWriter {
  public:
@@ -382,7 +382,7 @@ class CsvWriter {
 
   AtomicFile file_;
   std::size_t width_;
-  std::string text_;  ///< what is not yet handed to the file
+  std::string text_;  ///< not yet handed to the file
 };
 
 }  // namespace detail

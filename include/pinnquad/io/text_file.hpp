@@ -46,8 +46,8 @@ inline void require_regular_file(const std::string& path) {
 
 namespace detail {
 
-/// A regular file open for reading. Throws InputError: no such file, a folder, a device, a pipe, too many bytes; from read():
-/// an error of the device.
+/// A regular file open for reading. Throws InputError: no such file, a folder, a device, a pipe, too many bytes; from
+/// read(): an error of the device.
 class TextFile {
  public:
   explicit TextFile(const std::string& path) : path_(path) {

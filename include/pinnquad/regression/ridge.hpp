@@ -98,8 +98,8 @@ struct EigenPairs {
 
 }  // namespace detail
 
-/// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit that fits
-/// a ridge four seconds longer to compile, for a case that is rare.
+/// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit
+/// that fits a ridge four seconds longer to compile, for a case that is rare.
 inline detail::EigenPairs eigen_pairs(Eigen::MatrixXd a) {
   constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
   const Eigen::Index size = a.rows();
@@ -122,8 +122,8 @@ inline detail::EigenPairs eigen_pairs(Eigen::MatrixXd a) {
   return {a.diagonal(), vectors};
 }
 
-/// X of A X = B, of all that come closest to it the one of least norm: what A does not tell is 0. A: symmetric, no eigenvalue
-/// below 0 but by rounding; its diagonal of one order of magnitude, or 0.
+/// X of A X = B, of all that come closest to it the one of least norm: what A does not tell is 0. A: symmetric, no
+/// eigenvalue below 0 but by rounding; its diagonal of one order of magnitude, or 0.
 inline Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(a.rows());
   const Eigen::LLT<Eigen::MatrixXd> factors(a);
@@ -141,8 +141,8 @@ inline Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::Ma
   return x;
 }
 
-/// Lower triangular W with W A W' = 1: the inverse of Cholesky's factor. A: symmetric, its lower triangle is read. Empty where
-/// A is not positive definite, by rounding too, or not finite.
+/// Lower triangular W with W A W' = 1: the inverse of Cholesky's factor. A: symmetric, its lower triangle is read.
+/// Empty where A is not positive definite, by rounding too, or not finite.
 inline std::optional<Eigen::MatrixXd> whitening_of(const Eigen::MatrixXd& a) {
   const Eigen::LLT<Eigen::MatrixXd> factors(a);
   // Eigen takes NaN and infinity for positive; a row's reach its diagonal.
@@ -158,8 +158,8 @@ inline void require_penalty(double penalty) {
 }
 }  // namespace detail
 
-/// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A feature that
-/// stands still, or that the others repeat, does no harm, without a penalty too (regression/ridge.hpp).
+/// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A
+/// feature that stands still, or that the others repeat, does no harm, without a penalty too (regression/ridge.hpp).
 /// Throws std::invalid_argument for no rows and for a penalty that is no number from 0.
 inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken = {}) {
   if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
@@ -211,7 +211,7 @@ inline double squared_error(const RegressionSums& sums, const AffineMap& map) {
   return sum * sums.rows();
 }
 
-/// Penalties that are tried: half decades, of features and outputs with spread 1.
+/// Penalties that are tried: half decades, of features and outputs with standard deviation 1.
 inline std::vector<double> usual_penalties() {
   return {1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0};
 }
@@ -226,8 +226,8 @@ struct PenaltyChoice {
 
 }  // namespace detail
 
-/// The penalty that predicts best what was left out: each group of rows (a trajectory with its repeats) by the fit to all
-/// others. Throws std::invalid_argument for fewer than two groups or no candidate.
+/// The penalty that predicts best what was left out: each group of rows (a trajectory with its repeats) by the fit to
+/// all others. Throws std::invalid_argument for fewer than two groups or no candidate.
 inline detail::PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
                                             const std::vector<double>& candidates = usual_penalties(),
                                             const std::vector<bool>& taken = {}) {
@@ -268,10 +268,10 @@ struct WeightBound {
 
 }  // namespace detail
 
-/// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Each choice of bounds that hold with equality is solved; of those that keep all bounds the one of least cost
-/// is taken, which is the minimum: the cost is convex. Throws std::invalid_argument for no rows, several outputs, a
-/// penalty that is no number from 0, more than 8 bounds, a bound of a feature that is not taken, and where no choice
-/// keeps all.
+/// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Each choice of bounds that hold
+/// with equality is solved; of those that keep all bounds the one of least cost is taken, which is the minimum: the
+/// cost is convex. Throws std::invalid_argument for no rows, several outputs, a penalty that is no number from 0, more
+/// than 8 bounds, a bound of a feature that is not taken, and where no choice keeps all.
 inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken,
                                    const std::vector<detail::WeightBound>& bounds) {
   constexpr std::size_t most_bounds = 8;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The paper's three flights (Sec. 5.2) as types: which effects act, who flies, for how long. The pilots' styles are fitted
-// to what a vehicle can do at a place, found through its own inverse: a heavy one is not asked to climb as a racer does.
-// Contract of a flight: `name`, `summary`, `Vehicle` and `SwitchableVehicle` (the same effects, and a ground effect that a
-// program may choose), `ground_effect` (of the flight as the paper has it), `plan()` and
+// The paper's three flights (Sec. 5.2) as types: which effects act, who flies, for how long. The pilots' styles are
+// fitted to what a vehicle can do at a place, found through its own inverse: a heavy one is not asked to climb as a
+// racer does. Contract of a flight: `name`, `summary`, `Vehicle` and `SwitchableVehicle` (the same effects, and a
+// ground effect that a program may choose), `ground_effect` (of the flight as the paper has it), `plan()` and
 // `pilot(vehicle, engine, max_speed_m_s)`.
 #pragma once
 
@@ -33,8 +33,8 @@ inline double largest_fraction(const Rotors<double>& rotors, const Commands<doub
 }
 }  // namespace detail
 
-/// Share of its thrust that the rotor with most to do gives in hover at a place; NaN if the inverse gives no answer. Above the
-/// share that the controller asks for at most (0.97, flight_limits) the airframe cannot stay up.
+/// Share of its thrust that the rotor with most to do gives in hover at a place; NaN if the inverse gives no answer.
+/// Above the share that the controller asks for at most (0.97, flight_limits) the airframe cannot stay up.
 template <class AnyVehicle>
 double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) {
   return with_quadrotor(vehicle, [&](const auto& quadrotor) {
@@ -74,7 +74,7 @@ PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vec
   while (style.max_descent_m_s > step_m_s && command_at(style.max_descent_m_s) < least) {
     style.max_descent_m_s -= step_m_s;
   }
-  const double most_descent_m_s = fall_per_climb * style.max_climb_m_s;  // what falls must be caught again
+  const double most_descent_m_s = fall_per_climb * style.max_climb_m_s;  // a fall must be caught again
   if (style.max_descent_m_s > most_descent_m_s) style.max_descent_m_s = most_descent_m_s;
   const double calm = (1 - hover_command) / calm_reserve;
   if (calm < 1) {
@@ -138,7 +138,8 @@ struct AgileFlight {
 };
 
 /// D2: take-offs, hovers, low traverses and landings with the centre 0.1 to 2 m above ground, drag and ground effect
-/// (Conyers); 6,000 rows at 0.05 s. There is no contact with the ground: a landed vehicle hovers on its last centimetres.
+/// (Conyers); 6,000 rows at 0.05 s. There is no contact with the ground: a landed vehicle hovers on its last
+/// centimetres.
 struct NearGroundFlight {
   static constexpr const char* name = "d2";
   static constexpr const char* summary = "near the ground, 0.1 to 2 m, with drag and ground effect";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A pilot who flies low at random: take-offs, hovers, low traverses and landings, one sortie after the other.
-// What he flies shows the ground effect at every height where it acts; the same engine state gives the same flight.
+// His flights show the ground effect at every height where it acts; the same engine state gives the same flight.
 #pragma once
 
 #include <cmath>
@@ -38,15 +38,16 @@ struct NearGroundStyle {
 
 namespace detail {
 
-/// What the pilot is at.
+/// Phase of a sortie.
 enum class NearGroundPhase { stay, take_off, hover, traverse, landing };
 
 }  // namespace detail
 
-/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. The height
-/// follows a profile from leg to leg, h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T (take-off, landing,
-/// and a traverse, which changes height on the way), and the climb asked for is h' + lead h'' + gain (h - height).
-/// Velocities north and east are targets followed with a lag, as are yaw rates; stick noise goes on all the time.
+/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. The
+/// height follows a profile from leg to leg, h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T (take-off,
+/// landing, and a traverse, which changes height on the way), and the climb asked for is h' + lead h'' + gain (h -
+/// height). Velocities north and east are targets followed with a lag, as are yaw rates; stick noise goes on all the
+/// time.
 template <class Engine>
 class NearGroundPilot {
  public:

@@ -58,8 +58,8 @@ class Thumbs {
         drive_(std::sqrt(1 - memory_ * memory_)),
         spread_rad_s_(style.roll_pitch_spread_rad_s, style.roll_pitch_spread_rad_s, style.yaw_spread_rad_s) {}
 
-  /// Moves the sticks if a frame is due; rad/s about the body axes, FRD. To be called in time order, once per tick; with
-  /// a tick longer than a frame one frame per tick arrives.
+  /// Moves the sticks if a frame is due; rad/s about the body axes, FRD. To be called in time order, once per tick;
+  /// with a tick longer than a frame one frame per tick arrives.
   template <class Engine>
   void move(Engine& engine, double time_s, Vector3<double>& stick_rad_s) {
     constexpr double early = 1e-6;  // a frame is due on a tick although both times are rounded

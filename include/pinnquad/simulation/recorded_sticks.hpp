@@ -14,7 +14,7 @@ namespace pinnquad {
 
 namespace detail {
 
-/// What was asked of the flight controller at one time.
+/// A set point and its time.
 struct StickRow {
   double time_s{0};
   SetPoint<double> set_point{};
@@ -70,8 +70,8 @@ inline void write_sticks_csv(const std::string& path, const StickRecording& reco
 }
 
 /// Asks for what a recording says, linear between its rows; before the first row for what that one says, after the last
-/// for a hover. At the very time of a row its numbers come back bit for bit: a recording of every control tick flies the
-/// same flight again.
+/// for a hover. At the very time of a row its numbers come back bit for bit: a recording of every control tick flies
+/// the same flight again.
 class RecordedSticks {
  public:
   explicit RecordedSticks(StickRecording recording) : recording_(std::move(recording)) {}

@@ -8,7 +8,8 @@
 //     the row of the present instant; `commands` are those held up to it.
 // Optional: `Status status() const noexcept`, asked before the flight: whether its settings make sense;
 //   std::vector<ColumnName> columns() const, and for each row, behind it, a value per column:
-//   template <class... Effects> void measure(const Quadrotor<double, Effects...>&, const VehicleState<double>&, double* values).
+//   template <class... Effects>
+//   void measure(const Quadrotor<double, Effects...>&, const VehicleState<double>&, double* values).
 #pragma once
 
 #include <cstddef>

@@ -55,8 +55,8 @@ using GroundEffectSwitchOf = decltype(std::declval<Vehicle&>().set_ground_effect
 /// A tick: the pilot's set point, the controller's demand, the inverse's commands, desaturated, and physics
 /// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
 /// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
-/// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row, and
-/// no_solution on the way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that
+/// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row,
+/// and no_solution on the way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that
 /// moment, and what was recorded stays.
 template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
 class Simulator {
@@ -117,9 +117,9 @@ class Simulator {
   double altitude_m() const {  ///< above ground
     return with_quadrotor(quadrotor_, [this](const auto& actual) { return this->above_ground(actual); });
   }
-  /// What the motors were last told, not clipped.
+  /// The last motor commands, not clipped.
   const Commands<double>& commands() const noexcept { return commands_; }
-  /// What the motors must be told for a hover at the present place and time in calm attitude, not clipped; through the
+  /// Motor commands for a hover at the present place and time in level attitude, not clipped; through the
   /// vehicle's effects. The inverse's Status (vehicle/inverse.hpp); `commands` is untouched unless it is ok.
   Status hover_commands(Commands<double>& commands) const {
     State<double> hover;
@@ -277,7 +277,7 @@ struct RecordedFlight {
   FlightReport report;
 };
 
-/// What an observer is told after each row: how far the flight is, the true state, and the row as recorded.
+/// The argument of an observer after each row: how far the flight is, the true state, and the row as recorded.
 struct FlightRow {
   std::size_t rows_done;
   std::size_t rows;  ///< of the plan
