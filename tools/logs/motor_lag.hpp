@@ -20,16 +20,9 @@ struct MotorLag {
   bool found = false;                  ///< otherwise nothing but CommandLag's lag is known
   std::string warning;                 ///< empty for none
 
-  /// What slow commands see.
+  /// The lag of slow commands.
   double equivalent_delay_s() const noexcept { return time_constant_s + delay_s; }
 };
-
-/// Commands as the motors followed them: behind a pure delay and a first-order lag; NaN at the first rows, see
-/// remove_lag().
-inline std::vector<double> apply_motor_lag(std::vector<double> commands, double period_s, const MotorLag& lag) {
-  detail::apply_first_order_lag(commands, period_s, lag.time_constant_s);
-  return remove_lag(commands, period_s, lag.delay_s);
-}
 
 /// Time constants of 0 to 0.16 s and delays of the search, in the band of `pure` and over the motions that it found:
 /// first on a grid, then between its neighbours. Segments and clock as for estimate_command_lag(), whose answer `pure`
