@@ -221,7 +221,7 @@ inline Signal bind_source(const FlightLog& log, const Mapping& mapping, const So
   for (std::vector<double>& column : signal.values) {
     for (double& value : column) value *= source.in_si;
   }
-  signal.clock = std::make_shared<const pinnquad::CleanClock>(pinnquad::clean_clock(time_s));
+  signal.clock = std::make_shared<const CleanClock>(clean_clock(time_s));
   if (source.quantity == Quantity::attitude && !source.euler) detail::require_unit(signal);
   to_our_frames(source, signal.values);
   if (source.quantity == Quantity::motors) {

@@ -12,7 +12,7 @@
 #include "logs/common_clock.hpp"
 #include "logs/finding.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 namespace detail {
 inline std::string short_number(double value) {
@@ -71,4 +71,4 @@ inline std::optional<Finding> check_log_rate(const std::string& topic, double pe
   return Finding{"log_rate", 1 / period_s, "Hz", sentence};
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -12,7 +12,7 @@
 
 #include "logs/lagged_motion.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct LagSearch {
   double longest_s = 0.2;     ///< motors and links are faster
@@ -133,7 +133,7 @@ inline double total_say(const CommandLag& lag) noexcept {
 /// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands
 /// change: 36 to 40 ms for a time constant of 50 ms; MotorLag says more. A filter's delay in what was measured counts
 /// as lag.
-inline CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s,
+inline CommandLag estimate_command_lag(const std::vector<pinnquad::Flight>& segments, double period_s,
                                        const LagSearch& search = {}) {
   constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
   const std::vector<detail::LagSeries> series = detail::lag_series(segments);
@@ -183,9 +183,9 @@ inline std::vector<double> remove_lag(const std::vector<double>& series, double 
 
 /// The commands of each row replaced by those of `lag_s` earlier; rows that have none are gone. Extra columns stay as
 /// they are.
-inline Flight remove_lag(Flight segment, double period_s, double lag_s) {
+inline pinnquad::Flight remove_lag(pinnquad::Flight segment, double period_s, double lag_s) {
   std::vector<double> commands(segment.size());
-  for (std::size_t k = 0; k < rotor_count; ++k) {
+  for (std::size_t k = 0; k < pinnquad::rotor_count; ++k) {
     for (std::size_t row = 0; row < segment.size(); ++row) commands[row] = segment[row].commands[k];
     const std::vector<double> earlier = remove_lag(commands, period_s, lag_s);
     for (std::size_t row = 0; row < segment.size(); ++row) segment[row].commands[k] = earlier[row];
@@ -194,4 +194,4 @@ inline Flight remove_lag(Flight segment, double period_s, double lag_s) {
   return segment;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

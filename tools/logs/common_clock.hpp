@@ -14,7 +14,7 @@
 
 #include "pinnquad/data/split.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 /// What was done to a topic's clock, in rows.
 struct ClockReport {
@@ -143,4 +143,4 @@ inline UniformClock common_clock(const std::vector<const CleanClock*>& topics, d
   return {first * period_s, period_s, static_cast<std::size_t>(last - first) + 1};
 }
 
-}  // namespace pinnquad
+}  // namespace programs

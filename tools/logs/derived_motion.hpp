@@ -47,10 +47,9 @@ inline Series3 derivative(const CommonRows& rows, const Series3& series, int ord
   std::string told = what + " by Savitzky-Golay, rows (order):";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<pinnquad::IndexRange> runs = finite_runs(rows, series[axis]);
-    const pinnquad::SavitzkyGolay filter =
-        pinnquad::choose_savitzky_golay(series[axis], runs, rows.period_s, order).filter;
-    derived[axis] = pinnquad::savitzky_golay(series[axis], runs, rows.period_s, filter, order);
-    const std::size_t edge = pinnquad::edge_rows(filter);
+    const SavitzkyGolay filter = choose_savitzky_golay(series[axis], runs, rows.period_s, order).filter;
+    derived[axis] = savitzky_golay(series[axis], runs, rows.period_s, filter, order);
+    const std::size_t edge = edge_rows(filter);
     for (const pinnquad::IndexRange& run : runs) {
       for (std::size_t row = run.begin; row < run.end; ++row) {
         if (row - run.begin < edge || run.end - row <= edge) derived[axis][row] = std::nan("");

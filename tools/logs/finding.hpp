@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-namespace pinnquad {
+namespace programs {
 
 struct Finding {
   std::string check;     ///< "rate_frame", "motor_order": for scripts
@@ -19,4 +19,4 @@ namespace detail {
 inline std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 }  // namespace detail
 
-}  // namespace pinnquad
+}  // namespace programs

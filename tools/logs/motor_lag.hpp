@@ -10,7 +10,7 @@
 
 #include "logs/command_lag.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct MotorLag {
   double time_constant_s = 0;
@@ -29,7 +29,7 @@ struct MotorLag {
 /// is. Limits: of a calm flight the two are hardly told apart, and the gyro's noise, which comes back as commands,
 /// makes both look longer: a warning says so. A logged command holds until the next: half a period of it counts as
 /// delay.
-inline MotorLag fit_motor_lag(const std::vector<Flight>& segments, double period_s, const CommandLag& pure,
+inline MotorLag fit_motor_lag(const std::vector<pinnquad::Flight>& segments, double period_s, const CommandLag& pure,
                               const LagSearch& search = {}) {
   constexpr double clear = 0.95;
   MotorLag best;
@@ -96,4 +96,4 @@ inline MotorLag fit_motor_lag(const std::vector<Flight>& segments, double period
   return best;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -10,7 +10,7 @@
 
 #include "logs/power_spectrum.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct NoiseFloor {
   double power = 0;            ///< of a bin
@@ -88,4 +88,4 @@ inline NoiseFloor noise_floor(const PowerSpectrum& spectrum) {
   return floor;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -13,7 +13,7 @@
 #include "logs/common_clock.hpp"
 #include "pinnquad/core/rotation.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 enum class Resampling {
   linear,    ///< between the neighbours: signals that are smooth at their own rate
@@ -124,15 +124,15 @@ inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& cl
                                                             const UniformClock& to, double largest_gap_s) {
   constexpr double norm_tolerance = 0.05;
   std::vector<double> time_s;
-  std::vector<Quaternion<double>> q;
+  std::vector<pinnquad::Quaternion<double>> q;
   for (std::size_t i = 0; i < clock.size(); ++i) {
     const std::size_t row = clock.row[i];
-    Quaternion<double> one{(*wxyz[0])[row], (*wxyz[1])[row], (*wxyz[2])[row], (*wxyz[3])[row]};
-    const double norm = std::sqrt(squared_norm(one));
+    pinnquad::Quaternion<double> one{(*wxyz[0])[row], (*wxyz[1])[row], (*wxyz[2])[row], (*wxyz[3])[row]};
+    const double norm = std::sqrt(pinnquad::squared_norm(one));
     if (!(std::abs(norm - 1) <= norm_tolerance)) continue;
-    one = normalized(one);
+    one = pinnquad::normalized(one);
     if (!q.empty()) {
-      const Quaternion<double>& b = q.back();
+      const pinnquad::Quaternion<double>& b = q.back();
       if (one.w * b.w + one.x * b.x + one.y * b.y + one.z * b.z < 0) one = {-one.w, -one.x, -one.y, -one.z};
     }
     time_s.push_back(clock.time_s[i]);
@@ -148,11 +148,11 @@ inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& cl
       at = 0;
       continue;
     }
-    Quaternion<double> value = q[at];
+    pinnquad::Quaternion<double> value = q[at];
     const double since = std::max(0.0, to.at(row) - time_s[at]);
     if (since > detail::same_time_s) {
       if (at + 1 == time_s.size() || time_s[at + 1] - time_s[at] > largest_gap_s + detail::same_time_s) continue;
-      const Quaternion<double>& b = q[at + 1];
+      const pinnquad::Quaternion<double>& b = q[at + 1];
       const double share = since / (time_s[at + 1] - time_s[at]);
       const double cosine = std::min(1.0, value.w * b.w + value.x * b.x + value.y * b.y + value.z * b.z);
       const double angle = std::acos(cosine);
@@ -161,8 +161,9 @@ inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& cl
         of_a = std::sin((1 - share) * angle) / std::sin(angle);
         of_b = std::sin(share * angle) / std::sin(angle);
       }
-      value = normalized(Quaternion<double>{of_a * value.w + of_b * b.w, of_a * value.x + of_b * b.x,
-                                            of_a * value.y + of_b * b.y, of_a * value.z + of_b * b.z});
+      value =
+          pinnquad::normalized(pinnquad::Quaternion<double>{of_a * value.w + of_b * b.w, of_a * value.x + of_b * b.x,
+                                                            of_a * value.y + of_b * b.y, of_a * value.z + of_b * b.z});
     }
     result[0][row] = value.w;
     result[1][row] = value.x;
@@ -172,4 +173,4 @@ inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& cl
   return result;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -14,7 +14,7 @@
 
 #include "pinnquad/data/split.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 /// A polynomial of `order` over 2 `half_window` + 1 rows.
 struct SavitzkyGolay {
@@ -156,10 +156,11 @@ inline std::vector<double> savitzky_golay(const std::vector<double>& segment, do
 }
 
 /// Segment by segment; rows in none of them are NaN.
-inline std::vector<double> savitzky_golay(const std::vector<double>& series, const std::vector<IndexRange>& segments,
-                                          double period_s, const SavitzkyGolay& filter, int derivative) {
+inline std::vector<double> savitzky_golay(const std::vector<double>& series,
+                                          const std::vector<pinnquad::IndexRange>& segments, double period_s,
+                                          const SavitzkyGolay& filter, int derivative) {
   std::vector<double> result(series.size(), std::nan(""));
-  for (const IndexRange& segment : segments) {
+  for (const pinnquad::IndexRange& segment : segments) {
     const auto from = series.begin() + static_cast<std::ptrdiff_t>(segment.begin);
     const std::vector<double> part(from, from + static_cast<std::ptrdiff_t>(segment.size()));
     const std::vector<double> derived = savitzky_golay(part, period_s, filter, derivative);
@@ -169,11 +170,11 @@ inline std::vector<double> savitzky_golay(const std::vector<double>& series, con
 }
 
 /// Runs of at least `minimum_rows` rows without NaN or infinity in any of the series, which are of one length.
-inline std::vector<IndexRange> finite_segments(const std::vector<const std::vector<double>*>& series,
-                                               std::size_t minimum_rows = 1) {
-  std::vector<IndexRange> segments;
+inline std::vector<pinnquad::IndexRange> finite_segments(const std::vector<const std::vector<double>*>& series,
+                                                         std::size_t minimum_rows = 1) {
+  std::vector<pinnquad::IndexRange> segments;
   const std::size_t rows = series.empty() ? 0 : series.front()->size();
-  IndexRange open;
+  pinnquad::IndexRange open;
   for (std::size_t row = 0; row <= rows; ++row) {
     const bool whole = row < rows && std::all_of(series.begin(), series.end(), [row](const std::vector<double>* one) {
                          return std::isfinite((*one)[row]);
@@ -188,4 +189,4 @@ inline std::vector<IndexRange> finite_segments(const std::vector<const std::vect
   return segments;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -13,7 +13,7 @@
 #include "logs/power_spectrum.hpp"
 #include "logs/savitzky_golay.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct SavitzkyGolayChoice {
   SavitzkyGolay filter;
@@ -43,7 +43,7 @@ inline double gain(const std::vector<double>& weights, int half_window, int deri
 /// segment, 1024 rows at most: of a signal slower than a piece the error is smaller than expected, and a still wider
 /// window might be better. Without a segment of 32 rows: order 2, half window 2.
 inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& series,
-                                                 const std::vector<IndexRange>& segments, double period_s,
+                                                 const std::vector<pinnquad::IndexRange>& segments, double period_s,
                                                  int derivative) {
   constexpr std::size_t shortest_piece = 32, longest_piece = 1024, most_half_window = 100;
   constexpr double longest_half_window_s = 0.5, pi = 3.14159265358979323846;
@@ -51,7 +51,7 @@ inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& seri
   detail::require_savitzky_golay(choice.filter, derivative);
   choice.bandwidth_Hz = 0.5 / period_s;
   std::size_t longest = 0;
-  for (const IndexRange& segment : segments) longest = std::max(longest, segment.size());
+  for (const pinnquad::IndexRange& segment : segments) longest = std::max(longest, segment.size());
   std::size_t length = shortest_piece;
   while (length < longest_piece && 16 * length <= longest) length *= 2;
   const PowerSpectrum spectrum = power_spectrum(series, segments, period_s, length);
@@ -84,4 +84,4 @@ inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& seri
   return choice;
 }
 
-}  // namespace pinnquad
+}  // namespace programs
