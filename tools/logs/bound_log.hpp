@@ -118,7 +118,7 @@ inline std::vector<double> at_same_times(const std::vector<double>& time_s, cons
   return matched;
 }
 
-/// What no attitude can be: a row with numbers that are no unit quaternion. One of zeros is a row without attitude.
+/// Throws for a row whose numbers are no unit quaternion; zeros are a row without attitude.
 inline void require_unit(const Signal& signal) {
   constexpr double tolerance = 0.05;
   for (std::size_t row = 0; row < signal.topic->size(); ++row) {

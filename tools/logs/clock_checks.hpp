@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a topic's clock tells of the log: time that jumps, a recording that starts again, a logger that was too slow or
+// Findings of a topic's clock: time that jumps, a recording that starts again, a logger that was too slow or
 // lost rows.
 #pragma once
 

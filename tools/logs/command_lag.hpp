@@ -115,7 +115,7 @@ inline CommandLag command_lag_of(const std::vector<LagSeries>& series, const Lag
   return result;
 }
 
-/// What all motions found have to say at their best: by it one band is preferred to another.
+/// The weight of all motions found, at their best: it prefers one band to another.
 inline double total_say(const CommandLag& lag) noexcept {
   double total = 0;
   for (const MotionLag& motion : lag.motions) total += motion.found ? say(motion.explained) : 0;

@@ -16,7 +16,7 @@
 
 namespace programs {
 
-/// What was done to a topic's clock, in rows.
+/// The cleaning of a topic's clock, in rows.
 struct ClockReport {
   std::size_t rows_read = 0;
   std::size_t not_a_time = 0;      ///< NaN or infinite: left out

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a log leaves to compute: angular acceleration from body rates, specific force from accelerations or velocities,
-// body velocity from that in the world or from positions, height above ground; and the rows of a flight of all of it.
+// Quantities that a log leaves to compute: angular acceleration from body rates, specific force from accelerations or
+// velocities, body velocity from that in the world or from positions, height above ground; and the rows of a flight of
+// all of it.
 //   specific force f = v_dot + omega x v - R^T g, whichever of the three was logged
 #pragma once
 

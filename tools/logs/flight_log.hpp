@@ -52,7 +52,7 @@ struct LogTopic {
   }
 };
 
-/// What the vehicle said while it flew.
+/// A message of the vehicle in flight.
 struct LogMessage {
   double time_s = 0;
   int level = 6;  ///< as syslog: 0 emergency to 7 debug

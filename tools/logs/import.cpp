@@ -34,7 +34,7 @@ namespace {
 /// Fewest rows of a flight: a batch of training.
 constexpr std::size_t minimum_rows = 64;
 
-/// What the steps cost, summed over logs.
+/// Rows that the steps cost, summed over logs.
 class Steps {
  public:
   explicit Steps(std::vector<ImportStep>& steps) : steps_(steps) {}

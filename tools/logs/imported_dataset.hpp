@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `import` makes of flight logs: flights on one clock, and what was done to get them.
+// The product of `import`: flights on one clock, and the steps that led there.
 #pragma once
 
 #include <cstddef>

@@ -136,7 +136,7 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
   }
 }
 
-/// What every source has.
+/// Keys of every source.
 void read_place(TomlTable& table, const toml::table& node, Source& source) {
   constexpr double most_instances = 255;
   source.place = place_of(node);

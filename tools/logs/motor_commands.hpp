@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a log says of its motors as commands of a Sample: front right, rear left, front left, rear right, 0..1, whose
+// A log's motors as commands of a Sample: front right, rear left, front left, rear right, 0..1, whose
 // meaning is that of the airframe's thrust curves.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What of a spectrum is noise: the level at which it stops falling. A vehicle is a low-pass, so that what it does sinks
+// The noise of a spectrum: the level at which it stops falling. A vehicle is a low-pass, so that what it does sinks
 // with frequency; a sensor's noise lies flat until the sensor's own filter ends it.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a flight's rows are made of, and the units in which logs have it.
+// The quantities of a flight's rows, and the units in which logs have them.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace programs {
 
-/// What a mapping may say of a log. The order is that of a mapping's messages.
+/// The quantities that a mapping may name. The order is that of a mapping's messages.
 enum class Quantity {
   attitude,
   body_rates,
@@ -27,7 +27,7 @@ enum class Quantity {
   extra  ///< any other column, for models that take it: not among `quantities`
 };
 
-/// What a unit measures.
+/// The dimension of a unit.
 enum class Dimension { time, angle, turning, angular_acceleration, acceleration, speed, length, rotor_speed, none };
 
 struct QuantityFacts {

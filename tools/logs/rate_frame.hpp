@@ -30,7 +30,7 @@ inline constexpr std::array<const char*, rate_frames> rate_frame_sentences = {
     "rates are "
     "negated"};
 
-/// What a log would hold as body rates if the vehicle turns with `turning` (body, FRD) while it is at `a`.
+/// The body rates of a log if the vehicle turns with `turning` (body, FRD) while it is at `a`.
 inline std::array<pinnquad::Vector3<double>, rate_frames> logged_rates(const pinnquad::Sample& a,
                                                                        const pinnquad::Sample& b,
                                                                        const pinnquad::Vector3<double>& turning) {

@@ -21,9 +21,9 @@ enum class Resampling {
   low_pass,  ///< line under a triangle of +- one period of the new clock: a noisy signal that is faster than it
 };
 
-/// What suits a topic: a signal at more than 1.5 times the new clock's rate is low-passed, or what it has above half
-/// the new rate would fold into the band (the triangle's gain is 0.41 at half the new rate, below 0.05 beyond it once
-/// and a half; no phase). Held signals too: their mean over a period is what the motor saw.
+/// The resampling that suits a topic: a signal at more than 1.5 times the new clock's rate is low-passed, or what it
+/// has above half the new rate would fold into the band (the triangle's gain is 0.41 at half the new rate, below 0.05
+/// beyond it once and a half; no phase). Held signals too: their mean over a period is what the motor saw.
 constexpr Resampling resampling_of(double topic_period_s, double new_period_s, bool held) noexcept {
   if (topic_period_s > 0 && topic_period_s * 1.5 < new_period_s) return Resampling::low_pass;
   return held ? Resampling::hold : Resampling::linear;

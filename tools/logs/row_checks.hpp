@@ -132,7 +132,7 @@ inline RowMask grounded_rows(const pinnquad::Flight& flight, double period_s, co
 }
 
 namespace detail {
-/// What outlier_rows() looks at: accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign
+/// Columns of outlier_rows(): accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign
 /// does not jump, for near a pitch of 90 degrees roll and yaw do; each with the spread that counts at least.
 struct JudgedColumn {
   std::vector<double> values;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an accelerometer at the centre of gravity would read in a row of a flight.
+// The reading of an accelerometer at the centre of gravity in a row of a flight.
 #pragma once
 
 #include "pinnquad/core/rotation.hpp"

@@ -100,7 +100,7 @@ inline void print_split(const pinnquad::Dataset& dataset, const pinnquad::RowSpl
               flight_names(split.validation).c_str(), flight_names(split.test).c_str());
 }
 
-/// What report.json says of the flights: of one its name, of several which block each went to.
+/// The flights in report.json: of one its name, of several which block each went to.
 inline nlohmann::json described(const pinnquad::Dataset& dataset, const pinnquad::RowSplit& split) {
   nlohmann::json result = {{"flight", flight_names(dataset)},
                            {"flight_hash", pinnquad::hexadecimal(pinnquad::content_hash(dataset))},

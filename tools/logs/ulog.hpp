@@ -264,7 +264,7 @@ inline FlightLog parse_ulog(std::string_view file, const std::string& name, cons
   return ulog::Reader(file, name, selection).read();
 }
 
-/// What is whole of a log that a crash cut is read, and what was lost is said in `warnings`, with the byte. Throws
+/// Reads the whole part of a log that a crash cut; `warnings` name the lost part, with the byte. Throws
 /// pinnquad::InputError, one line with the byte: no ULog file, one that needs a newer reader, definitions that make no
 /// sense.
 inline FlightLog read_ulog(const std::string& path, const LogSelection& selection = {}) {

@@ -83,7 +83,7 @@ inline std::set<std::string> logs_of(const std::vector<File>& files, const LogSe
   return logs;
 }
 
-/// Which log's files to read. Throws InputError: there is none, or more than one and nobody chose.
+/// The log whose files are read. Throws InputError: there is none, or more than one and nobody chose.
 inline std::string choose_log(const std::string& folder, const std::vector<File>& files,
                               const LogSelection& selection) {
   if (!selection.prefix.empty()) {

@@ -21,7 +21,7 @@ struct Message {
   std::uint64_t place = 0;  ///< of its header's first byte in the file
 };
 
-/// What a reader made of a message.
+/// The outcome of reading a message.
 enum class Taken { yes, unknown };
 
 /// Hands over every message of a file. A message that a crash cut is left out. What is wrong is an error before the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a Crazyflie writes to its uSD card: events, each with named variables, as its firmware's deck driver says and
+// A Crazyflie's log on its uSD card: events, each with named variables, as its firmware's deck driver says and
 // its own reader reads (versions 1 and 2). Times are those of the firmware's clock.
 #pragma once
 
