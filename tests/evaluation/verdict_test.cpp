@@ -5,9 +5,9 @@
 
 #include <limits>
 
-using pinnquad::PredictionErrors;
 using pinnquad::Verdict;
 using pinnquad::verdict_on;
+using pinnquad::detail::PredictionErrors;
 
 namespace {
 

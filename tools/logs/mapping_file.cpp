@@ -11,7 +11,7 @@
 #include "command_line/nearest_names.hpp"
 #include "command_line/toml_table.hpp"
 #include "logs/name_pattern.hpp"
-#include "pinnquad/data/sample.hpp"
+#include "pinnquad/data/dataset.hpp"
 
 namespace programs {
 namespace {

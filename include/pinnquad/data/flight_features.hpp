@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/row_set.hpp"
-#include "pinnquad/data/sample.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/features/input_history.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Algorithm 1: where an angular acceleration rises, the matching signed sum of motor commands should rise too.
+// Losses between an angular acceleration and the matching signed sum of motor commands: local monotonicity (Algorithm 1:
+// where one rises, the other should rise too), and Pearson's correlation for the comparison (Sec. 4.2 argues against it).
 #pragma once
 
 #include <cmath>
@@ -138,19 +139,6 @@ typename Array::Scalar local_monotonicity(const Step& step, const Array& m, cons
   return (Scalar(1) - steps.m * steps.n).sum() / pairs;
 }
 
-/// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It wants
-/// equal steps, not only equal signs. Adds weight * d/dm to `gradient`.
-template <class Step, class Array>
-typename Array::Scalar monotonicity_match(const Step& step, const Array& m, const Array& n,
-                                          typename Array::Scalar weight, Array& gradient) {
-  using Scalar = typename Array::Scalar;
-  const detail::StepPairs<Array> steps(step, m, n);
-  if (steps.count < 1) return Scalar(0);
-  const auto pairs = static_cast<Scalar>(steps.count);
-  steps.add_gradient(step, (Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
-  return (steps.m - steps.n).square().sum() / pairs;
-}
-
 /// Form of the loss, default: both series divided by their standard deviations in the training set, mean over the pairs
 /// (docs/paper.md, deviations 8 and 9).
 struct Standardised {
@@ -177,14 +165,20 @@ struct Literal {
   }
 };
 
-/// Form of the loss for equal steps, on standardised series (not in the paper).
+/// Form of the loss for equal steps, not only equal signs, on standardised series (not in the paper): mean over the pairs
+/// of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0.
 struct Match {
   static constexpr double gain = 3.0;
   static constexpr bool physical_units = false;
   template <class Step, class Array>
   static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
                                         Array& gradient) {
-    return monotonicity_match(step, m, n, weight, gradient);
+    using Scalar = typename Array::Scalar;
+    const detail::StepPairs<Array> steps(step, m, n);
+    if (steps.count < 1) return Scalar(0);
+    const auto pairs = static_cast<Scalar>(steps.count);
+    steps.add_gradient(step, (Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
+    return (steps.m - steps.n).square().sum() / pairs;
   }
 };
 
@@ -239,6 +233,41 @@ struct LocalMonotonicity {
     }
     typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
     const Scalar value = Form::compare(step, series.commands, series.angular_acceleration, weight, by_commands);
+    series.add_gradient(by_commands, gradient);
+    return value;
+  }
+};
+
+/// 1 - r(m, n), r = sum (m - mean m)(n - mean n) / (|m - mean m| |n - mean n|): 0 correlated, 1 unrelated, 2 opposed.
+/// Adds weight * d/dm to `gradient`. A series that stands still has no correlation: 1, no gradient; a single sample
+/// gives 0.
+template <class Array>
+typename Array::Scalar pearson_loss(const Array& m, const Array& n, typename Array::Scalar weight, Array& gradient) {
+  using Scalar = typename Array::Scalar;
+  using std::sqrt;
+  if (m.size() < 2) return Scalar(0);
+  const Array a = m - m.mean();
+  const Array b = n - n.mean();
+  const Scalar a_squared = a.square().sum();
+  const Scalar lengths = sqrt(a_squared * b.square().sum());
+  if (!(lengths > Scalar(0))) return Scalar(1);
+  const Scalar correlation = (a * b).sum() / lengths;
+  // dr/dm = b / (|a| |b|) - r a / |a|^2: the means drop out, both have sum 0
+  gradient -= weight * (b / lengths - (correlation / a_squared) * a);
+  return Scalar(1) - correlation;
+}
+
+/// The same between the signed sum of predicted commands and the angular acceleration about one axis; units drop out.
+template <class Axis>
+struct PearsonCorrelation {
+  template <class Context, class Batch, class Gradient>
+  typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
+                                  Gradient& gradient) const {
+    using Scalar = typename Batch::Scalar;
+    using Series = detail::SignedCommandSum<Axis, Context, Batch>;
+    const Series series(context, batch, Scalar(1));
+    typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
+    const Scalar value = pearson_loss(series.commands, series.angular_acceleration, weight, by_commands);
     series.add_gradient(by_commands, gradient);
     return value;
   }

@@ -19,13 +19,15 @@
 
 namespace pinnquad {
 
-/// The three clocks, the place and the controller's gains.
-struct SimulationSettings {
+/// The clocks, the place, the controller's gains, and how long fly() flies. The default is the paper's data set: 15,000
+/// rows at 0.05 s, 750 s.
+struct FlightPlan {
   double physics_step_s{0.001};
   int steps_per_control{2};            ///< controller at 500 Hz; the commands are held over these steps
   int controls_per_sample{25};         ///< a row every 0.05 s
   Vector3<double> start_m{0, 0, -35};  ///< NED; the flight starts there in hover
   FlightGains<double> gains{};
+  std::size_t samples{15000};  ///< rows that fly() records; a Simulator goes on for as long as it is asked
 
   double control_period_s() const noexcept { return physics_step_s * steps_per_control; }
   double sample_period_s() const noexcept { return control_period_s() * controls_per_sample; }
@@ -66,7 +68,7 @@ class Simulator {
                 "(simulation/recorder.hpp)");
 
  public:
-  explicit Simulator(const Vehicle& quadrotor, Pilot pilot, const SimulationSettings& settings = {},
+  explicit Simulator(const Vehicle& quadrotor, Pilot pilot, const FlightPlan& settings = {},
                      Recorder recorder = Recorder{})
       : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
     vehicle_.body.position_m = settings.start_m;
@@ -131,7 +133,7 @@ class Simulator {
 
   const Vehicle& quadrotor() const noexcept { return quadrotor_; }
   const Pilot& pilot() const noexcept { return pilot_; }
-  const SimulationSettings& settings() const noexcept { return settings_; }
+  const FlightPlan& settings() const noexcept { return settings_; }
 
   /// The rows so far, or since the last take_recording().
   const Flight& recording() const noexcept { return recording_; }
@@ -242,7 +244,7 @@ class Simulator {
   Vehicle quadrotor_;
   Pilot pilot_;
   Recorder recorder_;
-  SimulationSettings settings_;
+  FlightPlan settings_;
   FlightController<double> controller_;
   VehicleState<double> vehicle_{};
   Commands<double> commands_{};
@@ -251,12 +253,6 @@ class Simulator {
   std::vector<double> extra_;  ///< of a row, before it is recorded
   FlightEnd end_{FlightEnd::completed};
   Status status_{Status::ok};
-};
-
-/// How long to fly, and the settings of the simulator. The default is the paper's data set: 15,000 samples at 0.05 s,
-/// 750 s.
-struct FlightPlan : SimulationSettings {
-  std::size_t samples{15000};
 };
 
 /// A flight in figures. Ranges are those of the true motion, not of what a recorder made of it, at the recorded rows.
