@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/evaluation/auroc.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/pinnquad.hpp"
 #include "pinnquad/training/structured/residual_fit.hpp"

@@ -29,8 +29,9 @@
 #include "pinnquad/dynamics/airframes/px4_sih.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
-#include "pinnquad/simulation/fly.hpp"
-#include "pinnquad/simulation/noisy_recorder.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/recorder.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
 
 namespace {
@@ -201,9 +202,9 @@ Vehicle vehicle_of(const Choices& choices) {
   return vehicle;
 }
 
-SimulationSettings settings_of(const Choices& choices) {
+FlightPlan settings_of(const Choices& choices) {
   const Triple& start = checked("start_m", choices.start_m);
-  SimulationSettings settings;
+  FlightPlan settings;
   settings.start_m = Vector3<double>(start[0], start[1], start[2]);
   if (start[2] >= paper_site<double>().ground_z_m) {
     throw py::value_error("start_m must lie above the ground, which is at z = 0.877 m (NED: up is negative)");
@@ -408,7 +409,7 @@ PYBIND11_MODULE(pinnquad_sim, module) {
   module.def("ground_effects", &ground_effect_names, "Names of the ground effect models that Simulator knows.");
 
   const PilotStyle style;
-  const SimulationSettings settings;
+  const FlightPlan settings;
   const RecorderErrors no_errors;
   py::class_<PythonSimulator>(
       module, "Simulator", "A running simulation. It starts at start_m (NED) in hover; a row is recorded every 0.05 s.")

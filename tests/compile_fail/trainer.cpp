@@ -18,7 +18,7 @@
 #include "pinnquad/training/trainer.hpp"
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/optimizer.hpp"

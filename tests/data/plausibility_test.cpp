@@ -15,7 +15,7 @@
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/flights.hpp"
-#include "pinnquad/simulation/noisy_recorder.hpp"
+#include "pinnquad/simulation/recorder.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace {

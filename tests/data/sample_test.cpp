@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
-#include <pinnquad/data/sample.hpp>
+#include <pinnquad/data/dataset.hpp>
 #include <string>
 
 using pinnquad::Sample;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/evaluation/auroc.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 
 #include <doctest/doctest.h>
 

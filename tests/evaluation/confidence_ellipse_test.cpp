@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <pinnquad/core/random.hpp>
-#include <pinnquad/evaluation/confidence_ellipse.hpp>
+#include <pinnquad/evaluation/physical_consistency.hpp>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -13,8 +13,8 @@ using pinnquad::confidence_ellipse;
 using pinnquad::ConfidenceEllipse;
 using pinnquad::covariance_ellipse;
 using pinnquad::ellipse_outline;
-using pinnquad::JointMoments;
 using pinnquad::standardized_confidence_ellipse;
+using pinnquad::detail::JointMoments;
 using Series = std::vector<double>;
 
 namespace {
@@ -23,10 +23,10 @@ constexpr double degree = 3.14159265358979323846 / 180;
 constexpr double rounding = 1e-9;  // a few operations, angles up to 180
 
 /// Covariance with standard deviations (major, minor) along axes turned by the angle: R diag(major^2, minor^2) R^T.
-JointMoments turned_moments(double major, double minor, double angle_deg) {
+pinnquad::detail::JointMoments turned_moments(double major, double minor, double angle_deg) {
   const double c = std::cos(angle_deg * degree);
   const double s = std::sin(angle_deg * degree);
-  JointMoments moments;
+  pinnquad::detail::JointMoments moments;
   moments.mean_x = 10;
   moments.mean_y = -4;
   moments.variance_x = c * c * major * major + s * s * minor * minor;
@@ -108,7 +108,7 @@ TEST_CASE("degenerate clouds: a line, a circle, a point, a constant series, none
   CHECK(std::isnan(confidence_ellipse({1, std::nan("")}, {1, 2}).semi_minor));
   CHECK_THROWS_AS(confidence_ellipse({1, 2}, {1}), std::invalid_argument);
 
-  JointMoments minus_zero = turned_moments(2, 1, 90);
+  pinnquad::detail::JointMoments minus_zero = turned_moments(2, 1, 90);
   minus_zero.covariance = -0.0;
   CHECK(covariance_ellipse(minus_zero).angle_deg == 90);
 }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/evaluation/linear_regression.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 
 #include <doctest/doctest.h>
 
 #include <random>
 
 #include "pinnquad/core/random.hpp"
-#include "pinnquad/evaluation/errors.hpp"
-#include "pinnquad/evaluation/verdict.hpp"
 
 namespace {
 

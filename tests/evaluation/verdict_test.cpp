@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/evaluation/verdict.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 
 #include <doctest/doctest.h>
 
 #include <limits>
 
-using pinnquad::PredictionErrors;
 using pinnquad::Verdict;
 using pinnquad::verdict_on;
+using pinnquad::detail::PredictionErrors;
 
 namespace {
 

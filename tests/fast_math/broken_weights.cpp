@@ -11,7 +11,7 @@
 #include "../../examples/models/demo_quadrotor.hpp"
 #include "../support/block_bytes.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/evaluation/verdict.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 #include <doctest/doctest.h>
 
 #include <string>
-
-#include "pinnquad/io/file_error.hpp"
 
 using pinnquad::printable;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 
 #include <doctest/doctest.h>
 

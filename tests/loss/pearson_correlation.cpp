@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pearson's correlation as a loss, and what the paper's footnote 2 says of it.
-#include "pinnquad/loss/pearson_correlation.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
 
 #include <doctest/doctest.h>
 

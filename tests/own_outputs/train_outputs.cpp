@@ -8,7 +8,7 @@
 
 #include "own_outputs/setting.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
-#include "pinnquad/evaluation/linear_regression.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/tanh.hpp"

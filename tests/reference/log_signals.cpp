@@ -17,6 +17,7 @@
 #include "reference/reference_rows.hpp"
 
 using namespace pinnquad;  // NOLINT: a test of many of its names
+using namespace programs;  // NOLINT
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ridge under bounds: the free fit where it keeps them, else the least cost on the border, against many other weights
 // that keep them.
-#include "pinnquad/regression/bounded_ridge.hpp"
+#include "pinnquad/regression/ridge.hpp"
 
 #include <doctest/doctest.h>
 
@@ -38,7 +38,7 @@ double cost(const RegressionSums& sums, const AffineMap& map, double penalty) {
   return squared_error(sums, map) / sums.rows() + penalty * squares;
 }
 
-double bound_value(const AffineMap& map, const WeightBound& bound) {
+double bound_value(const AffineMap& map, const pinnquad::detail::WeightBound& bound) {
   double sum = 0;
   for (const auto& [feature, factor] : bound.terms) sum += factor * map.weights[static_cast<std::size_t>(feature)];
   return sum;
@@ -58,10 +58,11 @@ TEST_CASE("bounds that it breaks: the least cost of all weights that keep them")
     const RegressionSums sums = rows(seed);
     const double penalty = 0.02;
     const std::vector<bool> taken = {true, true, true, false, true};
-    const std::vector<WeightBound> bounds = {{{{1, 1.0}}, 0.1, false}, {{{1, 2.0}, {2, 1.0}, {4, 0.5}}, 0.6, false}};
+    const std::vector<pinnquad::detail::WeightBound> bounds = {{{{1, 1.0}}, 0.1, false},
+                                                               {{{1, 2.0}, {2, 1.0}, {4, 0.5}}, 0.6, false}};
     const AffineMap map = fit_bounded_ridge(sums, penalty, taken, bounds);
     CHECK(map.weights[3] == 0);
-    for (const WeightBound& bound : bounds) CHECK(bound_value(map, bound) >= bound.least - 1e-9);
+    for (const pinnquad::detail::WeightBound& bound : bounds) CHECK(bound_value(map, bound) >= bound.least - 1e-9);
     const double least = cost(sums, map, penalty);
     CHECK(cost(sums, fit_ridge(sums, penalty, taken), penalty) < least);  // the free fit breaks a bound
     std::mt19937_64 engine(seed);
@@ -72,7 +73,8 @@ TEST_CASE("bounds that it breaks: the least cost of all weights that keep them")
       const double size = other % 2 == 0 ? 0.01 : 0.3;
       for (const std::size_t i : {0U, 1U, 2U, 4U}) moved.weights[i] += uniform(engine, -size, size);
       bool keeps = true;
-      for (const WeightBound& bound : bounds) keeps = keeps && bound_value(moved, bound) >= bound.least;
+      for (const pinnquad::detail::WeightBound& bound : bounds)
+        keeps = keeps && bound_value(moved, bound) >= bound.least;
       if (!keeps) continue;
       ++kept;
       moved.intercept[0] = mean[inputs];  // the best one for these weights
@@ -86,7 +88,7 @@ TEST_CASE("bounds that it breaks: the least cost of all weights that keep them")
 TEST_CASE("a pinned sum is that sum, whichever side the rows would have it on") {
   const RegressionSums sums = rows(7);
   for (const double wanted : {0.5, 3.0}) {
-    const WeightBound pinned{{{0, 1.5}}, wanted, true};
+    const pinnquad::detail::WeightBound pinned{{{0, 1.5}}, wanted, true};
     CHECK(bound_value(fit_bounded_ridge(sums, 0, {}, {pinned}), pinned) == doctest::Approx(wanted).epsilon(1e-9));
   }
 }
@@ -96,9 +98,9 @@ TEST_CASE("what can't be solved is refused") {
   CHECK_THROWS_AS(fit_bounded_ridge(RegressionSums(inputs, 1), 0, {}, {}), std::invalid_argument);
   CHECK_THROWS_AS(fit_bounded_ridge(RegressionSums(inputs, 2), 0, {}, {}), std::invalid_argument);
   CHECK_THROWS_AS(fit_bounded_ridge(sums, -1, {}, {}), std::invalid_argument);
-  CHECK_THROWS_AS(fit_bounded_ridge(sums, 0, {}, std::vector<WeightBound>(9, {{{0, 1.0}}, 0, false})),
+  CHECK_THROWS_AS(fit_bounded_ridge(sums, 0, {}, std::vector<pinnquad::detail::WeightBound>(9, {{{0, 1.0}}, 0, false})),
                   std::invalid_argument);
-  const std::vector<WeightBound> contradiction = {{{{0, 1.0}}, 1, true}, {{{0, 1.0}}, 2, true}};
+  const std::vector<pinnquad::detail::WeightBound> contradiction = {{{{0, 1.0}}, 1, true}, {{{0, 1.0}}, 2, true}};
   CHECK_THROWS_AS(fit_bounded_ridge(sums, 0, {}, contradiction), std::invalid_argument);
 }
 

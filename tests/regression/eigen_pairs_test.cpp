@@ -9,25 +9,25 @@
 #include <random>
 
 #include "pinnquad/core/random.hpp"
-#include "pinnquad/regression/symmetric_system.hpp"
+#include "pinnquad/regression/ridge.hpp"
 
 using namespace pinnquad;
 
 namespace {
 
-DynamicMatrix random_matrix(std::mt19937_64& engine, Eigen::Index rows, Eigen::Index columns) {
-  DynamicMatrix matrix(rows, columns);
+Eigen::MatrixXd random_matrix(std::mt19937_64& engine, Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd matrix(rows, columns);
   for (Eigen::Index i = 0; i < matrix.size(); ++i) matrix.data()[i] = uniform(engine, -1, 1);
   return matrix;
 }
 
 /// Of `rank`, without negative eigenvalues.
-DynamicMatrix gram(std::mt19937_64& engine, Eigen::Index size, Eigen::Index rank) {
-  const DynamicMatrix rows = random_matrix(engine, rank, size);
+Eigen::MatrixXd gram(std::mt19937_64& engine, Eigen::Index size, Eigen::Index rank) {
+  const Eigen::MatrixXd rows = random_matrix(engine, rank, size);
   return rows.transpose() * rows;
 }
 
-double most(const DynamicMatrix& matrix) { return matrix.size() > 0 ? matrix.cwiseAbs().maxCoeff() : 0.0; }
+double most(const Eigen::MatrixXd& matrix) { return matrix.size() > 0 ? matrix.cwiseAbs().maxCoeff() : 0.0; }
 
 }  // namespace
 
@@ -37,14 +37,14 @@ TEST_CASE("eigenvalues are Eigen's, eigenvectors are orthogonal and make the mat
     for (const Eigen::Index rank : {Eigen::Index{0}, size / 2, size}) {
       CAPTURE(size);
       CAPTURE(rank);
-      const DynamicMatrix a = gram(engine, size, rank);
-      const EigenPairs pairs = eigen_pairs(a);
+      const Eigen::MatrixXd a = gram(engine, size, rank);
+      const pinnquad::detail::EigenPairs pairs = eigen_pairs(a);
       Eigen::VectorXd values = pairs.values;
       std::sort(values.data(), values.data() + size);
-      const Eigen::SelfAdjointEigenSolver<DynamicMatrix> solver(a);
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
       const double rounding = 1e-14 * static_cast<double>(size) * (1 + most(a));
       CHECK(most(values - solver.eigenvalues()) <= rounding);
-      CHECK(most(pairs.vectors.transpose() * pairs.vectors - DynamicMatrix::Identity(size, size)) <= rounding);
+      CHECK(most(pairs.vectors.transpose() * pairs.vectors - Eigen::MatrixXd::Identity(size, size)) <= rounding);
       CHECK(most(pairs.vectors * pairs.values.asDiagonal() * pairs.vectors.transpose() - a) <= rounding);
     }
   }
@@ -52,14 +52,14 @@ TEST_CASE("eigenvalues are Eigen's, eigenvectors are orthogonal and make the mat
 
 TEST_CASE("negative eigenvalues, equal ones, and a matrix that is diagonal") {
   std::mt19937_64 engine(2);
-  const DynamicMatrix any = random_matrix(engine, 9, 9), symmetric = any + any.transpose();
+  const Eigen::MatrixXd any = random_matrix(engine, 9, 9), symmetric = any + any.transpose();
   Eigen::VectorXd values = eigen_pairs(symmetric).values;
   std::sort(values.data(), values.data() + 9);
-  CHECK(most(values - Eigen::SelfAdjointEigenSolver<DynamicMatrix>(symmetric).eigenvalues()) < 1e-13);
-  const EigenPairs same = eigen_pairs(3.0 * DynamicMatrix::Identity(5, 5));
+  CHECK(most(values - Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvalues()) < 1e-13);
+  const pinnquad::detail::EigenPairs same = eigen_pairs(3.0 * Eigen::MatrixXd::Identity(5, 5));
   CHECK(most(same.values - Eigen::VectorXd::Constant(5, 3.0)) == 0);
-  CHECK(most(same.vectors - DynamicMatrix::Identity(5, 5)) == 0);
-  CHECK(eigen_pairs(DynamicMatrix(0, 0)).values.size() == 0);
+  CHECK(most(same.vectors - Eigen::MatrixXd::Identity(5, 5)) == 0);
+  CHECK(eigen_pairs(Eigen::MatrixXd(0, 0)).values.size() == 0);
 }
 
 TEST_CASE("of all that come closest the one of least norm: Eigen's complete orthogonal decomposition") {
@@ -68,11 +68,11 @@ TEST_CASE("of all that come closest the one of least norm: Eigen's complete orth
     for (const Eigen::Index rank : {size - 1, size / 2}) {
       CAPTURE(size);
       CAPTURE(rank);
-      const DynamicMatrix a = gram(engine, size, rank), b = random_matrix(engine, size, 3);
-      Eigen::CompleteOrthogonalDecomposition<DynamicMatrix> least(a);
+      const Eigen::MatrixXd a = gram(engine, size, rank), b = random_matrix(engine, size, 3);
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least(a);
       least.setThreshold(1e-10);
       REQUIRE(least.rank() == rank);
-      const DynamicMatrix expected = least.solve(b);
+      const Eigen::MatrixXd expected = least.solve(b);
       CHECK(most(solve_symmetric(a, b) - expected) <= 1e-8 * (1 + most(expected)));
     }
   }

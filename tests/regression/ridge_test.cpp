@@ -160,7 +160,7 @@ TEST_CASE("leaving out a group by subtraction is a refit to the rows of the othe
   std::vector<RegressionSums> groups;
   for (const auto& piece : pieces) groups.push_back(sums_of(piece[0], piece[1]));
   const std::vector<double> penalties = {0, 1e-4, 1e-2, 0.3};
-  const PenaltyChoice choice = choose_penalty(groups, penalties);
+  const pinnquad::detail::PenaltyChoice choice = choose_penalty(groups, penalties);
   std::size_t best = 0;
   std::vector<double> expected;
   for (const double penalty : penalties) {

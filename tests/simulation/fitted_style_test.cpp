@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Limits of a vehicle, for pilots: the rotor with most to do decides, in thrust and not in commands.
-#include "pinnquad/simulation/fitted_style.hpp"
+#include "pinnquad/simulation/flights.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Recorded flights: repeatable, within bounds, and true to the dynamics that made them.
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 
 #include <doctest/doctest.h>
 

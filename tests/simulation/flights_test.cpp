@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
+#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/evaluation/summary.hpp"

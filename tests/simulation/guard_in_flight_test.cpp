@@ -9,7 +9,7 @@
 #include <string>
 
 #include "../examples/models/demo_quadrotor.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
+#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "support/long_flight.hpp"
 

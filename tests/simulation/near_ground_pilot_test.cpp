@@ -12,6 +12,7 @@
 
 namespace {
 
+using Phase = pinnquad::detail::NearGroundPhase;
 using namespace pinnquad;
 using Pilot = NearGroundPilot<std::mt19937_64>;
 
@@ -71,28 +72,25 @@ TEST_CASE("phases follow each other as sorties do") {
   style.lead_s = 0;
   Pilot pilot(std::mt19937_64(3), style, ground_z_m);
   IdealVehicle vehicle;
-  NearGroundPhase before = NearGroundPhase::stay;
+  Phase before = Phase::stay;
   int sorties = 0, legs = 0;
   for (int i = 0; i < 150000; ++i) {
     vehicle.fly(pilot(vehicle.state, i * tick_s));
-    const NearGroundPhase now = pilot.phase();
+    const Phase now = pilot.phase();
     if (now == before) continue;
     switch (now) {
-      case NearGroundPhase::take_off:
-        CHECK(before == NearGroundPhase::stay);
+      case Phase::take_off:
+        CHECK(before == Phase::stay);
         CHECK(vehicle.height_m() < style.lowest_stay_m + 0.01);
         ++sorties;
         break;
-      case NearGroundPhase::hover:
-      case NearGroundPhase::traverse:
-        CHECK((before == NearGroundPhase::take_off || before == NearGroundPhase::hover ||
-               before == NearGroundPhase::traverse));
+      case Phase::hover:
+      case Phase::traverse:
+        CHECK((before == Phase::take_off || before == Phase::hover || before == Phase::traverse));
         ++legs;
         break;
-      case NearGroundPhase::landing:
-        CHECK((before == NearGroundPhase::hover || before == NearGroundPhase::traverse));
-        break;
-      case NearGroundPhase::stay: CHECK(before == NearGroundPhase::landing); break;
+      case Phase::landing: CHECK((before == Phase::hover || before == Phase::traverse)); break;
+      case Phase::stay: CHECK(before == Phase::landing); break;
     }
     before = now;
   }
@@ -108,11 +106,11 @@ TEST_CASE("the profile alone, without correction, leads from height to height") 
     style.lead_s = lead_s;  // its share of a phase is zero: the profile ends with the slope it began with
     Pilot pilot(std::mt19937_64(6), style, ground_z_m);
     IdealVehicle vehicle;
-    NearGroundPhase before = NearGroundPhase::stay;
+    Phase before = Phase::stay;
     double highest_m = 0;
     for (int i = 0; i < 100000; ++i) {
       vehicle.fly(pilot(vehicle.state, i * tick_s));
-      if (pilot.phase() == NearGroundPhase::stay && before == NearGroundPhase::landing) {
+      if (pilot.phase() == Phase::stay && before == Phase::landing) {
         constexpr double sums_m = 0.02;  // of all phases so far: ticks instead of an integral
         CHECK(vehicle.height_m() > style.lowest_m - sums_m);
         CHECK(vehicle.height_m() < style.lowest_stay_m + sums_m);
@@ -176,15 +174,15 @@ TEST_CASE("a seed's first take-off and first leg are the same whatever the numbe
     for (int i = 0; i < 10000; ++i) {
       const SetPoint<double> asked = short_sorties(vehicle.state, i * tick_s);
       const SetPoint<double> other = long_sorties(vehicle.state, i * tick_s);
-      has_flown_a_leg = has_flown_a_leg || short_sorties.phase() == NearGroundPhase::hover ||
-                        short_sorties.phase() == NearGroundPhase::traverse;
-      if (short_sorties.phase() == NearGroundPhase::landing) break;
+      has_flown_a_leg =
+          has_flown_a_leg || short_sorties.phase() == Phase::hover || short_sorties.phase() == Phase::traverse;
+      if (short_sorties.phase() == Phase::landing) break;
       REQUIRE(asked.velocity_m_s == other.velocity_m_s);
       REQUIRE(asked.yaw_rate_rad_s == other.yaw_rate_rad_s);
       vehicle.fly(asked);
     }
     CHECK(has_flown_a_leg);
-    CHECK(short_sorties.phase() == NearGroundPhase::landing);
+    CHECK(short_sorties.phase() == Phase::landing);
   }
 }
 
@@ -206,6 +204,6 @@ TEST_CASE("styles at their ends: no lag, stays of no time, no legs; what is aske
       ++ticks[static_cast<std::size_t>(pilot.phase())];
     }
     CHECK(finite);
-    CHECK(ticks[static_cast<std::size_t>(NearGroundPhase::landing)] > 0);
+    CHECK(ticks[static_cast<std::size_t>(Phase::landing)] > 0);
   }
 }

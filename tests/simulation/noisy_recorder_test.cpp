@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A noisy recorder: the errors that were ordered, no others, and what they do to the correlation of Fig. 2.
-#include "pinnquad/simulation/noisy_recorder.hpp"
+#include "pinnquad/simulation/recorder.hpp"
 
 #include <doctest/doctest.h>
 
@@ -15,7 +15,8 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/evaluation/summary.hpp"
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 #include "support/long_flight.hpp"
 
 namespace {

@@ -14,7 +14,7 @@
 #include "../examples/models/structured_quadrotor.hpp"
 #include "models/v3/own_racer.hpp"
 #include "pinnquad/core/random.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
+#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/features/input_history.hpp"
 #include "pinnquad/simulation/flights.hpp"
 

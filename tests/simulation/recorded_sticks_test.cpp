@@ -19,8 +19,8 @@ namespace {
 using namespace pinnquad;
 using pinnquad_test::TemporaryFolder;
 
-StickRow row_of(double time_s, double north_m_s) {
-  StickRow row;
+pinnquad::detail::StickRow row_of(double time_s, double north_m_s) {
+  pinnquad::detail::StickRow row;
   row.time_s = time_s;
   row.set_point.velocity_m_s[0] = north_m_s;
   row.set_point.yaw_rate_rad_s = 2 * north_m_s;

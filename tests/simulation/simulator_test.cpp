@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The running simulation: in any portions the same flight, ended where it must, copied as a whole.
 #include "pinnquad/simulation/simulator.hpp"
+#include "pinnquad/simulation/flights.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +13,6 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/fly.hpp"
 
 namespace {
 
@@ -170,14 +170,14 @@ TEST_CASE("what ends a flight ends it for good, with time and state") {
     CHECK_FALSE(simulator.tick());
   }
   SUBCASE("clocks that do not run") {
-    SimulationSettings no_time, backwards, no_steps, no_ticks;
+    FlightPlan no_time, backwards, no_steps, no_ticks;
     no_time.physics_step_s = 0;
     backwards.physics_step_s = -0.001;
     no_steps.steps_per_control = 0;
     no_ticks.controls_per_sample = 0;
-    SimulationSettings no_number;
+    FlightPlan no_number;
     no_number.physics_step_s = std::numeric_limits<double>::quiet_NaN();
-    for (const SimulationSettings& settings : {no_time, backwards, no_steps, no_ticks, no_number}) {
+    for (const FlightPlan& settings : {no_time, backwards, no_steps, no_ticks, no_number}) {
       Simulator<Vehicle, SteadyPilot> simulator(vehicle(), SteadyPilot{}, settings);
       CHECK(simulator.status() == Status::out_of_range);
       CHECK_FALSE(simulator.advance(1));
@@ -196,7 +196,7 @@ TEST_CASE("a row that is no number ends the flight and is not kept") {
 TEST_CASE("places that are none: refused before the flight") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto status = [](double north_m, double down_m) {
-    SimulationSettings settings;
+    FlightPlan settings;
     settings.start_m = Vector3<double>(north_m, 0, down_m);
     Simulator<Vehicle, SteadyPilot> simulator(vehicle(), SteadyPilot{}, settings);
     CHECK_FALSE(simulator.tick());

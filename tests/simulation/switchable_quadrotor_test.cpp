@@ -10,7 +10,8 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/simulation/random_pilot.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 
 namespace {
 
@@ -43,8 +44,8 @@ Pilot pilot() {
   return Pilot(std::mt19937_64(4), style, site.ground_z_m);
 }
 
-SimulationSettings low_start() {
-  SimulationSettings settings;
+FlightPlan low_start() {
+  FlightPlan settings;
   settings.start_m = Vector3<double>(0, 0, site.ground_z_m - start_height_m);
   return settings;
 }
@@ -53,7 +54,7 @@ SimulationSettings low_start() {
 template <class Vehicle>
 Flight flown_on(const Vehicle& quadrotor, Pilot pilot, VehicleState<double> vehicle, std::size_t first_row,
                 std::size_t rows) {
-  const SimulationSettings settings = low_start();
+  const FlightPlan settings = low_start();
   State<double> hover;
   hover.position_m = settings.start_m;
   const double density_ratio = quadrotor.rotor_scale(quadrotor.surroundings(hover, 0.0));
@@ -101,7 +102,7 @@ TEST_CASE("fly 2 s, switch, fly on: the bits of the compile-time vehicle from th
 TEST_CASE("a choice that stays is a flight of the compile-time vehicle") {
   const auto hash = [](const auto& quadrotor) {
     FlightPlan plan;
-    static_cast<SimulationSettings&>(plan) = low_start();
+    static_cast<FlightPlan&>(plan) = low_start();
     plan.samples = 60;
     return content_hash(fly(quadrotor, pilot(), plan).flight);
   };
@@ -125,7 +126,7 @@ TEST_CASE("hover near the ground needs 1 / r of the command") {
   constexpr double agreement = 2e-6;  // of the inverse's rounds
   for (const double height_m : {0.2, 0.4, 0.9}) {
     CAPTURE(height_m);
-    SimulationSettings settings;
+    FlightPlan settings;
     settings.start_m = Vector3<double>(0, 0, site.ground_z_m - height_m);
     Simulator<Calm, SteadyPilot> simulator(Calm(airframe, site), SteadyPilot{}, settings);
     const double x = height_m / (airframe.propeller_diameter_m / 2);

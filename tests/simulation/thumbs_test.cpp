@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/simulation/thumbs.hpp"
+#include "pinnquad/simulation/pilot.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,11 +8,11 @@
 using namespace pinnquad;
 
 TEST_CASE("a frame is due when its time has come, to a microsecond") {
-  ThumbStyle style;
+  pinnquad::detail::ThumbStyle style;
   style.frame_s = 0.004;
   std::mt19937_64 engine(1);
   Vector3<double> stick = Vector3<double>::Zero();
-  Thumbs thumbs(style);
+  pinnquad::detail::Thumbs thumbs(style);
   const auto moves = [&](double time_s) {
     const Vector3<double> before = stick;
     thumbs.move(engine, time_s, stick);

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/initialization.hpp"

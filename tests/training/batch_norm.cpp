@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/training/initialization.hpp"

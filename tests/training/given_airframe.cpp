@@ -8,12 +8,12 @@
 #include <sstream>
 #include <string>
 
-#include "pinnquad/data/sample_period.hpp"
+#include "pinnquad/data/row_set.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"

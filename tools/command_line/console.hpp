@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include "pinnquad/io/file_error.hpp"
-#include "pinnquad/io/printable.hpp"
 
 namespace programs {
 

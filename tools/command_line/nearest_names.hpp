@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

@@ -25,8 +25,8 @@
 #include "flight/statistics.hpp"
 #include "flight/trace.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "pinnquad/simulation/noisy_recorder.hpp"
 #include "pinnquad/simulation/recorded_sticks.hpp"
+#include "pinnquad/simulation/recorder.hpp"
 #include "replay/page.hpp"
 
 namespace {

@@ -15,7 +15,7 @@
 #include "flight/axis_motion.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/io/csv_table.hpp"
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 
 namespace programs {
 

@@ -18,7 +18,7 @@
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/flight.hpp"
-#include "pinnquad/io/regular_file.hpp"
+#include "pinnquad/io/text_file.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 
 namespace {

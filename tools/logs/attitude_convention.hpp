@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Are attitudes read as the log wrote them? Asked of the motion: an attitude turns with the body rates, and the specific force
-// that it turns into the world holds the vehicle up on average.
+// Are attitudes read as the log wrote them? Asked of the motion: an attitude turns with the body rates, and the
+// specific force that it turns into the world holds the vehicle up on average.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 /// How a log writes an attitude. As ours: (w, x, y, z), from body FRD to world NED.
 struct AttitudeConvention {
@@ -26,20 +26,20 @@ struct AttitudeConvention {
 };
 
 /// Four numbers as a log has them, read as our attitude.
-inline Quaternion<double> read_attitude(const std::array<double, 4>& numbers, const AttitudeConvention& as) {
+inline pinnquad::Quaternion<double> read_attitude(const std::array<double, 4>& numbers, const AttitudeConvention& as) {
   const auto& n = numbers;
-  Quaternion<double> q =
-      as.scalar_last ? Quaternion<double>{n[3], n[0], n[1], n[2]} : Quaternion<double>{n[0], n[1], n[2], n[3]};
-  if (as.world_to_body) q = conjugate(q);
-  if (as.enu) q = swap_world_enu_ned(q);
-  return as.flu ? swap_body_flu_frd(q) : q;
+  pinnquad::Quaternion<double> q = as.scalar_last ? pinnquad::Quaternion<double>{n[3], n[0], n[1], n[2]}
+                                                  : pinnquad::Quaternion<double>{n[0], n[1], n[2], n[3]};
+  if (as.world_to_body) q = pinnquad::conjugate(q);
+  if (as.enu) q = pinnquad::swap_world_enu_ned(q);
+  return as.flu ? pinnquad::swap_body_flu_frd(q) : q;
 }
 
 /// The numbers that are read as this attitude, up to their common sign.
-inline std::array<double, 4> written_attitude(Quaternion<double> q, const AttitudeConvention& as) {
-  if (as.flu) q = swap_body_flu_frd(q);
-  if (as.enu) q = swap_world_enu_ned(q);
-  if (as.world_to_body) q = conjugate(q);
+inline std::array<double, 4> written_attitude(pinnquad::Quaternion<double> q, const AttitudeConvention& as) {
+  if (as.flu) q = pinnquad::swap_body_flu_frd(q);
+  if (as.enu) q = pinnquad::swap_world_enu_ned(q);
+  if (as.world_to_body) q = pinnquad::conjugate(q);
   if (as.scalar_last) return {q.x, q.y, q.z, q.w};
   return {q.w, q.x, q.y, q.z};
 }
@@ -74,11 +74,12 @@ inline std::string difference_sentence(const AttitudeConvention& log, const Atti
 
 }  // namespace detail
 
-/// Series on one uniform clock, rows with a NaN left out; `q`: w, x, y, z of the attitudes as they were read. In each convention:
-/// the share of the body rates' squares that the turning of the attitude over 0.2 s leaves, and the distance of the mean specific
-/// force in the world to -g, in g (at most 1 each). A finding where the convention of `read` misses by 0.5 or more in sum, and
-/// another by less than a third of that. number: the sum. Limits: a vehicle that neither turns nor tilts says only which way is
-/// up; heading is not judged (no magnetic field is known); rates and force must be in FRD.
+/// Series on one uniform clock, rows with a NaN left out; `q`: w, x, y, z of the attitudes as they were read. In each
+/// convention: the share of the body rates' squares that the turning of the attitude over 0.2 s leaves, and the
+/// distance of the mean specific force in the world to -g, in g (at most 1 each). A finding where the convention of
+/// `read` misses by 0.5 or more in sum, and another by less than a third of that. number: the sum. Limits: a vehicle
+/// that neither turns nor tilts says only which way is up; heading is not judged (no magnetic field is known); rates
+/// and force must be in FRD.
 inline std::optional<Finding> check_attitude(double period_s, const AttitudeConvention& read,
                                              const std::array<const std::vector<double>*, 4>& q,
                                              const std::array<const std::vector<double>*, 3>& body_rates_rad_s,
@@ -88,12 +89,12 @@ inline std::optional<Finding> check_attitude(double period_s, const AttitudeConv
   const auto step = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(step_s / period_s)));
   const std::size_t rows = q[0]->size();
   std::array<double, detail::attitude_conventions> left{};
-  std::array<Vector3<double>, detail::attitude_conventions> force;
-  force.fill(Vector3<double>::Zero());
+  std::array<pinnquad::Vector3<double>, detail::attitude_conventions> force;
+  force.fill(pinnquad::Vector3<double>::Zero());
   double rates = 0;
   std::size_t steps = 0;
   for (std::size_t first = 0; first + step < rows; first += step) {
-    Vector3<double> rate = Vector3<double>::Zero(), held = rate;
+    pinnquad::Vector3<double> rate = pinnquad::Vector3<double>::Zero(), held = rate;
     bool whole = true;
     for (std::size_t row = first; row <= first + step; ++row) {
       const double weight = row == first || row == first + step ? 0.5 : 1.0;
@@ -116,23 +117,23 @@ inline std::optional<Finding> check_attitude(double period_s, const AttitudeConv
     rates += rate.squaredNorm();
     for (std::size_t c = 0; c < left.size(); ++c) {
       const AttitudeConvention as = detail::attitude_convention(c);
-      const Quaternion<double> a = read_attitude(at[0], as), b = read_attitude(at[2], as);
-      const Quaternion<double> turn = conjugate(a) * b;
-      const Vector3<double> v = (turn.w < 0 ? -1.0 : 1.0) * Vector3<double>(turn.x, turn.y, turn.z);
+      const pinnquad::Quaternion<double> a = read_attitude(at[0], as), b = read_attitude(at[2], as);
+      const pinnquad::Quaternion<double> turn = pinnquad::conjugate(a) * b;
+      const pinnquad::Vector3<double> v = (turn.w < 0 ? -1.0 : 1.0) * pinnquad::Vector3<double>(turn.x, turn.y, turn.z);
       const double sine = v.norm();
       const double angle = 2 * std::atan2(sine, std::abs(turn.w));
       const double to_rate = sine > 1e-12 ? angle / (sine * static_cast<double>(step) * period_s) : 0;
       left[c] += (rate - v * to_rate).squaredNorm();
-      force[c] += body_to_world(normalized(read_attitude(at[1], as)), held);
+      force[c] += pinnquad::body_to_world(pinnquad::normalized(read_attitude(at[1], as)), held);
     }
   }
   if (steps < fewest_steps) return std::nullopt;
   const auto count = static_cast<double>(steps);
   std::array<double, detail::attitude_conventions> miss{};
   for (std::size_t c = 0; c < miss.size(); ++c) {
-    const Vector3<double> up(0, 0, -standard_gravity_m_s2<double>);
+    const pinnquad::Vector3<double> up(0, 0, -pinnquad::standard_gravity_m_s2<double>);
     const double turning = rates > smallest_rates * count ? std::min(1.0, left[c] / rates) : 0;
-    miss[c] = turning + std::min(1.0, (force[c] / count - up).norm() / standard_gravity_m_s2<double>);
+    miss[c] = turning + std::min(1.0, (force[c] / count - up).norm() / pinnquad::standard_gravity_m_s2<double>);
   }
   const auto best = static_cast<std::size_t>(std::min_element(miss.begin(), miss.end()) - miss.begin());
   const double missed = miss[detail::index_of(read)];
@@ -152,7 +153,7 @@ inline std::optional<Finding> check_thrust_direction(const std::vector<double>& 
     sum += z;
     ++count;
   }
-  const double mean = count > 0 ? sum / (static_cast<double>(count) * standard_gravity_m_s2<double>) : 0;
+  const double mean = count > 0 ? sum / (static_cast<double>(count) * pinnquad::standard_gravity_m_s2<double>) : 0;
   if (mean < clearly) return std::nullopt;
   return Finding{
       "thrust_direction", mean, "g",
@@ -160,4 +161,4 @@ inline std::optional<Finding> check_thrust_direction(const std::vector<double>& 
       "(FLU), or its accelerometer has the other sign"};
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -118,7 +118,7 @@ inline std::vector<double> at_same_times(const std::vector<double>& time_s, cons
   return matched;
 }
 
-/// What no attitude can be: a row with numbers that are no unit quaternion. One of zeros is a row without attitude.
+/// Throws for a row whose numbers are no unit quaternion; zeros are a row without attitude.
 inline void require_unit(const Signal& signal) {
   constexpr double tolerance = 0.05;
   for (std::size_t row = 0; row < signal.topic->size(); ++row) {
@@ -156,7 +156,8 @@ inline void require_commands(const Signal& signal) {
                    pinnquad::number_text(signal.topic->column(column)->values[first]));
 }
 
-/// A vehicle of another number of motors: a column of the four without a number, or one more of the same array with numbers.
+/// A vehicle of another number of motors: a column of the four without a number, or one more of the same array with
+/// numbers.
 inline void require_four_motors(const Signal& signal, const Mapping& mapping) {
   const Source& source = *signal.source;
   for (const NamedColumn& one : source.columns) {
@@ -175,7 +176,8 @@ inline void require_four_motors(const Signal& signal, const Mapping& mapping) {
 
 }  // namespace detail
 
-/// The quantity as this source has it; not present() where the log lacks it. With `why`, the reason is thrown, one line.
+/// The quantity as this source has it; not present() where the log lacks it. With `why`, the reason is thrown, one
+/// line.
 inline Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& source,
                           const std::optional<NamedAirframe>& airframe, bool why) {
   Signal signal;
@@ -219,7 +221,7 @@ inline Signal bind_source(const FlightLog& log, const Mapping& mapping, const So
   for (std::vector<double>& column : signal.values) {
     for (double& value : column) value *= source.in_si;
   }
-  signal.clock = std::make_shared<const pinnquad::CleanClock>(pinnquad::clean_clock(time_s));
+  signal.clock = std::make_shared<const CleanClock>(clean_clock(time_s));
   if (source.quantity == Quantity::attitude && !source.euler) detail::require_unit(signal);
   to_our_frames(source, signal.values);
   if (source.quantity == Quantity::motors) {
@@ -296,8 +298,8 @@ inline void share_clock(Signal& signal, const BoundLog& bound) {
 
 }  // namespace detail
 
-/// Throws InputError, one line: a source that is not optional and not there, cells that are no numbers, quaternions that are no
-/// unit, another number of motors. Columns of the log that one source alone reads are empty afterwards.
+/// Throws InputError, one line: a source that is not optional and not there, cells that are no numbers, quaternions
+/// that are no unit, another number of motors. Columns of the log that one source alone reads are empty afterwards.
 inline BoundLog bind_log(FlightLog& log, const Mapping& mapping, const std::optional<NamedAirframe>& airframe) {
   BoundLog bound;
   const auto sources_of = [&mapping](std::initializer_list<Quantity> any) {

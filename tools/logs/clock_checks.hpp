@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a topic's clock tells of the log: time that jumps, a recording that starts again, a logger that was too slow or lost rows.
+// Findings of a topic's clock: time that jumps, a recording that starts again, a logger that was too slow or
+// lost rows.
 #pragma once
 
 #include <cmath>
@@ -11,7 +12,7 @@
 #include "logs/common_clock.hpp"
 #include "logs/finding.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 namespace detail {
 inline std::string short_number(double value) {
@@ -21,8 +22,8 @@ inline std::string short_number(double value) {
 }
 }  // namespace detail
 
-/// A step of more than a second and 20 nominal periods is a jump; more than 5 % of the time in gaps is a logger that lost rows;
-/// more than 1 % of rows with a time that another has, or none. `topic`: its name, "the log" for one table.
+/// A step of more than a second and 20 nominal periods is a jump; more than 5 % of the time in gaps is a logger that
+/// lost rows; more than 1 % of rows with a time that another has, or none. `topic`: its name, "the log" for one table.
 inline std::vector<Finding> check_clock(const std::string& topic, const ClockReport& report) {
   constexpr double jump_s = 1, jump_periods = 20, share_in_gaps = 0.05, share_of_rows = 0.01;
   std::vector<Finding> findings;
@@ -55,7 +56,8 @@ inline std::vector<Finding> check_clock(const std::string& topic, const ClockRep
   return findings;
 }
 
-/// The least rate at which commands and body rates of a small multirotor are worth learning from: a motor settles in 50 ms.
+/// The least rate at which commands and body rates of a small multirotor are worth learning from: a motor settles in 50
+/// ms.
 inline constexpr double least_log_rate_Hz = 25;
 
 /// Too slow to show what a motor does; `px4`: say which profile has it at full rate. number: the rate.
@@ -69,4 +71,4 @@ inline std::optional<Finding> check_log_rate(const std::string& topic, double pe
   return Finding{"log_rate", 1 / period_s, "Hz", sentence};
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How long after a command the vehicle moves, by how well the delayed commands explain the motion; and commands moved by it.
+// How long after a command the vehicle moves, by how well the delayed commands explain the motion; and commands moved
+// by it.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 
 #include "logs/lagged_motion.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct LagSearch {
   double longest_s = 0.2;     ///< motors and links are faster
@@ -114,7 +115,7 @@ inline CommandLag command_lag_of(const std::vector<LagSeries>& series, const Lag
   return result;
 }
 
-/// What all motions found have to say at their best: by it one band is preferred to another.
+/// The weight of all motions found, at their best: it prefers one band to another.
 inline double total_say(const CommandLag& lag) noexcept {
   double total = 0;
   for (const MotionLag& motion : lag.motions) total += motion.found ? say(motion.explained) : 0;
@@ -123,15 +124,16 @@ inline double total_say(const CommandLag& lag) noexcept {
 
 }  // namespace detail
 
-/// The lag at which the four commands explain angular accelerations and vertical specific force best: the multiple correlation,
-/// so that neither the order of the motors nor the battery has to be known; a constant and the body rates (damping) explain what
-/// they can first. Both sides are compared as they are, up to 15 Hz and up to 8 Hz, without phase, and the band in which
-/// most is explained is taken: gyro noise that comes back through the controller as commands pulls the plain correlation to
-/// shorter lags, by tens of milliseconds in calm flights.
+/// The lag at which the four commands explain angular accelerations and vertical specific force best: the multiple
+/// correlation, so that neither the order of the motors nor the battery has to be known; a constant and the body rates
+/// (damping) explain what they can first. Both sides are compared as they are, up to 15 Hz and up to 8 Hz, without
+/// phase, and the band in which most is explained is taken: gyro noise that comes back through the controller as
+/// commands pulls the plain correlation to shorter lags, by tens of milliseconds in calm flights.
 /// Segments of one log, each on a uniform clock of `period_s`, commands as they were logged, idle and ground left out.
-/// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands change: 36 to
-/// 40 ms for a time constant of 50 ms; MotorLag says more. A filter's delay in what was measured counts as lag.
-inline CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s,
+/// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands
+/// change: 36 to 40 ms for a time constant of 50 ms; MotorLag says more. A filter's delay in what was measured counts
+/// as lag.
+inline CommandLag estimate_command_lag(const std::vector<pinnquad::Flight>& segments, double period_s,
                                        const LagSearch& search = {}) {
   constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
   const std::vector<detail::LagSeries> series = detail::lag_series(segments);
@@ -162,7 +164,8 @@ inline CommandLag estimate_command_lag(const std::vector<Flight>& segments, doub
   return best;
 }
 
-/// A series on a uniform clock, each row with the value of `lag_s` earlier, by lines between rows; NaN where there is none.
+/// A series on a uniform clock, each row with the value of `lag_s` earlier, by lines between rows; NaN where there is
+/// none.
 inline std::vector<double> remove_lag(const std::vector<double>& series, double period_s, double lag_s) {
   constexpr double rounding = 1e-6;  // of a period
   std::vector<double> result(series.size(), std::nan(""));
@@ -178,10 +181,11 @@ inline std::vector<double> remove_lag(const std::vector<double>& series, double 
   return result;
 }
 
-/// The commands of each row replaced by those of `lag_s` earlier; rows that have none are gone. Extra columns stay as they are.
-inline Flight remove_lag(Flight segment, double period_s, double lag_s) {
+/// The commands of each row replaced by those of `lag_s` earlier; rows that have none are gone. Extra columns stay as
+/// they are.
+inline pinnquad::Flight remove_lag(pinnquad::Flight segment, double period_s, double lag_s) {
   std::vector<double> commands(segment.size());
-  for (std::size_t k = 0; k < rotor_count; ++k) {
+  for (std::size_t k = 0; k < pinnquad::rotor_count; ++k) {
     for (std::size_t row = 0; row < segment.size(); ++row) commands[row] = segment[row].commands[k];
     const std::vector<double> earlier = remove_lag(commands, period_s, lag_s);
     for (std::size_t row = 0; row < segment.size(); ++row) segment[row].commands[k] = earlier[row];
@@ -190,4 +194,4 @@ inline Flight remove_lag(Flight segment, double period_s, double lag_s) {
   return segment;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

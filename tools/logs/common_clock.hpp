@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One topic's clock made usable, and one uniform clock for all: what is out of order, twice, stale or not a time is put right
-// or left out, and counted. Values: resampling.hpp.
+// One topic's clock made usable, and one uniform clock for all: what is out of order, twice, stale or not a time is put
+// right or left out, and counted. Values: resampling.hpp.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 
 #include "pinnquad/data/split.hpp"
 
-namespace pinnquad {
+namespace programs {
 
-/// What was done to a topic's clock, in rows.
+/// The cleaning of a topic's clock, in rows.
 struct ClockReport {
   std::size_t rows_read = 0;
   std::size_t not_a_time = 0;      ///< NaN or infinite: left out
@@ -53,8 +53,8 @@ struct CleanClock {
 /// A step back is no restart up to this: queues and buses reorder within it.
 inline constexpr double restart_step_s = 1.0;
 
-/// Puts a topic's clock right; of several rows with one time the last stays (a publisher that corrects itself does so later).
-/// Never throws: a topic without one usable row has an empty clock.
+/// Puts a topic's clock right; of several rows with one time the last stays (a publisher that corrects itself does so
+/// later). Never throws: a topic without one usable row has an empty clock.
 inline CleanClock clean_clock(const std::vector<double>& time_s, const ClockRules& rules = {}) {
   CleanClock clock;
   ClockReport& report = clock.report;
@@ -122,9 +122,9 @@ struct UniformClock {
   double at(std::size_t row) const noexcept { return begin_s + static_cast<double>(row) * period_s; }
 };
 
-/// The clock on which every topic has values on both sides: from the latest begin to the earliest end. `begin_s` is a multiple
-/// of the period, so that clocks of one log with different topics have rows in common. No rows where the topics don't meet.
-/// Throws std::invalid_argument for a period that is not above 0 and for no topics.
+/// The clock on which every topic has values on both sides: from the latest begin to the earliest end. `begin_s` is a
+/// multiple of the period, so that clocks of one log with different topics have rows in common. No rows where the
+/// topics don't meet. Throws std::invalid_argument for a period that is not above 0 and for no topics.
 inline UniformClock common_clock(const std::vector<const CleanClock*>& topics, double period_s) {
   if (!(period_s > 0) || !std::isfinite(period_s)) {
     throw std::invalid_argument("common clock: expected a period above 0 s");
@@ -143,4 +143,4 @@ inline UniformClock common_clock(const std::vector<const CleanClock*>& topics, d
   return {first * period_s, period_s, static_cast<std::size_t>(last - first) + 1};
 }
 
-}  // namespace pinnquad
+}  // namespace programs

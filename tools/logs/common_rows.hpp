@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// All quantities of a log on one clock: the table's own rows where the log is one table of even steps, else a uniform clock
-// onto which every topic is resampled. NaN where a quantity has none.
+// All quantities of a log on one clock: the table's own rows where the log is one table of even steps, else a uniform
+// clock onto which every topic is resampled. NaN where a quantity has none.
 #pragma once
 
 #include <algorithm>
@@ -82,7 +82,7 @@ inline bool on_one_clock(const BoundLog& log) {
 }
 
 /// Nearly all steps are the usual one, but for gaps.
-inline bool has_even_steps(const pinnquad::CleanClock& clock) {
+inline bool has_even_steps(const CleanClock& clock) {
   constexpr double even = 0.1, most_uneven = 0.01;
   const double period_s = clock.report.nominal_period_s;
   std::size_t uneven = 0;
@@ -97,11 +97,11 @@ class CommonClock {
  public:
   explicit CommonClock(bool hold_commands) : hold_commands_(hold_commands) {}
 
-  void own(const pinnquad::CleanClock& clock) {
+  void own(const CleanClock& clock) {
     own_ = &clock;
     period_s_ = clock.report.nominal_period_s;
   }
-  void uniform(const pinnquad::UniformClock& clock) {
+  void uniform(const UniformClock& clock) {
     uniform_ = clock;
     period_s_ = clock.period_s;
   }
@@ -123,8 +123,8 @@ class CommonClock {
     const Quantity quantity = signal.source->quantity;
     const bool command = quantity == Quantity::motors || quantity == Quantity::torque_and_thrust;
     const bool held = signal.source->held || (command && hold_commands_);
-    return pinnquad::resample(*signal.clock, all, uniform_, pinnquad::resampling_of(signal.period_s(), period_s_, held),
-                              pinnquad::bridged_gap_s(*signal.clock));
+    return resample(*signal.clock, all, uniform_, resampling_of(signal.period_s(), period_s_, held),
+                    bridged_gap_s(*signal.clock));
   }
   template <std::size_t Count>
   void take(Signal& signal, std::array<std::vector<double>, Count>& to) const {
@@ -132,8 +132,7 @@ class CommonClock {
     if (!own_ && signal.source->quantity == Quantity::attitude) {
       if constexpr (Count == 4) {
         const auto& v = signal.values;
-        to = pinnquad::resample_attitude(*signal.clock, {&v[0], &v[1], &v[2], &v[3]}, uniform_,
-                                         pinnquad::bridged_gap_s(*signal.clock));
+        to = resample_attitude(*signal.clock, {&v[0], &v[1], &v[2], &v[3]}, uniform_, bridged_gap_s(*signal.clock));
       }
       return;
     }
@@ -141,8 +140,8 @@ class CommonClock {
   }
 
  private:
-  const pinnquad::CleanClock* own_ = nullptr;
-  pinnquad::UniformClock uniform_;
+  const CleanClock* own_ = nullptr;
+  UniformClock uniform_;
   double period_s_ = 0;
   bool hold_commands_;
 };
@@ -157,8 +156,8 @@ inline std::vector<const Signal*> needed_signals(const BoundLog& log) {
   return needed;
 }
 
-/// That of the slowest of commands, body rates and force, at most 100 Hz: a usual one where it is within a tenth of it (loggers
-/// whose rate is 50 Hz drop a row now and then), else a whole number of microseconds.
+/// That of the slowest of commands, body rates and force, at most 100 Hz: a usual one where it is within a tenth of it
+/// (loggers whose rate is 50 Hz drop a row now and then), else a whole number of microseconds.
 inline double usual_period_s(const BoundLog& log) {
   constexpr double shortest_s = 0.01, near = 0.1;
   double period_s = shortest_s;
@@ -178,7 +177,7 @@ inline double usual_period_s(const BoundLog& log) {
 inline CommonRows common_rows(BoundLog& log, const std::optional<double>& period_s, bool hold_commands) {
   CommonRows rows;
   detail::CommonClock clock(hold_commands);
-  const pinnquad::CleanClock& own = *log.of(Quantity::body_rates).clock;
+  const CleanClock& own = *log.of(Quantity::body_rates).clock;
   const double own_period_s = own.report.nominal_period_s;
   rows.own_rows = detail::on_one_clock(log) && detail::has_even_steps(own) &&
                   (!period_s || std::abs(*period_s - own_period_s) < 1e-3 * own_period_s);
@@ -187,9 +186,9 @@ inline CommonRows common_rows(BoundLog& log, const std::optional<double>& period
     clock.own(own);
   } else {
     rows.period_s = period_s ? *period_s : detail::usual_period_s(log);
-    std::vector<const pinnquad::CleanClock*> clocks;
+    std::vector<const CleanClock*> clocks;
     for (const Signal* signal : detail::needed_signals(log)) clocks.push_back(signal->clock.get());
-    clock.uniform(pinnquad::common_clock(clocks, rows.period_s));
+    clock.uniform(common_clock(clocks, rows.period_s));
   }
   rows.time_s = clock.times();
   clock.take(log.of(Quantity::attitude), rows.attitude);

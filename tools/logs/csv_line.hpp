@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/io/csv_cells.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace programs {
 

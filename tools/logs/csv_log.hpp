@@ -17,7 +17,7 @@
 
 #include "logs/flight_log.hpp"
 #include "logs/log_selection.hpp"
-#include "pinnquad/io/csv_cells.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/io/text_file.hpp"
@@ -93,7 +93,7 @@ class Table {
         require_end();
         break;
       }
-      split();
+      records_.split(record_, cells_);
       if (cells_.size() != size) refuse_length();
       for (std::size_t i = 0; i < size; ++i) {
         double value = 0;
@@ -129,14 +129,6 @@ class Table {
     if (bytes_ > 0) selection_.report(static_cast<double>(records_.bytes()) / static_cast<double>(bytes_));
   }
 
-  void split() {
-    if (records_.has_quotes()) {
-      pinnquad::detail::split_quoted_fields(record_, cells_, unquoted_);
-    } else {
-      pinnquad::split_fields(record_, cells_);
-    }
-  }
-
   void read_header() {
     constexpr std::size_t most_columns = 10000;
     if (!records_.next(record_) || is_blank(record_)) {
@@ -144,7 +136,7 @@ class Table {
                                  records_.bytes() == bytes_ ? "an empty file" : "an empty line");
     }
     refuse_other_separators();
-    split();
+    records_.split(record_, cells_);
     if (cells_.size() > most_columns) {
       throw pinnquad::InputError(path_, 1, 0, "at most " + std::to_string(most_columns) + " columns",
                                  std::to_string(cells_.size()));
@@ -211,7 +203,6 @@ class Table {
   std::uintmax_t bytes_ = 0;
   std::size_t most_rows_ = 0;
   std::string_view record_;
-  std::string unquoted_;
   std::vector<std::string_view> cells_;
   std::vector<std::string> names_;
   std::vector<std::size_t> first_text_;
@@ -241,10 +232,10 @@ inline void set_clock(LogTopic& topic, const Table& table, const LogSelection& s
 
 }  // namespace csv_log
 
-/// The rows of a CSV table. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation marks as in
-/// RFC 4180: accepted. An empty cell and `nan` are NaN, `inf` is infinite; a column with a cell that is no number is text.
-/// Throws pinnquad::InputError, one line: no header, names that come twice, a row of other length, cells between semicolons or
-/// tabs, decimal commas, a clock that is missing or no number.
+/// The rows of a CSV table. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation
+/// marks as in RFC 4180: accepted. An empty cell and `nan` are NaN, `inf` is infinite; a column with a cell that is no
+/// number is text. Throws pinnquad::InputError, one line: no header, names that come twice, a row of other length,
+/// cells between semicolons or tabs, decimal commas, a clock that is missing or no number.
 inline LogTopic read_csv_topic(const std::string& path, const LogSelection& selection = {}) {
   csv_log::Table table(path, selection);
   LogTopic topic = table.read();

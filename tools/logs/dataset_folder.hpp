@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// An imported dataset as a folder: dataset.json says what it is and how it was made, each flight is a CSV file (data/csv.hpp).
+// An imported dataset as a folder: dataset.json says what it is and how it was made, each flight is a CSV file
+// (data/csv.hpp).
 //   {"format": 1, "sample_period_s": 0.02, "lag_removed_s": 0.03, "absent": ["velocity"],
-//    "flights": [{"name", "file", "trajectory", "rows", "source"}], "steps": [{"step", "rows_before", "rows_after", "told"}]}
+//    "flights": [{"name", "file", "trajectory", "rows", "source"}],
+//    "steps": [{"step", "rows_before", "rows_after", "told"}]}
 #pragma once
 
 #include <algorithm>
@@ -60,8 +62,8 @@ inline std::set<std::string> dataset_files(const std::string& folder) {
 
 }  // namespace detail
 
-/// Throws OutputError where something stands at the path that a dataset may not replace: a file, or a folder that holds more
-/// than a dataset.
+/// Throws OutputError where something stands at the path that a dataset may not replace: a file, or a folder that holds
+/// more than a dataset.
 inline void require_dataset_place(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a log leaves to compute: angular acceleration from body rates, specific force from accelerations or velocities, body
-// velocity from that in the world or from positions, height above ground; and the rows of a flight of all of it.
+// Quantities that a log leaves to compute: angular acceleration from body rates, specific force from accelerations or
+// velocities, body velocity from that in the world or from positions, height above ground; and the rows of a flight of
+// all of it.
 //   specific force f = v_dot + omega x v - R^T g, whichever of the three was logged
 #pragma once
 
@@ -21,7 +22,8 @@ namespace programs {
 
 using Series3 = std::array<std::vector<double>, 3>;
 
-/// A log's rows as those of a flight, gaps in time where rows were incomplete; beside them whether the vehicle was landed.
+/// A log's rows as those of a flight, gaps in time where rows were incomplete; beside them whether the vehicle was
+/// landed.
 struct LogRows {
   pinnquad::Flight flight;
   std::vector<bool> landed;  ///< by what the log says; empty if it says nothing
@@ -46,10 +48,9 @@ inline Series3 derivative(const CommonRows& rows, const Series3& series, int ord
   std::string told = what + " by Savitzky-Golay, rows (order):";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<pinnquad::IndexRange> runs = finite_runs(rows, series[axis]);
-    const pinnquad::SavitzkyGolay filter =
-        pinnquad::choose_savitzky_golay(series[axis], runs, rows.period_s, order).filter;
-    derived[axis] = pinnquad::savitzky_golay(series[axis], runs, rows.period_s, filter, order);
-    const std::size_t edge = pinnquad::edge_rows(filter);
+    const SavitzkyGolay filter = choose_savitzky_golay(series[axis], runs, rows.period_s, order).filter;
+    derived[axis] = savitzky_golay(series[axis], runs, rows.period_s, filter, order);
+    const std::size_t edge = edge_rows(filter);
     for (const pinnquad::IndexRange& run : runs) {
       for (std::size_t row = run.begin; row < run.end; ++row) {
         if (row - run.begin < edge || run.end - row <= edge) derived[axis][row] = std::nan("");

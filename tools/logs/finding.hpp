@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What a check of a log has to say: which check, its number, one sentence for the person who flew.
+// The finding of a check of a log: the check, its number, one sentence for the pilot.
 #pragma once
 
 #include <cmath>
 #include <string>
 
-namespace pinnquad {
+namespace programs {
 
 struct Finding {
   std::string check;     ///< "rate_frame", "motor_order": for scripts
   double number = 0;     ///< by which it was decided, in `unit`
   std::string unit;      ///< "1" for a share or a ratio
-  std::string sentence;  ///< what was seen, and what to do
+  std::string sentence;  ///< the observation, and the remedy
 };
 
 namespace detail {
@@ -19,4 +19,4 @@ namespace detail {
 inline std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 }  // namespace detail
 
-}  // namespace pinnquad
+}  // namespace programs

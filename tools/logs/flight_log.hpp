@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A log as its file has it: topics, each with columns over a clock of its own. What its columns mean in a flight's terms is said
-// by a mapping, not here.
+// A log as its file has it: topics, each with columns over a clock of its own. What its columns mean in a flight's
+// terms is said by a mapping, not here.
 #pragma once
 
 #include <cstddef>
@@ -52,7 +52,7 @@ struct LogTopic {
   }
 };
 
-/// What the vehicle said while it flew.
+/// A message of the vehicle in flight.
 struct LogMessage {
   double time_s = 0;
   int level = 6;  ///< as syslog: 0 emergency to 7 debug

@@ -13,12 +13,13 @@
 #include "logs/finding.hpp"
 #include "pinnquad/data/split.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 /// Runs of identical values that last `longest_s` or longer and hold `fewest_rows` or more; NaN ends a run.
-inline std::vector<IndexRange> frozen_rows(const std::vector<double>& time_s, const std::vector<double>& values,
-                                           double longest_s = 0.3, std::size_t fewest_rows = 10) {
-  std::vector<IndexRange> runs;
+inline std::vector<pinnquad::IndexRange> frozen_rows(const std::vector<double>& time_s,
+                                                     const std::vector<double>& values, double longest_s = 0.3,
+                                                     std::size_t fewest_rows = 10) {
+  std::vector<pinnquad::IndexRange> runs;
   for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
     for (end = begin + 1; end < values.size() && !(values[end] < values[begin] || values[end] > values[begin]) &&
                           std::isfinite(values[end]);) {
@@ -30,17 +31,17 @@ inline std::vector<IndexRange> frozen_rows(const std::vector<double>& time_s, co
   return runs;
 }
 
-/// Of a signal that is measured and in motion: body rates, specific force, attitude in the air. Not of commands (they saturate),
-/// battery voltage (it is coarse), nor of rows on the ground. number: seconds that are frozen.
-/// Limits: a signal of few digits that hardly moves looks frozen; one that is held longer than it is measured (a topic copied at
-/// a higher rate) does so only from `longest_s` on.
+/// Of a signal that is measured and in motion: body rates, specific force, attitude in the air. Not of commands (they
+/// saturate), battery voltage (it is coarse), nor of rows on the ground. number: seconds that are frozen.
+/// Limits: a signal of few digits that hardly moves looks frozen; one that is held longer than it is measured (a topic
+/// copied at a higher rate) does so only from `longest_s` on.
 inline std::optional<Finding> check_frozen(const std::string& name, const std::vector<double>& time_s,
                                            const std::vector<double>& values, double longest_s = 0.3) {
-  const std::vector<IndexRange> runs = frozen_rows(time_s, values, longest_s);
+  const std::vector<pinnquad::IndexRange> runs = frozen_rows(time_s, values, longest_s);
   if (runs.empty()) return std::nullopt;
   double sum_s = 0;
-  for (const IndexRange& run : runs) sum_s += time_s[run.end - 1] - time_s[run.begin];
-  const IndexRange& first = runs.front();
+  for (const pinnquad::IndexRange& run : runs) sum_s += time_s[run.end - 1] - time_s[run.begin];
+  const pinnquad::IndexRange& first = runs.front();
   const bool whole = first.size() == values.size();
   return Finding{"frozen", sum_s, "s",
                  whole ? name + " never changes: it was not measured"
@@ -50,4 +51,4 @@ inline std::optional<Finding> check_frozen(const std::string& name, const std::v
                              " s: what stopped there measured nothing, drop it"};
 }
 
-}  // namespace pinnquad
+}  // namespace programs

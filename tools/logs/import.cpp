@@ -34,7 +34,7 @@ namespace {
 /// Fewest rows of a flight: a batch of training.
 constexpr std::size_t minimum_rows = 64;
 
-/// What the steps cost, summed over logs.
+/// Rows that the steps cost, summed over logs.
 class Steps {
  public:
   explicit Steps(std::vector<ImportStep>& steps) : steps_(steps) {}
@@ -116,7 +116,7 @@ class Import {
     const auto& said = dataset_.warnings;
     if (std::find(said.begin(), said.end(), what) == said.end()) dataset_.warnings.push_back(what);
   }
-  void warn(const std::string& of, const std::optional<pinnquad::Finding>& finding) {
+  void warn(const std::string& of, const std::optional<programs::Finding>& finding) {
     if (finding) warn(of + ": " + finding->sentence);
   }
 
@@ -125,7 +125,7 @@ class Import {
     const auto count = [&](const Signal& signal) {
       if (!signal.present() || std::find(counted.begin(), counted.end(), signal.topic) != counted.end()) return;
       counted.push_back(signal.topic);
-      const pinnquad::ClockReport& report = signal.clock->report;
+      const programs::ClockReport& report = signal.clock->report;
       steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
                  "one time a row: no time, a second row of one time and stale first rows are left out");
       const std::string topic = name + ", " + topic_words(signal.topic->name, signal.topic->instance);
@@ -136,7 +136,7 @@ class Import {
         warn(topic + ": " + std::to_string(report.same_time) +
              " rows had the time of another; the last of the file stays");
       }
-      for (const pinnquad::Finding& finding : pinnquad::check_clock(topic, report)) warn(finding.sentence);
+      for (const programs::Finding& finding : programs::check_clock(topic, report)) warn(finding.sentence);
       if (report.restarts > 0) refuse_restart(signal);
     };
     for (const Signal& signal : bound.signals) count(signal);
@@ -149,7 +149,7 @@ class Import {
     const std::vector<double> time_s = detail::times_of(topic, *signal.source, mapping_);
     for (std::size_t row = 1; row < time_s.size(); ++row) {
       const double step_s = time_s[row] - time_s[row - 1];
-      if (!(step_s < -pinnquad::restart_step_s)) continue;
+      if (!(step_s < -programs::restart_step_s)) continue;
       throw wrong_cell(topic, row, mapping_.time_column.name,
                        "time that goes on (a mapping's [flights] column parts a table of several flights)",
                        "a step back of " + pinnquad::number_text(std::round(-step_s * 1000) / 1000) + " s");
@@ -226,21 +226,21 @@ class Import {
     const bool px4 = mapping_.name == "px4";
     for (const Quantity quantity : {Quantity::motors, Quantity::body_rates}) {
       const Signal& signal = bound.of(quantity);
-      if (const auto slow = pinnquad::check_log_rate(signal.told, signal.period_s(), px4)) warn(name, slow);
+      if (const auto slow = programs::check_log_rate(signal.told, signal.period_s(), px4)) warn(name, slow);
     }
     if (!rows.specific_force[0].empty()) {
       const auto& q = rows.attitude;
       const auto& w = rows.body_rates;
       const auto& f = rows.specific_force;
-      warn(name, pinnquad::check_thrust_direction(f[2]));
-      warn(name, pinnquad::check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
+      warn(name, programs::check_thrust_direction(f[2]));
+      warn(name, programs::check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
                                           {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]}));
     }
   }
 
   /// Of what is in the air, before the commands are moved.
   void check_motion(const Passage& passage) {
-    warn(passage.name, pinnquad::check_rate_frame(passage.segments));
+    warn(passage.name, programs::check_rate_frame(passage.segments));
     constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
     const auto series = [&passage](const auto& value_of) {
       std::vector<double> values;
@@ -255,7 +255,7 @@ class Import {
       const std::vector<double> rate =
           series([axis](const pinnquad::Sample& sample) { return sample.body_rates_rad_s[axis]; });
       warn(passage.name,
-           pinnquad::check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
+           programs::check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
     }
   }
 
@@ -263,7 +263,7 @@ class Import {
     const pinnquad::Airframe<double> airframe =
         request_.airframe ? request_.airframe->value : pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>();
     with_all_segments([&](const std::vector<pinnquad::Flight>& segments) {
-      warn("motors", pinnquad::check_motor_order(segments, airframe).finding);
+      warn("motors", programs::check_motor_order(segments, airframe).finding);
     });
   }
 
@@ -295,9 +295,9 @@ class Import {
     const std::size_t before = rows_in(passages_);
     if (!lag_s) {
       request_.on_progress("estimating the lag", 0);
-      pinnquad::CommandLag lag;
+      programs::CommandLag lag;
       with_all_segments([&](const std::vector<pinnquad::Flight>& segments) {
-        lag = pinnquad::estimate_command_lag(segments, *period_s_);
+        lag = programs::estimate_command_lag(segments, *period_s_);
       });
       if (!lag.warning.empty()) dataset_.warnings.push_back("lag: " + lag.warning);
       lag_s = lag.found ? lag.lag_s : 0;
@@ -307,7 +307,7 @@ class Import {
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
     for (Passage& passage : passages_) {
       for (pinnquad::Flight& segment : passage.segments) {
-        segment = pinnquad::remove_lag(std::move(segment), *period_s_, dataset_.lag_removed_s);
+        segment = programs::remove_lag(std::move(segment), *period_s_, dataset_.lag_removed_s);
       }
     }
     steps_.add("lag", before, rows_in(passages_),
@@ -339,10 +339,10 @@ class Import {
          "a command at its limit, " + text(mapping_.lowest_command) + " or " + text(mapping_.highest_command) +
              " or one it is held at",
          [this](const pinnquad::Flight& flight) {
-           return pinnquad::saturated_rows(flight, mapping_.lowest_command, mapping_.highest_command);
+           return programs::saturated_rows(flight, mapping_.lowest_command, mapping_.highest_command);
          });
     drop("outliers", "a value like none of its neighbours",
-         [](const pinnquad::Flight& flight) { return pinnquad::outlier_rows(flight); });
+         [](const pinnquad::Flight& flight) { return programs::outlier_rows(flight); });
   }
 
   void make_flights() {
@@ -393,7 +393,8 @@ class Import {
     }
   }
 
-  /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no velocity.
+  /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no
+  /// velocity.
   void require_plausible_flight(const pinnquad::Flight& flight, const std::string& source) const {
     const auto found = pinnquad::find_implausible(flight);
     if (!found) return;

@@ -43,7 +43,7 @@ void list_mappings() {
   }
 }
 
-/// What there is of `text` on one line of at most `width` letters.
+/// As much of `text` as fits on one line of at most `width` letters.
 std::string shortened(const std::string& text, std::size_t width) {
   return text.size() <= width ? text : text.substr(0, width - 3) + "...";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `import` makes of flight logs: flights on one clock, and what was done to get them.
+// The product of `import`: flights on one clock, and the steps that led there.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct ImportStep {
   std::string told;  ///< how, in a few words: "a command below 0.005 or above 0.995"
 };
 
-/// Flights as a training takes them. Row k holds the commands that cause the motion of row k. Where velocity is absent, the
-/// linear acceleration is specific force + R^T g: what it is with v = 0.
+/// Flights as a training takes them. Row k holds the commands that cause the motion of row k. Where velocity is absent,
+/// the linear acceleration is specific force + R^T g: what it is with v = 0.
 struct ImportedDataset {
   pinnquad::Dataset flights;
   std::vector<std::string> sources;  ///< the log of each flight

@@ -11,25 +11,25 @@
 #include "logs/specific_force.hpp"
 #include "pinnquad/data/dataset.hpp"
 
-namespace pinnquad::detail {
+namespace programs::detail {
 
 inline constexpr std::size_t lag_motions = 4;  ///< angular acceleration about x, y, z; specific force along z
 
 /// One segment as series: four commands, three body rates, four motions.
 struct LagSeries {
-  std::array<std::vector<double>, rotor_count> commands;
+  std::array<std::vector<double>, pinnquad::rotor_count> commands;
   std::array<std::vector<double>, 3> rates;
   std::array<std::vector<double>, lag_motions> motions;
 
   std::size_t size() const noexcept { return rates[0].size(); }
 };
 
-inline std::vector<LagSeries> lag_series(const std::vector<Flight>& segments) {
+inline std::vector<LagSeries> lag_series(const std::vector<pinnquad::Flight>& segments) {
   std::vector<LagSeries> all(segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    for (const Sample& sample : segments[i]) {
+    for (const pinnquad::Sample& sample : segments[i]) {
       LagSeries& one = all[i];
-      for (std::size_t k = 0; k < rotor_count; ++k) one.commands[k].push_back(sample.commands[k]);
+      for (std::size_t k = 0; k < pinnquad::rotor_count; ++k) one.commands[k].push_back(sample.commands[k]);
       for (std::size_t k = 0; k < 3; ++k) {
         const auto axis = static_cast<Eigen::Index>(k);
         one.rates[k].push_back(sample.body_rates_rad_s[axis]);
@@ -70,12 +70,12 @@ inline std::vector<LagSeries> low_passed(std::vector<LagSeries> all, double peri
 /// R^2 of each motion by the commands, beyond what a constant and the body rates explain.
 using Explained = std::array<double, lag_motions>;
 
-inline constexpr std::size_t lag_columns = 1 + rotor_count + 3 + lag_motions;
+inline constexpr std::size_t lag_columns = 1 + pinnquad::rotor_count + 3 + lag_motions;
 using LagMoments = std::array<std::array<double, lag_columns>, lag_columns>;
 
 inline Explained explained_beyond_rates(LagMoments moments) {
   constexpr double rank_threshold = 1e-9;
-  constexpr std::size_t first_motion = 1 + rotor_count + 3;
+  constexpr std::size_t first_motion = 1 + pinnquad::rotor_count + 3;
   const LagMoments whole = moments;
   LagMoments centred{};
   const auto take = [&](std::size_t k) {
@@ -89,10 +89,10 @@ inline Explained explained_beyond_rates(LagMoments moments) {
   };
   take(0);
   centred = moments;
-  for (std::size_t k = 1 + rotor_count; k < first_motion; ++k) take(k);
+  for (std::size_t k = 1 + pinnquad::rotor_count; k < first_motion; ++k) take(k);
   Explained before{}, result{};
   for (std::size_t m = 0; m < lag_motions; ++m) before[m] = moments[first_motion + m][first_motion + m];
-  for (std::size_t k = 1; k <= rotor_count; ++k) take(k);
+  for (std::size_t k = 1; k <= pinnquad::rotor_count; ++k) take(k);
   for (std::size_t m = 0; m < lag_motions; ++m) {
     const double of = whole[first_motion + m][first_motion + m];
     if (!(before[m] > 1e-12 * of)) continue;
@@ -101,8 +101,8 @@ inline Explained explained_beyond_rates(LagMoments moments) {
   return result;
 }
 
-/// For each lag of `first` to `last` rows (commands that many rows before the motion; `first` may be negative), all over the
-/// same rows, at most about `most_rows` of them. `rows`: how many.
+/// For each lag of `first` to `last` rows (commands that many rows before the motion; `first` may be negative), all
+/// over the same rows, at most about `most_rows` of them. `rows`: how many.
 inline std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, int first, int last, int stride,
                                                std::size_t& rows) {
   constexpr std::size_t most_rows = 8000;
@@ -138,4 +138,4 @@ inline std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all
   return result;
 }
 
-}  // namespace pinnquad::detail
+}  // namespace programs::detail

@@ -29,8 +29,8 @@ struct LogPlace {
   std::string name;    ///< "test_circle"
 };
 
-/// Files as they are; of a folder its ULog files, or its CSV tables where the mapping says which column is their clock, or the
-/// logs that ulog2csv wrote into it. Throws InputError: a folder without.
+/// Files as they are; of a folder its ULog files, or its CSV tables where the mapping says which column is their clock,
+/// or the logs that ulog2csv wrote into it. Throws InputError: a folder without.
 inline std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock) {
   namespace fs = std::filesystem;
   std::error_code error;

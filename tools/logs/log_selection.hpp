@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is wanted of a log: a reader leaves out the rest, which is most of it.
+// The wanted part of a log: a reader leaves out the rest, which is most of it.
 #pragma once
 
 #include <algorithm>

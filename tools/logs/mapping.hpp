@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the columns of a log mean: which of them make which quantity, in which unit, frame and order.
+// The meaning of the columns of a log: which of them make which quantity, in which unit, frame and order.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace programs {
 enum class WorldFrame { ned, enu };
 enum class BodyFrame { frd, flu };
 enum class Axes { body, world };
-/// What the numbers of `motors` are.
+/// The meaning of the numbers of `motors`.
 enum class MotorNumbers {
   thrust,  ///< share of the greatest thrust, 0..1
   signal,  ///< what the motor's controller is told, from `least` to `most`: a command of the airframe's thrust curve

@@ -11,7 +11,7 @@
 #include "command_line/nearest_names.hpp"
 #include "command_line/toml_table.hpp"
 #include "logs/name_pattern.hpp"
-#include "pinnquad/data/sample.hpp"
+#include "pinnquad/data/dataset.hpp"
 
 namespace programs {
 namespace {
@@ -136,7 +136,7 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
   }
 }
 
-/// What every source has.
+/// Keys of every source.
 void read_place(TomlTable& table, const toml::table& node, Source& source) {
   constexpr double most_instances = 255;
   source.place = place_of(node);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a log says of its motors as commands of a Sample: front right, rear left, front left, rear right, 0..1, whose meaning is
-// that of the airframe's thrust curves.
+// A log's motors as commands of a Sample: front right, rear left, front left, rear right, 0..1, whose
+// meaning is that of the airframe's thrust curves.
 #pragma once
 
 #include <array>
@@ -32,9 +32,9 @@ inline double thrust_curve(const std::optional<NamedAirframe>& airframe, std::si
 
 }  // namespace detail
 
-/// Replaces the columns of `motors` by commands. A number below `least` is a stopped motor: 0; what is above `most` is 1, and
-/// falls to the rule for saturated rows. `curve`: thrust = s ((1 - k) + k s) of a signal, where the log or the mapping says so;
-/// then the command is the airframe's of that thrust, and else the signal itself.
+/// Replaces the columns of `motors` by commands. A number below `least` is a stopped motor: 0; what is above `most` is
+/// 1, and falls to the rule for saturated rows. `curve`: thrust = s ((1 - k) + k s) of a signal, where the log or the
+/// mapping says so; then the command is the airframe's of that thrust, and else the signal itself.
 inline void to_commands(const Source& source, const std::optional<NamedAirframe>& airframe, double curve,
                         std::vector<std::vector<double>>& values) {
   std::vector<std::vector<double>> commands;
@@ -59,7 +59,8 @@ inline void to_commands(const Source& source, const std::optional<NamedAirframe>
   values = std::move(commands);
 }
 
-/// Thrust shares of a symmetric X quadrotor from what its controller asked for, torque normalised to -1..1 and thrust to 0..1:
+/// Thrust shares of a symmetric X quadrotor from what its controller asked for, torque normalised to -1..1 and thrust
+/// to 0..1:
 ///   u = T -+ r x +- r y +- z, r = sqrt(1/2), as PX4's allocation makes them while no motor is at its limit.
 /// NaN where one would be beyond: its desaturation is not known then.
 inline std::array<double, 4> rebuilt_commands(const std::array<double, 3>& torque, double thrust) {

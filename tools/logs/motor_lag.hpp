@@ -10,7 +10,7 @@
 
 #include "logs/command_lag.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct MotorLag {
   double time_constant_s = 0;
@@ -20,21 +20,16 @@ struct MotorLag {
   bool found = false;                  ///< otherwise nothing but CommandLag's lag is known
   std::string warning;                 ///< empty for none
 
-  /// What slow commands see.
+  /// The lag of slow commands.
   double equivalent_delay_s() const noexcept { return time_constant_s + delay_s; }
 };
 
-/// Commands as the motors followed them: behind a pure delay and a first-order lag; NaN at the first rows, see remove_lag().
-inline std::vector<double> apply_motor_lag(std::vector<double> commands, double period_s, const MotorLag& lag) {
-  detail::apply_first_order_lag(commands, period_s, lag.time_constant_s);
-  return remove_lag(commands, period_s, lag.delay_s);
-}
-
-/// Time constants of 0 to 0.16 s and delays of the search, in the band of `pure` and over the motions that it found: first on a
-/// grid, then between its neighbours. Segments and clock as for estimate_command_lag(), whose answer `pure` is.
-/// Limits: of a calm flight the two are hardly told apart, and the gyro's noise, which comes back as commands, makes both look
-/// longer: a warning says so. A logged command holds until the next: half a period of it counts as delay.
-inline MotorLag fit_motor_lag(const std::vector<Flight>& segments, double period_s, const CommandLag& pure,
+/// Time constants of 0 to 0.16 s and delays of the search, in the band of `pure` and over the motions that it found:
+/// first on a grid, then between its neighbours. Segments and clock as for estimate_command_lag(), whose answer `pure`
+/// is. Limits: of a calm flight the two are hardly told apart, and the gyro's noise, which comes back as commands,
+/// makes both look longer: a warning says so. A logged command holds until the next: half a period of it counts as
+/// delay.
+inline MotorLag fit_motor_lag(const std::vector<pinnquad::Flight>& segments, double period_s, const CommandLag& pure,
                               const LagSearch& search = {}) {
   constexpr double clear = 0.95;
   MotorLag best;
@@ -101,4 +96,4 @@ inline MotorLag fit_motor_lag(const std::vector<Flight>& segments, double period
   return best;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Are the commands in the order of the airframe's motors? Asked of the motion: each order is fitted to roll, pitch and yaw
-// acceleration with the signs that the airframe's allocation gives it, and the one that explains them says which it is.
+// Are the commands in the order of the airframe's motors? Asked of the motion: each order is fitted to roll, pitch and
+// yaw acceleration with the signs that the airframe's allocation gives it, and the one that explains them says which it
+// is.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +17,12 @@
 #include "pinnquad/dynamics/motor_order.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct MotorOrderCheck {
   std::optional<Finding> finding;  ///< none where the order as it stands fits, and where nothing can be said
   /// The airframe's motor i is the log's command `permutation[i]`; 0, 1, 2, 3 where nothing is proposed.
-  std::array<std::size_t, rotor_count> permutation = {0, 1, 2, 3};
+  std::array<std::size_t, pinnquad::rotor_count> permutation = {0, 1, 2, 3};
   std::string convention;         ///< that has the log's order: "betaflight"; empty for none known
   bool ambiguous = false;         ///< nothing is excited enough to tell, or two orders explain the motion alike
   bool yaw_reversed = false;      ///< roll and pitch fit, yaw has the wrong sign: propellers turn the other way
@@ -33,16 +34,16 @@ namespace detail {
 
 /// Second moments of what is left of signed command sums and accelerations when constant and body rates are taken out.
 struct OrderMoments {
-  std::array<std::array<double, rotor_count>, rotor_count> commands{};
-  std::array<std::array<double, rotor_count>, 3> with_motion{};
+  std::array<std::array<double, pinnquad::rotor_count>, pinnquad::rotor_count> commands{};
+  std::array<std::array<double, pinnquad::rotor_count>, 3> with_motion{};
   std::array<double, 3> motion{};
 
   /// R^2 of acceleration `axis` by one sum with these weights, whose gain is positive; negative where it is not.
-  double explained(std::size_t axis, const std::array<double, rotor_count>& weights) const noexcept {
+  double explained(std::size_t axis, const std::array<double, pinnquad::rotor_count>& weights) const noexcept {
     double along = 0, squares = 0;
-    for (std::size_t i = 0; i < rotor_count; ++i) {
+    for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
       along += weights[i] * with_motion[axis][i];
-      for (std::size_t j = 0; j < rotor_count; ++j) squares += weights[i] * weights[j] * commands[i][j];
+      for (std::size_t j = 0; j < pinnquad::rotor_count; ++j) squares += weights[i] * weights[j] * commands[i][j];
     }
     if (!(squares > 0) || !(motion[axis] > 0)) return 0;
     return (along < 0 ? -1 : 1) * along * along / (squares * motion[axis]);
@@ -74,9 +75,9 @@ inline OrderMoments order_moments(const std::vector<LagSeries>& segments) {
     }
   }
   OrderMoments result;
-  for (std::size_t i = 0; i < rotor_count; ++i) {
+  for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
     if (!(moments[1 + i][1 + i] > 1e-12 * whole[1 + i][1 + i])) continue;  // stands still: rounding is no motion
-    for (std::size_t j = 0; j < rotor_count; ++j) result.commands[i][j] = moments[1 + i][1 + j];
+    for (std::size_t j = 0; j < pinnquad::rotor_count; ++j) result.commands[i][j] = moments[1 + i][1 + j];
     for (std::size_t axis = 0; axis < 3; ++axis) result.with_motion[axis][i] = moments[1 + i][8 + axis];
   }
   for (std::size_t axis = 0; axis < 3; ++axis) result.motion[axis] = std::max(0.0, moments[8 + axis][8 + axis]);
@@ -85,20 +86,21 @@ inline OrderMoments order_moments(const std::vector<LagSeries>& segments) {
 
 }  // namespace detail
 
-/// Of all 24 orders the one whose signed sums explain roll and pitch acceleration best, gains positive; yaw, which is weak,
-/// only tells whether the propellers turn as the airframe says. As they are, or below 8 Hz: gyro noise that comes back as
-/// commands hides the order in calm flights. A finding where that order is not the one that stands, which explains less than
-/// three quarters of it (R^2, mean of both axes). Segments on one uniform clock, lag-aligned (remove_lag()).
-/// Limits: body axes that are x forward, y left, z up look like motors exchanged front for rear, for the commands cannot tell
-/// the two apart: check_rate_frame() can, and is to be asked first.
-inline MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const Airframe<double>& airframe) {
+/// Of all 24 orders the one whose signed sums explain roll and pitch acceleration best, gains positive; yaw, which is
+/// weak, only tells whether the propellers turn as the airframe says. As they are, or below 8 Hz: gyro noise that comes
+/// back as commands hides the order in calm flights. A finding where that order is not the one that stands, which
+/// explains less than three quarters of it (R^2, mean of both axes). Segments on one uniform clock, lag-aligned
+/// (remove_lag()). Limits: body axes that are x forward, y left, z up look like motors exchanged front for rear, for
+/// the commands cannot tell the two apart: check_rate_frame() can, and is to be asked first.
+inline MotorOrderCheck check_motor_order(const std::vector<pinnquad::Flight>& lag_aligned,
+                                         const pinnquad::Airframe<double>& airframe) {
   constexpr double least_explained = 0.05, stands = 0.75, alike = 0.8, yaw_explained = 0.1, corner_Hz = 8;
-  using Order = std::array<std::size_t, rotor_count>;
+  using Order = std::array<std::size_t, pinnquad::rotor_count>;
   const Order identity = {0, 1, 2, 3};
-  const AllocationMatrix<double> rows = allocation(airframe);
+  const pinnquad::AllocationMatrix<double> rows = allocation(airframe);
   const auto weights = [&](std::size_t axis, const Order& order) {
-    std::array<double, rotor_count> result{};
-    for (std::size_t i = 0; i < rotor_count; ++i) result[order[i]] = rows[1 + axis][i];
+    std::array<double, pinnquad::rotor_count> result{};
+    for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) result[order[i]] = rows[1 + axis][i];
     return result;
   };
   MotorOrderCheck check;
@@ -128,7 +130,7 @@ inline MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned,
   };
   const std::vector<detail::LagSeries> series = detail::lag_series(lag_aligned);
   try_all(series);
-  for (const Flight& segment : lag_aligned) {
+  for (const pinnquad::Flight& segment : lag_aligned) {
     if (segment.size() < 2) continue;
     try_all(detail::low_passed(series, segment[1].time_s - segment[0].time_s, corner_Hz));
     break;
@@ -147,11 +149,12 @@ inline MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned,
   }
   if (check.explained > stands * most) return check;
   check.permutation = best;
-  MotorOrder airframe_order;
-  if (motor_order_of(airframe, airframe_order) == Status::ok) {
-    for (const MotorOrder& known : motor_orders) {
+  pinnquad::MotorOrder airframe_order;
+  if (pinnquad::motor_order_of(airframe, airframe_order) == pinnquad::Status::ok) {
+    for (const pinnquad::MotorOrder& known : pinnquad::motor_orders) {
       bool same = true;
-      for (std::size_t i = 0; i < rotor_count; ++i) same = same && known.corners[best[i]] == airframe_order.corners[i];
+      for (std::size_t i = 0; i < pinnquad::rotor_count; ++i)
+        same = same && known.corners[best[i]] == airframe_order.corners[i];
       if (same) check.convention = known.name;
     }
   }
@@ -167,4 +170,4 @@ inline MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned,
   return check;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

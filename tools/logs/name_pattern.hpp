@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a flight's name says of what was flown: "*_(*)_*" makes lissajous of B10_lissajous_fast_rep1.
+// A trajectory's name out of a flight's name: "*_(*)_*" makes lissajous of B10_lissajous_fast_rep1.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,8 @@ inline bool fits(std::string_view pattern, std::string_view name, std::size_t at
 
 }  // namespace detail
 
-/// What the brackets of the pattern hold of a name; the name itself where it does not fit, or is longer than any name.
+/// The part of a name within the brackets of the pattern; the name itself where it does not fit, or is longer than any
+/// name.
 inline std::string part_of_name(std::string_view pattern, const std::string& name) {
   constexpr std::size_t longest = 120;
   std::size_t begin = 0, end = 0;

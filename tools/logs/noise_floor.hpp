@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What of a spectrum is noise: the level at which it stops falling. A vehicle is a low-pass, so that what it does sinks with
-// frequency; a sensor's noise lies flat until the sensor's own filter ends it.
+// The noise of a spectrum: the level at which it stops falling. A vehicle is a low-pass, so that what it does sinks
+// with frequency; a sensor's noise lies flat until the sensor's own filter ends it.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 #include "logs/power_spectrum.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct NoiseFloor {
   double power = 0;            ///< of a bin
@@ -35,11 +35,11 @@ inline std::vector<double> third_octave_means(const std::vector<double>& power) 
 
 }  // namespace detail
 
-/// The floor begins with the highest run of flat octaves that begins below 30 Hz: octaves above the peak, at a tenth of it or less,
-/// over which the power keeps 0.3 of itself (where one follows that keeps half, with that one). Manoeuvres leave shelves further down; further up is what a sensor's own filter
-/// or a log's last digit leaves. What follows the floor is noise too. All is signal where no octave is flat (a log that
-/// was filtered before it was written), all is noise where nothing stands out (the largest third of an octave less than ten
-/// times the least).
+/// The floor begins with the highest run of flat octaves that begins below 30 Hz: octaves above the peak, at a tenth of
+/// it or less, over which the power keeps 0.3 of itself (where one follows that keeps half, with that one). Manoeuvres
+/// leave shelves further down; further up is what a sensor's own filter or a log's last digit leaves. What follows the
+/// floor is noise too. All is signal where no octave is flat (a log that was filtered before it was written), all is
+/// noise where nothing stands out (the largest third of an octave less than ten times the least).
 /// Limits: a vibration above the floor counts as noise; motion that is itself flat over an octave just before the noise
 /// hides it; noise that rises towards low frequencies (a drift) is taken for signal.
 inline NoiseFloor noise_floor(const PowerSpectrum& spectrum) {
@@ -88,4 +88,4 @@ inline NoiseFloor noise_floor(const PowerSpectrum& spectrum) {
   return floor;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How the power of a series is spread over frequency: mean periodogram of overlapping pieces (Welch), never across a gap.
+// How the power of a series is spread over frequency: mean periodogram of overlapping pieces (Welch), never across a
+// gap.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +10,11 @@
 
 #include "pinnquad/data/split.hpp"
 
-namespace pinnquad {
+namespace programs {
 
-/// Power of each bin k, k = 0..size-1, at frequency k step_Hz, up to half the sampling rate: of white noise of variance s^2 each
-/// has s^2 / (size - 1) (its two ends half that), so that the sum is the variance of the series without its trend.
+/// Power of each bin k, k = 0..size-1, at frequency k step_Hz, up to half the sampling rate: of white noise of variance
+/// s^2 each has s^2 / (size - 1) (its two ends half that), so that the sum is the variance of the series without its
+/// trend.
 struct PowerSpectrum {
   double step_Hz = 0;
   std::vector<double> power;
@@ -23,8 +25,9 @@ struct PowerSpectrum {
 
 /// Pieces of `length` rows (even), half over each other, without their own straight line, under a Hann window.
 /// Source: Welch (1967).
-inline PowerSpectrum power_spectrum(const std::vector<double>& series, const std::vector<IndexRange>& segments,
-                                    double period_s, std::size_t length) {
+inline PowerSpectrum power_spectrum(const std::vector<double>& series,
+                                    const std::vector<pinnquad::IndexRange>& segments, double period_s,
+                                    std::size_t length) {
   constexpr double pi = 3.14159265358979323846;
   const std::size_t half = length / 2;
   PowerSpectrum spectrum;
@@ -41,7 +44,7 @@ inline PowerSpectrum power_spectrum(const std::vector<double>& series, const std
     window[i] = 0.5 - 0.5 * cosine[i];
     window_power += window[i] * window[i];
   }
-  for (const IndexRange& segment : segments) {
+  for (const pinnquad::IndexRange& segment : segments) {
     for (std::size_t first = segment.begin; first + length <= segment.end; first += half) {
       double mean = 0, slope = 0;
       for (std::size_t i = 0; i < length; ++i) mean += series[first + i] / rows;
@@ -70,4 +73,4 @@ inline PowerSpectrum power_spectrum(const std::vector<double>& series, const std
   return spectrum;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a flight's rows are made of, and the units in which logs have it.
+// The quantities of a flight's rows, and the units in which logs have them.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace programs {
 
-/// What a mapping may say of a log. The order is that of a mapping's messages.
+/// The quantities that a mapping may name. The order is that of a mapping's messages.
 enum class Quantity {
   attitude,
   body_rates,
@@ -27,7 +27,7 @@ enum class Quantity {
   extra  ///< any other column, for models that take it: not among `quantities`
 };
 
-/// What a unit measures.
+/// The dimension of a unit.
 enum class Dimension { time, angle, turning, angular_acceleration, acceleration, speed, length, rotor_speed, none };
 
 struct QuantityFacts {
@@ -43,13 +43,15 @@ inline constexpr std::array<QuantityFacts, 11> quantities = {{
     {Quantity::attitude, "attitude", 4, Dimension::angle, "quaternion or Euler angles"},
     {Quantity::body_rates, "body_rates", 3, Dimension::turning, "angular velocity in the body's axes"},
     {Quantity::angular_acceleration, "angular_acceleration", 3, Dimension::angular_acceleration, "its derivative"},
-    {Quantity::specific_force, "specific_force", 3, Dimension::acceleration, "what an accelerometer measures: at rest -g along z down"},
+    {Quantity::specific_force, "specific_force", 3, Dimension::acceleration,
+     "what an accelerometer measures: at rest -g along z down"},
     {Quantity::acceleration, "acceleration", 3, Dimension::acceleration, "of the vehicle against the world: at rest 0"},
     {Quantity::velocity, "velocity", 3, Dimension::speed, "against the ground"},
     {Quantity::position, "position", 3, Dimension::length, "in the world"},
     {Quantity::altitude, "altitude", 1, Dimension::length, "height, positive up"},
     {Quantity::motors, "motors", 4, Dimension::none, "the command of each motor"},
-    {Quantity::torque_and_thrust, "torque_and_thrust", 4, Dimension::none, "set points from which the motors' commands are rebuilt"},
+    {Quantity::torque_and_thrust, "torque_and_thrust", 4, Dimension::none,
+     "set points from which the motors' commands are rebuilt"},
     {Quantity::landed, "landed", 1, Dimension::none, "1 on the ground, 0 in the air"}}};
 // clang-format on
 

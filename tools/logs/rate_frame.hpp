@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Are body rates those of the body, in FRD and rad/s? Asked of the motion: over a step of time the attitude turns by them.
+// Are body rates those of the body, in FRD and rad/s? Asked of the motion: over a step of time the attitude turns by
+// them.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +11,9 @@
 
 #include "logs/finding.hpp"
 #include "logs/specific_force.hpp"
-#include "pinnquad/data/degrees.hpp"
+#include "pinnquad/data/motion_checks.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 namespace detail {
 
@@ -29,40 +30,42 @@ inline constexpr std::array<const char*, rate_frames> rate_frame_sentences = {
     "rates are "
     "negated"};
 
-/// What a log would hold as body rates if the vehicle turns with `turning` (body, FRD) while it is at `a`.
-inline std::array<Vector3<double>, rate_frames> logged_rates(const Sample& a, const Sample& b,
-                                                             const Vector3<double>& turning) {
-  const auto euler = to_euler(attitude(a));
+/// The body rates of a log if the vehicle turns with `turning` (body, FRD) while it is at `a`.
+inline std::array<pinnquad::Vector3<double>, rate_frames> logged_rates(const pinnquad::Sample& a,
+                                                                       const pinnquad::Sample& b,
+                                                                       const pinnquad::Vector3<double>& turning) {
+  const auto euler = pinnquad::to_euler(attitude(a));
   const double sr = std::sin(euler.roll_rad), cr = std::cos(euler.roll_rad);
   const double tp = std::tan(euler.pitch_rad), cp = std::cos(euler.pitch_rad);
   const double yawing = (sr * turning[1] + cr * turning[2]) / cp;
-  const Vector3<double> angles(turning[0] + tp * (sr * turning[1] + cr * turning[2]), cr * turning[1] - sr * turning[2],
-                               yawing);
+  const pinnquad::Vector3<double> angles(turning[0] + tp * (sr * turning[1] + cr * turning[2]),
+                                         cr * turning[1] - sr * turning[2], yawing);
   // at the middle of the step
-  const Quaternion<double> q_a = attitude(a), q_b = attitude(b);
+  const pinnquad::Quaternion<double> q_a = attitude(a), q_b = attitude(b);
   const double same = q_a.w * q_b.w + q_a.x * q_b.x + q_a.y * q_b.y + q_a.z * q_b.z < 0 ? -1 : 1;
-  const Quaternion<double> middle = normalized(
-      Quaternion<double>{q_a.w + same * q_b.w, q_a.x + same * q_b.x, q_a.y + same * q_b.y, q_a.z + same * q_b.z});
-  const Vector3<double> world = body_to_world(middle, turning);
-  return {turning, world, swap_flu_frd(turning), swap_enu_ned(world), angles, -turning};
+  const pinnquad::Quaternion<double> middle = pinnquad::normalized(pinnquad::Quaternion<double>{
+      q_a.w + same * q_b.w, q_a.x + same * q_b.x, q_a.y + same * q_b.y, q_a.z + same * q_b.z});
+  const pinnquad::Vector3<double> world = pinnquad::body_to_world(middle, turning);
+  return {turning, world, pinnquad::swap_flu_frd(turning), pinnquad::swap_enu_ned(world), angles, -turning};
 }
 
 }  // namespace detail
 
-/// Compares, over steps of 0.2 s, what the logged rates would be in each frame with what they are: per axis the share of the rates'
-/// squares that is left unexplained, mean of the three. A finding where body rates leave 0.3 or more, and another frame less than
-/// a third of that. number: the share that body rates leave.
-/// Limits: where the vehicle stays near level and at one heading near north the frames agree, and nothing is found; an attitude
-/// that is wrong by itself shows here, see check_attitude().
-inline std::optional<Finding> check_rate_frame(const std::vector<Flight>& segments) {
+/// Compares, over steps of 0.2 s, what the logged rates would be in each frame with what they are: per axis the share
+/// of the rates' squares that is left unexplained, mean of the three. A finding where body rates leave 0.3 or more, and
+/// another frame less than a third of that. number: the share that body rates leave.
+/// Limits: where the vehicle stays near level and at one heading near north the frames agree, and nothing is found; an
+/// attitude that is wrong by itself shows here, see check_attitude().
+inline std::optional<Finding> check_rate_frame(const std::vector<pinnquad::Flight>& segments) {
   constexpr double unexplained = 0.3, better = 1.0 / 3, smallest_rates = 1e-3;  // mean square, (rad/s)^2
-  std::array<Vector3<double>, detail::rate_frames> residual;
-  residual.fill(Vector3<double>::Zero());
-  Vector3<double> rates = Vector3<double>::Zero();
+  std::array<pinnquad::Vector3<double>, detail::rate_frames> residual;
+  residual.fill(pinnquad::Vector3<double>::Zero());
+  pinnquad::Vector3<double> rates = pinnquad::Vector3<double>::Zero();
   double steps = 0;
-  const auto judge = [&](const Sample& a, const Sample& b, const Vector3<double>& rate, double dt_s) {
-    const Vector3<double> turning =
-        detail::turning_rate({a.roll_rad, a.pitch_rad, a.yaw_rad}, {b.roll_rad, b.pitch_rad, b.yaw_rad}, dt_s);
+  const auto judge = [&](const pinnquad::Sample& a, const pinnquad::Sample& b, const pinnquad::Vector3<double>& rate,
+                         double dt_s) {
+    const pinnquad::Vector3<double> turning = pinnquad::detail::turning_rate(
+        {a.roll_rad, a.pitch_rad, a.yaw_rad}, {b.roll_rad, b.pitch_rad, b.yaw_rad}, dt_s);
     const auto expected = detail::logged_rates(a, b, turning);
     for (std::size_t frame = 0; frame < residual.size(); ++frame) {
       residual[frame] += (rate - expected[frame]).cwiseAbs2();
@@ -70,7 +73,7 @@ inline std::optional<Finding> check_rate_frame(const std::vector<Flight>& segmen
     rates += rate.cwiseAbs2();
     steps += 1;
   };
-  for (const Flight& segment : segments) detail::for_each_turning_step(segment, judge);
+  for (const pinnquad::Flight& segment : segments) pinnquad::detail::for_each_turning_step(segment, judge);
   if (!(rates.sum() > smallest_rates * steps)) return std::nullopt;
   std::array<double, detail::rate_frames> left{};
   for (std::size_t frame = 0; frame < left.size(); ++frame) {
@@ -87,18 +90,18 @@ inline std::optional<Finding> check_rate_frame(const std::vector<Flight>& segmen
 }
 
 /// find_degrees_by_motion() over all segments as one flight; number: how many of the four columns are in degrees.
-inline std::optional<Finding> check_degrees(const std::vector<Flight>& segments) {
-  Flight all;
+inline std::optional<Finding> check_degrees(const std::vector<pinnquad::Flight>& segments) {
+  pinnquad::Flight all;
   double last_s = 0;
-  for (const Flight& segment : segments) {
+  for (const pinnquad::Flight& segment : segments) {
     const double shift_s = all.empty() || segment.empty() ? 0 : last_s + 10 - segment.front().time_s;
-    for (Sample sample : segment) {
+    for (pinnquad::Sample sample : segment) {
       sample.time_s += shift_s;
       last_s = sample.time_s;
       all.push_back(sample);
     }
   }
-  const DegreesFound found = find_degrees_by_motion(all);
+  const auto found = pinnquad::find_degrees_by_motion(all);
   constexpr std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
   std::string columns;
   double number = 0;
@@ -114,4 +117,4 @@ inline std::optional<Finding> check_degrees(const std::vector<Flight>& segments)
                  "in degrees, by how attitude and body rates change together: " + columns + " (say so in the mapping)"};
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -69,8 +69,8 @@ inline LogKind kind_of_log(const std::string& path) {
   return LogKind::csv;
 }
 
-/// With progress on stderr unless the selection takes it. Throws pinnquad::InputError, one line, for what cannot be read at
-/// all; what is lost of the rest is in `warnings`.
+/// With progress on stderr unless the selection takes it. Throws pinnquad::InputError, one line, for what cannot be
+/// read at all; what is lost of the rest is in `warnings`.
 inline FlightLog read_log(const std::string& path, const LogSelection& selection = {}) {
   const LogKind kind = kind_of_log(path);
   ProgressLine progress("reading " + pinnquad::printable(std::filesystem::path(path).filename().string()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A topic's values on another clock: lines between neighbours, the last value held, a local mean where the topic is faster than
-// the clock, attitudes along the shorter arc. NaN where the topic has none: in gaps and outside its time.
+// A topic's values on another clock: lines between neighbours, the last value held, a local mean where the topic is
+// faster than the clock, attitudes along the shorter arc. NaN where the topic has none: in gaps and outside its time.
 #pragma once
 
 #include <algorithm>
@@ -13,17 +13,17 @@
 #include "logs/common_clock.hpp"
 #include "pinnquad/core/rotation.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 enum class Resampling {
-  linear,  ///< between the neighbours: signals that are smooth at their own rate
-  hold,    ///< the last one before: commands, set points, flags
-  low_pass,  ///< least-squares line under a triangle of +- one period of the new clock: a noisy signal that is faster than it
+  linear,    ///< between the neighbours: signals that are smooth at their own rate
+  hold,      ///< the last one before: commands, set points, flags
+  low_pass,  ///< line under a triangle of +- one period of the new clock: a noisy signal that is faster than it
 };
 
-/// What suits a topic: a signal at more than 1.5 times the new clock's rate is low-passed, or what it has above half the new
-/// rate would fold into the band (the triangle's gain is 0.41 at half the new rate, below 0.05 beyond it once and a half;
-/// no phase). Held signals too: their mean over a period is what the motor saw.
+/// The resampling that suits a topic: a signal at more than 1.5 times the new clock's rate is low-passed, or what it
+/// has above half the new rate would fold into the band (the triangle's gain is 0.41 at half the new rate, below 0.05
+/// beyond it once and a half; no phase). Held signals too: their mean over a period is what the motor saw.
 constexpr Resampling resampling_of(double topic_period_s, double new_period_s, bool held) noexcept {
   if (topic_period_s > 0 && topic_period_s * 1.5 < new_period_s) return Resampling::low_pass;
   return held ? Resampling::hold : Resampling::linear;
@@ -67,8 +67,8 @@ struct LocalLine {
 
 }  // namespace detail
 
-/// `values` by the topic's own row, as in its file; a cell that is NaN is a row that the topic does not have, so that a step
-/// over it may become too long to bridge. `largest_gap_s`: of bridged_gap_s().
+/// `values` by the topic's own row, as in its file; a cell that is NaN is a row that the topic does not have, so that a
+/// step over it may become too long to bridge. `largest_gap_s`: of bridged_gap_s().
 inline std::vector<double> resample(const CleanClock& clock, const std::vector<double>& values, const UniformClock& to,
                                     Resampling kind, double largest_gap_s) {
   std::vector<double> time_s, y;
@@ -116,23 +116,23 @@ inline std::vector<double> resample(const CleanClock& clock, const std::vector<d
   return result;
 }
 
-/// w, x, y, z by row. Between neighbours q and the one of +-q' that is nearer, along the great arc (by the normalised line where
-/// they are within 1e-6 rad, where both agree to rounding). What is no unit quaternion (up to 5 %; it is normalised) is a
-/// missing row. Sign-continuous from row to row.
+/// w, x, y, z by row. Between neighbours q and the one of +-q' that is nearer, along the great arc (by the normalised
+/// line where they are within 1e-6 rad, where both agree to rounding). What is no unit quaternion (up to 5 %; it is
+/// normalised) is a missing row. Sign-continuous from row to row.
 inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& clock,
                                                             const std::array<const std::vector<double>*, 4>& wxyz,
                                                             const UniformClock& to, double largest_gap_s) {
   constexpr double norm_tolerance = 0.05;
   std::vector<double> time_s;
-  std::vector<Quaternion<double>> q;
+  std::vector<pinnquad::Quaternion<double>> q;
   for (std::size_t i = 0; i < clock.size(); ++i) {
     const std::size_t row = clock.row[i];
-    Quaternion<double> one{(*wxyz[0])[row], (*wxyz[1])[row], (*wxyz[2])[row], (*wxyz[3])[row]};
-    const double norm = std::sqrt(squared_norm(one));
+    pinnquad::Quaternion<double> one{(*wxyz[0])[row], (*wxyz[1])[row], (*wxyz[2])[row], (*wxyz[3])[row]};
+    const double norm = std::sqrt(pinnquad::squared_norm(one));
     if (!(std::abs(norm - 1) <= norm_tolerance)) continue;
-    one = normalized(one);
+    one = pinnquad::normalized(one);
     if (!q.empty()) {
-      const Quaternion<double>& b = q.back();
+      const pinnquad::Quaternion<double>& b = q.back();
       if (one.w * b.w + one.x * b.x + one.y * b.y + one.z * b.z < 0) one = {-one.w, -one.x, -one.y, -one.z};
     }
     time_s.push_back(clock.time_s[i]);
@@ -148,11 +148,11 @@ inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& cl
       at = 0;
       continue;
     }
-    Quaternion<double> value = q[at];
+    pinnquad::Quaternion<double> value = q[at];
     const double since = std::max(0.0, to.at(row) - time_s[at]);
     if (since > detail::same_time_s) {
       if (at + 1 == time_s.size() || time_s[at + 1] - time_s[at] > largest_gap_s + detail::same_time_s) continue;
-      const Quaternion<double>& b = q[at + 1];
+      const pinnquad::Quaternion<double>& b = q[at + 1];
       const double share = since / (time_s[at + 1] - time_s[at]);
       const double cosine = std::min(1.0, value.w * b.w + value.x * b.x + value.y * b.y + value.z * b.z);
       const double angle = std::acos(cosine);
@@ -161,8 +161,9 @@ inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& cl
         of_a = std::sin((1 - share) * angle) / std::sin(angle);
         of_b = std::sin(share * angle) / std::sin(angle);
       }
-      value = normalized(Quaternion<double>{of_a * value.w + of_b * b.w, of_a * value.x + of_b * b.x,
-                                            of_a * value.y + of_b * b.y, of_a * value.z + of_b * b.z});
+      value =
+          pinnquad::normalized(pinnquad::Quaternion<double>{of_a * value.w + of_b * b.w, of_a * value.x + of_b * b.x,
+                                                            of_a * value.y + of_b * b.y, of_a * value.z + of_b * b.z});
     }
     result[0][row] = value.w;
     result[1][row] = value.x;
@@ -172,4 +173,4 @@ inline std::array<std::vector<double>, 4> resample_attitude(const CleanClock& cl
   return result;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

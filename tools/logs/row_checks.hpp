@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rows of a flight that nothing should be learned from: motors at their limits, the vehicle on the ground, values like none of
-// their neighbours.
+// Rows of a flight that nothing should be learned from: motors at their limits, the vehicle on the ground, values like
+// none of their neighbours.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "logs/specific_force.hpp"
 #include "pinnquad/data/plausibility.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 /// Per row of a flight: leave it out?
 using RowMask = std::vector<bool>;
@@ -21,20 +21,21 @@ inline std::size_t count(const RowMask& rows) noexcept {
   return static_cast<std::size_t>(std::count(rows.begin(), rows.end(), true));
 }
 
-/// A command at `lowest` or `highest`, to a thousandth, or at its own extreme where that was held for `held_rows` rows somewhere (a
-/// limit of the mapping or the mixer below 1): the motor may have been asked for more than the log shows. To be asked of commands as
-/// they were logged: a mean over rows is hardly ever at the limit.
-inline RowMask saturated_rows(const Flight& flight, double lowest = 0, double highest = 1, std::size_t held_rows = 5) {
+/// A command at `lowest` or `highest`, to a thousandth, or at its own extreme where that was held for `held_rows` rows
+/// somewhere (a limit of the mapping or the mixer below 1): the motor may have been asked for more than the log shows.
+/// To be asked of commands as they were logged: a mean over rows is hardly ever at the limit.
+inline RowMask saturated_rows(const pinnquad::Flight& flight, double lowest = 0, double highest = 1,
+                              std::size_t held_rows = 5) {
   constexpr double close = 1e-3;
   RowMask mask(flight.size(), false);
-  for (std::size_t rotor = 0; rotor < rotor_count && !flight.empty(); ++rotor) {
+  for (std::size_t rotor = 0; rotor < pinnquad::rotor_count && !flight.empty(); ++rotor) {
     double least = flight[0].commands[rotor], most = least;
-    for (const Sample& sample : flight) {
+    for (const pinnquad::Sample& sample : flight) {
       least = std::min(least, sample.commands[rotor]);
       most = std::max(most, sample.commands[rotor]);
     }
     std::size_t at_least = 0, at_most = 0, longest_least = 0, longest_most = 0;
-    for (const Sample& sample : flight) {
+    for (const pinnquad::Sample& sample : flight) {
       at_least = sample.commands[rotor] <= least ? at_least + 1 : 0;
       at_most = sample.commands[rotor] >= most ? at_most + 1 : 0;
       longest_least = std::max(longest_least, at_least);
@@ -60,13 +61,13 @@ struct GroundRules {
   double shortest_air_s = 2;  ///< between two contacts; a shorter hop counts as ground
 };
 
-/// Rows where something else than the rotors bears the vehicle: the specific force along z is what the commands make in the air
-/// (the median ratio of rows with 60 % or more of the usual high collective) and, on the ground, what it bears; a vehicle that
-/// stands with idle motors reads the same 9.81 m/s^2 as one that hovers. There the whole force is the weight, and the speed low:
-/// what air bears in a fast descent is neither. Needs no land detector and no height.
-/// Limits: commands whose thrust is strongly curved (rotor speed) need `held_share` of 0.5; spool-up just before lift-off is only
-/// covered by `margin_s`; a log of which less than a fiftieth is in the air has no usual collective.
-inline RowMask grounded_rows(const Flight& flight, double period_s, const GroundRules& rules = {}) {
+/// Rows where something else than the rotors bears the vehicle: the specific force along z is what the commands make in
+/// the air (the median ratio of rows with 60 % or more of the usual high collective) and, on the ground, what it bears;
+/// a vehicle that stands with idle motors reads the same 9.81 m/s^2 as one that hovers. There the whole force is the
+/// weight, and the speed low: what air bears in a fast descent is neither. Needs no land detector and no height.
+/// Limits: commands whose thrust is strongly curved (rotor speed) need `held_share` of 0.5; spool-up just before
+/// lift-off is only covered by `margin_s`; a log of which less than a fiftieth is in the air has no usual collective.
+inline RowMask grounded_rows(const pinnquad::Flight& flight, double period_s, const GroundRules& rules = {}) {
   constexpr double high = 0.98, share_of_high = 0.6;
   const std::size_t rows = flight.size();
   RowMask mask(rows, false);
@@ -74,7 +75,7 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
   std::vector<double> collective(rows), upward(rows), force(rows), speed(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     for (const double u : flight[row].commands) collective[row] += u;
-    const Vector3<double> measured = specific_force_m_s2(flight[row]);
+    const pinnquad::Vector3<double> measured = specific_force_m_s2(flight[row]);
     upward[row] = -measured[2];
     force[row] = measured.norm();
     speed[row] = flight[row].velocity_m_s.norm();
@@ -87,7 +88,7 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
     if (collective[row] >= share_of_high * usual && usual > 0) ratios.push_back(upward[row] / collective[row]);
   }
   if (ratios.empty()) return RowMask(rows, true);
-  const double made = detail::median_of(ratios);
+  const double made = pinnquad::detail::median_of(ratios);
   const auto half = static_cast<std::size_t>(rules.smoothing_s / (2 * period_s));
   const auto averaged = [&](std::vector<double> series) {
     std::vector<double> sums(rows + 1, 0.0);
@@ -100,7 +101,7 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
   };
   for (std::size_t row = 0; row < rows; ++row) upward[row] -= made * collective[row];
   const std::vector<double> borne = averaged(upward), whole = averaged(force), moving = averaged(speed);
-  constexpr double weight = standard_gravity_m_s2<double>;
+  constexpr double weight = pinnquad::standard_gravity_m_s2<double>;
   for (std::size_t row = 0; row < rows; ++row) {
     mask[row] = borne[row] > rules.held_share * weight && std::abs(whole[row] - weight) < 0.3 * weight &&
                 moving[row] < rules.fastest_m_s;
@@ -131,23 +132,24 @@ inline RowMask grounded_rows(const Flight& flight, double period_s, const Ground
 }
 
 namespace detail {
-/// What outlier_rows() looks at: accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign does not
-/// jump, for near a pitch of 90 degrees roll and yaw do; each with the spread that counts at least.
+/// Columns of outlier_rows(): accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign
+/// does not jump, for near a pitch of 90 degrees roll and yaw do; each with the spread that counts at least.
 struct JudgedColumn {
   std::vector<double> values;
   double smallest_scale;
 };
-inline std::vector<JudgedColumn> judged_columns(const Flight& flight) {
+inline std::vector<JudgedColumn> judged_columns(const pinnquad::Flight& flight) {
   constexpr double smallest_scale_of_q = 0.02;
   std::vector<JudgedColumn> columns;
   for (const std::size_t field : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u, 16u}) {
-    columns.push_back({column_of(flight, field), column_plausibility[field].smallest_scale / 2});
+    columns.push_back(
+        {pinnquad::detail::column_of(flight, field), pinnquad::column_plausibility[field].smallest_scale / 2});
   }
   const std::size_t first = columns.size();
   columns.resize(first + 4, {{}, smallest_scale_of_q});
-  Quaternion<double> last;
-  for (const Sample& sample : flight) {
-    Quaternion<double> q = attitude(sample);
+  pinnquad::Quaternion<double> last;
+  for (const pinnquad::Sample& sample : flight) {
+    pinnquad::Quaternion<double> q = attitude(sample);
     if (q.w * last.w + q.x * last.x + q.y * last.y + q.z * last.z < 0) q = {-q.w, -q.x, -q.y, -q.z};
     last = q;
     const std::array<double, 4> parts = {q.w, q.x, q.y, q.z};
@@ -158,10 +160,10 @@ inline std::vector<JudgedColumn> judged_columns(const Flight& flight) {
 }  // namespace detail
 
 /// Rows with a value of a measured column that none of its neighbours comes near: further from the median of seven rows
-/// than `spreads` robust spreads of such distances (and of half of what plausibility.hpp calls the smallest scale), with both
-/// neighbours not half as far. Time and commands, which may jump, are not judged.
+/// than `spreads` robust spreads of such distances (and of half of what plausibility.hpp calls the smallest scale),
+/// with both neighbours not half as far. Time and commands, which may jump, are not judged.
 /// Limits: two wrong rows in succession are taken for motion.
-inline RowMask outlier_rows(const Flight& flight, double spreads = 12) {
+inline RowMask outlier_rows(const pinnquad::Flight& flight, double spreads = 12) {
   constexpr std::size_t around = 3;
   constexpr double normal = 1.4826;
   RowMask mask(flight.size(), false);
@@ -172,9 +174,9 @@ inline RowMask outlier_rows(const Flight& flight, double spreads = 12) {
     for (std::size_t row = 0; row < values.size(); ++row) {
       const std::size_t begin = std::min(row > around ? row - around : 0, values.size() - (2 * around + 1));
       const auto from = values.begin() + static_cast<std::ptrdiff_t>(begin);
-      distance[row] = std::abs(values[row] - detail::median_of({from, from + (2 * around + 1)}));
+      distance[row] = std::abs(values[row] - pinnquad::detail::median_of({from, from + (2 * around + 1)}));
     }
-    const double scale = std::max(normal * detail::median_of(distance), column.smallest_scale);
+    const double scale = std::max(normal * pinnquad::detail::median_of(distance), column.smallest_scale);
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (!(distance[row] > spreads * scale)) continue;
       const double before = row > 0 ? std::abs(values[row - 1] - values[row]) : distance[row];
@@ -185,4 +187,4 @@ inline RowMask outlier_rows(const Flight& flight, double spreads = 12) {
   return mask;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

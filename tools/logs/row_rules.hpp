@@ -14,14 +14,12 @@
 
 namespace programs {
 
-using pinnquad::RowMask;
-
-/// True where the vehicle stands on the ground: the log says landed, it is lower than the mapping says, or something else than
-/// the rotors bears it.
+/// True where the vehicle stands on the ground: the log says landed, it is lower than the mapping says, or something
+/// else than the rotors bears it.
 inline RowMask on_the_ground(const LogRows& rows, const Mapping& mapping, double period_s) {
   const pinnquad::Flight& flight = rows.flight;
   RowMask out(flight.size(), false);
-  if (mapping.ground_by_contact && !flight.empty()) out = pinnquad::grounded_rows(flight, period_s);
+  if (mapping.ground_by_contact && !flight.empty()) out = grounded_rows(flight, period_s);
   for (std::size_t row = 0; row < flight.size(); ++row) {
     const bool low = rows.has_altitude && mapping.least_height_m > 0 && flight[row].altitude_m < mapping.least_height_m;
     out[row] = out[row] || low || (!rows.landed.empty() && rows.landed[row]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Smoothed values and derivatives of a series on a uniform clock: in a window that slides over it, the least-squares polynomial.
-// At the ends the same window's polynomial is evaluated off its centre: no sample is made up, none outside the segment is read.
+// Smoothed values and derivatives of a series on a uniform clock: in a window that slides over it, the least-squares
+// polynomial. At the ends the same window's polynomial is evaluated off its centre: no sample is made up, none outside
+// the segment is read.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,7 @@
 
 #include "pinnquad/data/split.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 /// A polynomial of `order` over 2 `half_window` + 1 rows.
 struct SavitzkyGolay {
@@ -41,7 +42,8 @@ inline void require_savitzky_golay(const SavitzkyGolay& filter, int derivative) 
       std::to_string(derivative));
 }
 
-/// Orthonormal polynomials of degree 0 to `order` over the rows -m..m: P[degree][row + m]. Gram's recursion, in x = row / m.
+/// Orthonormal polynomials of degree 0 to `order` over the rows -m..m: P[degree][row + m]. Gram's recursion, in x = row
+/// / m.
 inline std::vector<std::vector<double>> gram_polynomials(int order, int half_window) {
   const std::size_t rows = 2 * static_cast<std::size_t>(half_window) + 1;
   std::vector<std::vector<double>> basis(static_cast<std::size_t>(order) + 1, std::vector<double>(rows, 1.0));
@@ -67,8 +69,8 @@ inline std::vector<std::vector<double>> gram_polynomials(int order, int half_win
   return basis;
 }
 
-/// The polynomials of gram_polynomials(), or their first or second derivative, at `position` rows from the centre: by the same
-/// recursion, whose factors are sums over the window's rows.
+/// The polynomials of gram_polynomials(), or their first or second derivative, at `position` rows from the centre: by
+/// the same recursion, whose factors are sums over the window's rows.
 inline std::vector<double> gram_derivatives(const std::vector<std::vector<double>>& basis, int half_window,
                                             double position, int derivative) {
   const std::size_t rows = basis[0].size(), degrees = basis.size();
@@ -106,10 +108,10 @@ inline std::vector<double> gram_derivatives(const std::vector<std::vector<double
 
 }  // namespace detail
 
-/// h_i, i = -m..m, with y^(d)(position) = sum_i h_i y_i / period^d for y the least-squares polynomial: h_i = sum_k p_k(i)
-/// p_k^(d)(position), p_k orthonormal over the window. Of noise of variance s^2, white, sum_i h_i^2 s^2 / period^2d remains; it
-/// grows towards the window's ends. `position` in rows from the centre, -m..m. Throws std::invalid_argument for a filter
-/// that is none.
+/// h_i, i = -m..m, with y^(d)(position) = sum_i h_i y_i / period^d for y the least-squares polynomial: h_i = sum_k
+/// p_k(i) p_k^(d)(position), p_k orthonormal over the window. Of noise of variance s^2, white, sum_i h_i^2 s^2 /
+/// period^2d remains; it grows towards the window's ends. `position` in rows from the centre, -m..m. Throws
+/// std::invalid_argument for a filter that is none.
 /// Source: Savitzky, Golay (1964); off the centre: Gorry (1990).
 inline std::vector<double> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative, double position = 0) {
   detail::require_savitzky_golay(filter, derivative);
@@ -122,8 +124,9 @@ inline std::vector<double> savitzky_golay_weights(const SavitzkyGolay& filter, i
   return weights;
 }
 
-/// The d-th derivative, 1/s^d, of each row of a segment that has no gap and no NaN. A segment shorter than the window gets a
-/// window that fits into it, and an order that fits the window; one row has no derivative: NaN. Throws std::invalid_argument for a filter or a period that is none.
+/// The d-th derivative, 1/s^d, of each row of a segment that has no gap and no NaN. A segment shorter than the window
+/// gets a window that fits into it, and an order that fits the window; one row has no derivative: NaN. Throws
+/// std::invalid_argument for a filter or a period that is none.
 inline std::vector<double> savitzky_golay(const std::vector<double>& segment, double period_s,
                                           const SavitzkyGolay& filter, int derivative) {
   detail::require_savitzky_golay(filter, derivative);
@@ -153,10 +156,11 @@ inline std::vector<double> savitzky_golay(const std::vector<double>& segment, do
 }
 
 /// Segment by segment; rows in none of them are NaN.
-inline std::vector<double> savitzky_golay(const std::vector<double>& series, const std::vector<IndexRange>& segments,
-                                          double period_s, const SavitzkyGolay& filter, int derivative) {
+inline std::vector<double> savitzky_golay(const std::vector<double>& series,
+                                          const std::vector<pinnquad::IndexRange>& segments, double period_s,
+                                          const SavitzkyGolay& filter, int derivative) {
   std::vector<double> result(series.size(), std::nan(""));
-  for (const IndexRange& segment : segments) {
+  for (const pinnquad::IndexRange& segment : segments) {
     const auto from = series.begin() + static_cast<std::ptrdiff_t>(segment.begin);
     const std::vector<double> part(from, from + static_cast<std::ptrdiff_t>(segment.size()));
     const std::vector<double> derived = savitzky_golay(part, period_s, filter, derivative);
@@ -166,11 +170,11 @@ inline std::vector<double> savitzky_golay(const std::vector<double>& series, con
 }
 
 /// Runs of at least `minimum_rows` rows without NaN or infinity in any of the series, which are of one length.
-inline std::vector<IndexRange> finite_segments(const std::vector<const std::vector<double>*>& series,
-                                               std::size_t minimum_rows = 1) {
-  std::vector<IndexRange> segments;
+inline std::vector<pinnquad::IndexRange> finite_segments(const std::vector<const std::vector<double>*>& series,
+                                                         std::size_t minimum_rows = 1) {
+  std::vector<pinnquad::IndexRange> segments;
   const std::size_t rows = series.empty() ? 0 : series.front()->size();
-  IndexRange open;
+  pinnquad::IndexRange open;
   for (std::size_t row = 0; row <= rows; ++row) {
     const bool whole = row < rows && std::all_of(series.begin(), series.end(), [row](const std::vector<double>* one) {
                          return std::isfinite((*one)[row]);
@@ -185,4 +189,4 @@ inline std::vector<IndexRange> finite_segments(const std::vector<const std::vect
   return segments;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Order and window of a Savitzky-Golay filter from the series itself: its spectrum says what is signal and what noise, and the
-// filter whose derivative would have the least squared error is taken.
+// Order and window of a Savitzky-Golay filter from the series itself: its spectrum says what is signal and what noise,
+// and the filter whose derivative would have the least squared error is taken.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "logs/power_spectrum.hpp"
 #include "logs/savitzky_golay.hpp"
 
-namespace pinnquad {
+namespace programs {
 
 struct SavitzkyGolayChoice {
   SavitzkyGolay filter;
@@ -39,10 +39,11 @@ inline double gain(const std::vector<double>& weights, int half_window, int deri
 /// Takes, of orders 2 and 4 and all half windows up to an eighth of the longest segment, 0.5 s and 100 rows, the least
 ///   sum over frequency of (H - |omega|^d)^2 signal + H^2 noise,
 /// H the filter's gain, signal and noise of noise_floor(): the expected squared error of the derivative, bias and noise
-/// together, for noise of any colour that noise_floor() sees. A piece is an eighth to a sixteenth of the longest segment, 1024 rows at most: of a
-/// signal slower than a piece the error is smaller than expected, and a still wider window might be better. Without a segment of 32 rows: order 2, half window 2.
+/// together, for noise of any colour that noise_floor() sees. A piece is an eighth to a sixteenth of the longest
+/// segment, 1024 rows at most: of a signal slower than a piece the error is smaller than expected, and a still wider
+/// window might be better. Without a segment of 32 rows: order 2, half window 2.
 inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& series,
-                                                 const std::vector<IndexRange>& segments, double period_s,
+                                                 const std::vector<pinnquad::IndexRange>& segments, double period_s,
                                                  int derivative) {
   constexpr std::size_t shortest_piece = 32, longest_piece = 1024, most_half_window = 100;
   constexpr double longest_half_window_s = 0.5, pi = 3.14159265358979323846;
@@ -50,7 +51,7 @@ inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& seri
   detail::require_savitzky_golay(choice.filter, derivative);
   choice.bandwidth_Hz = 0.5 / period_s;
   std::size_t longest = 0;
-  for (const IndexRange& segment : segments) longest = std::max(longest, segment.size());
+  for (const pinnquad::IndexRange& segment : segments) longest = std::max(longest, segment.size());
   std::size_t length = shortest_piece;
   while (length < longest_piece && 16 * length <= longest) length *= 2;
   const PowerSpectrum spectrum = power_spectrum(series, segments, period_s, length);
@@ -83,4 +84,4 @@ inline SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& seri
   return choice;
 }
 
-}  // namespace pinnquad
+}  // namespace programs

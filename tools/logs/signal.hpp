@@ -21,9 +21,9 @@ namespace programs {
 struct Signal {
   const Source* source = nullptr;  ///< null: the log has none
   const LogTopic* topic = nullptr;
-  std::shared_ptr<const pinnquad::CleanClock> clock;  ///< signals of one topic and clock column share it
-  std::vector<std::vector<double>> values;            ///< by component, by the topic's row; NaN where it has none
-  std::string told;                                   ///< where it is from: "actuator_motors"
+  std::shared_ptr<const CleanClock> clock;  ///< signals of one topic and clock column share it
+  std::vector<std::vector<double>> values;  ///< by component, by the topic's row; NaN where it has none
+  std::string told;                         ///< where it is from: "actuator_motors"
 
   bool present() const noexcept { return source != nullptr; }
   double period_s() const noexcept { return clock->report.nominal_period_s; }
@@ -52,7 +52,7 @@ inline pinnquad::InputError wrong_cell(const LogTopic& topic, std::size_t row, c
 }
 
 /// How the attitude of a source is written.
-inline pinnquad::AttitudeConvention convention_of(const Source& source) {
+inline AttitudeConvention convention_of(const Source& source) {
   return {!source.euler && source.scalar_last, source.world_to_body, source.world == WorldFrame::enu,
           source.body == BodyFrame::flu};
 }
@@ -61,7 +61,7 @@ namespace detail {
 
 /// Row by row from the mapping's frames to NED and FRD.
 inline void turn_attitude(const Source& source, std::vector<std::vector<double>>& values) {
-  const pinnquad::AttitudeConvention convention = convention_of(source);
+  const AttitudeConvention convention = convention_of(source);
   const std::size_t rows = values[0].size();
   std::vector<std::vector<double>> turned(4, std::vector<double>(rows, std::nan("")));
   for (std::size_t row = 0; row < rows; ++row) {
@@ -73,7 +73,7 @@ inline void turn_attitude(const Source& source, std::vector<std::vector<double>>
     } else {
       for (std::size_t i = 0; i < 4; ++i) numbers[i] = values[i][row];
     }
-    const pinnquad::Quaternion<double> q = pinnquad::read_attitude(numbers, convention);
+    const pinnquad::Quaternion<double> q = read_attitude(numbers, convention);
     turned[0][row] = q.w;
     turned[1][row] = q.x;
     turned[2][row] = q.y;

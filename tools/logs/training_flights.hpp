@@ -18,12 +18,12 @@
 #include "command_line/progress_line.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/plausibility.hpp"
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 
 namespace programs {
 
-/// Flights, each named by its file, with the extra columns asked for. Throws InputError, and std::invalid_argument for too few rows in all and
-/// for a flight that comes twice: it would be tested on what it was trained on.
+/// Flights, each named by its file, with the extra columns asked for. Throws InputError, and std::invalid_argument for
+/// too few rows in all and for a flight that comes twice: it would be tested on what it was trained on.
 inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows,
                                       const std::vector<pinnquad::ColumnName>& extra = {}) {
   const bool one = paths.size() == 1;
@@ -100,7 +100,7 @@ inline void print_split(const pinnquad::Dataset& dataset, const pinnquad::RowSpl
               flight_names(split.validation).c_str(), flight_names(split.test).c_str());
 }
 
-/// What report.json says of the flights: of one its name, of several which block each went to.
+/// The flights in report.json: of one its name, of several which block each went to.
 inline nlohmann::json described(const pinnquad::Dataset& dataset, const pinnquad::RowSplit& split) {
   nlohmann::json result = {{"flight", flight_names(dataset)},
                            {"flight_hash", pinnquad::hexadecimal(pinnquad::content_hash(dataset))},

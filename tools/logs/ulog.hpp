@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads ULog files, the logs of PX4: rows of the wanted topics, parameters, facts of the vehicle, what it said, dropouts.
-// A field of characters is a text of its topic. Left out: padding, default values of parameters, long information ('M').
+// Reads ULog files, the logs of PX4: rows of the wanted topics, parameters, facts of the vehicle, what it said,
+// dropouts. A field of characters is a text of its topic. Left out: padding, default values of parameters, long
+// information ('M').
 #pragma once
 
 #include <algorithm>
@@ -263,8 +264,9 @@ inline FlightLog parse_ulog(std::string_view file, const std::string& name, cons
   return ulog::Reader(file, name, selection).read();
 }
 
-/// What is whole of a log that a crash cut is read, and what was lost is said in `warnings`, with the byte. Throws
-/// pinnquad::InputError, one line with the byte: no ULog file, one that needs a newer reader, definitions that make no sense.
+/// Reads the whole part of a log that a crash cut; `warnings` name the lost part, with the byte. Throws
+/// pinnquad::InputError, one line with the byte: no ULog file, one that needs a newer reader, definitions that make no
+/// sense.
 inline FlightLog read_ulog(const std::string& path, const LogSelection& selection = {}) {
   const std::string file = pinnquad::file_text(path);
   return parse_ulog(file, path, selection);

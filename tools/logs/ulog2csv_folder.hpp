@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads a folder that PX4's ulog2csv wrote: a table per instance of a topic, `<log>_<topic>_<instance>.csv`. Such a folder has no
-// parameters, no dropouts, nothing of what the vehicle said; its rows are in the log's order.
+// Reads a folder that PX4's ulog2csv wrote: a table per instance of a topic, `<log>_<topic>_<instance>.csv`. Such a
+// folder has no parameters, no dropouts, nothing of what the vehicle said; its rows are in the log's order.
 #pragma once
 
 #include <algorithm>
@@ -83,7 +83,7 @@ inline std::set<std::string> logs_of(const std::vector<File>& files, const LogSe
   return logs;
 }
 
-/// Which log's files to read. Throws InputError: there is none, or more than one and nobody chose.
+/// The log whose files are read. Throws InputError: there is none, or more than one and nobody chose.
 inline std::string choose_log(const std::string& folder, const std::vector<File>& files,
                               const LogSelection& selection) {
   if (!selection.prefix.empty()) {
@@ -114,8 +114,8 @@ inline std::string choose_log(const std::string& folder, const std::vector<File>
 
 }  // namespace ulog2csv
 
-/// The wanted topics of a log that ulog2csv wrote. Throws pinnquad::InputError, one line: no such folder, no such files in it,
-/// files of several logs of which `selection.prefix` chooses none, a table that cannot be read.
+/// The wanted topics of a log that ulog2csv wrote. Throws pinnquad::InputError, one line: no such folder, no such files
+/// in it, files of several logs of which `selection.prefix` chooses none, a table that cannot be read.
 inline FlightLog read_ulog2csv_folder(const std::string& folder, const LogSelection& selection = {}) {
   FlightLog log;
   log.source = folder;

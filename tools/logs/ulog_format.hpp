@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Format messages of a ULog file: `name:type field;type[length] field;...`, where a type may be another format. How large such
-// a message is, and which numbers of it stand where.
+// Format messages of a ULog file: `name:type field;type[length] field;...`, where a type may be another format. How
+// large such a message is, and which numbers of it stand where.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "logs/ulog_types.hpp"
-#include "pinnquad/io/csv_cells.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace programs::ulog {
 
@@ -114,8 +114,8 @@ class Formats {
 
   bool has(const std::string& name) const { return formats_.count(name) > 0; }
 
-  /// Bytes of a message with all its padding. Throws BadMessage for a type that nothing defines, for formats that contain
-  /// themselves, and for more than a message can hold.
+  /// Bytes of a message with all its padding. Throws BadMessage for a type that nothing defines, for formats that
+  /// contain themselves, and for more than a message can hold.
   std::size_t size(const std::string& name) { return size(name, 0); }
 
   /// Bytes of the padding at the end, which a logger may leave out.

@@ -21,11 +21,12 @@ struct Message {
   std::uint64_t place = 0;  ///< of its header's first byte in the file
 };
 
-/// What a reader made of a message.
+/// The outcome of reading a message.
 enum class Taken { yes, unknown };
 
-/// Hands over every message of a file. A message that a crash cut is left out. What is wrong is an error before the first row of
-/// data, where all is needed; behind it, the walk goes on at the next sync message. What is lost is said in `warnings`.
+/// Hands over every message of a file. A message that a crash cut is left out. What is wrong is an error before the
+/// first row of data, where all is needed; behind it, the walk goes on at the next sync message. What is lost is said
+/// in `warnings`.
 class Messages {
  public:
   Messages(std::string_view file, std::string name, std::vector<std::string>& warnings)
@@ -157,7 +158,8 @@ class Messages {
       throw BadMessage{"a message that ends before the next sync message", "a longer one"};
     }
     if (reader.take(message) == Taken::unknown) {
-      // of a newer logger, which is to be ignored, or of bytes that were damaged: then what follows makes no sense either
+      // of a newer logger, which is to be ignored, or of bytes that were damaged: then what follows makes no sense
+      // either
       Message following;
       if (next < end_ && !(whole(next, end_, following) && reader.fits(following))) {
         throw BadMessage{"a message of a known type and topic", "another one, and no message behind it"};

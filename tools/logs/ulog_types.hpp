@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a ULog file is made of, as PX4's public description of the format has it (docs.px4.io, "ULog File Format"): numbers in
-// little-endian order, messages behind a header of three bytes, basic types of fields.
+// The parts of a ULog file, as PX4's public description of the format has it (docs.px4.io, "ULog File Format"):
+// numbers in little-endian order, messages behind a header of three bytes, basic types of fields.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ inline constexpr std::string_view sync_message{
     "\x2f\x73\x13\x20\x25\x0c\xbb\x12",
     11};
 
-/// What the flag bits message begins with, and may go on behind.
+/// The begin of the flag bits message, which may go on behind.
 struct FlagBits {
   static constexpr std::size_t incompatible = 8, offsets = 16, offset_count = 3, size = 40;
   static constexpr unsigned data_appended = 1;  ///< of the first byte of `incompatible`

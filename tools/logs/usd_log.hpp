@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a Crazyflie writes to its uSD card: events, each with named variables, as its firmware's deck driver says and its own
-// reader reads (versions 1 and 2). Times are those of the firmware's clock.
+// A Crazyflie's log on its uSD card: events, each with named variables, as its firmware's deck driver says and
+// its own reader reads (versions 1 and 2). Times are those of the firmware's clock.
 #pragma once
 
 #include <array>
@@ -95,8 +95,8 @@ inline std::size_t size_of(char type) { return type == 'B' || type == 'b' ? 1 : 
 
 }  // namespace usd
 
-/// A topic for each kind of event. What is whole of a log that ends early is read, and `warnings` say so. Throws InputError, one
-/// line, for what is no such file.
+/// A topic for each kind of event. What is whole of a log that ends early is read, and `warnings` say so. Throws
+/// InputError, one line, for what is no such file.
 inline FlightLog read_usd_log(const std::string& path) {
   const std::string content = pinnquad::file_text(path);
   constexpr std::size_t checksum_bytes = 4;

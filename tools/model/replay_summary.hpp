@@ -16,7 +16,7 @@
 
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

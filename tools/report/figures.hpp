@@ -198,7 +198,7 @@ inline std::string correlation_figure(const StudySeries& series) {
   std::string text;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const AxisSeries& s = series.axes[axis];
-    const pinnquad::AxisDeviation spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
+    const auto spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
     const double y0 = top + static_cast<double>(axis) * (height + gap);
     const drawing::Axis x{series.time_s.front(), series.time_s[last], left, right}, y{-4, 4, y0 + height, y0};
     drawing::Trace acceleration, sum;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "pinnquad/loss/pearson_correlation.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "study/contender.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "command_line/listed.hpp"
-#include "pinnquad/simulation/noisy_recorder.hpp"
+#include "pinnquad/simulation/recorder.hpp"
 
 namespace study {
 

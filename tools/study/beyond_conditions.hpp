@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "study/flights.hpp"
 

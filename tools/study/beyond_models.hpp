@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "training/derivatives.hpp"
 #include "training/judgement.hpp"

@@ -3,11 +3,11 @@
 #include <random>
 
 #include "pinnquad/features/motion_parts.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/regression/ridge.hpp"
-#include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "study/beyond_models.hpp"
 #include "training/best_recipe.hpp"

@@ -15,7 +15,7 @@
 
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
-#include "pinnquad/loss/pearson_correlation.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/initialization.hpp"

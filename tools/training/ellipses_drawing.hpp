@@ -10,7 +10,7 @@
 
 #include "pictures/drawing.hpp"
 #include "pictures/numbers.hpp"
-#include "pinnquad/evaluation/confidence_ellipse.hpp"
+#include "pinnquad/evaluation/physical_consistency.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {
@@ -34,7 +34,7 @@ inline std::string ellipses_drawing(const std::vector<EllipsesRow>& models, cons
       const double x0 = left + static_cast<double>(axis) * (panel + gap),
                    y0 = top + static_cast<double>(m) * (panel + 92);
       const drawing::Axis x{-range, range, x0, x0 + panel}, y{-range, range, y0 + panel, y0};
-      const pinnquad::AxisDeviation spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
+      const auto spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
       const pinnquad::PhysicalConsistency c =
           pinnquad::physical_consistency(s.target, s.predicted, s.angular_acceleration);
       text += drawing::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target spreads") +

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/evaluation/verdict.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 #include "training/judgement.hpp"
 #include "training/losses.hpp"
 

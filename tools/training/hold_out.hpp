@@ -15,8 +15,8 @@
 
 #include "command_line/listed.hpp"
 #include "command_line/nearest_names.hpp"
-#include "pinnquad/data/split_flights.hpp"
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/data/split.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "pinnquad/data/sample_period.hpp"
+#include "pinnquad/data/row_set.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "training/log_figures.hpp"
 #include "training/log_verdict.hpp"

@@ -18,7 +18,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/flatness.hpp"
 #include "pinnquad/control/trajectory.hpp"
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 #include "training/log_model.hpp"
 #include "training/logged_vehicle.hpp"

@@ -8,7 +8,7 @@
 
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/nn/scaler.hpp"
-#include "pinnquad/regression/regression_sums.hpp"
+#include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
 
 namespace programs {

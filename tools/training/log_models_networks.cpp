@@ -6,7 +6,7 @@
 #include <random>
 
 #include "command_line/interrupt.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/training/checkpoint.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trainer.hpp"

@@ -14,7 +14,7 @@
 #include "logs/imported_dataset.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/io/file_error.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
 #include "pinnquad/version.hpp"
 #include "training/log_figures.hpp"

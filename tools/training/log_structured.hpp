@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "command_line/interrupt.hpp"
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/clip.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/schedule/schedule.hpp"

@@ -12,7 +12,7 @@
 
 #include "command_line/listed.hpp"
 #include "pictures/gnuplot.hpp"
-#include "pinnquad/evaluation/confidence_ellipse.hpp"
+#include "pinnquad/evaluation/physical_consistency.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {
@@ -28,7 +28,7 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const AxisSeries& s = series[model][axis];
       const pinnquad::PhysicalConsistency& c = judged[model].axes[axis];
-      const pinnquad::AxisDeviation spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
+      const auto spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
       constexpr std::size_t most_points = 600;  // more only darkens the cloud
       const std::size_t stride = s.target.size() / most_points + 1;
       const auto points = [&](const char* name, const std::vector<double>& sum) {

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/listed.hpp"
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 #include "pinnquad/training/structured/fit_structured.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pinnquad/core/rotation.hpp"
-#include "pinnquad/data/sample.hpp"
+#include "pinnquad/data/dataset.hpp"
 #include "pinnquad/dynamics/state.hpp"
 
 namespace programs {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A recorded flight as a CSV file: header `t,vdot_bx,...,u4` (`sample_field_names`), one sample per line, SI units.
 // Extra columns stand behind them as `battery_voltage [V]`: name and unit.
-// What is written can be read, and gives the same bits; what cannot be read is refused in one line.
+// A flight that is written reads back to the same bits; a file that cannot be read is refused in one line.
 #pragma once
 
 #include <algorithm>
@@ -32,10 +32,10 @@ std::vector<std::string> flight_columns(const Columns& extra) {
 
 }  // namespace detail
 
-/// Reads a flight, and the extra columns asked for. Columns are found by name, in any order; others are ignored. Units and
-/// frames: see `Sample`; an extra column is found by its name with its unit, `battery_voltage [V]`.
-/// Throws InputError (all of `read_csv`, time that does not increase from row to row, and extra columns of one name or of a
-/// name that every flight has), its text one line:
+/// Reads a flight, and the extra columns asked for. Columns are found by name, in any order; others are ignored. Units
+/// and frames: see `Sample`. An extra column is found by its name with its unit.
+/// Throws InputError (all of `read_csv`, time that does not increase from row to row, and extra columns of one name or
+/// of a name that every flight has), its text one line:
 ///   flight.csv:17:5: expected a finite number in column wdot_x, found "abc"
 inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows,
                               const std::vector<ColumnName>& extra = {}) {
@@ -62,8 +62,7 @@ inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows 
   return flight;
 }
 
-/// The extra columns of a file: those whose heads read `name [unit]`, in the file's order. Throws InputError if it can't be
-/// read.
+/// The extra columns of a file, in its order: those whose heads read `name [unit]`. Throws InputError.
 inline std::vector<ColumnName> extra_columns_in(const std::string& path) {
   std::vector<ColumnName> columns;
   for (const std::string& head : detail::csv_header(path)) {
@@ -74,14 +73,14 @@ inline std::vector<ColumnName> extra_columns_in(const std::string& path) {
   return columns;
 }
 
-/// Writes a flight with its extra columns; the file appears whole or not at all. `read_flight_csv` gives the same bits back.
-/// `after_row(rows_written)` is called after each row; if it throws, there is no file.
+/// Writes a flight with its extra columns; the file appears whole or not at all. `read_flight_csv` gives the same bits
+/// back. `after_row(rows_written)` is called after each row; if it throws, there is no file.
 /// Throws OutputError if the file cannot be written, or if the flight could not be read back: a value that is not
 /// finite, time that does not increase.
 template <class Observer>
 void write_flight_csv(const std::string& path, const Flight& flight, const Observer& after_row) {
   const std::vector<std::string> columns = detail::flight_columns(flight.columns());
-  CsvWriter writer(path, columns);
+  detail::CsvWriter writer(path, columns);
   std::vector<double> values(columns.size());
   for (std::size_t i = 0; i < flight.size(); ++i) {
     const SampleValues sample = to_values(flight[i]);

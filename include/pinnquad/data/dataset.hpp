@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Recorded flights: rows in time order with whatever else was measured, many flights as one dataset, and the number that names
-// their content. The number goes into exported headers: it says what a model was trained on.
+// Recorded flights: rows in time order with extra columns, many flights as one dataset, and the hash of their content.
+// Exported headers hold the hash: it says on which data a model was trained. CSV files and the hash take the names and
+// the order of a row's 21 numbers from here.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,12 +19,88 @@
 #include <vector>
 
 #include "pinnquad/core/fnv1a.hpp"
-#include "pinnquad/data/sample.hpp"
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/core/types.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad {
 
-/// What a flight has measured besides the numbers of a Sample: battery voltage, rotor speed, anything with a name and a unit.
+/// One row of a recorded flight: the motion at one instant and the commands that cause it.
+/// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world. docs/guide.md has the same as columns of a
+/// CSV.
+struct Sample {
+  double time_s = 0;  ///< strictly increasing from row to row; any start
+  /// Derivative of the body-frame velocity, FRD: v_dot_B = R^T a_world - omega x v_B (Eq. (1)).
+  Vector3<double> linear_acceleration_m_s2 = Vector3<double>::Zero();
+  Vector3<double> angular_acceleration_rad_s2 = Vector3<double>::Zero();  ///< body, FRD
+  Vector3<double> velocity_m_s = Vector3<double>::Zero();                 ///< relative to the ground, in body FRD
+  Vector3<double> body_rates_rad_s = Vector3<double>::Zero();             ///< p, q, r
+  double roll_rad = 0;
+  double pitch_rad = 0;
+  double yaw_rad = 0;
+  double altitude_m = 0;  ///< of the vehicle's centre above the ground below it, positive up
+  /// u_i, 0..1, as given to the motor at this instant, before its lag: (n_i / n_max)^2, which is thrust over the
+  /// greatest thrust, unless the airframe's rotors have a curve (dynamics/actuator.hpp).
+  /// Front right, rear left, front left, rear right: the order of Eq. (2).
+  Commands<double> commands{};
+};
+
+inline constexpr std::size_t sample_value_count = 21;
+
+/// The numbers of one Sample in the order of `sample_field_names`.
+using SampleValues = std::array<double, sample_value_count>;
+
+/// Column names of a recorded flight, in the order of `to_values`.
+inline constexpr std::array<std::string_view, sample_value_count> sample_field_names = {
+    // clang-format off
+    "t",
+    "vdot_bx", "vdot_by", "vdot_bz",
+    "wdot_x", "wdot_y", "wdot_z",
+    "v_bx", "v_by", "v_bz",
+    "w_x", "w_y", "w_z",
+    "roll", "pitch", "yaw",
+    "altitude",
+    "u1", "u2", "u3", "u4"};
+// clang-format on
+
+/// The sample as 21 numbers, ordered as `sample_field_names`.
+inline SampleValues to_values(const Sample& sample) {
+  const auto& v_dot = sample.linear_acceleration_m_s2;
+  const auto& omega_dot = sample.angular_acceleration_rad_s2;
+  const auto& v = sample.velocity_m_s;
+  const auto& omega = sample.body_rates_rad_s;
+  const auto& u = sample.commands;
+  // clang-format off
+  return {sample.time_s,
+          v_dot[0], v_dot[1], v_dot[2],
+          omega_dot[0], omega_dot[1], omega_dot[2],
+          v[0], v[1], v[2],
+          omega[0], omega[1], omega[2],
+          sample.roll_rad, sample.pitch_rad, sample.yaw_rad,
+          sample.altitude_m,
+          u[0], u[1], u[2], u[3]};
+  // clang-format on
+}
+
+/// The inverse of `to_values`.
+inline Sample to_sample(const SampleValues& values) {
+  const auto vector_at = [&values](std::size_t first) {
+    return Vector3<double>(values[first], values[first + 1], values[first + 2]);
+  };
+  Sample sample;
+  sample.time_s = values[0];
+  sample.linear_acceleration_m_s2 = vector_at(1);
+  sample.angular_acceleration_rad_s2 = vector_at(4);
+  sample.velocity_m_s = vector_at(7);
+  sample.body_rates_rad_s = vector_at(10);
+  sample.roll_rad = values[13];
+  sample.pitch_rad = values[14];
+  sample.yaw_rad = values[15];
+  sample.altitude_m = values[16];
+  sample.commands = {values[17], values[18], values[19], values[20]};
+  return sample;
+}
+
+/// A measurement besides the numbers of a Sample: battery voltage, rotor speed, anything with a name and a unit.
 struct ColumnName {
   std::string name;  ///< "battery_voltage"
   std::string unit;  ///< "V"
@@ -33,17 +111,17 @@ struct ExtraColumn : ColumnName {
   std::vector<double> values;
 };
 
-/// Rows of one flight on one clock, time strictly increasing (CSV files and Dataset insist on it), and its extra columns.
+/// Rows of one flight on one clock, time strictly increasing (CSV files and Dataset insist on it), and its extra
+/// columns.
 class Flight {
  public:
   using value_type = Sample;
   using iterator = std::vector<Sample>::iterator;
   using const_iterator = std::vector<Sample>::const_iterator;
 
-  std::string name;  ///< by which a dataset, a message or a report means this flight
-  std::string
-      trajectory;  ///< what was flown; of flights that name the same one, a split by trajectory parts none. May be empty
-  double weight = 1;  ///< how often its rows are seen in training, relative to those of other flights
+  std::string name;        ///< by which a dataset, a message or a report means this flight
+  std::string trajectory;  ///< a split by trajectory parts no flights of one trajectory. May be empty
+  double weight = 1;       ///< how often its rows are seen in training, relative to those of other flights
 
   Flight() = default;
   explicit Flight(std::size_t rows) : samples_(rows) {}
@@ -97,7 +175,8 @@ class Flight {
     }
     return nullptr;
   }
-  /// Throws std::invalid_argument for a column without a name, of a name that is taken, or of another length than the flight.
+  /// Throws std::invalid_argument for a column without a name, of a name that is taken, or of another length than the
+  /// flight.
   void add_column(ExtraColumn column) {
     if (column.name.empty()) throw std::invalid_argument("flight: an extra column needs a name");
     for (const std::string_view taken : sample_field_names) {
@@ -127,8 +206,8 @@ class Dataset {
   /// A flight alone is a dataset.
   explicit Dataset(Flight flight) { add(std::move(flight)); }
 
-  /// Throws std::invalid_argument, one line, and adds nothing: a name that another flight has, time that does not increase from
-  /// row to row, a weight that is no positive number.
+  /// Throws std::invalid_argument, one line, and adds nothing: a name that another flight has, time that does not
+  /// increase from row to row, a weight that is no positive number.
   void add(Flight flight) {
     for (const Flight& other : flights_) {
       if (other.name == flight.name) {
@@ -174,8 +253,8 @@ inline void absorb_number(Fnv1a& fnv, double value) {
 }  // namespace detail
 
 /// Provenance of a flight: 64-bit FNV-1a over the number of rows and the IEEE 754 bits of every value, each as eight
-/// bytes, least significant first, rows in order, values in the order of `sample_field_names`; then extra column by extra
-/// column, its name, its unit and its values. Name, trajectory and weight are no content.
+/// bytes, least significant first, rows in order, values in the order of `sample_field_names`; then extra column by
+/// extra column, its name, its unit and its values. Name, trajectory and weight are no content.
 /// The same on every compiler and byte order. All NaNs count as one; 0 and -0 differ. No protection against forgery.
 inline std::uint64_t content_hash(const Flight& flight) {
   detail::Fnv1a fnv;
@@ -191,7 +270,8 @@ inline std::uint64_t content_hash(const Flight& flight) {
   return fnv.hash;
 }
 
-/// Provenance of a dataset: of one flight that flight's, of several the FNV-1a of their number and of each one's, in order.
+/// Provenance of a dataset: of one flight that flight's, of several the FNV-1a of their number and of each one's, in
+/// order.
 inline std::uint64_t content_hash(const Dataset& dataset) {
   if (dataset.size() == 1) return content_hash(dataset[0]);
   detail::Fnv1a fnv;

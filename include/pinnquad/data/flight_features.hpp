@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recorded rows as the inputs and the features of a feature set: what training, judgement and export ask of a dataset.
+// Recorded rows as the inputs and the features of a feature set, for training, judgement and export.
+// A feature set with an Inputs struct of its own specialises SampleInputs for it.
 #pragma once
 
 #include <array>
@@ -8,16 +9,53 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/row_set.hpp"
-#include "pinnquad/data/sample_inputs.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/features/input_history.hpp"
 
 namespace pinnquad {
 
+/// `static Inputs from(const Sample&)`.
+template <class Inputs>
+struct SampleInputs;
+
+template <class Scalar>
+struct SampleInputs<MotionInputs<Scalar>> {
+  static MotionInputs<Scalar> from(const Sample& sample) {
+    const Quaternion<double> q = from_euler(EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+    MotionInputs<Scalar> inputs;
+    inputs.linear_acceleration_m_s2 = sample.linear_acceleration_m_s2.cast<Scalar>();
+    inputs.angular_acceleration_rad_s2 = sample.angular_acceleration_rad_s2.cast<Scalar>();
+    inputs.velocity_m_s = sample.velocity_m_s.cast<Scalar>();
+    inputs.body_rates_rad_s = sample.body_rates_rad_s.cast<Scalar>();
+    inputs.attitude = {Scalar(q.w), Scalar(q.x), Scalar(q.y), Scalar(q.z)};
+    return inputs;
+  }
+};
+
+template <class Scalar>
+struct SampleInputs<MotionInputsWithAltitude<Scalar>> {
+  static MotionInputsWithAltitude<Scalar> from(const Sample& sample) {
+    MotionInputsWithAltitude<Scalar> inputs;
+    static_cast<MotionInputs<Scalar>&>(inputs) = SampleInputs<MotionInputs<Scalar>>::from(sample);
+    inputs.altitude_m = Scalar(sample.altitude_m);
+    return inputs;
+  }
+};
+
+/// Feature vector X of a sample, physical units.
+template <class Features, class Scalar>
+std::array<Scalar, static_cast<std::size_t>(Features::size)> sample_features(const Sample& sample) {
+  std::array<Scalar, static_cast<std::size_t>(Features::size)> x{};
+  Features::extract(SampleInputs<typename Features::template Inputs<Scalar>>::from(sample), x.data());
+  return x;
+}
+
 /// Reads Inputs from consecutive rows of one flight. Contract of a specialisation: made of the rows, which may throw
-/// std::invalid_argument, one line, for what the flight has not measured; `bool read(row, inputs) const`, row an index of the
-/// flight within the rows: false where the rows do not hold what these inputs need, and then nothing is written. It never
-/// looks beyond its rows.
+/// std::invalid_argument, one line, for what the flight has not measured; `bool read(row, inputs) const`, row an index
+/// of the flight within the rows: false where the rows do not hold what these inputs need, and then nothing is written.
+/// It never looks beyond its rows.
 /// This one, for every Inputs that has a SampleInputs, looks at the row alone.
 template <class Inputs>
 class FlightInputs {
@@ -33,8 +71,7 @@ class FlightInputs {
   const Flight* flight_;
 };
 
-/// Inputs with extra columns, each found in the flight by its name. Throws std::invalid_argument for a column that the flight
-/// has not, or has in another unit.
+/// Inputs with extra columns, found by name. Throws std::invalid_argument for one that is absent or in another unit.
 template <class Base, class Scalar, class... Column>
 class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
  public:
@@ -65,8 +102,8 @@ class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
   std::array<const std::vector<double>*, sizeof...(Column)> columns_;
 };
 
-/// Windows about a row, which is their present instant; the taps are interpolated as in flight (features/input_history.hpp).
-/// False where a tap lies beyond these rows or behind a gap: no window crosses a border.
+/// Windows about a row, which is their present instant; the taps are interpolated as in flight
+/// (features/input_history.hpp). False where a tap lies beyond these rows or behind a gap: no window crosses a border.
 template <class Tap, class Scalar, class Window>
 class FlightInputs<WindowInputs<Tap, Scalar, Window>> {
  public:

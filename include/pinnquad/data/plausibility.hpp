@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Can this be a recorded flight? Per column its unit and physical range, a robust search for cells that fit no neighbour, and
-// the mistakes of unit that logs have: commands as pulse widths or percent, angles in degrees. A network trains on nonsense
-// without complaint; what it learned then flies.
+// Checks that a flight can be one: per column its unit and physical range, a robust search for cells that fit no
+// neighbour, and the mistakes of unit that logs have: commands as pulse widths or percent, angles in degrees. A network
+// trains on nonsense without complaint, and then flies it.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,9 @@
 #include <system_error>
 #include <vector>
 
-#include "pinnquad/data/acceleration_columns.hpp"
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/degrees.hpp"
-#include "pinnquad/data/sample_period.hpp"
+#include "pinnquad/data/motion_checks.hpp"
+#include "pinnquad/data/row_set.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/io/csv_table.hpp"
@@ -25,19 +24,23 @@
 
 namespace pinnquad {
 
-/// What a column of `sample_field_names` may hold. The range is what any multirotor can reach, not what is usual.
+namespace detail {
+
+/// The values that a column of `sample_field_names` may hold: all that any multirotor can reach.
 struct ColumnPlausibility {
   const char* unit;
   double lowest;
   double highest;
-  /// A robust spread below this counts as this much, for a column that hardly varies. 0: no outliers are sought.
+  /// Least robust deviation, for a column that hardly varies. 0: no outliers are sought.
   double smallest_scale;
 };
+
+}  // namespace detail
 
 /// Per column, in the order of `sample_field_names`. Angles may be unwrapped. Commands are 0 to 1, with a float's
 /// rounding to spare.
 // clang-format off
-inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plausibility = {{
+inline constexpr std::array<detail::ColumnPlausibility, sample_value_count> column_plausibility = {{
     {"s", -1e12, 1e12, 0},
     {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1},
     {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20},
@@ -48,18 +51,10 @@ inline constexpr std::array<ColumnPlausibility, sample_value_count> column_plaus
     {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}, {"1", -1e-6, 1 + 1e-6, 0}}};
 // clang-format on
 
-/// A cell further than this many robust spreads from its column's median, both of whose neighbours in time are not half as
-/// far, is no measurement: what moves is there for more than one row. The flights of the paper's pilots, those of an
-/// independent simulator and real logs stay below 8, an angle that wraps round below 26.
-inline constexpr double most_robust_spreads = 30;
-
-/// The first thing that can't be, or what is wrong with a whole column.
-struct Implausible {
-  std::size_t row = 0;    ///< from 0
-  std::size_t field = 0;  ///< index in `sample_field_names`
-  std::string expected;
-  std::string found;
-};
+/// A cell further than this many robust deviations from its column's median, both of whose neighbours in time are not
+/// half as far, is no measurement: motion lasts longer than a row. The paper's pilots, an independent simulator and
+/// real logs stay below 8, an angle that wraps round below 26.
+inline constexpr double most_robust_deviations = 30;
 
 namespace detail {
 
@@ -79,8 +74,8 @@ inline double median_of(std::vector<double> series) {
   return *middle;
 }
 
-/// What commands outside 0..1 most likely are, and how to convert them; empty if nothing known. Judged by nine cells in ten,
-/// so that a single wrong cell does not hide the rest.
+/// The likely unit of commands outside 0..1, and how to convert them; empty if unknown. Nine cells in ten decide: a
+/// single wrong cell does not hide the rest.
 inline std::string command_mistake(const Flight& flight) {
   std::vector<double> cells;
   for (const Sample& sample : flight) cells.insert(cells.end(), sample.commands.begin(), sample.commands.end());
@@ -117,7 +112,8 @@ inline std::optional<Implausible> find_implausible_command(const Flight& flight)
   return std::nullopt;
 }
 
-/// The first cell outside its column's physical range; NaN and infinity are outside every range, as is what no float holds.
+/// The first cell outside its column's physical range; NaN and infinity are outside every range, as is what no float
+/// holds.
 inline std::optional<Implausible> find_out_of_range(const Flight& flight) {
   for (std::size_t row = 0; row < flight.size(); ++row) {
     const SampleValues values = to_values(flight[row]);
@@ -142,7 +138,7 @@ inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t
   for (const double value : values) distance.push_back(std::abs(value - median));
   const double scale = std::max(normal * median_of(distance), column.smallest_scale);
   std::optional<Implausible> worst;
-  double furthest = most_robust_spreads * scale;
+  double furthest = most_robust_deviations * scale;
   for (std::size_t row = 0; row < distance.size(); ++row) {
     if (!(distance[row] > furthest)) continue;
     const double before = row > 0 ? distance[row - 1] : 0;
@@ -195,8 +191,7 @@ inline std::optional<Implausible> find_degrees(const Flight& flight) {
   return std::nullopt;
 }
 
-/// InputError at the value of a flight that was read from `path`; where that is no file (any more), at the place that the
-/// value has in one of ours.
+/// InputError at the value of a flight that was read from `path`; without the file, at its place in one of ours.
 inline InputError implausible_in_file(const std::string& path, const Implausible& found) {
   constexpr std::size_t lines_before_rows = 1;
   std::size_t rows = 0, in_line = found.row + lines_before_rows + 1, in_column = found.field + 1;
@@ -213,10 +208,10 @@ inline InputError implausible_in_file(const std::string& path, const Implausible
 
 }  // namespace detail
 
-/// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of another
-/// unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its neighbours,
-/// accelerations that are not the derivatives of rates and velocity. None for a flight.
-inline std::optional<Implausible> find_implausible(const Flight& flight) {
+/// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of
+/// another unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its
+/// neighbours, accelerations that are not the derivatives of rates and velocity. None for a flight.
+inline std::optional<detail::Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
   if (auto found = detail::find_degrees(flight)) return found;
@@ -224,11 +219,12 @@ inline std::optional<Implausible> find_implausible(const Flight& flight) {
   for (std::size_t field = 0; field < sample_value_count; ++field) {
     if (auto found = detail::find_outlier(flight, field)) return found;
   }
-  if (const auto mistake = find_acceleration_mistake(flight)) {
-    return Implausible{0, mistake->field, mistake->expected + " " + detail::column_text(mistake->field),
-                       mistake->found + ", by how rates and velocity change from row to row"};
+  auto mistake = find_acceleration_mistake(flight);
+  if (mistake) {
+    mistake->expected += " " + detail::column_text(mistake->field);
+    mistake->found += ", by how rates and velocity change from row to row";
   }
-  return std::nullopt;
+  return mistake;
 }
 
 /// Throws InputError where find_implausible() finds something in a flight that was read from `path`:
@@ -237,8 +233,8 @@ inline void require_plausible(const std::string& path, const Flight& flight) {
   if (const auto found = find_implausible(flight)) throw detail::implausible_in_file(path, *found);
 }
 
-/// Throws InputError where a command stands still in a block of a flight that was read from `path`: nothing to learn there,
-/// and nothing to judge by. `block_name` as in "training rows".
+/// Throws InputError where a command stands still in a block of a flight that was read from `path`: it teaches nothing.
+/// `block_name`: "training".
 inline void require_varied_commands(const std::string& path, const Flight& flight, const IndexRange& block,
                                     const std::string& block_name) {
   constexpr double smallest_range = 1e-6;  // a float's rounding

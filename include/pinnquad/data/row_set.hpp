@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Rows out of one flight or of many, as one set: what is trained on, or judged by. A view: the flights must outlive it.
+// Rows out of one flight or of many, as one set to train on or to judge by. A view: the flights must outlive it.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/split.hpp"
 
 namespace pinnquad {
+
+/// Rows [begin, end) of a flight.
+struct IndexRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  constexpr std::size_t size() const noexcept { return end - begin; }
+  constexpr bool empty() const noexcept { return begin == end; }
+};
 
 /// Rows of one flight that follow each other in time.
 struct FlightRows {
@@ -19,16 +27,16 @@ struct FlightRows {
   IndexRange rows;
 };
 
-/// Pieces of flights in the order in which they were added. Where two meet there is a border: rows on its two sides are no
-/// neighbours in time, whatever their stamps say.
+/// Pieces of flights in the order in which they were added. Rows of two pieces are no neighbours in time, whatever
+/// their stamps say.
 class RowSet {
  public:
   RowSet() = default;
   RowSet(const Flight& flight, const IndexRange& rows) { add(flight, rows); }
   RowSet(const Flight&&, const IndexRange&) = delete;  // the flight would be gone
 
-  /// Rows of a flight, none of them a part of the set yet; no rows add nothing. Throws std::invalid_argument for rows that the
-  /// flight does not have.
+  /// Rows of a flight, none of them a part of the set yet; no rows add nothing. Throws std::invalid_argument for rows
+  /// that the flight does not have.
   void add(const Flight& flight, const IndexRange& rows) {
     if (rows.begin > rows.end || rows.end > flight.size()) {
       throw std::invalid_argument("row set: expected rows of a flight of " + std::to_string(flight.size()) +
@@ -56,5 +64,24 @@ class RowSet {
   std::vector<FlightRows> pieces_;
   std::vector<std::size_t> ends_;  ///< per piece: rows up to and including it
 };
+
+/// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of
+/// two pieces differ by more than `tolerance` of the first: then there is no one period. To the nanosecond, as a block
+/// holds it: times are sums of steps.
+inline double sample_period_s(const RowSet& rows, double tolerance = 0.01) {
+  double period = 0;
+  for (const FlightRows& piece : rows.pieces()) {
+    std::vector<double> steps;
+    for (std::size_t row = piece.rows.begin + 1; row < piece.rows.end; ++row) {
+      steps.push_back((*piece.flight)[row].time_s - (*piece.flight)[row - 1].time_s);
+    }
+    if (steps.empty()) continue;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    if (period > 0 && !(std::abs(*middle - period) <= tolerance * period)) return 0;
+    if (!(period > 0)) period = *middle;
+  }
+  return std::round(period * 1e9) / 1e9;
+}
 
 }  // namespace pinnquad

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Numbers of a training's policies (losses, schedules, optimisers) that make no sense. A policy that can hold such numbers has
-// `void check() const`, which throws std::invalid_argument, its text one line; a policy made of others asks them. The Trainer
-// asks before it begins.
+// Checks of the numbers of a training's policies (losses, schedules, optimisers). A policy with numbers that could make
+// no sense has `void check() const`, which throws std::invalid_argument, one line; a policy made of others checks them.
+// The Trainer checks before it begins.
 #pragma once
 
 #include <limits>
@@ -11,30 +11,27 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/detected.hpp"
+
 namespace pinnquad {
 
 namespace detail {
-template <class T, class = void>
-struct ChecksSettings : std::false_type {};
 template <class T>
-struct ChecksSettings<T, std::void_t<decltype(std::declval<const T&>().check())>>
-    : std::is_void<decltype(std::declval<const T&>().check())> {};
-/// Whether a class has a member of this name, whatever it is: two of one name can't be told apart.
+using CheckOf = std::enable_if_t<std::is_void_v<decltype(std::declval<const T&>().check())>>;
+/// A class that has a member `check`, whatever it is, and joins CheckName has two of one name: `&check` is ambiguous.
 struct CheckName {
   void check();
 };
 template <class T>
 struct JoinedWithCheck : T, CheckName {};
-template <class T, class = void>
-struct NamesCheck : std::true_type {};
 template <class T>
-struct NamesCheck<T, std::void_t<decltype(&JoinedWithCheck<T>::check)>> : std::false_type {};
+using OnlyCheckOf = decltype(&JoinedWithCheck<T>::check);
 
 /// False where a policy has a check that isn't `void check() const`. A `final` class is not looked into.
 template <class T>
 constexpr bool has_whole_check() noexcept {
   if constexpr (std::is_class_v<T> && !std::is_final_v<T>) {
-    return ChecksSettings<T>::value == NamesCheck<T>::value;
+    return is_detected<CheckOf, T> != is_detected<OnlyCheckOf, T>;
   } else {
     return true;
   }
@@ -60,14 +57,14 @@ constexpr void expect_from_zero(const char* setting, double value) {
 }
 }  // namespace detail
 
-/// Asks a policy for its numbers; one without check() has none that could be wrong.
+/// Runs a policy's check(), if it has one.
 template <class Policy>
 constexpr void check_settings(const Policy& policy) {
   static_assert(
       detail::has_whole_check<Policy>(),
       "pinnquad: a policy's check() must be `void check() const` without parameters; this one would be passed "
       "over (data/settings.hpp)");
-  if constexpr (detail::ChecksSettings<Policy>::value) policy.check();
+  if constexpr (is_detected<detail::CheckOf, Policy>) policy.check();
 }
 
 }  // namespace pinnquad

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/data/sample_period.hpp"
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/deploy/golden_features.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/trust_writer.hpp"

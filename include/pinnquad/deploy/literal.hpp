@@ -9,7 +9,7 @@
 #include <string>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/io/printable.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad::detail {
 

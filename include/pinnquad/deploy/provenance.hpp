@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pinnquad/dynamics/command_meaning.hpp"
-#include "pinnquad/evaluation/verdict.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/exported/model.hpp"
 
 namespace pinnquad {

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "pinnquad/data/sample_period.hpp"
+#include "pinnquad/data/row_set.hpp"
 #include "pinnquad/deploy/literal.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/exported/block_records.hpp"

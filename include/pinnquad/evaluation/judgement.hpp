@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/evaluation/errors.hpp"
-#include "pinnquad/evaluation/linear_regression.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
-#include "pinnquad/evaluation/verdict.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
 #include "pinnquad/training/context_airframe.hpp"
@@ -40,14 +38,14 @@ PredictionErrors<rotor_count> errors_on(const RowSet& rows, const Predict& predi
 
 /// The errors of a TrainedModel's commands, 0..1. Throws std::invalid_argument where no row has features.
 template <class Model>
-PredictionErrors<rotor_count> model_errors(const Model& model, const RowSet& rows) {
+detail::PredictionErrors<rotor_count> model_errors(const Model& model, const RowSet& rows) {
   return detail::errors_on<typename Model::Features, typename Model::Scalar>(
       rows, [&model](const typename Model::FeatureVector& x) { return model.predict(x); });
 }
 
 /// The errors on `test` of linear regression on a feature set, fitted to `training`. Throws as model_errors().
 template <class Features>
-PredictionErrors<rotor_count> linear_regression_errors(const RowSet& training, const RowSet& test) {
+detail::PredictionErrors<rotor_count> linear_regression_errors(const RowSet& training, const RowSet& test) {
   std::vector<std::array<double, static_cast<std::size_t>(Features::size)>> features;
   std::vector<std::array<double, rotor_count>> commands;
   each_features<Features, double>(training, [&](const Flight& flight, std::size_t row, const auto& x) {
@@ -88,7 +86,7 @@ struct AxisSeries {
 
 /// One model on one set of rows; validation_error and verdict by judge(model, split) alone.
 struct Judgement {
-  PredictionErrors<rotor_count> errors;
+  detail::PredictionErrors<rotor_count> errors;
   std::array<PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
   PairSigns pairs;
   AxisFigures nominal_slopes = no_axis_figures;  ///< hover_slopes() of the airframe, s^2/rad

@@ -52,7 +52,7 @@ inline std::vector<std::size_t> doubled_ranks(const std::vector<double>& sorted)
 inline double signed_rank_cdf(const std::vector<std::size_t>& ranks, std::size_t w) {
   std::size_t total = 0;
   for (const std::size_t rank : ranks) total += rank;
-  const std::size_t most = std::min(w, total);  // what lies above is in no sum
+  const std::size_t most = std::min(w, total);  // values above are in no sum
   std::vector<double> probability(most + 1, 0.0);
   probability[0] = 1;
   std::size_t reached = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -64,8 +65,6 @@ inline void require_equal_length(const char* who, std::size_t first, std::size_t
   }
 }
 
-}  // namespace detail
-
 /// First and second moments of paired series x, y: means, and the 2x2 covariance matrix (divisor n - 1).
 struct JointMoments {
   double mean_x = not_a_number;
@@ -75,11 +74,13 @@ struct JointMoments {
   double covariance = not_a_number;
 };
 
+}  // namespace detail
+
 /// Moments of the pairs (x[i], y[i]). Variances and covariance are NaN for fewer than two pairs.
 /// Throws std::invalid_argument for series of different length.
-inline JointMoments joint_moments(const std::vector<double>& x, const std::vector<double>& y) {
+inline detail::JointMoments joint_moments(const std::vector<double>& x, const std::vector<double>& y) {
   detail::require_equal_length("joint_moments", x.size(), y.size());
-  JointMoments moments;
+  detail::JointMoments moments;
   moments.mean_x = detail::mean_of(x);
   moments.mean_y = detail::mean_of(y);
   if (x.size() < 2) return moments;
@@ -105,10 +106,37 @@ inline JointMoments joint_moments(const std::vector<double>& x, const std::vecto
 /// than two pairs, a constant series (or one whose variance underflows), NaN or Inf in the data. Throws
 /// std::invalid_argument for series of different length.
 inline double pearson_correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  const JointMoments moments = joint_moments(x, y);
+  const detail::JointMoments moments = joint_moments(x, y);
   if (!(moments.variance_x > 0) || !(moments.variance_y > 0)) return not_a_number;
   const double correlation = moments.covariance / (std::sqrt(moments.variance_x) * std::sqrt(moments.variance_y));
   return std::isnan(correlation) ? correlation : std::clamp(correlation, -1.0, 1.0);
+}
+
+/// By ranks (Mann and Whitney 1947): (sum of the positives' ranks - n (n + 1) / 2) / (n m), equal scores sharing their
+/// mean rank. NaN unless there are positives and negatives. Throws std::invalid_argument for series of different
+/// length.
+inline double auroc(const std::vector<double>& scores, const std::vector<bool>& positive) {
+  if (scores.size() != positive.size()) {
+    throw std::invalid_argument("auroc: expected as many scores as rows, found " + std::to_string(scores.size()) +
+                                " and " + std::to_string(positive.size()));
+  }
+  std::vector<std::size_t> order(scores.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] < scores[b]; });
+  double ranks = 0, positives = 0;
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t last = first;
+    double among = 0;
+    for (; last < order.size() && !(scores[order[first]] < scores[order[last]]); ++last) {
+      among += positive[order[last]] ? 1 : 0;
+    }
+    ranks += among * (static_cast<double>(first + last + 1) / 2);  // ranks first + 1 to last
+    positives += among;
+    first = last;
+  }
+  const double negatives = static_cast<double>(order.size()) - positives;
+  if (!(positives > 0 && negatives > 0)) return not_a_number;
+  return (ranks - positives * (positives + 1) / 2) / (positives * negatives);
 }
 
 }  // namespace pinnquad

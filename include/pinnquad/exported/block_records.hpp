@@ -30,7 +30,7 @@ enum class BlockRecord : std::uint16_t {
 
 inline constexpr std::uint16_t mandatory_record = 0x8000;
 
-/// How a model was judged before it was exported (evaluation/verdict.hpp), as bits.
+/// How a model was judged before it was exported (evaluation/errors.hpp), as bits.
 struct Judged {
   static constexpr std::uint32_t worse_than_mean = 1;  ///< not for flight
   static constexpr std::uint32_t beats_linear_regression = 2;

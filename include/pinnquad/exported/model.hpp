@@ -25,7 +25,7 @@ namespace pinnquad {
 ///      golden_features, golden_commands; scalers input, output; format_version
 ///   2  besides: frame, feature_names, feature_units, output_names, output_unit, vehicle_name, motor_torque_signs,
 ///      training_data_hash; optional, of a model that was judged: test_r_squared, linear_regression_r_squared (finite),
-///      worse_than_mean, beats_linear_regression (evaluation/verdict.hpp)
+///      worse_than_mean, beats_linear_regression (evaluation/errors.hpp)
 ///      Where the outputs have several units, output_units, one per output, in place of output_unit.
 ///   3  besides, and with output_units always: records, and what they name (exported/model_records.hpp). A Vehicle that is
 ///      none of the library's stands before the model, in the same header. Optional: contents_hash, over all of it

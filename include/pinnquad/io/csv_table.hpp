@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Tables of numbers as comma-separated text: a header that names the columns, then one row per line.
+// Tables as comma-separated text: a header that names the columns, then one row per line. Cells as RFC 4180 has them: a
+// cell in quotation marks may hold commas, line ends and, doubled, quotation marks. Blanks around a cell do not count.
 // Numbers are written with the fewest digits that read back to the same bits; no locale plays a part.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -11,12 +13,206 @@
 #include <vector>
 
 #include "pinnquad/io/atomic_file.hpp"
-#include "pinnquad/io/csv_cells.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/io/text_file.hpp"
 
 namespace pinnquad {
+
+/// A cell as a message shows it: quoted, cut, and on one line whatever bytes it holds.
+inline std::string quoted_cell(std::string_view cell) {
+  constexpr std::size_t most_shown = 40;
+  if (cell.empty()) return "an empty cell";
+  std::string shown = "\"";
+  for (const char c : cell.substr(0, most_shown)) shown += c >= ' ' && c <= '~' ? c : '?';
+  return shown + (cell.size() > most_shown ? "...\"" : "\"");
+}
+
+namespace detail {
+
+inline std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// Follows a record character by character and tells whether it stands inside quotation marks. They open a cell only at
+/// its beginning: in `5" propeller` there is none.
+class QuotationState {
+ public:
+  void follow(std::string_view text) noexcept {
+    for (const char c : text) {
+      if (place_ == Place::quoted) {
+        if (c == '"') place_ = Place::closed;
+      } else if (c == '"' && place_ == Place::closed) {
+        place_ = Place::quoted;  // doubled: a mark of the text
+      } else if (c == ',') {
+        place_ = Place::begin;
+      } else if (c == '"' && place_ == Place::begin) {
+        place_ = Place::quoted;
+      } else if (!(place_ == Place::begin && (c == ' ' || c == '\t'))) {
+        place_ = Place::plain;
+      }
+    }
+  }
+  bool inside() const noexcept { return place_ == Place::quoted; }
+
+ private:
+  enum class Place { begin, plain, quoted, closed };
+  Place place_ = Place::begin;
+};
+
+/// The cells of a record with quotation marks; `unquoted` holds the text of the quoted ones. A cell that goes on behind
+/// its closing mark is taken as it stands.
+inline void split_quoted_fields(std::string_view record, std::vector<std::string_view>& fields, std::string& unquoted) {
+  fields.clear();
+  unquoted.clear();
+  unquoted.reserve(record.size());  // then an append moves nothing
+  for (;;) {
+    std::string_view rest = record;
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    std::size_t comma = record.find(',');
+    bool whole = false;
+    if (!rest.empty() && rest[0] == '"') {
+      const std::size_t begin = unquoted.size();
+      std::size_t i = 1;
+      for (; i < rest.size(); ++i) {
+        if (rest[i] == '"') {
+          if (i + 1 >= rest.size() || rest[i + 1] != '"') break;
+          ++i;
+        }
+        unquoted += rest[i];
+      }
+      const std::size_t behind = rest.find_first_not_of(" \t", i + 1);
+      const std::size_t offset = record.size() - rest.size();
+      whole = i < rest.size() && (behind == std::string_view::npos || rest[behind] == ',');
+      comma = behind == std::string_view::npos ? behind : record.find(',', offset + behind);
+      if (whole) fields.push_back(std::string_view(unquoted).substr(begin));
+    }
+    if (!whole) fields.push_back(trimmed(record.substr(0, comma)));
+    if (comma == std::string_view::npos) return;
+    record.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace detail
+
+/// The cells of a line without quotation marks.
+inline void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(detail::trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+namespace detail {
+
+/// Text as a cell that reads back as the same text: in quotation marks where it needs them.
+inline std::string csv_cell(std::string_view text) {
+  if (trimmed(text) == text && text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? std::string(2, c) : std::string(1, c);
+  return cell + '"';
+}
+
+/// Most records of so many cells that a file can hold: one per line, a digit and a separator per cell.
+inline std::size_t most_records(const std::string& path, std::size_t cells) {
+  TextFile file(path);
+  std::size_t bytes = 0, ends = 0;
+  std::vector<char> block(read_block);
+  while (const std::size_t count = file.read(block.data(), block.size())) {
+    bytes += count;
+    ends +=
+        static_cast<std::size_t>(std::count(block.begin(), block.begin() + static_cast<std::ptrdiff_t>(count), '\n'));
+  }
+  return std::min(ends, bytes / (2 * cells)) + 1;
+}
+
+/// The records of a comma-separated file: a line each, or more where a quoted cell holds line ends. A byte order mark
+/// is skipped. Memory holds a block and a record.
+class CsvRecords {
+ public:
+  explicit CsvRecords(const std::string& path) : file_(path), buffer_(read_block) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    fill();
+    if (unread().substr(0, byte_order_mark.size()) == byte_order_mark) begin_ += byte_order_mark.size();
+  }
+
+  /// The next record without its line end, LF or CRLF; valid until the next call. False at the end of the file.
+  /// Throws InputError: a quoted cell without end, a record of more than 16 MiB, a read error.
+  bool next(std::string_view& record) {
+    line_ = next_line_;
+    QuotationState quotation;
+    std::size_t searched = 0, followed = 0;  // from begin_
+    has_quotes_ = false;
+    for (;;) {
+      std::string_view text = unread();
+      std::size_t end = text.find('\n', searched);
+      if (end == std::string_view::npos) {
+        searched = text.size();
+        if (fill()) continue;
+        if (searched == 0) return false;
+        text = unread();  // it has been moved
+        end = text.size();
+      }
+      ++next_line_;
+      if (has_quotes_ || text.substr(followed, end - followed).find('"') != std::string_view::npos) {
+        has_quotes_ = true;
+        quotation.follow(text.substr(followed, end - followed));
+        followed = end;
+        if (quotation.inside()) {
+          if (end == text.size()) {
+            throw InputError(file_.path(), line_, 0, "a closing quotation mark", "the end of the file");
+          }
+          searched = end + 1;
+          continue;
+        }
+      }
+      begin_ += end < text.size() ? end + 1 : end;
+      record = text.substr(0, end);
+      if (!record.empty() && record.back() == '\r') record.remove_suffix(1);
+      return true;
+    }
+  }
+
+  /// Where the last record begins, from 1.
+  std::size_t line() const noexcept { return line_; }
+  /// Bytes of the file up to the last record's end.
+  std::uintmax_t bytes() const noexcept { return file_.bytes_read() - (end_ - begin_); }
+  /// The cells of the last record; valid until the next call of this, or of next().
+  void split(std::string_view record, std::vector<std::string_view>& cells) {
+    has_quotes_ ? split_quoted_fields(record, cells, unquoted_) : split_fields(record, cells);
+  }
+
+ private:
+  std::string_view unread() const noexcept { return {buffer_.data() + begin_, end_ - begin_}; }
+
+  /// Puts what is unread to the front of the buffer and more behind it; false at the end of the file.
+  bool fill() {
+    constexpr std::size_t longest_record = std::size_t{1} << 24;
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    if (end_ > longest_record) throw InputError(file_.path(), line_, 0, "a record of at most 16 MiB", "a longer one");
+    if (buffer_.size() < end_ + read_block) buffer_.resize(2 * buffer_.size());
+    const std::size_t count = file_.read(buffer_.data() + end_, read_block);
+    end_ += count;
+    return count > 0;
+  }
+
+  TextFile file_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0, end_ = 0;
+  std::size_t line_ = 1, next_line_ = 1;
+  bool has_quotes_ = false;
+  std::string unquoted_;
+};
+
+}  // namespace detail
 
 /// A table of numbers; every row as long as the header.
 struct CsvTable {
@@ -24,8 +220,8 @@ struct CsvTable {
   std::vector<std::vector<double>> rows;
 };
 
-/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column that is
-/// missing or there twice, and for cells between semicolons or tabs.
+/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column
+/// that is missing or there twice, and for cells between semicolons or tabs.
 inline std::vector<std::size_t> locate_columns(const std::string& path, const std::vector<std::string_view>& header,
                                                const std::vector<std::string>& columns) {
   std::vector<std::size_t> fields;
@@ -61,34 +257,19 @@ namespace detail {
 inline std::vector<std::string> csv_header(const std::string& path) {
   CsvRecords records(path);
   std::string_view record;
-  std::string unquoted;
+  if (!records.next(record)) return {};
   std::vector<std::string_view> cells;
-  if (records.next(record)) {
-    if (records.has_quotes()) {
-      split_quoted_fields(record, cells, unquoted);
-    } else {
-      split_fields(record, cells);
-    }
-  }
+  records.split(record, cells);
   return {cells.begin(), cells.end()};
 }
 
 /// Reads the named columns and calls `on_row(values, line, fields)` for each row: its values in the order of `columns`,
-/// its line, and the field index (from 0) of each column. Returns nothing: the callee keeps what it wants.
+/// its line, and the field index (from 0) of each column.
 template <class OnRow>
 void for_each_csv_row(const std::string& path, const std::vector<std::string>& columns, std::size_t minimum_rows,
                       OnRow on_row) {
   CsvRecords records(path);
   std::string_view record;
-  std::string unquoted;
-  std::vector<std::string_view> cells;
-  const auto split = [&] {
-    if (records.has_quotes()) {
-      split_quoted_fields(record, cells, unquoted);
-    } else {
-      split_fields(record, cells);
-    }
-  };
   const auto is_blank = [](std::string_view text) { return text.find_first_not_of(" \t\r") == std::string_view::npos; };
   if (!records.next(record) || is_blank(record)) {
     while (records.next(record) && is_blank(record)) {
@@ -96,14 +277,15 @@ void for_each_csv_row(const std::string& path, const std::vector<std::string>& c
     if (is_blank(record)) throw InputError(path, 1, 0, "a header that names the columns", "an empty file");
     record = {};
   }
-  split();
+  std::vector<std::string_view> cells;
+  records.split(record, cells);
   const std::size_t width = cells.size();
   const std::vector<std::size_t> fields = locate_columns(path, cells, columns);
 
   std::vector<double> values(columns.size());
   std::size_t rows = 0;
   const auto take_row = [&](std::size_t line) {
-    split();
+    records.split(record, cells);
     if (cells.size() != width) {
       const std::size_t first_wrong = (cells.size() < width ? cells.size() : width) + 1;
       throw InputError(path, line, is_blank(record) ? 0 : first_wrong,
@@ -142,9 +324,10 @@ void for_each_csv_row(const std::string& path, const std::vector<std::string>& c
 }  // namespace detail
 
 /// Reads the named columns of a table, in the order asked for. In the file they may stand in any order; other columns
-/// are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation marks
-/// as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled column, a row of other
-/// length, a cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than `minimum_rows` rows.
+/// are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end,
+/// quotation marks as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled
+/// column, a row of other length, a cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than
+/// `minimum_rows` rows.
 inline CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
                          std::size_t minimum_rows = 1) {
   CsvTable table;
@@ -156,8 +339,10 @@ inline CsvTable read_csv(const std::string& path, const std::vector<std::string>
   return table;
 }
 
-/// Writes a table row by row; the file appears whole, on commit(), or not at all. NaN and Inf are written as nan and inf
-/// (gnuplot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
+namespace detail {
+
+/// Writes a table row by row; the file appears whole, on commit(), or not at all. NaN and Inf are written as nan and
+/// inf (gnuplot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
 /// std::invalid_argument for a row of other length than the header and a column without a name.
 class CsvWriter {
  public:
@@ -197,13 +382,15 @@ class CsvWriter {
 
   AtomicFile file_;
   std::size_t width_;
-  std::string text_;  ///< what is not yet handed to the file
+  std::string text_;  ///< not yet handed to the file
 };
+
+}  // namespace detail
 
 /// Writes a table that stands in memory; see CsvWriter.
 inline void write_csv(const std::string& path, const std::vector<std::string>& header,
                       const std::vector<std::vector<double>>& rows) {
-  CsvWriter writer(path, header);
+  detail::CsvWriter writer(path, header);
   for (const std::vector<double>& row : rows) writer.row(row.data(), row.size());
   writer.commit();
 }

@@ -49,8 +49,8 @@ class PlainLocale {
   locale_t before_;
 };
 
-/// The digits of [first, last) as from_chars takes them: sign, digits with a point, exponent. strtod would also take blanks,
-/// a plus sign and hexadecimal.
+/// True for text as from_chars takes it: sign, digits with a point, exponent. strtod also takes blanks, a plus sign and
+/// hexadecimal.
 inline bool is_decimal(const char* first, const char* last) noexcept {
   const auto digits = [&] {
     const char* begin = first;

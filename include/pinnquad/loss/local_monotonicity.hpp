@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Algorithm 1: where an angular acceleration rises, the matching signed sum of motor commands should rise too.
+// Losses between an angular acceleration and the matching signed sum of motor commands: local monotonicity (Algorithm 1:
+// where one rises, the other should rise too), and Pearson's correlation for the comparison (Sec. 4.2 argues against it).
 #pragma once
 
 #include <cmath>
@@ -7,9 +8,73 @@
 
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/data/settings.hpp"
-#include "pinnquad/loss/signed_command_sum.hpp"
+#include "pinnquad/loss/loss.hpp"
 
 namespace pinnquad {
+
+namespace detail {
+
+/// Both series over the samples of a batch, and how the first depends on the predictions. No heap.
+template <class Axis, class Context, class Batch>
+struct SignedCommandSum {
+  static_assert(
+      Context::Features::angular_acceleration >= 0,
+      "pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations");
+  using Scalar = typename Batch::Scalar;
+  using Array = Eigen::Array<Scalar, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), Batch::max_size>;
+  using Map = OutputMap<typename Context::Outputs>;
+  using Slope = Eigen::Array<Scalar, Map::size, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), Map::size,
+                             Batch::max_size>;
+
+  Array commands;              ///< m: sum of sign_i u_i with the allocation's signs, divided by `divisor`
+  Slope slope;                 ///< d m / d standardised prediction
+  Array angular_acceleration;  ///< n: standardised, as the network is given it
+
+  SignedCommandSum(const Context& context, const Batch& batch, Scalar divisor)
+      : commands(Array::Zero(batch.prediction.cols())), slope(Slope::Zero(Map::size, batch.prediction.cols())) {
+    const std::array<Scalar, rotor_count> signs = context.template signs<Axis, Scalar>();
+    const auto setting = context.template output_setting<typename Context::Outputs, Scalar>();
+    for (Eigen::Index sample = 0; sample < commands.size(); ++sample) {
+      Scalar x[Context::Features::size], outputs[Map::size], u[rotor_count], by_outputs[Map::slope_count];
+      if constexpr (Map::takes_features) {
+        for (int k = 0; k < Context::Features::size; ++k) {
+          const auto feature = static_cast<std::size_t>(k);
+          x[k] = batch.features(k, sample) * Scalar(context.input.standard_deviation[feature]) +
+                 Scalar(context.input.mean[feature]);
+        }
+      }
+      for (int k = 0; k < Map::size; ++k)
+        outputs[k] = batch.prediction(k, sample) * scale(context, k) + mean(context, k);
+      const Scalar* features = Map::takes_features ? static_cast<const Scalar*>(x) : nullptr;
+      Map::commands(features, static_cast<const Scalar*>(outputs), setting, u);
+      Map::slopes(features, static_cast<const Scalar*>(outputs), setting, by_outputs);
+      for (int i = 0; i < rotor_count; ++i) {
+        const Scalar sign = signs[static_cast<std::size_t>(i)] / divisor;
+        commands[sample] += sign * u[i];
+        for (int k = Map::first_output(i); k < Map::last_output(i); ++k) {
+          slope(k, sample) += sign * scale(context, k) * by_outputs[Map::slope_index(i, k)];
+        }
+      }
+    }
+    angular_acceleration = batch.features.row(Context::Features::angular_acceleration + Axis::axis).transpose().array();
+  }
+
+  /// Adds dL/d prediction, given dL/dm.
+  template <class Gradient>
+  void add_gradient(const Array& by_commands, Gradient& gradient) const {
+    gradient.array() += slope.rowwise() * by_commands.transpose();
+  }
+
+ private:
+  static Scalar scale(const Context& context, int output) {
+    return Scalar(context.output.standard_deviation[static_cast<std::size_t>(output)]);
+  }
+  static Scalar mean(const Context& context, int output) {
+    return Scalar(context.output.mean[static_cast<std::size_t>(output)]);
+  }
+};
+
+}  // namespace detail
 
 /// Step function tanh(gain x): differentiable sign. A gain of 3 on standardised series trains well; the
 /// paper prints gain 1 on raw series.
@@ -74,19 +139,6 @@ typename Array::Scalar local_monotonicity(const Step& step, const Array& m, cons
   return (Scalar(1) - steps.m * steps.n).sum() / pairs;
 }
 
-/// mean over the N - 1 consecutive pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0. It wants
-/// equal steps, not only equal signs. Adds weight * d/dm to `gradient`.
-template <class Step, class Array>
-typename Array::Scalar monotonicity_match(const Step& step, const Array& m, const Array& n,
-                                          typename Array::Scalar weight, Array& gradient) {
-  using Scalar = typename Array::Scalar;
-  const detail::StepPairs<Array> steps(step, m, n);
-  if (steps.count < 1) return Scalar(0);
-  const auto pairs = static_cast<Scalar>(steps.count);
-  steps.add_gradient(step, (Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
-  return (steps.m - steps.n).square().sum() / pairs;
-}
-
 /// Form of the loss, default: both series divided by their standard deviations in the training set, mean over the pairs
 /// (docs/paper.md, deviations 8 and 9).
 struct Standardised {
@@ -113,14 +165,20 @@ struct Literal {
   }
 };
 
-/// Form of the loss for equal steps, on standardised series (not in the paper).
+/// Form of the loss for equal steps, not only equal signs, on standardised series (not in the paper): mean over the pairs
+/// of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0.
 struct Match {
   static constexpr double gain = 3.0;
   static constexpr bool physical_units = false;
   template <class Step, class Array>
   static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
                                         Array& gradient) {
-    return monotonicity_match(step, m, n, weight, gradient);
+    using Scalar = typename Array::Scalar;
+    const detail::StepPairs<Array> steps(step, m, n);
+    if (steps.count < 1) return Scalar(0);
+    const auto pairs = static_cast<Scalar>(steps.count);
+    steps.add_gradient(step, (Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
+    return (steps.m - steps.n).square().sum() / pairs;
   }
 };
 
@@ -165,7 +223,7 @@ struct LocalMonotonicity {
   typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
                                   Gradient& gradient) const {
     using Scalar = typename Batch::Scalar;
-    using Series = SignedCommandSum<Axis, Context, Batch>;
+    using Series = detail::SignedCommandSum<Axis, Context, Batch>;
     constexpr auto axis = static_cast<std::size_t>(Axis::axis);
     Series series(context, batch, Form::physical_units ? Scalar(1) : Scalar(context.signed_sum_spread[axis]));
     if constexpr (Form::physical_units) {
@@ -175,6 +233,41 @@ struct LocalMonotonicity {
     }
     typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
     const Scalar value = Form::compare(step, series.commands, series.angular_acceleration, weight, by_commands);
+    series.add_gradient(by_commands, gradient);
+    return value;
+  }
+};
+
+/// 1 - r(m, n), r = sum (m - mean m)(n - mean n) / (|m - mean m| |n - mean n|): 0 correlated, 1 unrelated, 2 opposed.
+/// Adds weight * d/dm to `gradient`. A series that stands still has no correlation: 1, no gradient; a single sample
+/// gives 0.
+template <class Array>
+typename Array::Scalar pearson_loss(const Array& m, const Array& n, typename Array::Scalar weight, Array& gradient) {
+  using Scalar = typename Array::Scalar;
+  using std::sqrt;
+  if (m.size() < 2) return Scalar(0);
+  const Array a = m - m.mean();
+  const Array b = n - n.mean();
+  const Scalar a_squared = a.square().sum();
+  const Scalar lengths = sqrt(a_squared * b.square().sum());
+  if (!(lengths > Scalar(0))) return Scalar(1);
+  const Scalar correlation = (a * b).sum() / lengths;
+  // dr/dm = b / (|a| |b|) - r a / |a|^2: the means drop out, both have sum 0
+  gradient -= weight * (b / lengths - (correlation / a_squared) * a);
+  return Scalar(1) - correlation;
+}
+
+/// The same between the signed sum of predicted commands and the angular acceleration about one axis; units drop out.
+template <class Axis>
+struct PearsonCorrelation {
+  template <class Context, class Batch, class Gradient>
+  typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
+                                  Gradient& gradient) const {
+    using Scalar = typename Batch::Scalar;
+    using Series = detail::SignedCommandSum<Axis, Context, Batch>;
+    const Series series(context, batch, Scalar(1));
+    typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
+    const Scalar value = pearson_loss(series.commands, series.angular_acceleration, weight, by_commands);
     series.add_gradient(by_commands, gradient);
     return value;
   }

@@ -67,4 +67,17 @@ using LossOf =
 template <class T>
 inline constexpr bool is_loss = is_detected<detail::LossOf, T>;
 
+/// L = mean over samples and outputs of (prediction - target)^2, standardised units (PyTorch's meaning).
+/// Algorithm 1 divides by N_b only: a lambda of the paper weighs four times as much here (docs/paper.md, deviation 10).
+struct Mse {
+  template <class Context, class Batch, class Gradient>
+  typename Batch::Scalar evaluate(const Context&, const Batch& batch, typename Batch::Scalar weight,
+                                  Gradient& gradient) const {
+    using Scalar = typename Batch::Scalar;
+    const Scalar count = Scalar(batch.prediction.size());
+    gradient += (Scalar(2) * weight / count) * (batch.prediction - batch.target);
+    return (batch.prediction - batch.target).squaredNorm() / count;
+  }
+};
+
 }  // namespace pinnquad

@@ -7,7 +7,6 @@
 #include "pinnquad/data/settings.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/loss/loss.hpp"
-#include "pinnquad/loss/mse.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 
 namespace pinnquad {

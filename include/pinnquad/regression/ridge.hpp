@@ -1,18 +1,154 @@
 // SPDX-License-Identifier: MIT
-// Ridge regression in closed form: y = b + W x that minimises mean |y_n - b - W x_n|^2 + penalty |W|^2. The intercept is free
-// of the penalty. Features are to be standardised (training/training_data.hpp): the penalty takes all alike.
-// Of sums over rows (regression/regression_sums.hpp): to leave a trajectory out is a subtraction, whatever its rows.
+// Ridge regression in closed form: y = b + W x that minimises mean |y_n - b - W x_n|^2 + penalty |W|^2, free or under
+// bounds of its weights. The intercept is free of the penalty. Standardise the features (training/training_data.hpp):
+// the penalty takes all alike. Fits take sums over rows: to leave a trajectory out is a subtraction, whatever its rows.
 #pragma once
 
+#include <Eigen/Cholesky>
+#include <Eigen/Jacobi>
+
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "pinnquad/regression/regression_sums.hpp"
-#include "pinnquad/regression/symmetric_system.hpp"
+#include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
+
+/// y = intercept + weights x.
+struct AffineMap {
+  int inputs = 0, outputs = 0;
+  std::vector<double> weights;    ///< outputs x inputs, row-major
+  std::vector<double> intercept;  ///< outputs
+
+  std::vector<double> operator()(const double* x) const {
+    std::vector<double> y = intercept;
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      for (int i = 0; i < inputs; ++i) y[k] += weights[k * std::size_t(inputs) + std::size_t(i)] * x[i];
+    }
+    return y;
+  }
+};
+
+/// Sums of 1, x, y and their products over rows: all that least squares ask of them.
+class RegressionSums {
+ public:
+  RegressionSums(int inputs, int outputs)
+      : inputs_(inputs),
+        outputs_(outputs),
+        products_(Eigen::MatrixXd::Zero(1 + inputs + outputs, 1 + inputs + outputs)) {}
+
+  void add(const double* x, const double* y) {
+    Eigen::VectorXd row(products_.rows());
+    row[0] = 1;
+    for (int i = 0; i < inputs_; ++i) row[1 + i] = x[i];
+    for (int k = 0; k < outputs_; ++k) row[1 + inputs_ + k] = y[k];
+    products_.selfadjointView<Eigen::Lower>().rankUpdate(row);
+  }
+  RegressionSums& operator+=(const RegressionSums& other) {
+    products_ += other.products_;
+    return *this;
+  }
+  RegressionSums& operator-=(const RegressionSums& other) {
+    products_ -= other.products_;
+    return *this;
+  }
+
+  /// The same rows with one of the outputs.
+  RegressionSums of_output(int output) const {
+    RegressionSums one(inputs_, 1);
+    const int from = 1 + inputs_ + output, to = 1 + inputs_;
+    one.products_.topLeftCorner(to, to) = products_.topLeftCorner(to, to);
+    one.products_.row(to).head(to) = products_.row(from).head(to);
+    one.products_(to, to) = products_(from, from);
+    return one;
+  }
+
+  int inputs() const noexcept { return inputs_; }
+  int outputs() const noexcept { return outputs_; }
+  double rows() const { return products_(0, 0); }
+
+  /// Means of x and of y, in this order.
+  Eigen::VectorXd means() const { return products_.col(0).tail(inputs_ + outputs_) / rows(); }
+  /// Covariances of x and y, divisor n.
+  Eigen::MatrixXd covariances() const {
+    const Eigen::VectorXd mean = means();
+    Eigen::MatrixXd all = products_.bottomRightCorner(inputs_ + outputs_, inputs_ + outputs_) / rows();
+    all.triangularView<Eigen::StrictlyUpper>() = all.transpose();
+    return all - mean * mean.transpose();
+  }
+
+ private:
+  int inputs_, outputs_;
+  Eigen::MatrixXd products_;  ///< lower triangle
+};
+
+namespace detail {
+
+/// A = V diag(values) V', V orthogonal: a column per eigenvalue, in no order.
+struct EigenPairs {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+}  // namespace detail
+
+/// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit
+/// that fits a ridge four seconds longer to compile, for a case that is rare.
+inline detail::EigenPairs eigen_pairs(Eigen::MatrixXd a) {
+  constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
+  const Eigen::Index size = a.rows();
+  Eigen::MatrixXd vectors = Eigen::MatrixXd::Identity(size, size);
+  const double negligible = size > 0 ? std::numeric_limits<double>::epsilon() * a.cwiseAbs().maxCoeff() : 0.0;
+  for (int sweep = 0, turned = 1; sweep < most_sweeps && turned > 0; ++sweep) {
+    turned = 0;
+    for (Eigen::Index p = 0; p < size; ++p) {
+      for (Eigen::Index q = p + 1; q < size; ++q) {
+        if (!(std::abs(a(p, q)) > negligible)) continue;
+        Eigen::JacobiRotation<double> rotation;
+        rotation.makeJacobi(a, p, q);
+        a.applyOnTheLeft(p, q, rotation.adjoint());
+        a.applyOnTheRight(p, q, rotation);
+        vectors.applyOnTheRight(p, q, rotation);
+        ++turned;
+      }
+    }
+  }
+  return {a.diagonal(), vectors};
+}
+
+/// X of A X = B, of all that come closest to it the one of least norm: what A does not tell is 0. A: symmetric, no
+/// eigenvalue below 0 but by rounding; its diagonal of one order of magnitude, or 0.
+inline Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(a.rows());
+  const Eigen::LLT<Eigen::MatrixXd> factors(a);
+  // Far above rounding: what is left of a variance that the other columns explain is a difference of equals.
+  constexpr double enough = 1e4;
+  if (factors.info() == Eigen::Success && factors.rcond() > enough * rounding) return factors.solve(b);
+  const detail::EigenPairs pairs = eigen_pairs(a);
+  const double largest = a.rows() > 0 ? pairs.values.maxCoeff() : 0.0;
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(b.rows(), b.cols());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    if (!(pairs.values[i] > enough * rounding * largest)) continue;
+    const auto axis = pairs.vectors.col(i);
+    for (Eigen::Index k = 0; k < b.cols(); ++k) x.col(k) += axis.dot(b.col(k)) / pairs.values[i] * axis;
+  }
+  return x;
+}
+
+/// Lower triangular W with W A W' = 1: the inverse of Cholesky's factor. A: symmetric, its lower triangle is read.
+/// Empty where A is not positive definite, by rounding too, or not finite.
+inline std::optional<Eigen::MatrixXd> whitening_of(const Eigen::MatrixXd& a) {
+  const Eigen::LLT<Eigen::MatrixXd> factors(a);
+  // Eigen takes NaN and infinity for positive; a row's reach its diagonal.
+  if (factors.info() != Eigen::Success || !factors.matrixLLT().diagonal().allFinite()) return {};
+  return factors.matrixL().solve(Eigen::MatrixXd::Identity(a.rows(), a.cols()));
+}
 
 namespace detail {
 inline void require_penalty(double penalty) {
@@ -22,8 +158,8 @@ inline void require_penalty(double penalty) {
 }
 }  // namespace detail
 
-/// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A feature that
-/// stands still, or that the others repeat, does no harm, without a penalty too (regression/symmetric_system.hpp).
+/// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A
+/// feature that stands still, or that the others repeat, does no harm, without a penalty too (regression/ridge.hpp).
 /// Throws std::invalid_argument for no rows and for a penalty that is no number from 0.
 inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken = {}) {
   if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
@@ -32,15 +168,15 @@ inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std
   for (int i = 0; i < sums.inputs(); ++i) {
     if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);
   }
-  const DynamicMatrix covariances = sums.covariances();
+  const Eigen::MatrixXd covariances = sums.covariances();
   const auto size = static_cast<Eigen::Index>(columns.size());
-  DynamicMatrix a(size, size), b(size, sums.outputs());
+  Eigen::MatrixXd a(size, size), b(size, sums.outputs());
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(columns[std::size_t(i)], columns[std::size_t(j)]);
     a(i, i) += penalty;
     for (int k = 0; k < sums.outputs(); ++k) b(i, k) = covariances(columns[std::size_t(i)], sums.inputs() + k);
   }
-  const DynamicMatrix solution = solve_symmetric(a, b);
+  const Eigen::MatrixXd solution = solve_symmetric(a, b);
   const Eigen::VectorXd mean = sums.means();
   AffineMap map;
   map.inputs = sums.inputs();
@@ -60,7 +196,7 @@ inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std
 
 /// Sum of (y - map(x))^2 over the rows and outputs of these sums.
 inline double squared_error(const RegressionSums& sums, const AffineMap& map) {
-  const DynamicMatrix covariances = sums.covariances();
+  const Eigen::MatrixXd covariances = sums.covariances();
   const Eigen::VectorXd mean = sums.means();
   const int n = map.inputs;
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -75,10 +211,12 @@ inline double squared_error(const RegressionSums& sums, const AffineMap& map) {
   return sum * sums.rows();
 }
 
-/// Penalties that are tried: half decades, of features and outputs with spread 1.
+/// Penalties that are tried: half decades, of features and outputs with standard deviation 1.
 inline std::vector<double> usual_penalties() {
   return {1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0};
 }
+
+namespace detail {
 
 struct PenaltyChoice {
   double penalty = 0;  ///< of the least error; of equals the largest
@@ -86,11 +224,13 @@ struct PenaltyChoice {
       mean_squared_error;  ///< of each candidate, over all rows, each predicted by a fit without its group
 };
 
-/// The penalty that predicts best what was left out: each group of rows (a trajectory with its repeats) by the fit to all
-/// others. Throws std::invalid_argument for fewer than two groups or no candidate.
-inline PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
-                                    const std::vector<double>& candidates = usual_penalties(),
-                                    const std::vector<bool>& taken = {}) {
+}  // namespace detail
+
+/// The penalty that predicts best what was left out: each group of rows (a trajectory with its repeats) by the fit to
+/// all others. Throws std::invalid_argument for fewer than two groups or no candidate.
+inline detail::PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
+                                            const std::vector<double>& candidates = usual_penalties(),
+                                            const std::vector<bool>& taken = {}) {
   if (groups.size() < 2) {
     throw std::invalid_argument("ridge: expected two groups of rows or more, to leave one out in turn, found " +
                                 std::to_string(groups.size()));
@@ -98,7 +238,7 @@ inline PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
   if (candidates.empty()) throw std::invalid_argument("ridge: expected a penalty to choose, found none");
   RegressionSums all = groups.front();
   for (std::size_t i = 1; i < groups.size(); ++i) all += groups[i];
-  PenaltyChoice choice;
+  detail::PenaltyChoice choice;
   choice.mean_squared_error.assign(candidates.size(), 0.0);
   for (const RegressionSums& left_out : groups) {
     RegressionSums others = all;
@@ -115,6 +255,109 @@ inline PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
   }
   choice.penalty = candidates[best];
   return choice;
+}
+
+namespace detail {
+
+/// sum of factor x weight over `terms` >= least, or = least.
+struct WeightBound {
+  std::vector<std::pair<int, double>> terms;  ///< feature and factor
+  double least = 0;
+  bool pinned = false;
+};
+
+}  // namespace detail
+
+/// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Each choice of bounds that hold
+/// with equality is solved; of those that keep all bounds the one of least cost is taken, which is the minimum: the
+/// cost is convex. Throws std::invalid_argument for no rows, several outputs, a penalty that is no number from 0, more
+/// than 8 bounds, a bound of a feature that is not taken, and where no choice keeps all.
+inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken,
+                                   const std::vector<detail::WeightBound>& bounds) {
+  constexpr std::size_t most_bounds = 8;
+  if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
+  if (sums.outputs() != 1) {
+    throw std::invalid_argument("ridge: expected one output, found " + std::to_string(sums.outputs()));
+  }
+  detail::require_penalty(penalty);
+  if (bounds.size() > most_bounds) throw std::invalid_argument("ridge: expected 8 bounds at most");
+  const Eigen::MatrixXd covariances = sums.covariances();
+  const Eigen::VectorXd mean = sums.means();
+  std::vector<int> columns, place(static_cast<std::size_t>(sums.inputs()), -1);
+  for (int i = 0; i < sums.inputs(); ++i) {
+    if (!taken.empty() && !taken[std::size_t(i)]) continue;
+    place[std::size_t(i)] = static_cast<int>(columns.size());
+    columns.push_back(i);
+  }
+  const auto size = static_cast<Eigen::Index>(columns.size());
+  const auto count = static_cast<Eigen::Index>(bounds.size());
+  Eigen::MatrixXd a(size, size), right = Eigen::MatrixXd::Zero(size, 1 + count);  // the free fit, then each bound's
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(columns[std::size_t(i)], columns[std::size_t(j)]);
+    a(i, i) += penalty;
+    right(i, 0) = covariances(columns[std::size_t(i)], sums.inputs());
+  }
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (const auto& [feature, factor] : bounds[std::size_t(k)].terms) {
+      const bool has = feature >= 0 && feature < sums.inputs();
+      const int row = has ? place[std::size_t(feature)] : -1;
+      if (row < 0) throw std::invalid_argument("ridge: a bound of feature " + std::to_string(feature) + ", not taken");
+      right(row, 1 + k) = factor;
+    }
+  }
+  const Eigen::MatrixXd solution = solve_symmetric(a, right);
+  const Eigen::MatrixXd by = right.rightCols(count), moved = solution.rightCols(count);
+  const Eigen::VectorXd free = solution.col(0);
+  constexpr double tolerance = 1e-9;  // of a bound that holds with equality, after rounding
+  Eigen::VectorXd best;
+  double least_cost = 0;
+  for (std::size_t active = 0; active < (std::size_t{1} << bounds.size()); ++active) {
+    std::vector<Eigen::Index> held;
+    bool allowed = true;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const bool is_held = (active >> k & 1U) != 0;
+      allowed = allowed && (is_held || !bounds[std::size_t(k)].pinned);
+      if (is_held) held.push_back(k);
+    }
+    if (!allowed) continue;
+    Eigen::VectorXd weights = free;
+    if (!held.empty()) {
+      const auto rows = static_cast<Eigen::Index>(held.size());
+      Eigen::MatrixXd gram(rows, rows), missing(rows, 1);
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        for (Eigen::Index j = 0; j < rows; ++j)
+          gram(i, j) = by.col(held[std::size_t(i)]).dot(moved.col(held[std::size_t(j)]));
+        missing(i, 0) = bounds[std::size_t(held[std::size_t(i)])].least - by.col(held[std::size_t(i)]).dot(free);
+      }
+      const Eigen::MatrixXd forces = solve_symmetric(gram, missing);
+      for (Eigen::Index i = 0; i < rows; ++i) weights += forces(i, 0) * moved.col(held[std::size_t(i)]);
+    }
+    bool keeps = true;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double short_of = bounds[std::size_t(k)].least - by.col(k).dot(weights);
+      const double scale = by.col(k).cwiseAbs().dot(weights.cwiseAbs()) + std::abs(bounds[std::size_t(k)].least);
+      keeps = keeps && short_of <= tolerance * scale;
+    }
+    if (!keeps) continue;
+    const double cost = weights.dot(a * weights) - 2 * weights.dot(right.col(0));
+    if (best.size() == 0 || cost < least_cost) {
+      best = weights;
+      least_cost = cost;
+    }
+  }
+  if (best.size() == 0 && size > 0) throw std::invalid_argument("ridge: no weights keep all bounds");
+  AffineMap map;
+  map.inputs = sums.inputs();
+  map.outputs = 1;
+  map.weights.assign(std::size_t(map.inputs), 0.0);
+  double at_mean = 0;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const int column = columns[std::size_t(i)];
+    map.weights[std::size_t(column)] = best[i];
+    at_mean += best[i] * mean[column];
+  }
+  map.intercept = {mean[sums.inputs()] - at_mean};
+  return map;
 }
 
 }  // namespace pinnquad

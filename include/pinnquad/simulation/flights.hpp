@@ -1,20 +1,115 @@
 // SPDX-License-Identifier: MIT
-// The paper's three flights (Sec. 5.2) as types: which effects act, who flies, for how long.
-// Contract of a flight: `name`, `summary`, `Vehicle` and `SwitchableVehicle` (the same effects, and a ground effect that a
-// program may choose), `ground_effect` (of the flight as the paper has it), `plan()` and
+// The paper's three flights (Sec. 5.2) as types: which effects act, who flies, for how long. The pilots' styles are
+// fitted to what a vehicle can do at a place, found through its own inverse: a heavy one is not asked to climb as a
+// racer does. Contract of a flight: `name`, `summary`, `Vehicle` and `SwitchableVehicle` (the same effects, and a
+// ground effect that a program may choose), `ground_effect` (of the flight as the paper has it), `plan()` and
 // `pilot(vehicle, engine, max_speed_m_s)`.
 #pragma once
+
+#include <limits>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/aero/wind.hpp"
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/simulation/near_ground_pilot.hpp"
 #include "pinnquad/simulation/random_pilot.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
 
 namespace pinnquad {
+
+namespace detail {
+/// Thrust fraction of the rotor that gives most; of rotors that differ by rounding, the first one's.
+inline double largest_fraction(const Rotors<double>& rotors, const Commands<double>& commands) noexcept {
+  constexpr double rounding = 1e-9;
+  const ThrustFractions<double> fractions = rotors.fractions(commands);
+  double largest = fractions[0];
+  for (const double fraction : fractions) {
+    if (fraction > largest * (1 + rounding)) largest = fraction;
+  }
+  return largest;
+}
+}  // namespace detail
+
+/// Share of its thrust that the rotor with most to do gives in hover at a place; NaN if the inverse gives no answer.
+/// Above the share that the controller asks for at most (0.97, flight_limits) the airframe cannot stay up.
+template <class AnyVehicle>
+double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) {
+  return with_quadrotor(vehicle, [&](const auto& quadrotor) {
+    HoverTrim<double> hover;
+    const Status status = hover_trim(quadrotor, place_m, hover);
+    return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), hover.commands)
+                                : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
+/// The default style, fitted to what the vehicle can do at a place; found through its own inverse, drag included.
+/// No climb that takes more than 60 % of the thrust above hover, no descent with less than 35 % of the hover's or
+/// faster than 1.5 times the climb; turns, sticks and changes of velocity are calmed in proportion where hover leaves
+/// less than 35 % of the command.
+template <class... Effects>
+PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m,
+                       double max_speed_m_s = PilotStyle{}.max_speed_m_s) {
+  constexpr double climb_share = 0.6, descent_share = 0.35, fall_per_climb = 1.5, calm_reserve = 0.35;
+  constexpr int speeds = 80;
+  PilotStyle style;
+  style.max_speed_m_s = style.max_climb_m_s = style.max_descent_m_s = max_speed_m_s;
+  HoverTrim<double> hover;
+  if (hover_trim(quadrotor, place_m, hover) != Status::ok) return style;
+  const double hover_command = detail::largest_fraction(quadrotor.rotors(), hover.commands);
+  const auto command_at = [&](double down_m_s) {
+    State<double> state;
+    state.position_m = place_m;
+    state.velocity_m_s[2] = down_m_s;
+    Commands<double> commands = hover.commands;
+    const Status status = inverse_commands(quadrotor, state, Accelerations<double>{}, 0.0, commands);
+    return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), commands) : hover_command;
+  };
+  const double step_m_s = style.max_speed_m_s / speeds;
+  const double most = hover_command + climb_share * (1 - hover_command);
+  const double least = descent_share * hover_command;
+  while (style.max_climb_m_s > step_m_s && command_at(-style.max_climb_m_s) > most) style.max_climb_m_s -= step_m_s;
+  while (style.max_descent_m_s > step_m_s && command_at(style.max_descent_m_s) < least) {
+    style.max_descent_m_s -= step_m_s;
+  }
+  const double most_descent_m_s = fall_per_climb * style.max_climb_m_s;  // a fall must be caught again
+  if (style.max_descent_m_s > most_descent_m_s) style.max_descent_m_s = most_descent_m_s;
+  const double calm = (1 - hover_command) / calm_reserve;
+  if (calm < 1) {
+    style.max_yaw_rate_rad_s *= calm;
+    style.thumbs.yaw_spread_rad_s *= calm;
+    style.thumbs.roll_pitch_spread_rad_s *= calm;
+    style.velocity_lag_s /= calm;
+  }
+  return style;
+}
+
+/// The near-ground style, fitted to what the vehicle can do: no climb or descent, no stick and no turn beyond those of
+/// pilot_style, traverses calmed as its changes of velocity are, heights changed with a third of the acceleration that
+/// the thrust above hover gives.
+template <class... Effects>
+NearGroundStyle near_ground_style(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m,
+                                  double max_speed_m_s = NearGroundStyle{}.max_speed_m_s) {
+  const auto lower = [](double& value, double limit) {
+    if (limit < value) value = limit;
+  };
+  const PilotStyle agile = pilot_style(quadrotor, place_m);
+  NearGroundStyle style;
+  lower(style.max_speed_m_s, max_speed_m_s);
+  lower(style.hover_speed_m_s, max_speed_m_s);
+  lower(style.max_climb_m_s, agile.max_climb_m_s);
+  lower(style.max_descent_m_s, agile.max_descent_m_s);
+  lower(style.max_yaw_rate_rad_s, agile.max_yaw_rate_rad_s);
+  lower(style.thumbs.roll_pitch_spread_rad_s, agile.thumbs.roll_pitch_spread_rad_s);
+  lower(style.thumbs.yaw_spread_rad_s, agile.thumbs.yaw_spread_rad_s);
+  constexpr double reserve_share = 1.0 / 3;
+  const double hover = hover_command(quadrotor, place_m);
+  lower(style.max_vertical_acceleration_m_s2, reserve_share * (1 / hover - 1) * quadrotor.site().gravity_m_s2);
+  style.velocity_lag_s *= agile.velocity_lag_s / PilotStyle{}.velocity_lag_s;
+  return style;
+}
 
 /// The agile pilot, fitted to a vehicle at the place where a flight starts (pilot_style).
 template <class AnyVehicle, class Engine>
@@ -43,7 +138,8 @@ struct AgileFlight {
 };
 
 /// D2: take-offs, hovers, low traverses and landings with the centre 0.1 to 2 m above ground, drag and ground effect
-/// (Conyers); 6,000 rows at 0.05 s. There is no contact with the ground: a landed vehicle hovers on its last centimetres.
+/// (Conyers); 6,000 rows at 0.05 s. There is no contact with the ground: a landed vehicle hovers on its last
+/// centimetres.
 struct NearGroundFlight {
   static constexpr const char* name = "d2";
   static constexpr const char* summary = "near the ground, 0.1 to 2 m, with drag and ground effect";

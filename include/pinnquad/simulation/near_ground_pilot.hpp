@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A pilot who flies low at random: take-offs, hovers, low traverses and landings, one sortie after the other.
-// What he flies shows the ground effect at every height where it acts; the same engine state gives the same flight.
+// His flights show the ground effect at every height where it acts; the same engine state gives the same flight.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,6 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/simulation/pilot.hpp"
-#include "pinnquad/simulation/thumbs.hpp"
 
 namespace pinnquad {
 
@@ -32,21 +31,28 @@ struct NearGroundStyle {
   double lead_s{0.33};          ///< climb asked for ahead of the profile: what the vehicle needs to follow
   double max_yaw_rate_rad_s{1.0};
   double yaw_rate_lag_s{0.4};
-  ThumbStyle thumbs{};
+  detail::ThumbStyle thumbs{};
   double farthest_m{25};  ///< north and east of the origin
   double braking_m{3};    ///< room left to the border when a target velocity is chosen
 };
 
-/// What the pilot is at.
+namespace detail {
+
+/// Phase of a sortie.
 enum class NearGroundPhase { stay, take_off, hover, traverse, landing };
 
-/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. The height
-/// follows a profile from leg to leg, h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T (take-off, landing,
-/// and a traverse, which changes height on the way), and the climb asked for is h' + lead h'' + gain (h - height).
-/// Velocities north and east are targets followed with a lag, as are yaw rates; stick noise goes on all the time.
+}  // namespace detail
+
+/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. The
+/// height follows a profile from leg to leg, h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T (take-off,
+/// landing, and a traverse, which changes height on the way), and the climb asked for is h' + lead h'' + gain (h -
+/// height). Velocities north and east are targets followed with a lag, as are yaw rates; stick noise goes on all the
+/// time.
 template <class Engine>
 class NearGroundPilot {
  public:
+  using Phase = detail::NearGroundPhase;
+
   /// `ground_z_m`: NED z of the ground (Site). The engine is the pilot's own from here on.
   explicit NearGroundPilot(const Engine& engine, const NearGroundStyle& style = {}, double ground_z_m = 0)
       : engine_(engine), style_(style), ground_z_m_(ground_z_m), thumbs_(style.thumbs) {}
@@ -70,17 +76,17 @@ class NearGroundPilot {
   }
 
   const NearGroundStyle& style() const noexcept { return style_; }
-  NearGroundPhase phase() const noexcept { return phase_; }
+  Phase phase() const noexcept { return phase_; }
 
  private:
   /// The first phase: a stay at the height where the flight starts.
   void begin(double height_m) {
     started_ = true;
-    start_phase(NearGroundPhase::stay, height_m, uniform(engine_, style_.min_hold_s, style_.max_hold_s));
+    start_phase(Phase::stay, height_m, uniform(engine_, style_.min_hold_s, style_.max_hold_s));
     from_m_ = height_m;
   }
 
-  void start_phase(NearGroundPhase phase, double to_m, double duration_s) {
+  void start_phase(Phase phase, double to_m, double duration_s) {
     phase_ = phase;
     phase_start_s_ = time_s_;
     phase_end_s_ = time_s_ + duration_s;
@@ -90,23 +96,23 @@ class NearGroundPilot {
 
   void choose_next(const State<double>& state) {
     switch (phase_) {
-      case NearGroundPhase::stay:
+      case Phase::stay:
         legs_left_ = 1;
         if (style_.max_legs >= 1) {  // drawn for one too, so that a seed flies the same whatever their number
           legs_left_ += static_cast<int>(uniform_index(engine_, static_cast<std::uint64_t>(style_.max_legs)));
         }
-        change_height(NearGroundPhase::take_off, flight_height_m(), style_.max_climb_m_s);
+        change_height(Phase::take_off, flight_height_m(), style_.max_climb_m_s);
         drift(style_.hover_speed_m_s);
         return;
-      case NearGroundPhase::landing:
-        start_phase(NearGroundPhase::stay, to_m_, uniform(engine_, style_.min_hold_s, style_.max_hold_s));
+      case Phase::landing:
+        start_phase(Phase::stay, to_m_, uniform(engine_, style_.min_hold_s, style_.max_hold_s));
         drift(style_.hover_speed_m_s);
         return;
-      case NearGroundPhase::take_off:
-      case NearGroundPhase::hover:
-      case NearGroundPhase::traverse:
+      case Phase::take_off:
+      case Phase::hover:
+      case Phase::traverse:
         if (legs_left_ == 0) {
-          change_height(NearGroundPhase::landing, uniform(engine_, style_.lowest_m, style_.lowest_stay_m),
+          change_height(Phase::landing, uniform(engine_, style_.lowest_m, style_.lowest_stay_m),
                         style_.max_descent_m_s);
           drift(style_.hover_speed_m_s);
           return;
@@ -121,13 +127,13 @@ class NearGroundPilot {
   void fly_leg(const State<double>& state) {
     const double hold_s = uniform(engine_, style_.min_hold_s, style_.max_hold_s);
     if (uniform_index(engine_, 3) == 0) {
-      start_phase(NearGroundPhase::hover, to_m_, hold_s);
+      start_phase(Phase::hover, to_m_, hold_s);
       drift(style_.hover_speed_m_s);
       return;
     }
     const double height_m = flight_height_m();
     const double least_s = shortest_s(height_m, height_m < to_m_ ? style_.max_descent_m_s : style_.max_climb_m_s);
-    start_phase(NearGroundPhase::traverse, height_m, hold_s > least_s ? hold_s : least_s);
+    start_phase(Phase::traverse, height_m, hold_s > least_s ? hold_s : least_s);
     constexpr double overshoot = 0.95;  // asked for, so that what is flown stays near the limit
     drift(overshoot * style_.max_speed_m_s);
     for (int i = 0; i < 2; ++i) {  // not out of the box
@@ -145,7 +151,7 @@ class NearGroundPilot {
   }
 
   /// A phase that goes to a height, at a steepness drawn up to the limit.
-  void change_height(NearGroundPhase phase, double to_m, double limit_m_s) {
+  void change_height(Phase phase, double to_m, double limit_m_s) {
     constexpr double gentlest = 0.4;  // of the limit
     const double steepest_m_s = limit_m_s * uniform(engine_, gentlest, 1);
     start_phase(phase, to_m, shortest_s(to_m, steepest_m_s));
@@ -188,10 +194,10 @@ class NearGroundPilot {
   Engine engine_;
   NearGroundStyle style_;
   double ground_z_m_;
-  Thumbs thumbs_;
+  detail::Thumbs thumbs_;
   bool started_{false};
   double time_s_{0};
-  NearGroundPhase phase_{NearGroundPhase::stay};
+  Phase phase_{Phase::stay};
   double phase_start_s_{0};
   double phase_end_s_{0};
   double from_m_{0};  ///< heights of the profile

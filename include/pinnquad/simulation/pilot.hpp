@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT
-// A pilot is a policy: what he asks of the flight controller, tick by tick.
+// A pilot is a policy: the set points that the flight controller is asked for, tick by tick.
 // Contract: `SetPoint<double> operator()(const State<double>& state, double time_s)`, called in time order.
 #pragma once
 
+#include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/core/detected.hpp"
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-template <class Pilot, class = void>
-struct IsPilot : std::false_type {};
 template <class Pilot>
-struct IsPilot<Pilot, std::void_t<decltype(std::declval<Pilot&>()(std::declval<const State<double>&>(), 0.0))>>
-    : std::is_same<SetPoint<double>, decltype(std::declval<Pilot&>()(std::declval<const State<double>&>(), 0.0))> {};
+using SetPointOf = std::enable_if_t<
+    std::is_same_v<SetPoint<double>, decltype(std::declval<Pilot&>()(std::declval<const State<double>&>(), 0.0))>>;
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class Pilot>
-inline constexpr bool is_pilot = detail::IsPilot<Pilot>::value;
+inline constexpr bool is_pilot = is_detected<detail::SetPointOf, Pilot>;
 
 /// Asks for the same all the time; by default for a hover.
 struct SteadyPilot {
@@ -27,5 +30,54 @@ struct SteadyPilot {
 
   SetPoint<double> operator()(const State<double>& /*state*/, double /*time_s*/) const { return set_point; }
 };
+
+namespace detail {
+
+/// How the thumbs move.
+struct ThumbStyle {
+  double frame_s{0.004};                 ///< the sticks arrive in frames, as over a 250 Hz radio link
+  double bandwidth_rad_s{14};            ///< of a first-order random process
+  double roll_pitch_spread_rad_s{0.21};  ///< its standard deviation
+  double yaw_spread_rad_s{0.062};
+};
+
+}  // namespace detail
+
+/// The share of its way to a target that a first-order lag goes in a time; all of it without lag.
+inline double lag_share(double elapsed_s, double lag_s) { return lag_s == 0 ? 1 : elapsed_s / (lag_s + elapsed_s); }
+
+namespace detail {
+
+/// Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between frames.
+/// Three draws per frame: roll, pitch, yaw.
+class Thumbs {
+ public:
+  explicit Thumbs(const ThumbStyle& style)
+      : frame_s_(style.frame_s),
+        memory_(std::exp(-style.frame_s * style.bandwidth_rad_s)),
+        drive_(std::sqrt(1 - memory_ * memory_)),
+        spread_rad_s_(style.roll_pitch_spread_rad_s, style.roll_pitch_spread_rad_s, style.yaw_spread_rad_s) {}
+
+  /// Moves the sticks if a frame is due; rad/s about the body axes, FRD. To be called in time order, once per tick;
+  /// with a tick longer than a frame one frame per tick arrives.
+  template <class Engine>
+  void move(Engine& engine, double time_s, Vector3<double>& stick_rad_s) {
+    constexpr double early = 1e-6;  // a frame is due on a tick although both times are rounded
+    if (time_s < next_frame_s_ - early) return;
+    next_frame_s_ += frame_s_;
+    for (int i = 0; i < 3; ++i) {
+      stick_rad_s[i] = memory_ * stick_rad_s[i] + drive_ * spread_rad_s_[i] * standard_normal(engine);
+    }
+  }
+
+ private:
+  double frame_s_;
+  double memory_;
+  double drive_;
+  Vector3<double> spread_rad_s_;
+  double next_frame_s_{0};
+};
+
+}  // namespace detail
 
 }  // namespace pinnquad

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // An agile pilot who flies at random: smooth velocities in all directions up to a limit, turns, and busy thumbs.
-// What he flies excites every input of the inverse dynamics; the same engine state gives the same flight.
+// His flights excite every input of the inverse dynamics; the same engine state gives the same flight.
 #pragma once
 
 #include <cmath>
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/simulation/pilot.hpp"
-#include "pinnquad/simulation/thumbs.hpp"
 
 namespace pinnquad {
 
@@ -15,14 +14,14 @@ namespace pinnquad {
 struct PilotStyle {
   double max_speed_m_s{8};  ///< of what is flown; 95 % of it is asked for, and less as soon as `easing_share` is passed
   double easing_share{0.993};  ///< of max_speed_m_s: flown faster than this, the velocity asked for shrinks
-  double max_climb_m_s{8};     ///< what a heavy vehicle cannot climb is not asked for (pilot_style)
+  double max_climb_m_s{8};     ///< of a heavy vehicle less (pilot_style)
   double max_descent_m_s{8};   ///< nor a fall that leaves the rotors nothing to do
   double min_hold_s{0.8};      ///< a target velocity is held between these two times
   double max_hold_s{2.6};
   double velocity_lag_s{0.45};  ///< the velocity asked for follows its target with this lag
   double max_yaw_rate_rad_s{1.0};
   double yaw_rate_lag_s{0.4};
-  ThumbStyle thumbs{};
+  detail::ThumbStyle thumbs{};
   double lowest_m{10};  ///< box, heights above ground and distances from the origin
   double highest_m{60};
   double farthest_m{60};
@@ -31,8 +30,8 @@ struct PilotStyle {
 
 /// Draws a target velocity (any direction; the greatest speed and the vertical more often), holds it for a random time,
 /// and asks for it with a lag. A component that would lead out of the box before its time is up is turned round. Yaw
-/// rate targets change with it; stick noise goes on all the time. A turn against the thrust limits can carry the vehicle
-/// past what was asked for: beyond easing_share the velocity is asked for less, by the ramp in `eased`.
+/// rate targets change with it; stick noise goes on all the time. A turn against the thrust limits can carry the
+/// vehicle past what was asked for: beyond easing_share the velocity is asked for less, by the ramp in `eased`.
 template <class Engine>
 class RandomPilot {
  public:
@@ -61,7 +60,7 @@ class RandomPilot {
   void choose_target(const State<double>& state) {
     constexpr double two_pi = 6.283185307179586;
     constexpr double beyond = 1.25;     // draws past the limits are cut: the limits themselves are flown often
-    constexpr double overshoot = 0.95;  // what is asked for, so that what is flown stays near the limit
+    constexpr double overshoot = 0.95;  // of the limit is asked for; the flown speed stays near it
     const double down = within(uniform(engine_, -beyond, beyond), 1);
     const double level = std::sqrt(1 - down * down);
     const double course = uniform(engine_, 0, two_pi);
@@ -85,7 +84,7 @@ class RandomPilot {
 
   static double within(double value, double most) { return value > most ? most : (value < -most ? -most : value); }
 
-  /// What is wanted, with the velocity shrunk by (v - easing) / (max - easing), v the speed flown: all of it at
+  /// The set point, its velocity shrunk by (v - easing) / (max - easing), v the speed flown: all of it at
   /// easing_share, none at the greatest speed.
   SetPoint<double> eased(double speed_m_s) const {
     const double easing_m_s = style_.easing_share * style_.max_speed_m_s;
@@ -100,7 +99,7 @@ class RandomPilot {
   Engine engine_;
   PilotStyle style_;
   double ground_z_m_;
-  Thumbs thumbs_;
+  detail::Thumbs thumbs_;
   double time_s_{0};
   double next_target_s_{0};
   Vector3<double> target_velocity_m_s_ = Vector3<double>::Zero();

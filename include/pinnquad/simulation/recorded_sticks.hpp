@@ -12,14 +12,18 @@
 
 namespace pinnquad {
 
-/// What was asked of the flight controller at one time.
+namespace detail {
+
+/// A set point and its time.
 struct StickRow {
   double time_s{0};
   SetPoint<double> set_point{};
 };
 
+}  // namespace detail
+
 /// Time strictly increasing.
-using StickRecording = std::vector<StickRow>;
+using StickRecording = std::vector<detail::StickRow>;
 
 /// Columns of a stick recording: a SetPoint with its time.
 ///   time_s                                  since the start of the flight, not negative
@@ -57,7 +61,7 @@ inline StickRecording read_sticks_csv(const std::string& path) {
 inline void write_sticks_csv(const std::string& path, const StickRecording& recording) {
   std::vector<std::vector<double>> rows;
   rows.reserve(recording.size());
-  for (const StickRow& row : recording) {
+  for (const detail::StickRow& row : recording) {
     const SetPoint<double>& p = row.set_point;
     rows.push_back({row.time_s, p.velocity_m_s[0], p.velocity_m_s[1], p.velocity_m_s[2], p.yaw_rate_rad_s,
                     p.stick_rad_s[0], p.stick_rad_s[1], p.stick_rad_s[2]});
@@ -66,8 +70,8 @@ inline void write_sticks_csv(const std::string& path, const StickRecording& reco
 }
 
 /// Asks for what a recording says, linear between its rows; before the first row for what that one says, after the last
-/// for a hover. At the very time of a row its numbers come back bit for bit: a recording of every control tick flies the
-/// same flight again.
+/// for a hover. At the very time of a row its numbers come back bit for bit: a recording of every control tick flies
+/// the same flight again.
 class RecordedSticks {
  public:
   explicit RecordedSticks(StickRecording recording) : recording_(std::move(recording)) {}
@@ -77,9 +81,9 @@ class RecordedSticks {
     if (recording_.empty() || time_s > recording_.back().time_s) return {};
     while (next_ < recording_.size() && recording_[next_].time_s <= time_s) ++next_;
     if (next_ == 0) return recording_.front().set_point;
-    const StickRow& before = recording_[next_ - 1];
+    const detail::StickRow& before = recording_[next_ - 1];
     if (before.time_s == time_s || next_ == recording_.size()) return before.set_point;
-    const StickRow& after = recording_[next_];
+    const detail::StickRow& after = recording_[next_];
     const double share = (time_s - before.time_s) / (after.time_s - before.time_s);
     const SetPoint<double>&a = before.set_point, &b = after.set_point;
     SetPoint<double> result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A running simulation: vehicle, pilot, flight controller, analytic inverse and recorder, one control tick at a time.
-// Flights of a known length are simulation/fly.hpp's fly(), a loop on this.
+// A flight of a known length is fly(), a loop on the simulator.
 #pragma once
 
 #include <cmath>
@@ -12,19 +12,22 @@
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/simulation/pilot.hpp"
 #include "pinnquad/simulation/recorder.hpp"
 
 namespace pinnquad {
 
-/// The three clocks, the place and the controller's gains.
-struct SimulationSettings {
+/// The clocks, the place, the controller's gains, and how long fly() flies. The default is the paper's data set: 15,000
+/// rows at 0.05 s, 750 s.
+struct FlightPlan {
   double physics_step_s{0.001};
   int steps_per_control{2};            ///< controller at 500 Hz; the commands are held over these steps
   int controls_per_sample{25};         ///< a row every 0.05 s
   Vector3<double> start_m{0, 0, -35};  ///< NED; the flight starts there in hover
   FlightGains<double> gains{};
+  std::size_t samples{15000};  ///< rows that fly() records; a Simulator goes on for as long as it is asked
 
   double control_period_s() const noexcept { return physics_step_s * steps_per_control; }
   double sample_period_s() const noexcept { return control_period_s() * controls_per_sample; }
@@ -45,12 +48,8 @@ decltype(auto) with_quadrotor(const Quadrotor<double, Effects...>& quadrotor, Fu
 }
 
 namespace detail {
-template <class Vehicle, class Model, class = void>
-struct HasGroundEffectSwitch : std::false_type {};
 template <class Vehicle, class Model>
-struct HasGroundEffectSwitch<Vehicle, Model,
-                             std::void_t<decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()))>>
-    : std::true_type {};
+using GroundEffectSwitchOf = decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()));
 }  // namespace detail
 
 /// Flies `Vehicle` (a Quadrotor<double, Effects...> or a SwitchableQuadrotor) as `Pilot` asks and records it by
@@ -58,8 +57,8 @@ struct HasGroundEffectSwitch<Vehicle, Model,
 /// A tick: the pilot's set point, the controller's demand, the inverse's commands, desaturated, and physics
 /// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
 /// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
-/// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row, and
-/// no_solution on the way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that
+/// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row,
+/// and no_solution on the way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that
 /// moment, and what was recorded stays.
 template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
 class Simulator {
@@ -69,7 +68,7 @@ class Simulator {
                 "(simulation/recorder.hpp)");
 
  public:
-  explicit Simulator(const Vehicle& quadrotor, Pilot pilot, const SimulationSettings& settings = {},
+  explicit Simulator(const Vehicle& quadrotor, Pilot pilot, const FlightPlan& settings = {},
                      Recorder recorder = Recorder{})
       : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
     vehicle_.body.position_m = settings.start_m;
@@ -78,7 +77,7 @@ class Simulator {
         settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
     Status status = Status::out_of_range;
     if (clocks_run) status = with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); });
-    if (status == Status::ok) status = detail::RecorderStatus<Recorder>::of(recorder_);
+    if (status == Status::ok) status = detail::recorder_status(recorder_);
     if (status != Status::ok) decline(status);
   }
 
@@ -120,9 +119,9 @@ class Simulator {
   double altitude_m() const {  ///< above ground
     return with_quadrotor(quadrotor_, [this](const auto& actual) { return this->above_ground(actual); });
   }
-  /// What the motors were last told, not clipped.
+  /// The last motor commands, not clipped.
   const Commands<double>& commands() const noexcept { return commands_; }
-  /// What the motors must be told for a hover at the present place and time in calm attitude, not clipped; through the
+  /// Motor commands for a hover at the present place and time in level attitude, not clipped; through the
   /// vehicle's effects. The inverse's Status (vehicle/inverse.hpp); `commands` is untouched unless it is ok.
   Status hover_commands(Commands<double>& commands) const {
     State<double> hover;
@@ -134,7 +133,7 @@ class Simulator {
 
   const Vehicle& quadrotor() const noexcept { return quadrotor_; }
   const Pilot& pilot() const noexcept { return pilot_; }
-  const SimulationSettings& settings() const noexcept { return settings_; }
+  const FlightPlan& settings() const noexcept { return settings_; }
 
   /// The rows so far, or since the last take_recording().
   const Flight& recording() const noexcept { return recording_; }
@@ -149,7 +148,7 @@ class Simulator {
   /// SwitchableQuadrotor only.
   template <class Model>
   void set_ground_effect(Model model) {
-    static_assert(detail::HasGroundEffectSwitch<Vehicle, Model>::value,
+    static_assert(is_detected<detail::GroundEffectSwitchOf, Vehicle, Model>,
                   "pinnquad: this vehicle's effects are its type; a ground effect that is set in flight needs a "
                   "SwitchableQuadrotor (simulation/switchable_quadrotor.hpp)");
     quadrotor_.set_ground_effect(model);
@@ -217,7 +216,7 @@ class Simulator {
       return;
     }
     const Sample sample = recorder_(quadrotor, vehicle_, commands_);
-    detail::RecorderColumns<Recorder>::measure(recorder_, quadrotor, vehicle_, extra_.data());
+    if constexpr (detail::has_columns<Recorder>) recorder_.measure(quadrotor, vehicle_, extra_.data());
     if (!all_finite(to_values(sample)) || !all_finite(extra_)) {
       decline(Status::output_not_finite);
       return;
@@ -226,8 +225,8 @@ class Simulator {
   }
 
   void begin_recording() {
-    for (const ColumnName& column : detail::RecorderColumns<Recorder>::of(recorder_)) {
-      recording_.add_column({column, {}});
+    if constexpr (detail::has_columns<Recorder>) {
+      for (const ColumnName& column : recorder_.columns()) recording_.add_column({column, {}});
     }
     extra_.resize(recording_.columns().size());
   }
@@ -245,7 +244,7 @@ class Simulator {
   Vehicle quadrotor_;
   Pilot pilot_;
   Recorder recorder_;
-  SimulationSettings settings_;
+  FlightPlan settings_;
   FlightController<double> controller_;
   VehicleState<double> vehicle_{};
   Commands<double> commands_{};
@@ -255,5 +254,73 @@ class Simulator {
   FlightEnd end_{FlightEnd::completed};
   Status status_{Status::ok};
 };
+
+/// A flight in figures. Ranges are those of the true motion, not of what a recorder made of it, at the recorded rows.
+struct FlightReport {
+  FlightEnd end{FlightEnd::completed};
+  Status status{Status::ok};
+  VehicleState<double> last{};  ///< where and when it ended
+  std::size_t rows{0};
+  double max_speed_m_s{0};
+  double min_altitude_m{0};  ///< above ground
+  double max_altitude_m{0};
+  double max_tilt_rad{0};
+  double saturated_share{0};  ///< rows in which a rotor is at 0 or at 1
+};
+
+struct RecordedFlight {
+  Flight flight;
+  FlightReport report;
+};
+
+/// The argument of an observer after each row: how far the flight is, the true state, and the row as recorded.
+struct FlightRow {
+  std::size_t rows_done;
+  std::size_t rows;  ///< of the plan
+  const VehicleState<double>& vehicle;
+  const Sample& sample;
+};
+
+/// Angle between the body's down axis and the world's, 0..pi.
+inline double tilt_rad(const Quaternion<double>& attitude) noexcept {
+  const double upright = body_down_axis(attitude)[2];
+  return std::acos(upright < -1 ? -1 : upright);  // upside down, rounding goes beyond
+}
+
+/// Flies and records. `observer(const FlightRow&)` is called after each row. A Status that isn't ok, or the ground,
+/// ends the flight (simulation/simulator.hpp); the rows up to there are kept and the report says where.
+template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder>
+RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan, Observer observer,
+                   const Recorder& recorder = Recorder{}) {
+  Simulator<Vehicle, Pilot, Recorder> simulator(quadrotor, pilot, plan, recorder);
+  simulator.reserve(plan.samples);
+  RecordedFlight recorded;
+  FlightReport& report = recorded.report;
+  std::size_t saturated_rows = 0;
+  while (report.rows < plan.samples && simulator.next_row()) {
+    const State<double>& body = simulator.vehicle().body;
+    const double speed_m_s = body.velocity_m_s.norm();
+    const double tilt = tilt_rad(body.attitude);
+    const double altitude_m = simulator.altitude_m();
+    if (speed_m_s > report.max_speed_m_s) report.max_speed_m_s = speed_m_s;
+    if (tilt > report.max_tilt_rad) report.max_tilt_rad = tilt;
+    if (report.rows == 0 || altitude_m < report.min_altitude_m) report.min_altitude_m = altitude_m;
+    if (report.rows == 0 || altitude_m > report.max_altitude_m) report.max_altitude_m = altitude_m;
+    if (saturated(simulator.commands())) ++saturated_rows;
+    ++report.rows;
+    observer(FlightRow{report.rows, plan.samples, simulator.vehicle(), simulator.recording().back()});
+  }
+  report.end = simulator.end();
+  report.status = simulator.status();
+  report.last = simulator.vehicle();
+  if (report.rows > 0) report.saturated_share = static_cast<double>(saturated_rows) / static_cast<double>(report.rows);
+  recorded.flight = simulator.take_recording();
+  return recorded;
+}
+
+template <class Vehicle, class Pilot>
+RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan = {}) {
+  return fly(quadrotor, pilot, plan, [](const FlightRow&) {});
+}
 
 }  // namespace pinnquad

@@ -17,10 +17,10 @@ struct TrackingPlan {
   int steps_per_control{2};  ///< the commands are held over these
 };
 
-/// Its results.
+/// Figures of a closed-loop flight.
 template <class Scalar>
 struct TrackingResult {
-  Status status{Status::ok};  ///< what ended the flight early
+  Status status{Status::ok};  ///< the reason of an early end
   Scalar flown_s = Scalar(0);
   Scalar rmse_m = Scalar(0);  ///< position error, root of the mean square of its length over all control ticks
   Scalar max_error_m = Scalar(0);

@@ -8,13 +8,13 @@
 #include "logs/motor_lag.hpp"
 #include "programs/logs/synthetic_flight.hpp"
 
-using pinnquad::CommandLag;
-using pinnquad::estimate_command_lag;
 using pinnquad::Flight;
-using pinnquad::MotorLag;
-using pinnquad::remove_lag;
 using pinnquad::test::synthetic_flight;
 using pinnquad::test::SyntheticVehicle;
+using programs::CommandLag;
+using programs::estimate_command_lag;
+using programs::MotorLag;
+using programs::remove_lag;
 
 TEST_CASE("a pure delay is found to a fifth of a row, on each motion") {
   for (const double delay_s : {0.0, 0.02, 0.05, 0.12}) {

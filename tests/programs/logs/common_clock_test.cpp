@@ -10,13 +10,13 @@
 #include "logs/clock_checks.hpp"
 #include "logs/resampling.hpp"
 
-using pinnquad::bridged_gap_s;
-using pinnquad::clean_clock;
-using pinnquad::CleanClock;
-using pinnquad::common_clock;
-using pinnquad::resample;
-using pinnquad::Resampling;
-using pinnquad::UniformClock;
+using programs::bridged_gap_s;
+using programs::clean_clock;
+using programs::CleanClock;
+using programs::common_clock;
+using programs::resample;
+using programs::Resampling;
+using programs::UniformClock;
 
 namespace {
 std::vector<double> ticks(int rows, double period_s, double begin_s = 0) {
@@ -27,7 +27,7 @@ std::vector<double> ticks(int rows, double period_s, double begin_s = 0) {
 template <class Findings>
 bool has(const Findings& findings, const std::string& check) {
   return std::any_of(findings.begin(), findings.end(),
-                     [&](const pinnquad::Finding& one) { return one.check == check; });
+                     [&](const programs::Finding& one) { return one.check == check; });
 }
 }  // namespace
 
@@ -69,7 +69,7 @@ TEST_CASE("first rows that were latched before the log began are stale") {
   CHECK(clock.report.stale_first == 1);
   CHECK(clock.time_s.front() == doctest::Approx(100));
   CHECK(clock.report.gaps == 0);
-  pinnquad::ClockRules rules;
+  programs::ClockRules rules;
   rules.log_begin_s = 100.1;
   CHECK(clean_clock(time_s, rules).report.stale_first == 6);
 }
@@ -99,12 +99,12 @@ TEST_CASE("a gap, a jump and a second recording are told apart") {
 }
 
 TEST_CASE("a log too slow for motors is told, with the profile that helps") {
-  const auto found = pinnquad::check_log_rate("actuator_motors", 0.1, true);
+  const auto found = programs::check_log_rate("actuator_motors", 0.1, true);
   REQUIRE(found.has_value());
   CHECK(found->number == doctest::Approx(10));
   CHECK(found->sentence.find("SDLOG_PROFILE to 25") != std::string::npos);
-  CHECK(pinnquad::check_log_rate("u", 0.1, false)->sentence.find("SDLOG") == std::string::npos);
-  CHECK_FALSE(pinnquad::check_log_rate("u", 0.04, true).has_value());
+  CHECK(programs::check_log_rate("u", 0.1, false)->sentence.find("SDLOG") == std::string::npos);
+  CHECK_FALSE(programs::check_log_rate("u", 0.04, true).has_value());
 }
 
 TEST_CASE("the common clock spans what all topics have, on multiples of its period") {
@@ -168,9 +168,9 @@ TEST_CASE("a fast signal is low-passed before its rows are thinned: what is abov
   }
   const CleanClock clock = clean_clock(time_s);
   const UniformClock to{1, 0.02, 900};
-  CHECK(pinnquad::resampling_of(period_s, 0.02, false) == Resampling::low_pass);
-  CHECK(pinnquad::resampling_of(0.02, 0.02, true) == Resampling::hold);
-  CHECK(pinnquad::resampling_of(0.02, 0.004, false) == Resampling::linear);
+  CHECK(programs::resampling_of(period_s, 0.02, false) == Resampling::low_pass);
+  CHECK(programs::resampling_of(0.02, 0.02, true) == Resampling::hold);
+  CHECK(programs::resampling_of(0.02, 0.004, false) == Resampling::linear);
   const auto kept = resample(clock, slow, to, Resampling::low_pass, 0.02);
   const auto gone = resample(clock, fast, to, Resampling::low_pass, 0.02);
   const auto folded = resample(clock, fast, to, Resampling::linear, 0.02);
@@ -196,13 +196,13 @@ TEST_CASE("attitudes go along the arc at a constant rate, whatever the sign that
   q[0][20] = 0.1;  // no unit quaternion
   const CleanClock clock = clean_clock(time_s);
   const UniformClock to{0, 0.013, 299};
-  const auto got = pinnquad::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.35);
+  const auto got = programs::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.35);
   for (std::size_t row = 0; row < to.rows; ++row) {
     const double half = 0.5 * 3.0 * to.at(row);
     CHECK(got[0][row] == doctest::Approx(std::cos(half)).epsilon(1e-9));
     CHECK(got[1][row] == doctest::Approx(0.6 * std::sin(half)).epsilon(1e-9));
     CHECK(got[3][row] == doctest::Approx(0.8 * std::sin(half)).epsilon(1e-9));
   }
-  const auto gap = pinnquad::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.15);
+  const auto gap = programs::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.15);
   CHECK(std::isnan(gap[0][150]));
 }

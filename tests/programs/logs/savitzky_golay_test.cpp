@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-using pinnquad::finite_segments;
 using pinnquad::IndexRange;
-using pinnquad::savitzky_golay;
-using pinnquad::savitzky_golay_weights;
-using pinnquad::SavitzkyGolay;
+using programs::finite_segments;
+using programs::savitzky_golay;
+using programs::savitzky_golay_weights;
+using programs::SavitzkyGolay;
 
 namespace {
 void check_weights(const std::vector<double>& weights, const std::vector<double>& expected, double divisor) {

@@ -11,7 +11,8 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/fly.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/simulator.hpp"
 #include "replay/page.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
-#include "pinnquad/evaluation/linear_regression.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 #include "training/log_model.hpp"
 #include "training/model_predictions.hpp"
 

@@ -16,8 +16,7 @@
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
-#include "pinnquad/regression/bounded_ridge.hpp"
-#include "pinnquad/regression/regression_sums.hpp"
+#include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {
@@ -175,7 +174,7 @@ inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector
   all.outputs = AxisCommandOutputs::size;
   for (int output = 0; output < all.outputs; ++output) {
     std::vector<bool> taken(static_cast<std::size_t>(shape.inputs), true);
-    std::vector<WeightBound> bounds;
+    std::vector<detail::WeightBound> bounds;
     const int axis = output - 1;
     for (const int place : shape.places) {
       for (int i = 0; i < 3; ++i) taken[static_cast<std::size_t>(place + i)] = i == axis;
@@ -187,7 +186,7 @@ inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector
         throw std::invalid_argument(
             "monotone base: expected slopes above 0 and above the least share of the airframe's");
       }
-      WeightBound present, held;
+      detail::WeightBound present, held;
       for (const int place : shape.places) {
         const auto feature = static_cast<std::size_t>(place + axis);
         const double factor = shape.output_deviation[static_cast<std::size_t>(output)] / shape.input_deviation[feature];

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/data/split_flights.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/structured/residual_fit.hpp"

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "pinnquad/loss/mse.hpp"
+#include "pinnquad/loss/loss.hpp"
 #include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/adam.hpp"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/regression/symmetric_system.hpp"
+#include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/training_data.hpp"
 
@@ -56,7 +56,7 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
                                 std::to_string(shrinkage));
   }
   const auto columns = detail::feature_statistics<Features>(training);
-  DynamicMatrix correlation = DynamicMatrix::Zero(Features::size, Features::size);  // its lower triangle
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Zero(Features::size, Features::size);  // its lower triangle
   std::size_t rows = 0;
   each_features<Features, double>(training, [&](const Flight&, std::size_t, const auto& x) {
     ++rows;
@@ -73,7 +73,7 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
     double& own = correlation(Eigen::Index(i), Eigen::Index(i));
     own = columns[i].still() ? 1.0 : own + shrinkage;
   }
-  const std::optional<DynamicMatrix> factor = whitening_of(correlation);
+  const std::optional<Eigen::MatrixXd> factor = whitening_of(correlation);
   if (!factor) {
     throw std::invalid_argument("joint distribution: expected a larger shrinkage, the correlations have no inverse");
   }
