@@ -87,7 +87,7 @@ struct ModelRecords {
   Scalar command_upper = Scalar(1);
   std::uint32_t sample_period_ns = 0;  ///< 0: not said
   std::uint32_t lag_removed_ns = 0;    ///< of the rotors, taken out of the commands before the training
-  std::uint32_t judged = 0;  ///< bits of Judged
+  std::uint32_t judged = 0;            ///< bits of Judged
   bool has_verdict = false;
   bool has_slope_signs = false;
   bool has_residual_range = false;
@@ -270,8 +270,9 @@ class BlockRecordReader {
   /// Where the shape is an exported header: its commands mean the same, as often.
   static bool fits_header(const Records& records) noexcept {
     if constexpr (is_model<Shape>) {
-      constexpr std::uint32_t period = detail::header_period_ns<Shape>();
-      return records.command_meaning == detail::header_command_meaning<Shape>() &&
+      constexpr std::uint32_t period = detail::header_period_ns<Shape>();  // constants: worked out by the compiler
+      constexpr CommandMeaning meaning = detail::header_command_meaning<Shape>();
+      return records.command_meaning == meaning &&
              (period == 0 || detail::same_period_ns(records.sample_period_ns, period));
     }
     return true;
