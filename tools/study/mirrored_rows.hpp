@@ -15,8 +15,7 @@
 
 namespace study {
 
-using pinnquad::Airframe, pinnquad::Flight, pinnquad::FlightRows, pinnquad::RotorMount, pinnquad::RowSet,
-    pinnquad::Sample;
+using pinnquad::Flight, pinnquad::FlightRows, pinnquad::RotorMount, pinnquad::RowSet, pinnquad::Sample;
 using pinnquad::rotor_count;
 
 /// partner[i]: the rotor that rotor i becomes.
@@ -34,7 +33,7 @@ bool close_to(Scalar a, Scalar b, Scalar tolerance) noexcept {
 
 /// Places to a millimetre's tenth, axes and scales to a thousandth, products of inertia to a thousandth of the moments.
 template <class Scalar>
-RotorMirror mirror_of(const Airframe<Scalar>& airframe) noexcept {
+RotorMirror mirror_of(const pinnquad::Airframe<Scalar>& airframe) noexcept {
   const Scalar place = Scalar(1e-4), share = Scalar(1e-3);
   RotorMirror mirror;
   const auto& [xy, xz, yz] = airframe.inertia_products_kg_m2;
@@ -108,7 +107,7 @@ Flight changed_flight(const Flight& flight, const char* what, const Change& chan
 /// Throws std::invalid_argument, one line, for an airframe that is not its own mirror image, and for a flight with
 /// extra columns.
 template <class Scalar>
-Flight mirrored(const Flight& flight, const Airframe<Scalar>& airframe) {
+Flight mirrored(const Flight& flight, const pinnquad::Airframe<Scalar>& airframe) {
   const RotorMirror mirror = mirror_of(airframe);
   if (!mirror.exists) {
     throw std::invalid_argument(
@@ -140,7 +139,7 @@ class SymmetricRows {
  public:
   /// Throws what mirrored() and turned_at_random() throw.
   template <class Scalar, class Engine>
-  SymmetricRows(const RowSet& rows, const Airframe<Scalar>& airframe, const Symmetries& which, Engine& engine)
+  SymmetricRows(const RowSet& rows, const pinnquad::Airframe<Scalar>& airframe, const Symmetries& which, Engine& engine)
       : rows_(rows) {
     if (which.mirrored) add(rows, [&](const Flight& flight) { return study::mirrored(flight, airframe); });
     if (which.turned) add(RowSet(rows_), [&](const Flight& flight) { return turned_at_random(flight, engine); });
