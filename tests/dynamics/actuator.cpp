@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "pinnquad/dynamics/actuator.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"

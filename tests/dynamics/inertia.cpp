@@ -8,7 +8,6 @@
 
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
-#include "pinnquad/dynamics/rigid_body.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"

@@ -25,7 +25,6 @@ constexpr pinnquad::autopilot::OutputLimits outputs{};
 
 /// A battery that is weaker than the airframe says.
 struct WeakBattery {
-  static constexpr pinnquad::VariesWith varies_with = pinnquad::VariesWith::motion;
   double thrust_scale{1};
   template <class Scalar>
   void surroundings(pinnquad::Surroundings<Scalar>& air) const noexcept {

@@ -24,6 +24,7 @@ kept=$(sed -nE 's/.*interrupted; ([0-9]+) of.*/\1/p' stderr.txt)
 
 # the terminal that closes is no other: a first signal keeps what is finished; under nohup it is none
 hung_up() { # <command>...: hung up once it has said how far it is
+  : >stderr.txt  # what the command before said is not this one's
   setsid "$@" >stdout.txt 2>stderr.txt &
   pid=$!
   for ((wait = 0; wait < 2400; ++wait)); do

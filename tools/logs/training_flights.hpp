@@ -77,18 +77,8 @@ inline void require_varied_commands(const std::vector<std::string>& paths, const
 }
 
 /// "a.csv", or "a.csv, b.csv, c.csv".
-inline std::string flight_names(const std::vector<const pinnquad::Flight*>& flights) {
-  return listed(flights, [](const pinnquad::Flight* flight) { return flight->name; });
-}
 inline std::string flight_names(const pinnquad::RowSet& rows) {
-  std::vector<const pinnquad::Flight*> flights;
-  for (const pinnquad::FlightRows& piece : rows.pieces()) flights.push_back(piece.flight);
-  return flight_names(flights);
-}
-inline std::string flight_names(const pinnquad::Dataset& dataset) {
-  std::vector<const pinnquad::Flight*> flights;
-  for (const pinnquad::Flight& flight : dataset.flights()) flights.push_back(&flight);
-  return flight_names(flights);
+  return listed(rows.pieces(), [](const pinnquad::FlightRows& piece) { return piece.flight->name; });
 }
 
 inline void print_split(const pinnquad::Dataset& dataset, const pinnquad::RowSplit& split) {

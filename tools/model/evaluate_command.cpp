@@ -83,7 +83,7 @@ void print_json(const EvaluateOptions& options, const programs::Block& block, co
   nlohmann::json report = {{"model", block.path},
                            {"answer", identity.answer},
                            {"airframe", identity.airframe.name},
-                           {"flight", programs::flight_names(dataset)},
+                           {"flight", pinnquad::flight_names(dataset)},
                            {"rows", evaluation.answered.rows.size()},
                            {"rows_without_features", evaluation.without_features},
                            {"rows_judged", options.rows},
@@ -100,7 +100,7 @@ void print_table(const programs::Block& block, const programs::Identity& identit
   std::printf("model       %s: %s, for %s\n", printable(block.path).c_str(), identity.answer.c_str(),
               identity.airframe.name.c_str());
   std::printf("rows        %zu of %s, %zu outside the training envelope\n", evaluation.answered.rows.size(),
-              programs::flight_names(dataset).c_str(), evaluation.outside_envelope);
+              pinnquad::flight_names(dataset).c_str(), evaluation.outside_envelope);
   if (evaluation.without_features > 0) {
     std::printf("            %zu more without a whole window of instants, which count for nothing\n",
                 evaluation.without_features);
@@ -120,7 +120,7 @@ int evaluate(const EvaluateOptions& options) {
   const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model->columns);
   const EvaluatedModel evaluation = evaluated(*model, chosen_rows(options, dataset));
   if (evaluation.answered.rows.empty()) {
-    throw std::invalid_argument("--flight: no row of " + programs::flight_names(dataset) +
+    throw std::invalid_argument("--flight: no row of " + pinnquad::flight_names(dataset) +
                                 " has the whole window of instants that the model asks for");
   }
   programs::Judgement judged =

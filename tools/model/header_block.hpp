@@ -31,8 +31,7 @@ inline std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs_of(const H
 /// What a header of any format may say.
 inline void take_optional_records(const HeaderFile& header, pinnquad::detail::WrittenRecords& records) {
   if (header.has("worse_than_mean") && header.has("beats_linear_regression")) {
-    records.judged = (header.truth("worse_than_mean") ? pinnquad::Judged::worse_than_mean : 0u) |
-                     (header.truth("beats_linear_regression") ? pinnquad::Judged::beats_linear_regression : 0u);
+    records.judged = pinnquad::Judged::bits(header.truth("worse_than_mean"), header.truth("beats_linear_regression"));
   }
   if (header.has("slope_signs")) records.slope_signs = signs_of(header, "slope_signs");
   if (header.has("residual_lower")) {

@@ -8,7 +8,6 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
-#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {

@@ -239,6 +239,13 @@ class Dataset {
   std::size_t rows_ = 0;
 };
 
+/// "a.csv, b.csv, c.csv".
+inline std::string flight_names(const Dataset& dataset) {
+  std::string names;
+  for (const Flight& flight : dataset.flights()) names += (names.empty() ? "" : ", ") + flight.name;
+  return names;
+}
+
 namespace detail {
 
 inline void absorb_number(Fnv1a& fnv, double value) {

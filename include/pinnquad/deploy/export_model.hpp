@@ -37,9 +37,7 @@ struct Exported {
 /// The provenance of a model that was trained on the split of a dataset. `loss`: in words.
 inline Provenance provenance_of(const Dataset& flights, const RowSplit& split, std::uint64_t seed, int epochs,
                                 const std::string& loss, const Verdict& verdict) {
-  std::string names;
-  for (const Flight& flight : flights.flights()) names += (names.empty() ? "" : ", ") + flight.name;
-  Provenance from{names, content_hash(flights), split.train.size(), seed, epochs, loss, verdict};
+  Provenance from{flight_names(flights), content_hash(flights), split.train.size(), seed, epochs, loss, verdict};
   from.sample_period_s = sample_period_s(split.train);
   return from;
 }
@@ -63,7 +61,7 @@ Exported export_model(const ModelFiles& files, const std::string& name,
   if (!files.block.empty()) {
     const std::vector<unsigned char> bytes = model_block(model, golden, provenance);
     block.emplace(files.block);
-    block->stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    detail::write_block(block->stream(), bytes);
     result.block_bytes = bytes.size();
   }
   if constexpr (WithTrust) {

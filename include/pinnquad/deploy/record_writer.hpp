@@ -85,8 +85,7 @@ WrittenRecords records_of_training(const Provenance& from, const Airframe<double
   records.lag_removed_s = from.lag_removed_s;
   records.allocation = allocation(airframe);
   if (from.verdict) {
-    records.judged = (from.verdict->worse_than_mean() ? Judged::worse_than_mean : 0u) |
-                     (from.verdict->beats_linear_regression() ? Judged::beats_linear_regression : 0u);
+    records.judged = Judged::bits(from.verdict->worse_than_mean(), from.verdict->beats_linear_regression());
   }
   records.slope_signs = from.slope_signs;
   if (from.residual_range) {
@@ -124,22 +123,17 @@ std::vector<double> as_doubles(const Array& values) {
 /// Of an exported header, of whatever format.
 template <class M>
 WrittenRecords records_of_header() {
-  const auto airframe = airframe_value<typename M::Vehicle, double>();
   WrittenRecords records = records_of_types<typename M::Network, typename M::Features, typename M::Outputs>();
-  records.allocation = allocation(airframe);
+  records.allocation = allocation(airframe_value<typename M::Vehicle, double>());
+  records.command_meaning = header_command_meaning<M>();
+  records.sample_period_s = header_period_s<M>();
   if constexpr (is_detected<RecordsOf, M>) {
-    records.command_meaning = M::command_meaning;
     records.command_lower = M::command_lower;
     records.command_upper = M::command_upper;
-    records.sample_period_s = M::sample_period_s;
     records.lag_removed_s = M::lag_removed_s;
-  } else {
-    records.command_meaning = command_meaning_of(airframe);
-    records.sample_period_s = WindowOf<typename M::Features>::period_s;
   }
   if constexpr (is_detected<StatedVerdictOf, M>) {
-    records.judged = (M::worse_than_mean ? Judged::worse_than_mean : 0u) |
-                     (M::beats_linear_regression ? Judged::beats_linear_regression : 0u);
+    records.judged = Judged::bits(M::worse_than_mean, M::beats_linear_regression);
   }
   if constexpr (is_detected<SlopeSignsOf, M>) records.slope_signs = M::slope_signs;
   if constexpr (is_detected<ResidualRangeOf, M>) {

@@ -69,10 +69,16 @@ std::vector<unsigned char> model_block() {
                                  static_cast<std::uint64_t>(Model::training_rows));
 }
 
+namespace detail {
+inline void write_block(std::ostream& out, const std::vector<unsigned char>& block) {
+  out.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
+}
+}  // namespace detail
+
 /// A block as a file that appears whole or not at all.
 inline void write_weight_file(const std::string& path, const std::vector<unsigned char>& block) {
   AtomicFile file(path);
-  file.stream().write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
+  detail::write_block(file.stream(), block);
   file.commit();
 }
 

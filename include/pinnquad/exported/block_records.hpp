@@ -34,6 +34,9 @@ inline constexpr std::uint16_t mandatory_record = 0x8000;
 struct Judged {
   static constexpr std::uint32_t worse_than_mean = 1;  ///< not for flight
   static constexpr std::uint32_t beats_linear_regression = 2;
+  static constexpr std::uint32_t bits(bool is_worse_than_mean, bool does_beat_linear_regression) noexcept {
+    return (is_worse_than_mean ? worse_than_mean : 0u) | (does_beat_linear_regression ? beats_linear_regression : 0u);
+  }
 };
 
 /// Sizes of a block's records.
@@ -270,7 +273,8 @@ class BlockRecordReader {
   /// Where the shape is an exported header: its commands mean the same, as often.
   static bool fits_header(const Records& records) noexcept {
     if constexpr (is_model<Shape>) {
-      constexpr std::uint32_t period = detail::header_period_ns<Shape>();  // constants: worked out by the compiler
+      // constants: worked out by the compiler
+      constexpr std::uint32_t period = detail::nanoseconds(detail::header_period_s<Shape>());
       constexpr CommandMeaning meaning = detail::header_command_meaning<Shape>();
       return records.command_meaning == meaning &&
              (period == 0 || detail::same_period_ns(records.sample_period_ns, period));

@@ -55,7 +55,7 @@ enum class ModelKind {
 namespace detail {
 template <class S>
 using ShapeTypes = std::void_t<typename S::Scalar, typename S::Network, typename S::Features, typename S::Outputs,
-                                 typename S::Vehicle>;
+                               typename S::Vehicle>;
 template <class S>
 inline constexpr bool has_shape = is_detected<ShapeTypes, S>;
 
@@ -63,14 +63,15 @@ template <class M>
 using KindOf = decltype(M::kind);
 
 template <class M>
-using ModelMembers = std::void_t<ShapeTypes<M>, decltype(M::format_version), decltype(M::parameters), decltype(M::input),
+using ModelMembers =
+    std::void_t<ShapeTypes<M>, decltype(M::format_version), decltype(M::parameters), decltype(M::input),
                 decltype(M::output), decltype(M::envelope_lower), decltype(M::envelope_upper),
                 decltype(M::golden_features), decltype(M::golden_commands)>;
 
 template <class M>
 using DescriptionOf = std::void_t<decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
-                                decltype(M::output_names), decltype(M::vehicle_name), decltype(M::motor_torque_signs),
-                                decltype(std::uint64_t{M::training_data_hash})>;
+                                  decltype(M::output_names), decltype(M::vehicle_name), decltype(M::motor_torque_signs),
+                                  decltype(std::uint64_t{M::training_data_hash})>;
 template <class M>
 using OutputUnitOf = decltype(M::output_unit);
 
@@ -143,7 +144,8 @@ constexpr bool all_positive(const Array& values) noexcept {
 /// What a header of format 2 or 3 says of itself, against what its types say.
 template <class M>
 constexpr void require_description() noexcept {
-  constexpr bool described = is_detected<DescriptionOf, M> && (is_detected<OutputUnitsOf, M> || is_detected<OutputUnitOf, M>);
+  constexpr bool described =
+      is_detected<DescriptionOf, M> && (is_detected<OutputUnitsOf, M> || is_detected<OutputUnitOf, M>);
   static_assert(
       described,
       "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of the "
@@ -192,6 +194,7 @@ constexpr void require_description() noexcept {
 template <class M>
 inline constexpr bool is_model = is_detected<detail::ModelMembers, M>;
 
+/// The kind of a model: stated by the type, `header` where it states none.
 template <class M>
 inline constexpr ModelKind model_kind = detail::kind_of<M>();
 
@@ -236,7 +239,7 @@ constexpr bool require_shape() noexcept {
 /// types; its numbers were checked when its block was opened. An instance is checked by the code that made it.
 template <class M>
 constexpr bool require_model() noexcept {
-  constexpr bool made_for_shape = model_kind<M> > ModelKind::instance;
+  constexpr bool made_for_shape = ModelKind::instance < model_kind<M>;
   static_assert(is_model<M> || made_for_shape, "pinnquad: this type is not an exported model (exported/model.hpp)");
   if constexpr (made_for_shape) {
     return require_shape<typename M::Shape>();

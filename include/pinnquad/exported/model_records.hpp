@@ -173,7 +173,8 @@ constexpr bool knows_records() noexcept {
 template <class M>
 using RecordNamesOf = decltype(M::records);
 template <class M>
-using RecordsOf = std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower),
+using RecordsOf =
+    std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower),
                 decltype(M::command_upper), decltype(M::sample_period_s), decltype(M::lag_removed_s),
                 decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
                 decltype(M::allocation), decltype(M::base)>;
@@ -194,7 +195,8 @@ using SlopeSignsOf = decltype(M::slope_signs);
 template <class M>
 using ResidualRangeOf = std::void_t<decltype(M::residual_lower), decltype(M::residual_upper)>;
 template <class M>
-using DistanceStatisticsOf = std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky), decltype(M::distance_limit)>;
+using DistanceStatisticsOf =
+    std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky), decltype(M::distance_limit)>;
 
 constexpr std::uint32_t nanoseconds(double seconds) noexcept { return static_cast<std::uint32_t>(seconds * 1e9 + 0.5); }
 
@@ -214,11 +216,11 @@ constexpr CommandMeaning header_command_meaning() noexcept {
 }
 /// Of its rows, 0 if not said; of format 1 or 2, of its window.
 template <class M>
-constexpr std::uint32_t header_period_ns() noexcept {
+constexpr double header_period_s() noexcept {
   if constexpr (is_detected<RecordsOf, M>) {
-    return nanoseconds(M::sample_period_s);
+    return M::sample_period_s;
   } else {
-    return nanoseconds(WindowOf<typename M::Features>::period_s);
+    return WindowOf<typename M::Features>::period_s;
   }
 }
 

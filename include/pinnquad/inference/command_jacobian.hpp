@@ -16,9 +16,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a
 /// header's, a ModelView, a LoadedModel. Both outputs are untouched unless has_output(status).
 template <class Model, class GuardType>
-Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse,
-                             const typename Model::Scalar* x, typename Model::Scalar* commands,
-                             typename Model::Scalar* jacobian) noexcept {
+Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
+                             typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
   static_assert(GuardType::refuses_outside_envelope,
                 "pinnquad: derivatives outside the envelope mean nothing; take a guard with TrainingEnvelope");
   static_assert(!GuardType::compares,

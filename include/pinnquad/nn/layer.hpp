@@ -101,8 +101,7 @@ inline constexpr bool activates_pack = is_detected<detail::PackActivateOf, Layer
 /// An element-wise layer with a derivative d activate / d v: `slope(y)` from its output, or `slope_from_input(v)`
 /// where two inputs have the same output or the output is costly to invert.
 template <class Layer>
-inline constexpr bool has_slope =
-    is_detected<detail::SlopeOf, Layer> || is_detected<detail::SlopeFromInputOf, Layer>;
+inline constexpr bool has_slope = is_detected<detail::SlopeOf, Layer> || is_detected<detail::SlopeFromInputOf, Layer>;
 
 /// True for a layer with slope_from_input(): its input is kept until the slope is needed.
 template <class Layer>
@@ -111,9 +110,8 @@ inline constexpr bool slopes_from_input = is_detected<detail::SlopeFromInputOf, 
 /// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole
 /// pack.
 template <class Layer, class Pack>
-inline constexpr bool scales_pack =
-    slopes_from_input<Layer> ? is_detected<detail::PackScaledFromInputOf, Layer, Pack>
-                             : is_detected<detail::PackScaledOf, Layer, Pack>;
+inline constexpr bool scales_pack = slopes_from_input<Layer> ? is_detected<detail::PackScaledFromInputOf, Layer, Pack>
+                                                             : is_detected<detail::PackScaledOf, Layer, Pack>;
 
 namespace detail {
 /// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the

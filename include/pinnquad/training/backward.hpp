@@ -28,8 +28,7 @@ using BackwardOf = std::bool_constant<noexcept(BackwardRule<Layer>::backward(
 
 /// True for a bound layer that can be trained, but for `noexcept`.
 template <class Layer>
-inline constexpr bool is_trainable =
-    is_elementwise<Layer> ? has_slope<Layer> : is_detected<detail::BackwardOf, Layer>;
+inline constexpr bool is_trainable = is_elementwise<Layer> ? has_slope<Layer> : is_detected<detail::BackwardOf, Layer>;
 
 /// True if the layer's BackwardRule, where it has one, is noexcept: the Trainer's backward pass is.
 template <class Layer>

@@ -2,9 +2,9 @@
 #pragma once
 namespace pinnquad {
 
-struct Needed {};    ///< by a program
+struct Needed {};     ///< by a program
 struct Mentioned {};  ///< by a comment of a program alone
-struct Lonely {};    ///< by a test alone
+struct Lonely {};     ///< by a test alone
 
 namespace detail {
 struct Own {};
