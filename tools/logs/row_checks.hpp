@@ -133,7 +133,7 @@ inline RowMask grounded_rows(const pinnquad::Flight& flight, double period_s, co
 
 namespace detail {
 /// Columns of outlier_rows(): accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign
-/// does not jump, for near a pitch of 90 degrees roll and yaw do; each with the spread that counts at least.
+/// does not jump, for near a pitch of 90 degrees roll and yaw do; each with the deviation that counts at least.
 struct JudgedColumn {
   std::vector<double> values;
   double smallest_scale;
@@ -160,10 +160,10 @@ inline std::vector<JudgedColumn> judged_columns(const pinnquad::Flight& flight) 
 }  // namespace detail
 
 /// Rows with a value of a measured column that none of its neighbours comes near: further from the median of seven rows
-/// than `spreads` robust spreads of such distances (and of half of what plausibility.hpp calls the smallest scale),
+/// than `deviations` robust deviations of such distances (and of half of what plausibility.hpp calls the smallest scale),
 /// with both neighbours not half as far. Time and commands, which may jump, are not judged.
 /// Limits: two wrong rows in succession are taken for motion.
-inline RowMask outlier_rows(const pinnquad::Flight& flight, double spreads = 12) {
+inline RowMask outlier_rows(const pinnquad::Flight& flight, double deviations = 12) {
   constexpr std::size_t around = 3;
   constexpr double normal = 1.4826;
   RowMask mask(flight.size(), false);
@@ -178,7 +178,7 @@ inline RowMask outlier_rows(const pinnquad::Flight& flight, double spreads = 12)
     }
     const double scale = std::max(normal * pinnquad::detail::median_of(distance), column.smallest_scale);
     for (std::size_t row = 0; row < values.size(); ++row) {
-      if (!(distance[row] > spreads * scale)) continue;
+      if (!(distance[row] > deviations * scale)) continue;
       const double before = row > 0 ? std::abs(values[row - 1] - values[row]) : distance[row];
       const double after = row + 1 < values.size() ? std::abs(values[row + 1] - values[row]) : distance[row];
       if (std::min(before, after) > distance[row] / 2) mask[row] = true;

@@ -37,7 +37,7 @@ bool true_residual_range(const Block& block, const Identity& identity) {
   const std::vector<NetworkSpec>& parts = identity.networks;
   if (!has_stated_structure(identity) || block.residual_range.empty()) return true;
   const auto range = in_scalar(block.residual_range), parameters = in_scalar(block.parameters),
-             spread = in_scalar(block.output_spread);
+             spread = in_scalar(block.output_deviation);
   const Scalar* bounds = parameters.data() + parts.front().parameter_count();
   return pinnquad::detail::same_residual_range(range.data(), range.data() + spread.size(), parts.size() > 1, bounds,
                                                spread.data(), spread.size());

@@ -24,8 +24,8 @@ class AskedModelOf : public AskedModel {
   AskedModelOf(const Block& block, const Identity& identity)
       : model_(block, identity),
         derivatives_(summands<double>(identity.networks, block.parameters),
-                     scaler_of<typename Derivatives::InputScaler>(block.input_mean, block.input_spread),
-                     scaler_of<typename Derivatives::OutputScaler>(block.output_mean, block.output_spread),
+                     scaler_of<typename Derivatives::InputScaler>(block.input_mean, block.input_deviation),
+                     scaler_of<typename Derivatives::OutputScaler>(block.output_mean, block.output_deviation),
                      RunTimeAirframe(identity.airframe.name, identity.airframe.value)),
         lower_(block.envelope_lower),
         upper_(block.envelope_upper) {

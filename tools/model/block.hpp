@@ -36,7 +36,7 @@ struct Block {
   std::vector<double> distance;        ///< means, triangle, limit; none: it says none
   bool has_judgement = false;          ///< it says how it was judged before it was exported
   std::uint32_t judged = 0;            ///< bits of pinnquad::Judged
-  std::vector<double> input_mean, input_spread, output_mean, output_spread, envelope_lower, envelope_upper;
+  std::vector<double> input_mean, input_deviation, output_mean, output_deviation, envelope_lower, envelope_upper;
   std::vector<double> golden_features, golden_commands;  ///< vector by vector
   std::vector<double> parameters;
 };
@@ -172,14 +172,14 @@ inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, 
 inline void require_sound(const BlockBytes& bytes, const Block& block) {
   using namespace pinnquad::detail;
   const auto inputs = static_cast<std::size_t>(block.inputs), outputs = static_cast<std::size_t>(block.outputs);
-  for (const std::vector<double>* spreads : {&block.input_spread, &block.output_spread}) {
-    for (const double spread : *spreads) {
-      if (!(spread > 0)) bytes.refuse("spreads above 0", "one of " + pinnquad::number_text(spread));
+  for (const std::vector<double>* deviations : {&block.input_deviation, &block.output_deviation}) {
+    for (const double deviation : *deviations) {
+      if (!(deviation > 0)) bytes.refuse("standard deviations above 0", "one of " + pinnquad::number_text(deviation));
     }
   }
   const double *lower = block.envelope_lower.data(), *upper = block.envelope_upper.data();
-  if (!is_envelope(block.input_mean.data(), block.input_spread.data(), lower, upper, inputs)) {
-    bytes.refuse("an envelope about the features' mean, as far as their spread lets a training reach", "another");
+  if (!is_envelope(block.input_mean.data(), block.input_deviation.data(), lower, upper, inputs)) {
+    bytes.refuse("an envelope about the features' mean, as far as their standard deviation lets a training reach", "another");
   }
   for (std::size_t row = 0; row < block.golden_count; ++row) {
     if (inside_envelope(lower, block.golden_features.data() + row * inputs, upper, inputs)) continue;
@@ -258,9 +258,9 @@ inline Block read_block(const std::string& path, const std::string& content) {
     }
   };
   take(block.input_mean, inputs);
-  take(block.input_spread, inputs);
+  take(block.input_deviation, inputs);
   take(block.output_mean, outputs);
-  take(block.output_spread, outputs);
+  take(block.output_deviation, outputs);
   take(block.envelope_lower, inputs);
   take(block.envelope_upper, inputs);
   take(block.golden_features, golden * inputs);

@@ -80,12 +80,12 @@ bool is_affine(const programs::Identity& identity) {
   return true;
 }
 
-/// To what moves several features at once. The body rates move a formula too, which is no part of the response.
+/// To what moves several features at once. The body rates move a base too, which is no part of the response.
 void add_responses(const programs::Block& block, const programs::Identity& identity, const programs::AskedModel& model,
                    Findings& findings) {
   const auto along = [&](const std::optional<programs::Direction>& direction) {
     return direction ? std::optional(programs::response_along(*direction, identity.networks, block.parameters,
-                                                              block.input_spread, block.output_spread))
+                                                              block.input_deviation, block.output_deviation))
                      : std::nullopt;
   };
   findings.thrust = along(programs::more_thrust(model.names));
@@ -225,7 +225,7 @@ void print_thrust(const programs::Block& block, const programs::Identity& identi
   std::printf("thrust     the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover",
               held, held / own);
   if (findings.taps > 1) std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
-  std::printf("%s\n", block.base.empty() ? "" : ", while the formula's commands are in 0 to 1");
+  std::printf("%s\n", block.base.empty() ? "" : ", while the base's commands are in 0 to 1");
   const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
   const double least = least_thrust_slope(findings);
   if (range > 0 && std::isfinite(least)) {

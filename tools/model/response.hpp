@@ -92,23 +92,23 @@ struct Response {
 
 /// A base as pinnquad::AxisAligned and what is added to it, or the base alone; scalers' spreads.
 inline Response response_along(const Direction& direction, const std::vector<NetworkSpec>& parts,
-                               const std::vector<double>& parameters, const std::vector<double>& input_spread,
-                               const std::vector<double>& output_spread) {
+                               const std::vector<double>& parameters, const std::vector<double>& input_deviation,
+                               const std::vector<double>& output_deviation) {
   const NetworkSpec& base = parts.front();
   const auto features = static_cast<std::size_t>(base.inputs);
   const double* const behind = parameters.data() + base.parameter_count();
   const std::vector<double> plain = detail::plain_parameters(base, parameters.data(), behind);
   Direction scaled(features);
   for (std::size_t i = 0; i < features; ++i) {
-    scaled.least[i] = direction.least[i] / input_spread[i];
-    scaled.most[i] = direction.most[i] / input_spread[i];
+    scaled.least[i] = direction.least[i] / input_deviation[i];
+    scaled.most[i] = direction.most[i] / input_deviation[i];
   }
   Response response;
   pinnquad::detail::weigh_intervals(plain.data(), base.inputs, 4, scaled.least.data(), scaled.most.data(),
                                     response.base_least.data(), response.base_most.data());
   for (std::size_t k = 0; k < 4; ++k) {
-    response.base_least[k] *= output_spread[k];
-    response.base_most[k] *= output_spread[k];
+    response.base_least[k] *= output_deviation[k];
+    response.base_most[k] *= output_deviation[k];
   }
   if (parts.size() < 2) return response;
   const NetworkSpec& residual = parts[1];
@@ -142,8 +142,8 @@ inline Response response_along(const Direction& direction, const std::vector<Net
   response.residual_least = lower;
   response.residual_most = upper;
   for (std::size_t k = 0; k < 4; ++k) {  // a bound that clips has a slope from 0 to 1
-    response.residual_least[k] = std::min(0.0, response.residual_least[k]) * output_spread[k];
-    response.residual_most[k] = std::max(0.0, response.residual_most[k]) * output_spread[k];
+    response.residual_least[k] = std::min(0.0, response.residual_least[k]) * output_deviation[k];
+    response.residual_most[k] = std::max(0.0, response.residual_most[k]) * output_deviation[k];
   }
   return response;
 }

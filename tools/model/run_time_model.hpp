@@ -28,8 +28,8 @@ class RunTimeModel {
   RunTimeModel(const Block& block, const Identity& identity)
       : network_(identity.networks, block.parameters),
         airframe_(identity.airframe.name, identity.airframe.value),
-        input_(scaler_of<pinnquad::Scaler<Scalar, Features::size>>(block.input_mean, block.input_spread)),
-        output_(scaler_of<pinnquad::Scaler<Scalar, Map::size>>(block.output_mean, block.output_spread)) {}
+        input_(scaler_of<pinnquad::Scaler<Scalar, Features::size>>(block.input_mean, block.input_deviation)),
+        output_(scaler_of<pinnquad::Scaler<Scalar, Map::size>>(block.output_mean, block.output_deviation)) {}
 
   pinnquad::Commands<Scalar> predict(const FeatureVector& x) const {
     std::vector<Scalar> standardised(x.size());

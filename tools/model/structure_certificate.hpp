@@ -76,8 +76,8 @@ std::optional<pinnquad::Certificate> certificate_in(const Block& block, const Id
     return result;
   };
   const std::vector<Scalar> parameters = in_scalar(block.parameters);
-  const std::vector<Scalar> scales[] = {in_scalar(block.input_mean),     in_scalar(block.input_spread),
-                                        in_scalar(block.output_mean),    in_scalar(block.output_spread),
+  const std::vector<Scalar> scales[] = {in_scalar(block.input_mean),     in_scalar(block.input_deviation),
+                                        in_scalar(block.output_mean),    in_scalar(block.output_deviation),
                                         in_scalar(block.envelope_lower), in_scalar(block.envelope_upper)};
   std::vector<pinnquad::PathBound<4>> paths;
   if (parts.size() == 2) {

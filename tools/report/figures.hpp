@@ -189,7 +189,7 @@ inline std::string ellipses_figure(const std::vector<int>& models, const std::ve
   return ellipses_drawing(rows, "model");
 }
 
-/// Fig. 2: angular acceleration and signed sum of the flown commands over some seconds, each in its spread.
+/// Fig. 2: angular acceleration and signed sum of the flown commands over some seconds, each over its standard deviation.
 inline std::string correlation_figure(const StudySeries& series) {
   constexpr double height = 118, gap = 34, left = 70, right = 1030, top = 26;
   constexpr std::size_t shown = 240;
@@ -198,16 +198,16 @@ inline std::string correlation_figure(const StudySeries& series) {
   std::string text;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const AxisSeries& s = series.axes[axis];
-    const auto spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
+    const auto deviation = pinnquad::axis_deviation(s.angular_acceleration, s.target);
     const double y0 = top + static_cast<double>(axis) * (height + gap);
     const drawing::Axis x{series.time_s.front(), series.time_s[last], left, right}, y{-4, 4, y0 + height, y0};
     drawing::Trace acceleration, sum;
     for (std::size_t i = 0; i <= last; ++i) {
-      acceleration.to(x(series.time_s[i]), y(std::clamp(s.angular_acceleration[i] / spread.x, -4.0, 4.0)));
-      sum.to(x(series.time_s[i]), y(std::clamp(s.target[i] / spread.y, -4.0, 4.0)));
+      acceleration.to(x(series.time_s[i]), y(std::clamp(s.angular_acceleration[i] / deviation.x, -4.0, 4.0)));
+      sum.to(x(series.time_s[i]), y(std::clamp(s.target[i] / deviation.y, -4.0, 4.0)));
     }
     text += drawing::horizontal_axis(x, y0, y0 + height, 8, axis == 2 ? "time, s" : "", axis == 2) +
-            drawing::vertical_axis(y, left, right, 4, axis == 1 ? "in spreads" : "") +
+            drawing::vertical_axis(y, left, right, 4, axis == 1 ? "in standard deviations" : "") +
             drawing::path(acceleration.d(), "thick") + drawing::path(sum.d(), "thin") +
             drawing::label(left, y0 - 8, std::string(axis_names[axis]) + ": " + rates[axis] + " and its command sum",
                            "title") +
@@ -218,7 +218,7 @@ inline std::string correlation_figure(const StudySeries& series) {
   }
   return drawing::svg(1060, top + 3 * (height + gap) + 14, text, "Angular acceleration and command sums",
                       "Angular acceleration and signed command sum over time in roll, pitch and yaw, each in its "
-                      "spread; they rise and fall together.");
+                      "standard deviation; they rise and fall together.");
 }
 
 }  // namespace programs

@@ -34,15 +34,15 @@ inline std::string ellipses_drawing(const std::vector<EllipsesRow>& models, cons
       const double x0 = left + static_cast<double>(axis) * (panel + gap),
                    y0 = top + static_cast<double>(m) * (panel + 92);
       const drawing::Axis x{-range, range, x0, x0 + panel}, y{-range, range, y0 + panel, y0};
-      const auto spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
+      const auto deviation = pinnquad::axis_deviation(s.angular_acceleration, s.target);
       const pinnquad::PhysicalConsistency c =
           pinnquad::physical_consistency(s.target, s.predicted, s.angular_acceleration);
-      text += drawing::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target spreads") +
+      text += drawing::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target std. dev.") +
               drawing::vertical_axis(y, x0, x0 + panel, 5, "");
       drawing::Trace target, predicted;
       for (std::size_t i = 0; i < s.target.size(); i += s.target.size() / most_points + 1) {
-        const double px = s.angular_acceleration[i] / spread.x;
-        const double flown = s.target[i] / spread.y, said = s.predicted[i] / spread.y;
+        const double px = s.angular_acceleration[i] / deviation.x;
+        const double flown = s.target[i] / deviation.y, said = s.predicted[i] / deviation.y;
         if (std::abs(px) > range) continue;
         if (std::abs(flown) <= range) target.dot(x(px), y(flown));
         if (std::abs(said) <= range) predicted.plus(x(px), y(said));

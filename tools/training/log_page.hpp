@@ -292,7 +292,7 @@ inline std::string log_page(const LogPageInput& in) {
                            {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)},
                            {"flown", nlohmann::json::array()}};
     const std::pair<const char*, const char*> policies[] = {
-        {"model", "the exported model"}, {"formula", "the vehicle's own formula"}, {"hover_trim", "none, hover trim"}};
+        {"model", "the exported model"}, {"formula", "the vehicle's analytic inverse"}, {"hover_trim", "none, hover trim"}};
     for (const auto& [key, name] : policies) {
       page["closed_loop"]["flown"].push_back(
           {{"name", name},

@@ -17,7 +17,7 @@
 
 namespace programs {
 
-/// Fig. 8: signed command sum over angular acceleration, standardised by the target's spread; dots target, plus signs
+/// Fig. 8: signed command sum over angular acceleration, standardised by the target's standard deviation; dots target, plus signs
 /// prediction, 3-sigma ellipses with their major axis. One row of panels per model.
 inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>& models,
                           const std::vector<std::array<AxisSeries, 3>>& series, const std::vector<Judgement>& judged) {
@@ -28,13 +28,13 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const AxisSeries& s = series[model][axis];
       const pinnquad::PhysicalConsistency& c = judged[model].axes[axis];
-      const auto spread = pinnquad::axis_deviation(s.angular_acceleration, s.target);
+      const auto deviation = pinnquad::axis_deviation(s.angular_acceleration, s.target);
       constexpr std::size_t most_points = 600;  // more only darkens the cloud
       const std::size_t stride = s.target.size() / most_points + 1;
       const auto points = [&](const char* name, const std::vector<double>& sum) {
         out << "$" << name << " << EOD\n";
         for (std::size_t i = 0; i < sum.size(); i += stride) {
-          out << s.angular_acceleration[i] / spread.x << ' ' << sum[i] / spread.y << '\n';
+          out << s.angular_acceleration[i] / deviation.x << ' ' << sum[i] / deviation.y << '\n';
         }
         out << "EOD\n";
       };
@@ -53,7 +53,7 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
       std::snprintf(title, sizeof title, "%s, %s\\nangle difference %.2f deg, slope error %.1f %%",
                     models[model].c_str(), axis_names[axis], c.angle_difference_deg, 100 * c.slope_error);
       const char* rate = axis == 0 ? "dp/dt" : (axis == 1 ? "dq/dt" : "dr/dt");
-      out << "set title \"" << title << "\" noenhanced font ',12'\nset xlabel '" << rate << " (in target spreads)'\n"
+      out << "set title \"" << title << "\" noenhanced font ',12'\nset xlabel '" << rate << " (in standard deviations of the target)'\n"
           << "set ylabel 'signed command sum'\n"
           << (model == 0 && axis == 0 ? "set key top left font ',10' samplen 1.5 spacing 0.9\n" : "unset key\n")
           << "set xrange [-5:5]\nset yrange [-5:5]\n"
@@ -70,7 +70,7 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
       svg,
       {1200, 60 + 370 * rows, "Signed command sum over angular acceleration, by model and axis",
        "A row of panels per model (" + listed(models) +
-           "): roll, pitch and yaw, in the target's spreads. Dots: target; plus signs: prediction; each with "
+           "): roll, pitch and yaw, in standard deviations of the target. Dots: target; plus signs: prediction; each with "
            "its 3-sigma ellipse and major axis. The closer the two ellipses, the better."},
       out.str());
 }
