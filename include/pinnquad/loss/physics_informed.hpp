@@ -15,7 +15,8 @@ namespace pinnquad {
 template <class LossType, class ScheduleType>
 struct Weighted {
   static_assert(is_loss<LossType>,
-                "pinnquad: Weighted's first argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+                "pinnquad: Weighted's first argument is not a loss; it needs evaluate(context, batch, weight, "
+                "gradient) const (loss/loss.hpp)");
   static_assert(is_schedule<ScheduleType>,
                 "pinnquad: Weighted's second argument is not a schedule; it needs weight(epoch, epochs) const noexcept "
                 "(schedule/schedule.hpp)");
@@ -35,7 +36,8 @@ struct IsWeighted<Weighted<LossType, ScheduleType>> : std::true_type {};
 template <class Base, class... Terms>
 struct PhysicsInformed {
   static_assert(is_loss<Base>,
-                "pinnquad: PhysicsInformed's first argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+                "pinnquad: PhysicsInformed's first argument is not a loss; it needs evaluate(context, batch, weight, "
+                "gradient) const (loss/loss.hpp)");
   static_assert((detail::IsWeighted<Terms>::value && ...),
                 "pinnquad: a term of PhysicsInformed is not Weighted<Loss, Schedule> (loss/physics_informed.hpp)");
   Base base{};

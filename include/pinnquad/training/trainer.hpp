@@ -47,7 +47,8 @@ template <class NetworkType, class LossType, class OptimizerType, class ContextT
 class Trainer {
   static_assert(is_network<NetworkType>, "pinnquad: Trainer's first argument is not a Network (nn/network.hpp)");
   static_assert(is_loss<LossType>,
-                "pinnquad: Trainer's second argument is not a loss; it needs evaluate() (loss/loss.hpp)");
+                "pinnquad: Trainer's second argument is not a loss; it needs evaluate(context, batch, weight, "
+                "gradient) const (loss/loss.hpp)");
   static_assert(is_optimizer<OptimizerType>,
                 "pinnquad: Trainer's third argument is not an optimiser; it needs begin() and update() const noexcept "
                 "(training/optimizer.hpp)");
