@@ -250,8 +250,8 @@ TEST_CASE("a structured model brings its certificate, and its block none that it
   test::BlockBytes bytes(model_block<StructuredModel>());
   ModelView<StructuredModel> view;
   REQUIRE(ModelView<StructuredModel>::open(bytes.data(), bytes.size(), view) == Status::ok);
-  CHECK(view.records.has_slope_signs);
-  CHECK(view.records.has_residual_range);
+  CHECK(view.records.slope_signs != nullptr);
+  CHECK(view.records.residual_range != nullptr);
   using Layout = ModelBlockLayout<StructuredModel>;
   const std::size_t first = Layout::parameters(StructuredModel::golden_features.size());
   const std::size_t bounds = first + MonotoneBase<PhysicsFeatures>::parameter_count;
