@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/deploy/identifier.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 
 #include <doctest/doctest.h>
 

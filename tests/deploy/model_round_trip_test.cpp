@@ -76,9 +76,9 @@ Provenance provenance() {
   if constexpr (is_detected<detail::DistanceStatisticsOf, Header>) {
     const auto numbers = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
     from.slope_signs = Header::slope_signs;
-    from.residual_range = ResidualRange{numbers(Header::residual_lower), numbers(Header::residual_upper)};
-    from.distance = DistanceStatistics{numbers(Header::distance_mean), numbers(Header::distance_inverse_cholesky),
-                                       Header::distance_limit};
+    from.residual_range = Provenance::ResidualRange{numbers(Header::residual_lower), numbers(Header::residual_upper)};
+    from.distance = Provenance::DistanceStatistics{numbers(Header::distance_mean),
+                                                   numbers(Header::distance_inverse_cholesky), Header::distance_limit};
   }
   return from;
 }

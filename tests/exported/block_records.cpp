@@ -90,7 +90,7 @@ Status opened(const BlockBytes& block, ModelView<Shape>& view) {
     CHECK(view.parameters() == before.parameters());
     CHECK(view.records.stated == before.records.stated);
     CHECK(view.records.sample_period_ns == before.records.sample_period_ns);
-    CHECK(view.records.judged == before.records.judged);
+    CHECK(view.records.has_verdict == before.records.has_verdict);
     CHECK(view.records.distance == before.records.distance);
     CHECK(view.input.mean == before.input.mean);
   }
@@ -135,8 +135,8 @@ TEST_CASE("terms are read back from a block") {
     CHECK(records.sample_period_ns == 4000000u);
     CHECK(records.lag_removed_ns == 12500000u);
     CHECK_FALSE(records.has_verdict);
-    CHECK_FALSE(records.has_slope_signs);
-    CHECK_FALSE(records.has_residual_range);
+    CHECK(records.slope_signs == nullptr);
+    CHECK(records.residual_range == nullptr);
     CHECK(records.distance == nullptr);
   }
 }
@@ -367,8 +367,8 @@ TEST_CASE("verdict, proven slopes, range of a residual and statistics of a dista
   Provenance from;
   from.verdict = Verdict{-0.5, 0.25, -1.0};
   from.slope_signs = {{{-1, 1, 0}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
-  from.residual_range = ResidualRange{{-0.125, -0.25, -0.5, -1}, {0.125, 0.25, 0.5, 1}};
-  DistanceStatistics distance;
+  from.residual_range = Provenance::ResidualRange{{-0.125, -0.25, -0.5, -1}, {0.125, 0.25, 0.5, 1}};
+  Provenance::DistanceStatistics distance;
   distance.mean.assign(16, 0.5);
   distance.inverse_cholesky.assign(136, 0.25);
   distance.limit = 3;
@@ -381,13 +381,14 @@ TEST_CASE("verdict, proven slopes, range of a residual and statistics of a dista
   const BlockBytes kept(block);
   REQUIRE(opened(kept, view) == Status::ok);
   CHECK(view.records.has_verdict);
-  CHECK(view.records.worse_than_mean());
-  CHECK(view.records.has_slope_signs);
-  CHECK(view.records.slope_signs[0] == std::array<std::int8_t, 3>{-1, 1, 0});
-  CHECK(view.records.slope_signs[3] == std::array<std::int8_t, 3>{-1, -1, -1});
-  CHECK(view.records.has_residual_range);
-  CHECK(view.records.residual_lower == std::array<float, 4>{-0.125f, -0.25f, -0.5f, -1});
-  CHECK(view.records.residual_upper == std::array<float, 4>{0.125f, 0.25f, 0.5f, 1});
+  CHECK(view.records.worse_than_mean);
+  REQUIRE(view.records.slope_signs != nullptr);
+  const auto* signs = view.records.slope_signs;
+  CHECK(std::vector<int>(signs, signs + 3) == std::vector<int>{-1, 1, 0});
+  CHECK(std::vector<int>(signs + 9, signs + 12) == std::vector<int>{-1, -1, -1});
+  REQUIRE(view.records.residual_range != nullptr);
+  const auto* range = view.records.residual_range;
+  CHECK(std::vector<float>(range, range + 8) == std::vector<float>{-0.125f, -0.25f, -0.5f, -1, 0.125f, 0.25f, 0.5f, 1});
   REQUIRE(view.records.distance != nullptr);
   CHECK(view.records.distance[15] == 0.5f);
   CHECK(view.records.distance[16] == 0.25f);

@@ -160,13 +160,12 @@ TEST_CASE("one unit stands for all outputs only where they have one") {
 }
 
 TEST_CASE("signs of another shape are other signs") {
-  const std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs = {
-      {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
-  CHECK(pinnquad::detail::same_signs(signs, signs));
-  CHECK_FALSE(pinnquad::detail::same_signs(std::array<pinnquad::TorqueSigns, 3>{}, signs));
+  const pinnquad::detail::TorqueSigns signs = {{{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
+  CHECK(pinnquad::detail::same_values(signs, signs));
+  CHECK_FALSE(pinnquad::detail::same_values(std::array<std::array<int, 3>, 3>{}, signs));
   const std::array<std::array<int, 4>, 4> longer = {{{-1, 1, 1, 0}, {1, -1, 1, 0}, {1, 1, -1, 0}, {-1, -1, -1, 0}}};
-  CHECK_FALSE(pinnquad::detail::same_signs(longer, signs));
-  std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> turned = signs;
+  CHECK_FALSE(pinnquad::detail::same_values(longer, signs));
+  pinnquad::detail::TorqueSigns turned = signs;
   turned[3][2] = 1;
-  CHECK_FALSE(pinnquad::detail::same_signs(turned, signs));
+  CHECK_FALSE(pinnquad::detail::same_values(turned, signs));
 }

@@ -238,7 +238,7 @@ TEST_CASE("a structured model brings its certificate, and its block none that it
   static_assert(has_certificate<StructuredModel> && !has_certificate<DirectModel>);
   constexpr Certificate certificate = certificate_of<StructuredModel>();
   static_assert(certificate.proven());
-  static_assert(detail::same_signs(StructuredModel::slope_signs, motor_torque_signs<PaperQuadrotor>()));
+  static_assert(detail::same_values(StructuredModel::slope_signs, motor_torque_signs<PaperQuadrotor>()));
   for (std::size_t k = 0; k < 4; ++k) {
     CHECK(double(StructuredModel::residual_lower[k]) == doctest::Approx(certificate.residual_lower[k]));
     CHECK(double(StructuredModel::residual_upper[k]) == doctest::Approx(certificate.residual_upper[k]));
@@ -250,8 +250,8 @@ TEST_CASE("a structured model brings its certificate, and its block none that it
   test::BlockBytes bytes(model_block<StructuredModel>());
   ModelView<StructuredModel> view;
   REQUIRE(ModelView<StructuredModel>::open(bytes.data(), bytes.size(), view) == Status::ok);
-  CHECK(view.records.has_slope_signs);
-  CHECK(view.records.has_residual_range);
+  CHECK(view.records.slope_signs != nullptr);
+  CHECK(view.records.residual_range != nullptr);
   using Layout = ModelBlockLayout<StructuredModel>;
   const std::size_t first = Layout::parameters(StructuredModel::golden_features.size());
   const std::size_t bounds = first + MonotoneBase<PhysicsFeatures>::parameter_count;

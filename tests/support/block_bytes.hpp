@@ -36,7 +36,7 @@ class BlockBytes {
   std::size_t scalars() const {
     const auto u32 = [this](std::size_t offset) { return detail::read_u32(bytes_.get() + offset); };
     const std::size_t records =
-        u32(ModelBlockHeader::version) < 2 ? 0 : BlockRecordLayout::counts + u32(ModelBlockHeader::size + 4);
+        u32(ModelBlockHeader::version) < 2 ? 0 : ModelBlockHeader::record_counts + u32(ModelBlockHeader::size + 4);
     return ModelBlockHeader::size + records;
   }
 

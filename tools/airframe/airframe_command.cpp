@@ -41,7 +41,7 @@ int check(const AirframeOptions& options) {
   const Airframe<double>& a = airframe.value;
   std::printf("%s: %.3f kg, rotors up to %.0f rpm, thrust-to-weight %.3f\n", printable(airframe.name).c_str(),
               a.mass_kg, 60 * a.max_rotor_speed_rev_s, a.thrust_to_weight());
-  const std::array<TorqueSigns, rotor_count> signs = motor_torque_signs(a);
+  const auto signs = motor_torque_signs(a);
   for (std::size_t rotor = 0; rotor < signs.size(); ++rotor) {
     std::printf("  u%zu at x %+.3f m, y %+.3f m, %s: roll %+d, pitch %+d, yaw %+d\n", rotor + 1, a.rotors[rotor].x_m,
                 a.rotors[rotor].y_m, a.rotors[rotor].spin == Spin::clockwise ? "clockwise" : "counter-clockwise",

@@ -35,7 +35,7 @@ struct Block {
   std::vector<double> residual_range;  ///< lower bounds, then upper ones; none: it says none
   std::vector<double> distance;        ///< means, triangle, limit; none: it says none
   bool has_judgement = false;          ///< it says how it was judged before it was exported
-  std::uint32_t judged = 0;            ///< bits of pinnquad::Judged
+  std::uint32_t judged = 0;            ///< pinnquad::detail::judged_bits()
   std::vector<double> input_mean, input_deviation, output_mean, output_deviation, envelope_lower, envelope_upper;
   std::vector<double> golden_features, golden_commands;  ///< vector by vector
   std::vector<double> parameters;
@@ -79,19 +79,19 @@ class BlockBytes {
 /// take.
 inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, Block& block) {
   using pinnquad::BlockRecord;
-  using Layout = pinnquad::BlockRecordLayout;
-  const std::size_t first = pinnquad::ModelBlockHeader::size;
+  using Header = pinnquad::ModelBlockHeader;
+  const std::size_t first = Header::size;
   const auto broken = [&] { bytes.refuse("a model block", "records that do not fit"); };
-  if (end - first < Layout::counts) broken();
+  if (end - first < Header::record_counts) broken();
   const std::size_t whole = bytes.u32(first + 4);
-  if (whole > end - first - Layout::counts || whole % 8 != 0) broken();
-  std::size_t at = first + Layout::counts;
+  if (whole > end - first - Header::record_counts || whole % 8 != 0) broken();
+  std::size_t at = first + Header::record_counts;
   const std::size_t last = at + whole;
   for (std::uint32_t i = 0; i < bytes.u32(first); ++i) {
-    if (last - at < Layout::head) broken();
+    if (last - at < Header::record_head) broken();
     const std::uint32_t word = bytes.u32(at);
-    const std::size_t length = bytes.u32(at + 4), body = at + Layout::head;
-    if (length > last - body || Layout::padded(length) > last - body) broken();
+    const std::size_t length = bytes.u32(at + 4), body = at + Header::record_head;
+    if (length > last - body || Header::padded(length) > last - body) broken();
     const std::uint32_t type = word & (pinnquad::mandatory_record - 1u);
     const std::size_t scalar = block.is_double ? 8 : 4;
     const auto sized = [&](std::size_t expected) {
@@ -161,11 +161,11 @@ inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, 
       default:
         if ((word & pinnquad::mandatory_record) != 0) bytes.refuse("records that are known", "a newer one");
     }
-    at = body + Layout::padded(length);
+    at = body + Header::padded(length);
   }
   if (at != last) broken();
   block.has_records = true;
-  return Layout::counts + whole;
+  return Header::record_counts + whole;
 }
 
 /// Refuses what no reader takes, whatever the shape (exported/model_agreement.hpp).

@@ -14,7 +14,7 @@
 
 #include "airframe/file.hpp"
 #include "model/header_file.hpp"
-#include "pinnquad/deploy/identifier.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace programs {

@@ -20,10 +20,9 @@ namespace programs {
 namespace detail {
 
 /// 3 x 4 numbers of a header, rotor by rotor.
-inline std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs_of(const HeaderFile& header,
-                                                                         const std::string& name) {
+inline pinnquad::detail::TorqueSigns signs_of(const HeaderFile& header, const std::string& name) {
   const std::vector<double> numbers = header.numbers(name, 3 * pinnquad::rotor_count);
-  std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs{};
+  pinnquad::detail::TorqueSigns signs{};
   for (std::size_t i = 0; i < numbers.size(); ++i) signs[i / 3][i % 3] = static_cast<int>(numbers[i]);
   return signs;
 }
@@ -31,7 +30,8 @@ inline std::array<pinnquad::TorqueSigns, pinnquad::rotor_count> signs_of(const H
 /// What a header of any format may say.
 inline void take_optional_records(const HeaderFile& header, pinnquad::detail::WrittenRecords& records) {
   if (header.has("worse_than_mean") && header.has("beats_linear_regression")) {
-    records.judged = pinnquad::Judged::bits(header.truth("worse_than_mean"), header.truth("beats_linear_regression"));
+    records.judged =
+        pinnquad::detail::judged_bits(header.truth("worse_than_mean"), header.truth("beats_linear_regression"));
   }
   if (header.has("slope_signs")) records.slope_signs = signs_of(header, "slope_signs");
   if (header.has("residual_lower")) {
@@ -143,22 +143,19 @@ std::vector<unsigned char> block_of(const HeaderFile& header) {
   if (inputs == 0 || outputs == 0 || golden * inputs != golden_features.size() || golden == 0) {
     header.refuse("golden_features", "whole vectors of features", std::to_string(golden_features.size()) + " numbers");
   }
-  pinnquad::detail::LittleEndianBytes scalars;
-  const auto add = [&scalars](const std::vector<double>& values) {
-    for (const double value : values) scalars.add(static_cast<Scalar>(value));
-  };
-  add(header.numbers("input", 2 * inputs));
-  add(header.numbers("output", 2 * outputs));
-  add(header.numbers("envelope_lower", inputs));
-  add(header.numbers("envelope_upper", inputs));
-  add(golden_features);
-  add(header.numbers("golden_commands", golden * pinnquad::rotor_count));
-  add(parameters);
+  pinnquad::detail::LittleEndianBytes<Scalar> scalars;
+  scalars.add(header.numbers("input", 2 * inputs));
+  scalars.add(header.numbers("output", 2 * outputs));
+  scalars.add(header.numbers("envelope_lower", inputs));
+  scalars.add(header.numbers("envelope_upper", inputs));
+  scalars.add(golden_features);
+  scalars.add(header.numbers("golden_commands", golden * pinnquad::rotor_count));
+  scalars.add(parameters);
   return pinnquad::detail::whole_block(
       {sizeof(Scalar), inputs, outputs, parameters.size(), golden,
        static_cast<std::uint64_t>(header.number("training_rows")), shape_hash_of(header, records.answer),
        header.hexadecimal("training_data_hash")},
-      pinnquad::detail::block_records<Scalar>(records), scalars);
+      pinnquad::detail::block_records<Scalar>(records), scalars.bytes);
 }
 
 }  // namespace detail

@@ -7,7 +7,7 @@
 
 #include "model/log_schemas.hpp"
 #include "model/model_file.hpp"
-#include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 
 namespace programs {
 

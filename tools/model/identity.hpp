@@ -11,7 +11,7 @@
 #include "airframe/choice.hpp"
 #include "model/block.hpp"
 #include "model/run_time_answer.hpp"
-#include "pinnquad/deploy/record_writer.hpp"
+#include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"

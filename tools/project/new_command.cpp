@@ -20,8 +20,7 @@
 #include "command_line/options.hpp"
 #include "model/header_airframe.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
-#include "pinnquad/deploy/identifier.hpp"
-#include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "project/template.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/deploy/record_writer.hpp"
+#include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/training/context_airframe.hpp"

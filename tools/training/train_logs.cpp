@@ -22,7 +22,7 @@
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
-#include "pinnquad/deploy/identifier.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "training/log_export.hpp"
 #include "training/log_fit_store.hpp"
 #include "training/log_flight.hpp"

@@ -37,7 +37,7 @@ class TrainedNetwork {
   /// Certificate of its structure; none of a model without.
   virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
   /// Writes `struct <name>` and its block. Limits of trust are of a structured model alone.
-  virtual pinnquad::Exported export_to(const pinnquad::ModelFiles& files, const std::string& name,
+  virtual pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
                                        const pinnquad::RowSplit& split,
                                        const pinnquad::Provenance& provenance) const = 0;
   /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
@@ -71,7 +71,7 @@ class NetworkOfModel : public TrainedNetwork {
     return derivative_figures(rows, derivatives_of(model_));
   }
   std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_structure(model_); }
-  pinnquad::Exported export_to(const pinnquad::ModelFiles& files, const std::string& name,
+  pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
                                const pinnquad::RowSplit& split, const pinnquad::Provenance& provenance) const override {
     pinnquad::Exported exported;
     with_exported([&](const auto& model) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes an airframe value as a C++ struct that fulfils the airframe contract (dynamics/airframe.hpp): a vehicle known only
-// when a program runs becomes a type for the next compiler. Every number reads back bit for bit in double.
+// Writes an airframe value as a C++ struct that fulfils the airframe contract (dynamics/airframe.hpp): a vehicle known
+// only when a program runs becomes a type for the next compiler. Every number reads back bit for bit in double.
 #pragma once
 
 #include <array>
@@ -10,8 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "pinnquad/deploy/identifier.hpp"
-#include "pinnquad/deploy/literal.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
@@ -21,7 +20,7 @@ namespace pinnquad {
 /// Throws std::invalid_argument, and writes nothing, for a name that no struct may have and an airframe that can't fly.
 inline void write_airframe(std::ostream& stream, const std::string& struct_name, const std::string& name,
                            const Airframe<double>& airframe) {
-  if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
+  detail::require_identifier(struct_name);
   if (check_airframe(airframe) != Status::ok || Rotors<double>(airframe).status() != Status::ok) {
     throw std::invalid_argument("export: the airframe '" + name + "' can't fly");
   }

@@ -3,58 +3,42 @@
 // (deploy/weight_file.hpp), or its text. Layout: exported/model_block.hpp; the same bytes on every machine.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "pinnquad/deploy/record_writer.hpp"
+#include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/exported/model_block.hpp"
 
 namespace pinnquad {
 namespace detail {
 
-/// Bytes appended, least significant first.
+/// Bytes appended, least significant first. Numbers with a fraction become a Scalar.
+template <class Scalar>
 class LittleEndianBytes {
  public:
-  template <class Unsigned>
-  void add_unsigned(Unsigned value) {
-    for (std::size_t byte = 0; byte < sizeof value; ++byte) {
-      bytes.push_back(static_cast<unsigned char>((value >> (8 * byte)) & 0xffu));
+  /// A number, a text without its end, or a range of them or of ranges.
+  template <class Value>
+  void add(const Value& value) {
+    if constexpr (std::is_integral_v<Value>) {
+      for (std::size_t byte = 0; byte < sizeof value; ++byte) {
+        bytes.push_back(static_cast<unsigned char>(static_cast<std::uint64_t>(value) >> (8 * byte)));
+      }
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      const auto rounded = static_cast<Scalar>(value);
+      std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t> bits = 0;
+      std::memcpy(&bits, &rounded, sizeof bits);
+      add(bits);
+    } else {
+      for (const auto& one : value) add(one);
     }
   }
-  template <class Range>
-  void add_bytes(const Range& range) {
-    bytes.insert(bytes.end(), range.begin(), range.end());
-  }
-  /// With its closing 0.
-  void add_text(std::string_view text) {
-    add_bytes(text);
-    bytes.push_back(0);
-  }
-  void add(float value) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    add_unsigned(bits);
-  }
-  void add(double value) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    add_unsigned(bits);
-  }
-  template <class Scalar, std::size_t Size>
-  void add(const std::array<Scalar, Size>& values) {
-    for (const Scalar value : values) add(value);
-  }
-  template <class Rows>
-  void add_rows(const Rows& rows) {
-    for (const auto& row : rows) add(row);
-  }
+  void append(const std::vector<unsigned char>& more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
 
   std::vector<unsigned char> bytes;
 };
@@ -62,80 +46,55 @@ class LittleEndianBytes {
 /// The records of a block: their counts, then each.
 template <class Scalar>
 std::vector<unsigned char> block_records(const WrittenRecords& records) {
+  using Bytes = LittleEndianBytes<Scalar>;
   constexpr std::size_t longest = std::numeric_limits<std::uint16_t>::max();
-  LittleEndianBytes out;
+  constexpr std::uint32_t nothing = 0;
+  constexpr bool mandatory = true, optional = false;
+  Bytes out;
   std::uint32_t count = 0;
-  const auto record = [&](BlockRecord type, bool mandatory, const auto& fill) {
-    LittleEndianBytes bytes;
-    fill(bytes);
-    if (bytes.bytes.size() > longest) throw std::invalid_argument("export: a record of a model block is too long");
-    out.add_unsigned(static_cast<std::uint16_t>(static_cast<unsigned>(type) | (mandatory ? mandatory_record : 0u)));
-    out.add_unsigned(std::uint16_t{0});
-    out.add_unsigned(static_cast<std::uint32_t>(bytes.bytes.size()));
-    bytes.bytes.resize(BlockRecordLayout::padded(bytes.bytes.size()), 0);
-    out.add_bytes(bytes.bytes);
+  const auto record = [&](BlockRecord type, bool is_mandatory, const auto&... values) {
+    Bytes body;
+    (body.add(values), ...);
+    if (body.bytes.size() > longest) throw std::invalid_argument("export: a record of a model block is too long");
+    out.add(static_cast<std::uint16_t>(static_cast<unsigned>(type) | (is_mandatory ? mandatory_record : 0u)));
+    out.add(std::uint16_t{0});
+    out.add(static_cast<std::uint32_t>(body.bytes.size()));
+    body.bytes.resize(ModelBlockHeader::padded(body.bytes.size()), 0);
+    out.append(body.bytes);
     ++count;
   };
-  const auto scalars = [](LittleEndianBytes& to, const std::vector<double>& values) {
-    for (const double value : values) to.add(static_cast<Scalar>(value));
-  };
-  record(BlockRecord::commands, true, [&](LittleEndianBytes& to) {
-    to.add_unsigned(static_cast<std::uint32_t>(records.command_meaning));
-    to.add_unsigned(std::uint32_t{0});
-    scalars(to, {records.command_lower, records.command_upper});
-  });
-  record(BlockRecord::clock, true, [&](LittleEndianBytes& to) {
-    to.add_unsigned(nanoseconds(records.sample_period_s));
-    to.add_unsigned(nanoseconds(records.lag_removed_s));
-  });
-  record(BlockRecord::window, true, [&](LittleEndianBytes& to) {
-    to.add_unsigned(records.window_taps);
-    to.add_unsigned(std::uint32_t{records.causal});
-  });
+  record(BlockRecord::commands, mandatory, static_cast<std::uint32_t>(records.command_meaning.value()), nothing,
+         records.command_lower, records.command_upper);
+  record(BlockRecord::clock, mandatory, nanoseconds(records.sample_period_s), nanoseconds(records.lag_removed_s));
+  record(BlockRecord::window, mandatory, records.window_taps, std::uint32_t{records.causal});
   if (!records.column_names.empty()) {
-    record(BlockRecord::columns, true, [&](LittleEndianBytes& to) {
-      for (std::size_t i = 0; i < records.column_names.size(); ++i) {
-        to.add_text(records.column_names[i]);
-        to.add_text(records.column_units.at(i));
+    Bytes texts;
+    for (std::size_t i = 0; i < records.column_names.size(); ++i) {
+      for (const std::string& text : {records.column_names[i], records.column_units.at(i)}) {
+        texts.add(text);
+        texts.add('\0');
       }
-    });
+    }
+    record(BlockRecord::columns, mandatory, texts.bytes);
   }
-  record(BlockRecord::allocation, true, [&](LittleEndianBytes& to) {
-    for (const auto& row : records.allocation) scalars(to, {row.begin(), row.end()});
-  });
-  if (!records.base.empty()) {
-    record(BlockRecord::base, true, [&](LittleEndianBytes& to) { to.add_bytes(records.base); });
-  }
-  if (records.judged) {
-    record(BlockRecord::verdict, false, [&](LittleEndianBytes& to) {
-      to.add_unsigned(*records.judged);
-      to.add_unsigned(std::uint32_t{0});
-    });
-  }
+  record(BlockRecord::allocation, mandatory, records.allocation);
+  if (!records.base.empty()) record(BlockRecord::base, mandatory, records.base);
+  if (records.judged) record(BlockRecord::verdict, optional, *records.judged, nothing);
   if (records.slope_signs) {
-    record(BlockRecord::slope_signs, false, [&](LittleEndianBytes& to) {
-      for (const TorqueSigns& rotor : *records.slope_signs) {
-        for (const int sign : rotor) to.bytes.push_back(static_cast<unsigned char>(sign));
-      }
-    });
+    std::vector<signed char> signs;
+    for (const auto& rotor : *records.slope_signs) signs.insert(signs.end(), rotor.begin(), rotor.end());
+    record(BlockRecord::slope_signs, optional, signs);
   }
   if (records.residual_range) {
-    record(BlockRecord::residual_range, false, [&](LittleEndianBytes& to) {
-      scalars(to, records.residual_range->lower);
-      scalars(to, records.residual_range->upper);
-    });
+    record(BlockRecord::residual_range, optional, records.residual_range->lower, records.residual_range->upper);
   }
-  if (records.distance) {
-    record(BlockRecord::distance, false, [&](LittleEndianBytes& to) {
-      scalars(to, records.distance->mean);
-      scalars(to, records.distance->inverse_cholesky);
-      scalars(to, {records.distance->limit});
-    });
+  if (const auto& distance = records.distance) {
+    record(BlockRecord::distance, optional, distance->mean, distance->inverse_cholesky, distance->limit);
   }
-  LittleEndianBytes all;
-  all.add_unsigned(count);
-  all.add_unsigned(static_cast<std::uint32_t>(out.bytes.size()));
-  all.add_bytes(out.bytes);
+  Bytes all;
+  all.add(count);
+  all.add(static_cast<std::uint32_t>(out.bytes.size()));
+  all.append(out.bytes);
   return std::move(all.bytes);
 }
 
@@ -147,25 +106,25 @@ struct BlockCounts {
 
 /// Header, records, scalars, checksum. Throws std::invalid_argument where a count does not fit its 32 bits.
 inline std::vector<unsigned char> whole_block(const BlockCounts& counts, const std::vector<unsigned char>& records,
-                                              const LittleEndianBytes& scalars) {
+                                              const std::vector<unsigned char>& scalars) {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   const std::uint64_t length =
-      ModelBlockHeader::size + records.size() + scalars.bytes.size() + ModelBlockHeader::checksum_size;
+      ModelBlockHeader::size + records.size() + scalars.size() + ModelBlockHeader::checksum_size;
   if (counts.golden_vectors > most || counts.training_rows > most || length > most) {
     throw std::invalid_argument("export: a model block counts to 2^32 - 1");
   }
-  LittleEndianBytes out;
-  out.add_bytes(model_block_magic);
-  out.add_unsigned(model_block_version);
+  LittleEndianBytes<float> out;
+  out.add(model_block_magic);
+  out.add(model_block_version);
   for (const std::uint64_t count : {length, counts.scalar_bytes, counts.inputs, counts.outputs, counts.parameters,
                                     counts.golden_vectors, counts.training_rows}) {
-    out.add_unsigned(static_cast<std::uint32_t>(count));
+    out.add(static_cast<std::uint32_t>(count));
   }
-  out.add_unsigned(counts.shape_hash);
-  out.add_unsigned(counts.training_data_hash);
-  out.add_bytes(records);
-  out.add_bytes(scalars.bytes);
-  out.add_unsigned(crc32(out.bytes.data(), out.bytes.size()));
+  out.add(counts.shape_hash);
+  out.add(counts.training_data_hash);
+  out.append(records);
+  out.append(scalars);
+  out.add(crc32(out.bytes.data(), out.bytes.size()));
   return std::move(out.bytes);
 }
 

@@ -22,13 +22,13 @@
 
 namespace pinnquad {
 
-/// The files of an export. A block and limits of trust without a path are not written.
-struct ModelFiles {
-  std::string header, block, trust;
-};
-
 /// The result of an export, beside its files.
 struct Exported {
+  /// Their paths. A block and limits of trust without a path are not written.
+  struct Files {
+    std::string header, block, trust;
+  };
+
   std::optional<Certificate> certificate{};  ///< none: the model has no structure that could be proven
   std::size_t block_bytes = 0;               ///< 0: no block was written
   std::string no_trust_because{};            ///< empty: limits of trust were written, or not asked for
@@ -47,7 +47,7 @@ inline Provenance provenance_of(const Dataset& flights, const RowSplit& split, s
 /// removed. Throws what write_model() and AtomicFile throw; no file has changed then. `WithTrust` false: limits are not
 /// compiled.
 template <bool WithTrust = true, class NetworkType, class ContextType>
-Exported export_model(const ModelFiles& files, const std::string& name,
+Exported export_model(const Exported::Files& files, const std::string& name,
                       const TrainedModel<NetworkType, ContextType>& model, const RowSplit& split,
                       Provenance provenance) {
   using Model = TrainedModel<NetworkType, ContextType>;
@@ -93,7 +93,7 @@ Exported export_model(const ModelFiles& files, const std::string& name,
 
 /// The same of the model that a fit chose.
 template <class... Models>
-Exported export_model(const ModelFiles& files, const std::string& name, const std::variant<Models...>& model,
+Exported export_model(const Exported::Files& files, const std::string& name, const std::variant<Models...>& model,
                       const RowSplit& split, const Provenance& provenance) {
   return std::visit([&](const auto& chosen) { return export_model(files, name, chosen, split, provenance); }, model);
 }
@@ -103,8 +103,8 @@ template <class Model>
 Exported export_model(const std::string& folder, const std::string& name, const Model& model, const RowSplit& split,
                       const Provenance& provenance) {
   std::filesystem::create_directories(folder);
-  return export_model(ModelFiles{folder + "/model.hpp", folder + "/model.block", folder + "/trust.hpp"}, name, model,
-                      split, provenance);
+  return export_model(Exported::Files{folder + "/model.hpp", folder + "/model.block", folder + "/trust.hpp"}, name,
+                      model, split, provenance);
 }
 
 }  // namespace pinnquad

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The feature vectors that an export is tested with, before it arms: out of the rows that its model was trained on; and, of a
-// model whose residual is bounded, beyond each bound, so that a bound that was changed fails the self test.
+// The feature vectors that an export is tested with, before it arms: out of the rows that its model was trained on;
+// and, of a model whose residual is bounded, beyond each bound, so that a bound that was changed fails the self test.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,8 @@
 namespace pinnquad {
 namespace detail {
 
-/// Feature vectors inside the envelope at which a bounded residual would leave its bounds. Deterministic: no number is drawn.
+/// Feature vectors inside the envelope at which a bounded residual would leave its bounds. Deterministic: no number is
+/// drawn.
 template <class Model>
 class BoundSearch {
  public:
@@ -91,8 +92,8 @@ class BoundSearch {
     return sum;
   }
 
-  /// From there, one feature after the other to a border of the envelope, the one that gains most first; then back along the
-  /// line, as far as no bound that it passes is lost.
+  /// From there, one feature after the other to a border of the envelope, the one that gains most first; then back
+  /// along the line, as far as no bound that it passes is lost.
   FeatureVector climbed(const FeatureVector& start, std::size_t bound, const std::array<bool, bounds>& missing) const {
     FeatureVector x = start;
     double highest = height(x, bound, missing);
@@ -143,9 +144,9 @@ class BoundSearch {
 
 }  // namespace detail
 
-/// `count` feature vectors, inside the envelope of a model that was trained on these rows. Of a model with a bounded residual
-/// first those at which it is clipped, all but two at most; then rows, the first and the last among them, the rest evenly
-/// between. Throws std::invalid_argument where no row has features, or for fewer than two.
+/// `count` feature vectors, inside the envelope of a model that was trained on these rows. Of a model with a bounded
+/// residual first those at which it is clipped, all but two at most; then rows, the first and the last among them, the
+/// rest evenly between. Throws std::invalid_argument where no row has features, or for fewer than two.
 template <class Model>
 std::vector<typename Model::FeatureVector> golden_features(const Model& model, const RowSet& training,
                                                            std::size_t count = 8) {

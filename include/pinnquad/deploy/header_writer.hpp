@@ -9,16 +9,16 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
-#include "pinnquad/deploy/identifier.hpp"
-#include "pinnquad/deploy/literal.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/deploy/provenance.hpp"
-#include "pinnquad/deploy/record_writer.hpp"
-#include "pinnquad/deploy/type_name.hpp"
 #include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/exported/contents_hash.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/decimal.hpp"
@@ -28,6 +28,121 @@
 namespace pinnquad {
 
 namespace detail {
+
+/// The constants of a struct, written one after the other, and the hash over those that count
+/// (exported/contents_hash.hpp).
+class ConstantWriter {
+ public:
+  explicit ConstantWriter(std::ostream& out) : out_(out) {}
+
+  std::uint64_t contents_hash() const { return sum_; }
+  /// Takes into the hash a value that is no constant.
+  template <class Value>
+  void count(std::string_view name, const Value& value) {
+    if (!is_hashed(name)) return;
+    ConstantHash hash(name);
+    add(hash, value);
+    sum_ += hash.value();
+  }
+
+  /// `written`: the value as C++ text.
+  template <class Value>
+  void constant(const char* type, const char* name, const std::string& written, const Value& value) {
+    out_ << "  static constexpr " << type << ' ' << name << " = " << written << ";\n";
+    count(name, value);
+  }
+  void truth(const char* name, bool value) { constant("bool", name, value ? "true" : "false", value); }
+  void number(const char* name, int value) { constant("int", name, std::to_string(value), value); }
+  void number(const char* name, double value) { constant("double", name, literal(value), value); }
+  void text(const char* name, const std::string& value) { constant("const char*", name, quoted(value), value); }
+  template <class Values>
+  void list(const std::string& type, const char* name, const Values& values) {
+    out_ << "  static constexpr std::array<" << type << ", " << values.size() << "> " << name << " = ";
+    if (values.size() == 0) {
+      out_ << "{};\n";
+    } else {
+      out_ << '{';
+      write_braced(out_, values, "  ");
+      out_ << "};\n";
+    }
+    count(name, values);
+  }
+  template <class Rows>
+  void table(const std::string& type, const char* name, const Rows& rows) {
+    out_ << "  static constexpr std::array<std::array<" << type << ", " << rows[0].size() << ">, " << rows.size()
+         << "> " << name << " = {{";
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      out_ << (i == 0 ? "\n    {" : ",\n    {");
+      write_braced(out_, rows[i], "    ");
+      out_ << '}';
+    }
+    out_ << "}};\n";
+    count(name, rows);
+  }
+  template <class Scalar, int Size>
+  void scaler(const std::string& type, const char* name, const Scaler<Scalar, Size>& value) {
+    out_ << "  static constexpr pinnquad::Scaler<" << type << ", " << Size << "> " << name << " = {{";
+    write_braced(out_, value.mean, "  ");
+    out_ << "}, {";
+    write_braced(out_, value.standard_deviation, "  ");
+    out_ << "}};\n";
+    count(name, value);
+  }
+
+ private:
+  template <class Value>
+  using ElementOf = decltype(*std::declval<const Value&>().begin());
+  template <class Value>
+  static void add(ConstantHash& hash, const Value& value) {
+    if constexpr (std::is_convertible_v<Value, std::string>) {
+      hash.add(std::string_view(printable(value)));
+    } else if constexpr (is_detected<ElementOf, Value>) {
+      for (const auto& one : value) add(hash, one);
+    } else {
+      hash.add(value);
+    }
+  }
+
+  std::ostream& out_;
+  std::uint64_t sum_ = 0;
+};
+
+/// Writes the constants of format 3 into a struct, whose texts around them are `out`'s.
+template <class Scalar>
+void write_header_records(std::ostream& out, ConstantWriter& write, const WrittenRecords& records) {
+  const std::string scalar = std::is_same_v<Scalar, float> ? "float" : "double";
+  out << "\n  // records: a reader that does not know one of them must not fly the model "
+         "(exported/model_records.hpp)\n";
+  std::vector<std::string> names;
+  for (const std::string_view record : known_records) names.emplace_back(record);
+  write.list("const char*", "records", names);
+  write.text("answer", records.answer);
+  write.constant("auto", "command_meaning",
+                 std::string("pinnquad::CommandMeaning::") + to_string(*records.command_meaning),
+                 *records.command_meaning);
+  write.number("command_lower", records.command_lower);
+  write.number("command_upper", records.command_upper);
+  write.number("sample_period_s", records.sample_period_s);
+  write.number("lag_removed_s", records.lag_removed_s);
+  write.number("window_taps", static_cast<int>(records.window_taps));
+  write.truth("causal", records.causal);
+  write.list("const char*", "column_names", records.column_names);
+  write.list("const char*", "column_units", records.column_units);
+  out << "  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density\n";
+  write.table("double", "allocation", records.allocation);
+  write.text("base", records.base);
+  if (records.slope_signs) write.table("int", "slope_signs", *records.slope_signs);
+  if (records.residual_range) {
+    write.list(scalar, "residual_lower", converted<Scalar>(records.residual_range->lower));
+    write.list(scalar, "residual_upper", converted<Scalar>(records.residual_range->upper));
+  }
+  if (records.distance) {
+    write.list(scalar, "distance_mean", converted<Scalar>(records.distance->mean));
+    write.list(scalar, "distance_inverse_cholesky", converted<Scalar>(records.distance->inverse_cholesky));
+    const auto limit = static_cast<Scalar>(records.distance->limit);
+    write.constant(scalar.c_str(), "distance_limit", literal(limit), limit);
+  }
+}
 
 /// All numbers of a model but its golden vectors.
 template <class Model>
@@ -42,8 +157,8 @@ void require_finite_model(const Model& model) {
 }
 
 /// The commands of golden feature vectors, by the portable kernel.
-/// Throws std::invalid_argument for none, for one outside the envelope, which no self test could pass, and for a model or
-/// a command that is not finite.
+/// Throws std::invalid_argument for none, for one outside the envelope, which no self test could pass, and for a model
+/// or a command that is not finite.
 template <class Model>
 std::vector<Commands<typename Model::Scalar>> golden_commands(
     const Model& model, const std::vector<typename Model::FeatureVector>& golden) {
@@ -61,40 +176,14 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
   return commands;
 }
 
-/// The records of a trained model; of one with a certificate what is proven is among them. Throws std::invalid_argument where
-/// nothing is proven of a model that has the structure.
-template <class Model>
-WrittenRecords records_of_training(const Model& model, Provenance provenance) {
-  const Airframe<double> airframe = model.template airframe<double>();
-  if constexpr (has_certificate<Model>) {
-    const Certificate certificate = certificate_of_trained(model);
-    if (!certificate.proven()) {
-      throw std::invalid_argument("export: " + std::string(certificate.bounded
-                                                               ? "a slope of the model is not above its floor"
-                                                               : "the bounds of the residual are none"));
-    }
-    provenance.slope_signs = motor_torque_signs(airframe);
-    ResidualRange range;
-    using Scalar = typename Model::Scalar;
-    const auto outward = [](double bound, double to) {  // as the model's Scalar holds it
-      const auto rounded = static_cast<Scalar>(bound);
-      return std::abs(bound) > 0 ? static_cast<double>(std::nextafter(rounded, static_cast<Scalar>(to))) : 0.0;
-    };
-    for (const double bound : certificate.residual_lower) range.lower.push_back(outward(bound, -1e30));
-    for (const double bound : certificate.residual_upper) range.upper.push_back(outward(bound, 1e30));
-    provenance.residual_range = range;
-  }
-  return records_of_training<typename Model::Network, typename Model::Features, typename Model::Outputs>(provenance,
-                                                                                                         airframe);
-}
-
 }  // namespace detail
 
 /// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
-/// commands are computed here by the portable kernel. The contract of what is written: exported/model.hpp; no locale plays
-/// a part. A GivenAirframe stands before the
-/// model as a struct of its own. A model that is worse than the mean says so at its head. Throws std::invalid_argument, and writes nothing, for a
-/// name that no struct may have, for no golden vector, for one outside the envelope, for a number that is not finite, for terms that no model has (deploy/provenance.hpp), and for a model of proven structure that has no certificate.
+/// commands are computed here by the portable kernel. The contract of the struct: exported/model.hpp. No locale plays a
+/// part. A GivenAirframe stands before the model as a struct of its own. A model that is worse than the mean says so at
+/// its head. Throws std::invalid_argument, and writes nothing, for a name that no struct may have, for no golden
+/// vector, for one outside the envelope, for a number that is not finite, for a provenance that no model has, and for a
+/// model of proven structure that has no certificate.
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& stream, const std::string& struct_name,
                  const TrainedModel<NetworkType, ContextType>& model,
@@ -102,7 +191,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
                  const Provenance& provenance) {
   using Model = TrainedModel<NetworkType, ContextType>;
   using Scalar = typename Model::Scalar;
-  if (!is_identifier(struct_name)) throw std::invalid_argument("export: '" + struct_name + "' is not a C++ identifier");
+  detail::require_identifier(struct_name);
   const auto golden_commands = detail::golden_commands(model, golden);
   const auto records = detail::records_of_training(model, provenance);
   constexpr bool own_airframe = std::is_same_v<typename Model::Vehicle, GivenAirframe>;

@@ -1,35 +1,39 @@
 // SPDX-License-Identifier: MIT
-// What an export says of a model beside its numbers: where it comes from, in which terms it was trained, what was found out
-// about it.
+// The words of an export beside its numbers: where a model comes from, in which terms it was trained, what was found
+// out about it. Header (exported/model_records.hpp) and block (exported/model_block.hpp) write the same records of it.
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/dynamics/command_meaning.hpp"
 #include "pinnquad/evaluation/errors.hpp"
-#include "pinnquad/exported/model.hpp"
+#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/exported/model_block.hpp"
 
 namespace pinnquad {
 
-/// Between which a residual's outputs stay, one bound per output, in the outputs' units.
-struct ResidualRange {
-  std::vector<double> lower;
-  std::vector<double> upper;
-};
-
-/// Where the training features lie together: x is near them if |L^-1 (x - mean)| <= limit, L L^T their covariance.
-struct DistanceStatistics {
-  std::vector<double> mean;              ///< one per feature
-  std::vector<double> inverse_cholesky;  ///< lower triangle of L^-1, row by row: n (n + 1) / 2
-  double limit = 0;                      ///< above 0
-};
-
 /// Where a model comes from; printed into the header as strings.
 struct Provenance {
+  /// The bounds of a residual, one of each per output, in the outputs' units.
+  struct ResidualRange {
+    std::vector<double> lower;
+    std::vector<double> upper;
+  };
+  /// Where the training features lie together: x is near them if |L^-1 (x - mean)| <= limit, L L^T their covariance.
+  struct DistanceStatistics {
+    std::vector<double> mean;              ///< one per feature
+    std::vector<double> inverse_cholesky;  ///< lower triangle of L^-1, row by row: n (n + 1) / 2
+    double limit = 0;                      ///< above 0
+  };
+
   std::string training_data;             ///< name of the flight, not a path of the machine
   std::uint64_t training_data_hash = 0;  ///< content_hash() of the flight
   std::size_t training_rows = 0;
@@ -38,7 +42,7 @@ struct Provenance {
   std::string loss;                               ///< in words
   std::optional<Verdict> verdict = std::nullopt;  ///< how the model was judged; none: the header says nothing of it
 
-  /// What a recorded command meant; none: what the airframe's curves say (command_meaning_of()).
+  /// The meaning of a recorded command; none: the airframe's curves say it (command_meaning_of()).
   std::optional<CommandMeaning> command_meaning = std::nullopt;
   double command_lower = 0;  ///< the range that commands were given in
   double command_upper = 1;
@@ -46,9 +50,159 @@ struct Provenance {
   double lag_removed_s = 0;    ///< of the rotors, taken out of the commands before the training
 
   // what was found out besides, for guards and certificates
-  std::optional<std::array<TorqueSigns, rotor_count>> slope_signs = std::nullopt;  ///< proven signs of du/d(ang. acc.)
+  std::optional<detail::TorqueSigns> slope_signs = std::nullopt;  ///< proven signs of du/d(ang. acc.)
   std::optional<ResidualRange> residual_range = std::nullopt;
   std::optional<DistanceStatistics> distance = std::nullopt;
 };
 
+namespace detail {
+
+/// A description as a text (model/description.hpp).
+struct DescriptionText {
+  std::string text;
+  void add(std::string_view piece) { text += piece; }
+  void add(int number) { text += std::to_string(number); }
+};
+template <class T>
+std::string description_text() {
+  DescriptionText sink;
+  Description<T>::add(sink);
+  return sink.text;
+}
+
+/// The records of a model, as header and block state them: those of its training, and those that its types say.
+struct WrittenRecords : Provenance {
+  AllocationMatrix<double> allocation{};
+  std::optional<std::uint32_t> judged{};  ///< judged_bits()
+  std::uint32_t window_taps = 1;          ///< 1: the present alone
+  bool causal = true;
+  std::vector<std::string> column_names, column_units;
+  std::string answer;  ///< description of what the parameters are of
+  std::string base;    ///< description of the outputs' base; empty: none
+};
+
+template <class M>
+WrittenRecords records_of_types() {
+  using Window = WindowOf<typename M::Features>;
+  const auto& names = extra_column_names<typename M::Features>;
+  const auto& units = extra_column_units<typename M::Features>;
+  WrittenRecords records;
+  records.window_taps = static_cast<std::uint32_t>(Window::taps);
+  records.causal = Window::causal;
+  records.column_names.assign(names.begin(), names.end());
+  records.column_units.assign(units.begin(), units.end());
+  records.answer = description_text<typename M::Network>();
+  records.base = description_text<typename BaseOf<typename M::Outputs>::type>();
+  return records;
+}
+
+/// Throws std::invalid_argument for a range that is none, a time beyond 0 to 4 s, another period than the window's, and
+/// for statistics of another length than the model's, or that are not finite.
+template <class Features, class Outputs>
+void require_provenance(const Provenance& from) {
+  const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
+  if (!is_finite(from.command_lower) || !is_finite(from.command_upper) || !(from.command_lower <= from.command_upper)) {
+    refuse("the range of the commands is none");
+  }
+  if (!is_clock_time(from.sample_period_s)) refuse("the sample period is not one of 0 to 4 s");
+  if (!is_clock_time(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 4 s");
+  constexpr double window_s = WindowOf<Features>::period_s;
+  if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
+    refuse("the sample period is not that of the features' window");
+  }
+  if (const auto& range = from.residual_range) {
+    constexpr auto outputs = static_cast<std::size_t>(OutputMap<Outputs>::size);
+    if (range->lower.size() != outputs || range->upper.size() != outputs) {
+      refuse("the range of a residual is not one of bounds for every output");
+    }
+    require_finite(range->lower, "the lower bounds of the residual");
+    require_finite(range->upper, "the upper bounds of the residual");
+    for (std::size_t i = 0; i < outputs; ++i) {
+      if (!(range->lower[i] <= range->upper[i])) refuse("a lower bound of the residual lies above the upper one");
+    }
+  }
+  if (const auto& distance = from.distance) {
+    constexpr auto size = static_cast<std::size_t>(Features::size);
+    if (distance->mean.size() != size || distance->inverse_cholesky.size() != triangle(size)) {
+      refuse("the statistics of a distance are not those of " + std::to_string(size) + " features");
+    }
+    require_finite(distance->mean, "the means of the distance");
+    require_finite(distance->inverse_cholesky, "the triangle of the distance");
+    if (!is_finite(distance->limit) || !(distance->limit > 0)) refuse("the limit of the distance is no number above 0");
+  }
+}
+
+/// Of a trained model; what is proven of one with a certificate is among them. Throws std::invalid_argument where
+/// require_provenance() does, and where nothing is proven of a model that has the structure.
+template <class Model>
+WrittenRecords records_of_training(const Model& model, const Provenance& from) {
+  WrittenRecords records = records_of_types<Model>();
+  static_cast<Provenance&>(records) = from;
+  const Airframe<double> airframe = model.template airframe<double>();
+  if constexpr (has_certificate<Model>) {
+    const Certificate certificate = certificate_of_trained(model);
+    if (!certificate.proven()) {
+      throw std::invalid_argument("export: " + std::string(certificate.bounded
+                                                               ? "a slope of the model is not above its floor"
+                                                               : "the bounds of the residual are none"));
+    }
+    records.slope_signs = motor_torque_signs(airframe);
+    Provenance::ResidualRange range;
+    using Scalar = typename Model::Scalar;
+    const auto outward = [](double bound, double to) {  // as the model's Scalar holds it
+      const auto rounded = static_cast<Scalar>(bound);
+      return std::abs(bound) > 0 ? static_cast<double>(std::nextafter(rounded, static_cast<Scalar>(to))) : 0.0;
+    };
+    for (const double bound : certificate.residual_lower) range.lower.push_back(outward(bound, -1e30));
+    for (const double bound : certificate.residual_upper) range.upper.push_back(outward(bound, 1e30));
+    records.residual_range = range;
+  }
+  require_provenance<typename Model::Features, typename Model::Outputs>(records);
+  if (!from.command_meaning) records.command_meaning = command_meaning_of(airframe);
+  constexpr double window_s = WindowOf<typename Model::Features>::period_s;
+  if (window_s > 0) records.sample_period_s = window_s;
+  records.allocation = allocation(airframe);
+  if (from.verdict) {
+    records.judged = judged_bits(from.verdict->worse_than_mean(), from.verdict->beats_linear_regression());
+  }
+  return records;
+}
+
+/// The same numbers in another type.
+template <class To, class Numbers>
+std::vector<To> converted(const Numbers& numbers) {
+  std::vector<To> result;
+  for (const auto number : numbers) result.push_back(static_cast<To>(number));
+  return result;
+}
+
+/// Of an exported header, of whatever format.
+template <class M>
+WrittenRecords records_of_header() {
+  WrittenRecords records = records_of_types<M>();
+  records.allocation = allocation(airframe_value<typename M::Vehicle, double>());
+  records.command_meaning = header_command_meaning<M>();
+  records.sample_period_s = header_period_s<M>();
+  if constexpr (is_detected<RecordsOf, M>) {
+    records.command_lower = M::command_lower;
+    records.command_upper = M::command_upper;
+    records.lag_removed_s = M::lag_removed_s;
+  }
+  if constexpr (is_detected<StatedVerdictOf, M>) {
+    records.judged = judged_bits(M::worse_than_mean, M::beats_linear_regression);
+  }
+  if constexpr (is_detected<SlopeSignsOf, M>) records.slope_signs = M::slope_signs;
+  if constexpr (is_detected<ResidualRangeOf, M>) {
+    records.residual_range =
+        Provenance::ResidualRange{converted<double>(M::residual_lower), converted<double>(M::residual_upper)};
+  }
+  if constexpr (is_detected<DistanceStatisticsOf, M>) {
+    records.distance = Provenance::DistanceStatistics{converted<double>(M::distance_mean),
+                                                      converted<double>(M::distance_inverse_cholesky),
+                                                      static_cast<double>(M::distance_limit)};
+  }
+  return records;
+}
+
+}  // namespace detail
 }  // namespace pinnquad

@@ -10,9 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "pinnquad/deploy/identifier.hpp"
-#include "pinnquad/deploy/literal.hpp"
-#include "pinnquad/deploy/type_name.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/training/structured/trust_limits.hpp"
 
@@ -24,7 +22,7 @@ namespace pinnquad {
 template <class Scalar, int Size>
 void write_trust(std::ostream& stream, const std::string& model_name, const FittedTrust<Size>& trust,
                  std::uint64_t training_data_hash) {
-  if (!is_identifier(model_name)) throw std::invalid_argument("export: '" + model_name + "' is not a C++ identifier");
+  detail::require_identifier(model_name);
   const auto rounded = [](const auto& values) {
     std::array<Scalar, std::tuple_size_v<std::decay_t<decltype(values)>>> result{};
     for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<Scalar>(values[i]);

@@ -25,19 +25,19 @@ std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& go
                                     std::uint64_t training_data_hash, std::uint64_t training_rows) {
   using Layout = ModelBlockLayout<Shape>;
   using Scalar = typename Shape::Scalar;
-  LittleEndianBytes scalars;
+  LittleEndianBytes<Scalar> scalars;
   scalars.add(model.input.mean);
   scalars.add(model.input.standard_deviation);
   scalars.add(model.output.mean);
   scalars.add(model.output.standard_deviation);
   scalars.add(model.envelope_lower);
   scalars.add(model.envelope_upper);
-  scalars.add_rows(golden_features);
-  scalars.add_rows(golden_commands);
+  scalars.add(golden_features);
+  scalars.add(golden_commands);
   scalars.add(parameters);
   return whole_block({sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, golden_features.size(),
                       training_rows, shape, training_data_hash},
-                     block_records<Scalar>(records), scalars);
+                     block_records<Scalar>(records), scalars.bytes);
 }
 
 }  // namespace detail

@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// The values are those of a model block (exported/block_records.hpp).
+/// The values are those of a model block (exported/model_block.hpp).
 enum class CommandMeaning : std::uint8_t {
   thrust = 0,       ///< u = (n / n_max)^2, the thrust over that at full command
   pulse_width = 1,  ///< the share of a speed controller's pulse range: thrust between a share and its square

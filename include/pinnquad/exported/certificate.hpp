@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What is proven of a model by its structure and its stored numbers, whatever it is asked (docs/certificate.md): each
-// signed sum of its commands rises with the angular acceleration about its axis, and with no other one or less than with
-// its own, and the commands stay within a bound of an affine map. Of the bare model: a limit that clips its commands may
-// move the other sums. A few products of stored numbers, for the compiler, for a block that is opened and for the ground.
+// A certificate: the structure and the stored numbers of a model prove it, whatever the model is asked
+// (docs/certificate.md). Each signed sum of the commands rises with the angular acceleration about its axis, and less
+// with any other one. The commands stay within a bound of an affine map. It holds for the bare model: a limit that
+// clips its commands may move the other sums. A few products of stored numbers, worked out by the compiler, when a
+// block is opened, and on the ground.
 #pragma once
 
 #include <limits>
@@ -13,8 +14,8 @@
 
 namespace pinnquad {
 
-/// Of a model whose thrust slope is below this share of the airframe's own in hover nobody should ask to carry anything:
-/// a position loop that was tuned on the airframe has half its gain or less, and sinks twice as far under a load.
+/// A model whose thrust slope is below this share of the airframe's own in hover should carry nothing: a position loop
+/// tuned on the airframe has half its gain or less, and sinks twice as far under a load.
 inline constexpr double least_thrust_share = 0.5;
 
 /// Of a model with a structure that can be proven. All bounds hold for the real function of the stored numbers; where a
@@ -56,8 +57,8 @@ struct Certificate {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// What a residual that is shown the angular acceleration takes off the slopes about an axis, at worst, and does to the
-/// other sums.
+/// The most that a residual that is shown the angular acceleration takes off the slopes about an axis, and that it does
+/// to the other sums.
 template <class Scalar>
 constexpr void take_paths(const CertifiedNumbers<Scalar>& from, int axis, Certificate& certificate) noexcept {
   double held_fall = 0;

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 #include <type_traits>
 
@@ -17,47 +19,16 @@
 namespace pinnquad {
 
 /// The constants that count, where a header has them; `Vehicle` is its airframe's value. The model's name, and where it
-/// comes from in words, may be edited.
-inline constexpr std::array<std::string_view, 40> hashed_constants = {"format_version",
-                                                                      "training_data_hash",
-                                                                      "training_rows",
-                                                                      "worse_than_mean",
-                                                                      "beats_linear_regression",
-                                                                      "frame",
-                                                                      "feature_names",
-                                                                      "feature_units",
-                                                                      "output_names",
-                                                                      "output_unit",
-                                                                      "output_units",
-                                                                      "vehicle_name",
-                                                                      "motor_torque_signs",
-                                                                      "Vehicle",
-                                                                      "records",
-                                                                      "answer",
-                                                                      "command_meaning",
-                                                                      "command_lower",
-                                                                      "command_upper",
-                                                                      "sample_period_s",
-                                                                      "lag_removed_s",
-                                                                      "window_taps",
-                                                                      "causal",
-                                                                      "column_names",
-                                                                      "column_units",
-                                                                      "allocation",
-                                                                      "base",
-                                                                      "slope_signs",
-                                                                      "residual_lower",
-                                                                      "residual_upper",
-                                                                      "distance_mean",
-                                                                      "distance_inverse_cholesky",
-                                                                      "distance_limit",
-                                                                      "input",
-                                                                      "output",
-                                                                      "envelope_lower",
-                                                                      "envelope_upper",
-                                                                      "golden_features",
-                                                                      "golden_commands",
-                                                                      "parameters"};
+/// comes from in words, may be edited. contents_hash_of() lists their values in this order.
+inline constexpr std::string_view hashed_constants[] = {
+    // clang-format off
+    "format_version", "training_data_hash", "training_rows", "worse_than_mean", "beats_linear_regression", "frame",
+    "feature_names", "feature_units", "output_names", "output_unit", "output_units", "vehicle_name",
+    "motor_torque_signs", "Vehicle", "records", "answer", "command_meaning", "command_lower", "command_upper",
+    "sample_period_s", "lag_removed_s", "window_taps", "causal", "column_names", "column_units", "allocation", "base",
+    "slope_signs", "residual_lower", "residual_upper", "distance_mean", "distance_inverse_cholesky", "distance_limit",
+    "input", "output", "envelope_lower", "envelope_upper", "golden_features", "golden_commands", "parameters"};
+// clang-format on
 
 namespace detail {
 
@@ -149,12 +120,13 @@ constexpr std::uint64_t constant_hash(std::string_view name, const Value& value)
   return hash.value();
 }
 
-constexpr bool is_hashed(std::string_view name) noexcept {
-  for (const std::string_view hashed : hashed_constants) {
-    if (hashed == name) return true;
-  }
-  return false;
+/// The place of a name among hashed_constants, their number where it is none of them.
+constexpr std::size_t hashed_place(std::string_view name) noexcept {
+  std::size_t place = 0;
+  while (place < std::size(hashed_constants) && hashed_constants[place] != name) ++place;
+  return place;
 }
+constexpr bool is_hashed(std::string_view name) noexcept { return hashed_place(name) < std::size(hashed_constants); }
 
 template <class M>
 using ContentsHashOf = decltype(std::uint64_t{M::contents_hash});
@@ -163,62 +135,36 @@ using ContentsHashOf = decltype(std::uint64_t{M::contents_hash});
 template <class M>
 constexpr std::uint64_t contents_hash_of() noexcept {
   std::uint64_t sum = 0;
-  const auto add = [&sum](std::string_view name, const auto& value) { sum += constant_hash(name, value); };
-  add("format_version", M::format_version);
-  add("training_data_hash", M::training_data_hash);
+  const auto add = [&sum](std::string_view first, const auto&... values) {  // and those that follow it
+    std::size_t place = hashed_place(first);
+    ((sum += constant_hash(hashed_constants[place++], values)), ...);
+  };
+  add("format_version", M::format_version, M::training_data_hash);
   if constexpr (is_detected<TrainingRowsOf, M>) add("training_rows", M::training_rows);
-  if constexpr (is_detected<StatedVerdictOf, M>) {
-    add("worse_than_mean", M::worse_than_mean);
-    add("beats_linear_regression", M::beats_linear_regression);
-  }
-  add("frame", M::frame);
-  add("feature_names", M::feature_names);
-  add("feature_units", M::feature_units);
-  add("output_names", M::output_names);
+  if constexpr (is_detected<StatedVerdictOf, M>) add("worse_than_mean", M::worse_than_mean, M::beats_linear_regression);
+  add("frame", M::frame, M::feature_names, M::feature_units, M::output_names);
   if constexpr (is_detected<OutputUnitsOf, M>) {
     add("output_units", M::output_units);
   } else {
     add("output_unit", M::output_unit);
   }
-  add("vehicle_name", M::vehicle_name);
-  add("motor_torque_signs", M::motor_torque_signs);
-  add("Vehicle", airframe_value<typename M::Vehicle, double>());
+  add("vehicle_name", M::vehicle_name, M::motor_torque_signs, airframe_value<typename M::Vehicle, double>());
   if constexpr (is_detected<RecordsOf, M>) {
-    add("records", M::records);
-    add("answer", M::answer);
-    add("command_meaning", M::command_meaning);
-    add("command_lower", M::command_lower);
-    add("command_upper", M::command_upper);
-    add("sample_period_s", M::sample_period_s);
-    add("lag_removed_s", M::lag_removed_s);
-    add("window_taps", M::window_taps);
-    add("causal", M::causal);
-    add("column_names", M::column_names);
-    add("column_units", M::column_units);
-    add("allocation", M::allocation);
-    add("base", M::base);
+    add("records", M::records, M::answer, M::command_meaning, M::command_lower, M::command_upper, M::sample_period_s,
+        M::lag_removed_s, M::window_taps, M::causal, M::column_names, M::column_units, M::allocation, M::base);
   }
   if constexpr (is_detected<SlopeSignsOf, M>) add("slope_signs", M::slope_signs);
-  if constexpr (is_detected<ResidualRangeOf, M>) {
-    add("residual_lower", M::residual_lower);
-    add("residual_upper", M::residual_upper);
-  }
+  if constexpr (is_detected<ResidualRangeOf, M>) add("residual_lower", M::residual_lower, M::residual_upper);
   if constexpr (is_detected<DistanceStatisticsOf, M>) {
-    add("distance_mean", M::distance_mean);
-    add("distance_inverse_cholesky", M::distance_inverse_cholesky);
-    add("distance_limit", M::distance_limit);
+    add("distance_mean", M::distance_mean, M::distance_inverse_cholesky, M::distance_limit);
   }
-  add("input", M::input);
-  add("output", M::output);
-  add("envelope_lower", M::envelope_lower);
-  add("envelope_upper", M::envelope_upper);
-  add("golden_features", M::golden_features);
-  add("golden_commands", M::golden_commands);
-  add("parameters", M::parameters);
+  add("input", M::input, M::output, M::envelope_lower, M::envelope_upper, M::golden_features, M::golden_commands,
+      M::parameters);
   return sum;
 }
 
-/// True for a header that says no hash, as those of before did, and where the compiler can't read the bits of a constant.
+/// True for a header that says no hash, as those of before did, and where the compiler can't read the bits of a
+/// constant.
 template <class M>
 constexpr bool same_contents() noexcept {
   if constexpr (is_detected<ContentsHashOf, M> && reads_bits_of_constants) {

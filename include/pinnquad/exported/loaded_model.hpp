@@ -9,53 +9,53 @@
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Rows of scalars, up to `Capacity` of them, kept by value. As made, one row of zeros.
-template <class Scalar, int Columns, std::size_t Capacity>
-class FixedRows {
- public:
-  using value_type = std::array<Scalar, static_cast<std::size_t>(Columns)>;
-  static_assert(Capacity > 0);
-
-  constexpr std::size_t size() const noexcept { return count_; }
-  constexpr const value_type& operator[](std::size_t row) const noexcept { return rows_[row]; }
-
-  /// Keeps the first rows of `source`, as many as there is room for.
-  template <class Rows>
-  void copy(const Rows& source) noexcept {
-    count_ = source.size() < Capacity ? source.size() : Capacity;
-    for (std::size_t row = 0; row < count_; ++row) rows_[row] = source[row];
-  }
-
- private:
-  value_type rows_[Capacity]{};
-  std::size_t count_ = 1;
-};
-
 /// Golden vectors that a LoadedModel keeps; `train` writes as many.
 inline constexpr std::size_t loaded_golden_vectors = 8;
 
-/// A model as `InverseDynamics` reads it, with weights of its own: as in the block, for batches and derivatives, and packed
-/// for prediction where there is a vector unit. About as large as its weights, twice with a vector unit, so not a thing for a
-/// small stack; with a vector unit it is aligned to 64 bytes, as a PackedNetwork is. As made, it declines: its envelope is
-/// empty and its self test fails.
+/// A model as `InverseDynamics` reads it, with weights of its own: as in the block, for batches and derivatives, and
+/// packed for prediction where there is a vector unit. About as large as its weights, twice with a vector unit, so not
+/// a thing for a small stack; with a vector unit it is aligned to 64 bytes, as a PackedNetwork is. As made, it
+/// declines: its envelope is empty and its self test fails.
 template <class ShapeType>
-class LoadedModel : public ModelScales<ShapeType> {
+class LoadedModel : public detail::ModelScales<ShapeType> {
  public:
   static constexpr ModelKind kind = ModelKind::loaded;
-  using Scales = ModelScales<ShapeType>;
+  using Scales = detail::ModelScales<ShapeType>;
   using typename Scales::Features;
   using typename Scales::Network;
   using typename Scales::Scalar;
 
-  FixedRows<Scalar, Features::size, loaded_golden_vectors> golden_features{};
-  FixedRows<Scalar, rotor_count, loaded_golden_vectors> golden_commands{};
+  /// Rows of scalars, up to loaded_golden_vectors of them. As made, one row of zeros.
+  template <int Columns>
+  class Rows {
+   public:
+    using value_type = std::array<Scalar, static_cast<std::size_t>(Columns)>;
+
+    constexpr std::size_t size() const noexcept { return count_; }
+    constexpr const value_type& operator[](std::size_t row) const noexcept { return rows_[row]; }
+
+    /// Keeps the first rows of `source`, as many as there is room for.
+    template <class Source>
+    void copy(const Source& source) noexcept {
+      count_ = source.size() < loaded_golden_vectors ? source.size() : loaded_golden_vectors;
+      for (std::size_t row = 0; row < count_; ++row) rows_[row] = source[row];
+    }
+
+   private:
+    value_type rows_[loaded_golden_vectors]{};
+    std::size_t count_ = 1;
+  };
+
+  Rows<Features::size> golden_features{};
+  Rows<rotor_count> golden_commands{};
 
   /// Copies a view that open() has filled, in place. `block_truncated` for a view of no block: nothing is changed then.
   /// Not to be called while another thread predicts with this model (examples/model_swap.cpp).
   Status load(const ModelView<ShapeType>& view) noexcept {
     if (view.parameters() == nullptr) return Status::block_truncated;
     static_cast<Scales&>(*this) = view;
-    this->records.distance = nullptr;  // it lies in the block, which may go
+    this->records.slope_signs = nullptr;  // these lie in the block, which may go
+    this->records.residual_range = this->records.distance = nullptr;
     golden_features.copy(view.golden_features);
     golden_commands.copy(view.golden_commands);
     std::memcpy(&network_.parameters, view.parameters(), sizeof network_.parameters);
@@ -80,11 +80,10 @@ class LoadedModel : public ModelScales<ShapeType> {
 
  private:
   static constexpr bool packs = has_vector_unit<Scalar> && is_network<Network>;
-  struct NotPacked {};
 
   template <class Answer, bool Packs>
   struct PackedFor {
-    using type = NotPacked;
+    struct type {};
   };
   template <class Answer>
   struct PackedFor<Answer, true> {

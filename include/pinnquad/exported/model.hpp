@@ -27,9 +27,9 @@ namespace pinnquad {
 ///      training_data_hash; optional, of a model that was judged: test_r_squared, linear_regression_r_squared (finite),
 ///      worse_than_mean, beats_linear_regression (evaluation/errors.hpp)
 ///      Where the outputs have several units, output_units, one per output, in place of output_unit.
-///   3  besides, and with output_units always: records, and what they name (exported/model_records.hpp). A Vehicle that is
-///      none of the library's stands before the model, in the same header. Optional: contents_hash, over all of it
-///      (exported/contents_hash.hpp).
+///   3  besides, and with output_units always: records, and what they name (exported/model_records.hpp). A Vehicle
+///      that is none of the library's stands before the model, in the same header. Optional: contents_hash, over all
+///      of it (exported/contents_hash.hpp).
 inline constexpr int model_format_version = 3;
 
 /// The oldest format that still flies.
@@ -60,9 +60,6 @@ template <class S>
 inline constexpr bool has_shape = is_detected<ShapeTypes, S>;
 
 template <class M>
-using KindOf = decltype(M::kind);
-
-template <class M>
 using ModelMembers =
     std::void_t<ShapeTypes<M>, decltype(M::format_version), decltype(M::parameters), decltype(M::input),
                 decltype(M::output), decltype(M::envelope_lower), decltype(M::envelope_upper),
@@ -75,20 +72,11 @@ using DescriptionOf = std::void_t<decltype(M::frame), decltype(M::feature_names)
 template <class M>
 using OutputUnitOf = decltype(M::output_unit);
 
-template <class M>
-constexpr ModelKind kind_of() noexcept {
-  if constexpr (is_detected<KindOf, M>) {
-    return M::kind;
-  } else {
-    return ModelKind::header;
-  }
-}
-
 /// All texts are one.
 template <class Texts>
 constexpr bool one_unit(const Texts& texts) noexcept {
   for (const auto& text : texts) {
-    if (!same_text(text, texts[0])) return false;
+    if (!same_values(text, texts[0])) return false;
   }
   return true;
 }
@@ -98,22 +86,10 @@ template <class M>
 constexpr bool same_output_units() noexcept {
   using Map = OutputMap<typename M::Outputs>;
   if constexpr (is_detected<OutputUnitsOf, M>) {
-    return same_texts(M::output_units, Map::units);
+    return same_values(M::output_units, Map::units);
   } else {
-    return one_unit(Map::units) && same_text(M::output_unit, Map::units[0]);
+    return one_unit(Map::units) && same_values(M::output_unit, Map::units[0]);
   }
-}
-
-template <class Signs>
-constexpr bool same_signs(const Signs& signs, const std::array<TorqueSigns, rotor_count>& others) noexcept {
-  if (signs.size() != others.size()) return false;
-  for (std::size_t rotor = 0; rotor < others.size(); ++rotor) {
-    if (signs[rotor].size() != others[rotor].size()) return false;
-    for (std::size_t axis = 0; axis < others[rotor].size(); ++axis) {
-      if (signs[rotor][axis] != others[rotor][axis]) return false;
-    }
-  }
-  return true;
 }
 
 /// False for NaN.
@@ -121,14 +97,6 @@ template <class M>
 constexpr bool golden_inside_envelope() noexcept {
   for (const auto& x : M::golden_features) {
     if (!inside_envelope(M::envelope_lower.data(), x.data(), M::envelope_upper.data(), x.size())) return false;
-  }
-  return true;
-}
-
-template <class M>
-constexpr bool golden_commands_finite() noexcept {
-  for (const auto& commands : M::golden_commands) {
-    if (!all_finite_constants(commands)) return false;
   }
   return true;
 }
@@ -141,7 +109,7 @@ constexpr bool all_positive(const Array& values) noexcept {
   return true;
 }
 
-/// What a header of format 2 or 3 says of itself, against what its types say.
+/// Compares the words of a header of format 2 or 3 with its types.
 template <class M>
 constexpr void require_description() noexcept {
   constexpr bool described =
@@ -153,19 +121,19 @@ constexpr void require_description() noexcept {
   if constexpr (described) {
     using Features = typename M::Features;
     using Outputs = typename M::Outputs;
-    static_assert(same_text(M::frame, model_frame), "pinnquad: the model was trained in other frames (frame)");
-    static_assert(same_texts(M::feature_names, Features::names),
+    static_assert(same_values(M::frame, model_frame), "pinnquad: the model was trained in other frames (frame)");
+    static_assert(same_values(M::feature_names, Features::names),
                   "pinnquad: the model was trained on other features than its feature set now has (feature_names)");
-    static_assert(same_texts(M::feature_units, Features::units),
+    static_assert(same_values(M::feature_units, Features::units),
                   "pinnquad: the model was trained in other units than its feature set now has (feature_units)");
-    static_assert(same_texts(M::output_names, OutputMap<Outputs>::names),
+    static_assert(same_values(M::output_names, OutputMap<Outputs>::names),
                   "pinnquad: the model has other outputs than its output schema now has (output_names)");
     static_assert(same_output_units<M>(),
                   "pinnquad: the model's outputs have another unit than its output schema (output_unit, output_units)");
-    static_assert(same_text(M::vehicle_name, M::Vehicle::name),
+    static_assert(same_values(M::vehicle_name, M::Vehicle::name),
                   "pinnquad: the model was trained for another airframe than its Vehicle (vehicle_name)");
     static_assert(
-        same_signs(M::motor_torque_signs, motor_torque_signs<typename M::Vehicle>()),
+        same_values(M::motor_torque_signs, motor_torque_signs<typename M::Vehicle>()),
         "pinnquad: the model was trained with another motor order than its Vehicle now has: a rotor sits or turns "
         "elsewhere (motor_torque_signs)");
     static_assert(all_finite_constants(M::parameters), "pinnquad: a weight of the model is NaN or infinite");
@@ -181,7 +149,7 @@ constexpr void require_description() noexcept {
                     M::envelope_upper.data(), M::envelope_lower.size()),
         "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
         "spread can have been (envelope_lower, envelope_upper, input)");
-    static_assert(golden_commands_finite<M>(), "pinnquad: a golden command is NaN or infinite");
+    static_assert(all_finite_constants(M::golden_commands), "pinnquad: a golden command is NaN or infinite");
     static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
     static_assert(same_contents<M>(),
                   "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
@@ -195,8 +163,10 @@ template <class M>
 inline constexpr bool is_model = is_detected<detail::ModelMembers, M>;
 
 /// The kind of a model: stated by the type, `header` where it states none.
+template <class M, class = void>
+inline constexpr ModelKind model_kind = ModelKind::header;
 template <class M>
-inline constexpr ModelKind model_kind = detail::kind_of<M>();
+inline constexpr ModelKind model_kind<M, std::void_t<decltype(M::kind)>> = M::kind;
 
 /// Checks, at compile time and by rule, that the types of a model fit together, wherever its weights are.
 template <class S>
@@ -235,8 +205,8 @@ constexpr bool require_shape() noexcept {
   return detail::has_shape<S>;
 }
 
-/// The same for a whole model. Of a header: its types, its arrays, and its description. Of a model made for a shape: the
-/// types; its numbers were checked when its block was opened. An instance is checked by the code that made it.
+/// The same for a whole model. Of a header: its types, its arrays, and its description. Of a model made for a shape:
+/// the types; its numbers were checked when its block was opened. An instance is checked by the code that made it.
 template <class M>
 constexpr bool require_model() noexcept {
   constexpr bool made_for_shape = ModelKind::instance < model_kind<M>;

@@ -19,23 +19,21 @@ constexpr bool is_clock_time(double seconds) noexcept { return seconds >= 0.0 &&
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// No row of a training lies further from the mean than this many spreads: sqrt(n - 1) at most of n rows (Samuelson), and a
-/// block counts them in 32 bits. Twice that, for the margin.
+/// No row of a training lies further from the mean than this many spreads: sqrt(n - 1) at most of n rows (Samuelson),
+/// and a block counts them in 32 bits. Twice that, for the margin.
 inline constexpr double furthest_spreads = 131072.0;
 
 /// lower <= upper, and both where a training on features of that mean and spread can have been. False for NaN.
 template <class Scalar>
-constexpr bool is_envelope(Scalar mean, Scalar spread, Scalar lower, Scalar upper) noexcept {
-  const double centre = static_cast<double>(mean), magnitude = centre < 0 ? -centre : centre;
-  const double reach = furthest_spreads * static_cast<double>(spread) + magnitude;
-  const double below = centre - static_cast<double>(lower), above = static_cast<double>(upper) - centre;
-  return lower <= upper && below <= reach && above <= reach;
-}
-template <class Scalar>
 constexpr bool is_envelope(const Scalar* mean, const Scalar* spread, const Scalar* lower, const Scalar* upper,
                            std::size_t size) noexcept {
   bool sound = true;
-  for (std::size_t i = 0; i < size; ++i) sound = sound && is_envelope(mean[i], spread[i], lower[i], upper[i]);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double centre = static_cast<double>(mean[i]), magnitude = centre < 0 ? -centre : centre;
+    const double reach = furthest_spreads * static_cast<double>(spread[i]) + magnitude;
+    const double below = centre - static_cast<double>(lower[i]), above = static_cast<double>(upper[i]) - centre;
+    sound = sound && lower[i] <= upper[i] && below <= reach && above <= reach;
+  }
   return sound;
 }
 
@@ -48,8 +46,8 @@ constexpr bool inside_envelope(const Scalar* lower, const Scalar* x, const Scala
 }
 
 /// Of an answer whose slopes have the signs of its rotors' torques, and whose residual stays between bounds among its
-/// parameters: `at` is where they are, lower ones, then upper ones, -1 for a base without a residual. `known`: false where the
-/// answer has no such structure, so that a header's word is all there is.
+/// parameters: `at` is where they are, lower ones, then upper ones, -1 for a base without a residual. `known`: false
+/// where the answer has no such structure, so that a header's word is all there is.
 template <class Answer>
 struct StatedStructure {
   static constexpr bool known = false;
@@ -71,7 +69,8 @@ inline constexpr bool has_bounded_residual = false;
 template <class Answer>
 inline constexpr bool has_bounded_residual<Answer, std::void_t<typename StatedStructure<Answer>::Inner>> = true;
 
-/// A stated bound of a residual against the standardised one among the parameters. The writer rounds outward to a Scalar.
+/// A stated bound of a residual against the standardised one among the parameters. The writer rounds outward to a
+/// Scalar.
 template <class Scalar>
 constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar spread) noexcept {
   using Limits = std::numeric_limits<Scalar>;
@@ -81,8 +80,8 @@ constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar spread) noe
   return (difference < 0 ? -difference : difference) <= rounding + 2 * static_cast<double>(Limits::denorm_min());
 }
 
-/// A stated range of a residual against `bounds` among the parameters, as StatedStructure; read where there is a residual.
-/// A pointer into an array that is compared with null is no constant to g++ -fsanitize=undefined.
+/// A stated range of a residual against `bounds` among the parameters, as StatedStructure; read where there is a
+/// residual. A pointer into an array that is compared with null is no constant to g++ -fsanitize=undefined.
 template <class Scalar>
 constexpr bool same_residual_range(const Scalar* lower, const Scalar* upper, bool has_residual, const Scalar* bounds,
                                    const Scalar* output_spread, std::size_t outputs) noexcept {
@@ -98,7 +97,8 @@ constexpr bool same_residual_range(const Scalar* lower, const Scalar* upper, boo
 /// A proven sign is the one by which the rotor makes the torque, or 0: nothing is said.
 constexpr bool true_slope_sign(int stated, int torque_sign) noexcept { return stated == 0 || stated == torque_sign; }
 
-/// The statistics of a distance: means inside the envelope, a triangle with a diagonal above 0, row by row, a limit above 0.
+/// The statistics of a distance: means inside the envelope, a triangle with a diagonal above 0, row by row, a limit
+/// above 0.
 template <class Scalar>
 constexpr bool is_distance(const Scalar* mean, const Scalar* triangle, Scalar limit, const Scalar* lower,
                            const Scalar* upper, std::size_t size) noexcept {

@@ -10,7 +10,7 @@
 
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/core/fnv1a.hpp"
-#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/core/status.hpp"
 #include "pinnquad/exported/checksum.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/model/description.hpp"
@@ -19,7 +19,7 @@ namespace pinnquad {
 
 inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N', 'N', 'Q', 'U', 'A', 'D'};
 
-/// The version that this library writes: 2 has records (exported/block_records.hpp), 1 has none and still opens.
+/// The version that this library writes: 2 has records, 1 has none and still opens.
 inline constexpr std::uint32_t model_block_version = 2;
 inline constexpr std::uint32_t oldest_model_block_version = 1;
 
@@ -27,10 +27,11 @@ inline constexpr std::uint32_t oldest_model_block_version = 1;
 inline constexpr std::size_t model_block_alignment = 8;
 
 /// Byte offsets of the header's fields, and what they hold:
-///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs, u32 outputs,
-///   u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
-/// In version 2 the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow: input mean and spread, output mean and spread, envelope lower and upper, golden features, golden
-/// commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
+///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs,
+///   u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
+/// In version 2 the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow: input
+/// mean and spread, output mean and spread, envelope lower and upper, golden features, golden commands, parameters
+/// (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
 struct ModelBlockHeader {
   static constexpr std::size_t version = 8;
   static constexpr std::size_t length = 12;
@@ -44,7 +45,84 @@ struct ModelBlockHeader {
   static constexpr std::size_t training_data_hash = 48;
   static constexpr std::size_t size = 56;
   static constexpr std::size_t checksum_size = 4;
+  static constexpr std::size_t record_counts = 8;  ///< number of the records and bytes of them all, before the first
+  static constexpr std::size_t record_head = 8;    ///< of each record: its type and length
+  /// Bytes of a record behind its head.
+  static PINNQUAD_ALWAYS_INLINE constexpr std::size_t padded(std::size_t record_length) noexcept {
+    return (record_length + 7) / 8 * 8;
+  }
 };
+
+/// Records give the numbers of a block their meaning. Each is u16 type (bit 15: mandatory), u16 0, u32 length, bytes,
+/// zeros up to a multiple of 8. A reader refuses a mandatory record that it does not know and skips any other one.
+/// Here are the types and the bytes of each; "scalar" is the block's.
+enum class BlockRecord : std::uint16_t {
+  commands = 1,        ///< u32 CommandMeaning, u32 0, scalars lower and upper command
+  clock = 2,           ///< u32 sample period in ns (0: not said), u32 lag removed in ns
+  window = 3,          ///< u32 taps, u32 1 if causal
+  columns = 4,         ///< name and unit of each extra column, every text closed by a 0
+  allocation = 5,      ///< 16 scalars, row-major
+  base = 6,            ///< description of what the outputs add to
+  verdict = 7,         ///< u32 detail::judged_bits(), u32 0; optional
+  slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z, 0 unproven; optional
+  residual_range = 9,  ///< scalars: lower bounds of all outputs, then upper ones; optional
+  distance = 10,  ///< scalars: means of all features, lower triangle of L^-1 row by row, limit of the norm; optional
+};
+
+inline constexpr std::uint16_t mandatory_record = 0x8000;
+
+namespace detail {
+
+inline constexpr std::uint32_t block_record_types = 10;
+
+PINNQUAD_ALWAYS_INLINE constexpr std::uint32_t read_u32(const unsigned char* from) noexcept {
+  return std::uint32_t{from[0]} | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 |
+         std::uint32_t{from[3]} << 24;
+}
+PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t read_u64(const unsigned char* from) noexcept {
+  return std::uint64_t{read_u32(from)} | std::uint64_t{read_u32(from + 4)} << 32;
+}
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// How a model was judged before it was exported (evaluation/errors.hpp): bit 0, worse than the mean, not for flight;
+/// bit 1, better than a linear regression.
+constexpr std::uint32_t judged_bits(bool worse_than_mean, bool beats_linear_regression) noexcept {
+  return (worse_than_mean ? 1u : 0u) | (beats_linear_regression ? 2u : 0u);
+}
+
+/// Bytes of each BlockRecord in a block of such scalars, 0 for one of texts.
+struct RecordLengths {
+  std::uint32_t of[block_record_types + 1];
+};
+constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t inputs, std::uint32_t outputs) noexcept {
+  constexpr std::uint32_t rotors = rotor_count;
+  const std::uint32_t distance = inputs + std::uint32_t(triangle(inputs)) + 1;
+  return {{0, 8 + 2 * scalar, 8, 8, 0, 4 * rotors * scalar, 0, 8, 3 * rotors, 2 * outputs * scalar, distance * scalar}};
+}
+
+/// The bytes of a record of extra columns.
+template <class Features>
+constexpr std::size_t columns_length() noexcept {
+  std::size_t length = 0;
+  for (const char* name : extra_column_names<Features>) length += std::string_view(name).size() + 1;
+  for (const char* unit : extra_column_units<Features>) length += std::string_view(unit).size() + 1;
+  return length;
+}
+template <class Features>
+constexpr auto column_bytes() noexcept {
+  DescriptionLetters<columns_length<Features>()> bytes;
+  for (std::size_t i = 0; i < extra_column_names<Features>.size(); ++i) {
+    for (const std::string_view text : {extra_column_names<Features>[i], extra_column_units<Features>[i]}) {
+      for (const char letter : text) bytes.take(letter);
+      bytes.take('\0');
+    }
+  }
+  return bytes;
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 
 /// Where the scalars of a block for this shape stand, counted in scalars from the end of the header and the records.
 template <class Shape>
@@ -67,38 +145,34 @@ struct ModelBlockLayout {
   static PINNQUAD_ALWAYS_INLINE constexpr std::size_t parameters(std::size_t golden) noexcept {
     return golden_commands(golden) + golden * commands;
   }
-  /// Bytes of the whole block without its records. In 64 bits: a golden count from a broken header must not wrap around.
+  /// Bytes of the whole block without its records. In 64 bits: a golden count from a broken header must not wrap
+  /// around.
   static PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t length(std::uint64_t golden) noexcept {
     const std::uint64_t scalars = golden_features + golden * (inputs + commands) + parameter_count;
     return ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) + ModelBlockHeader::checksum_size;
   }
-  /// Bytes of the records, counts included, that no block of this library exceeds: room for one in a buffer is length(golden)
-  /// and this.
+  /// Bytes of the records, counts included, that no block of this library exceeds: room for one in a buffer is
+  /// length(golden) and this.
   static constexpr std::size_t most_record_bytes() noexcept {
-    using Features = typename Shape::Features;
-    using Records = BlockRecordLayout;
-    constexpr std::size_t scalar = sizeof(typename Shape::Scalar);
-    std::size_t columns = 0;
-    for (const char* name : extra_column_names<Features>) columns += std::string_view(name).size() + 1;
-    for (const char* unit : extra_column_units<Features>) columns += std::string_view(unit).size() + 1;
-    constexpr std::size_t base = detail::description_length<typename detail::BaseOf<typename Shape::Outputs>::type>();
-    const std::size_t distance = inputs + detail::triangle(inputs) + 1;
-    std::size_t bytes = Records::counts;
-    for (const std::size_t length :
-         {8 + 2 * scalar, std::size_t{8}, std::size_t{8}, columns, 16 * scalar, base, std::size_t{8},
-          3 * std::size_t(rotor_count), 2 * outputs * scalar, distance * scalar}) {
-      bytes += Records::head + Records::padded(length);
+    using Base = typename detail::BaseOf<typename Shape::Outputs>::type;
+    constexpr auto lengths = detail::record_lengths(sizeof(typename Shape::Scalar), inputs, outputs);
+    std::size_t bytes = ModelBlockHeader::record_counts;
+    for (std::uint32_t type = 1; type <= detail::block_record_types; ++type) {
+      std::size_t length = lengths.of[type];
+      if (BlockRecord(type) == BlockRecord::columns) length = detail::columns_length<typename Shape::Features>();
+      if (BlockRecord(type) == BlockRecord::base) length = detail::description_length<Base>();
+      bytes += ModelBlockHeader::record_head + ModelBlockHeader::padded(length);
     }
     return bytes;
   }
 };
 
 namespace detail {
-/// What a shape says behind its answer; texts of any kind.
+/// All that a shape says behind its answer; texts of any kind.
 template <class Names, class Units, class OutputNames, class OutputUnits>
 constexpr void absorb_shape(Fnv1a& fnv, const Names& names, const Units& units, const OutputNames& output_names,
                             const OutputUnits& output_units, std::string_view vehicle_name,
-                            const std::array<TorqueSigns, rotor_count>& signs) noexcept {
+                            const TorqueSigns& signs) noexcept {
   fnv.absorb_text(model_frame);
   for (const auto& name : names) fnv.absorb_text(name);
   for (const auto& unit : units) fnv.absorb_text(unit);
@@ -107,15 +181,14 @@ constexpr void absorb_shape(Fnv1a& fnv, const Names& names, const Units& units, 
   const std::size_t said = output_units.size() > 1 && one_unit(output_units) ? 1 : output_units.size();
   for (std::size_t i = 0; i < said; ++i) fnv.absorb_text(output_units[i]);
   fnv.absorb_text(vehicle_name);
-  for (const TorqueSigns& rotor : signs) {
+  for (const auto& rotor : signs) {
     for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
   }
 }
 
 /// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
 template <class Shape>
-constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
-                                      const std::array<TorqueSigns, rotor_count>& signs) noexcept {
+constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name, const TorqueSigns& signs) noexcept {
   using Map = OutputMap<typename Shape::Outputs>;
   Fnv1a fnv;
   absorb_description<typename Shape::Network>(fnv);
@@ -124,35 +197,31 @@ constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name,
 }
 }  // namespace detail
 
-/// Names what a block's weights are for: the answer's description (model/description.hpp), frame, feature names and units,
-/// output names and units, vehicle name and motor order.
+/// Names what a block's weights are for: the answer's description (model/description.hpp), frame, feature names and
+/// units, output names and units, vehicle name and motor order.
 template <class Shape>
 inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>(Shape::Vehicle::name,
                                                                          motor_torque_signs<typename Shape::Vehicle>());
 
 namespace detail {
 
-/// What a reader expects of a block's header.
+/// The numbers that a reader expects in a block's header.
 struct ExpectedBlock {
   std::uint32_t scalar_bytes, inputs, outputs, parameters;
   std::uint64_t shape_hash;
 };
 
-}  // namespace detail
-
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// The checks of a block that need no scalar, in this order: place and length (`block_truncated`), magic and version
 /// (`block_incompatible`), length stated (`block_truncated`), checksum (`block_corrupt`), shape (`block_incompatible`).
-inline Status check_block(const unsigned char* block, std::size_t available,
-                          const detail::ExpectedBlock& expected) noexcept {
+inline Status check_block(const unsigned char* block, std::size_t available, const ExpectedBlock& expected) noexcept {
   using Header = ModelBlockHeader;
-  using detail::read_u32;
   if (block == nullptr || reinterpret_cast<std::uintptr_t>(block) % model_block_alignment != 0) {
     return Status::block_truncated;
   }
   if (available < Header::size + Header::checksum_size) return Status::block_truncated;
-  const unsigned char* magic = detail::first_of<unsigned char>(model_block_magic);
+  const unsigned char* magic = first_of<unsigned char>(model_block_magic);
   for (std::size_t i = 0; i < sizeof model_block_magic; ++i) {
     if (block[i] != magic[i]) return Status::block_incompatible;
   }
@@ -167,10 +236,10 @@ inline Status check_block(const unsigned char* block, std::size_t available,
                     read_u32(block + Header::inputs) == expected.inputs &&
                     read_u32(block + Header::outputs) == expected.outputs &&
                     read_u32(block + Header::parameters) == expected.parameters &&
-                    detail::read_u64(block + Header::shape_hash) == expected.shape_hash;
+                    read_u64(block + Header::shape_hash) == expected.shape_hash;
   return fits ? Status::ok : Status::block_incompatible;
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
+}  // namespace detail
 }  // namespace pinnquad

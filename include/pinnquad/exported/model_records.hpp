@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a header of format 3 says of itself beyond format 2, record by record, against what its types say. A record that a
-// reader must understand is named in `records`; a constant that is not may be ignored.
+// The records of a header of format 3, which format 2 has not: each is compared with the model's types. `records` names
+// those that a reader must understand; it may ignore any other constant.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
@@ -28,12 +29,15 @@ inline constexpr std::array<std::string_view, 7> known_records = {
     "allocation",  // `allocation`: Eq. (2) at the rated density
     "base"};       // `base`: a description of what the outputs add to, "" if to nothing
 
-/// How a rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw): -1, 0 or 1.
-using TorqueSigns = std::array<int, 3>;
+namespace detail {
+/// Row = rotor, in the order of the commands.
+using TorqueSigns = std::array<std::array<int, 3>, rotor_count>;
+}  // namespace detail
 
-/// The motor order as data: where each rotor sits and which way it turns. Row = rotor, in the order of the commands.
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe<double>& airframe) noexcept {
-  std::array<TorqueSigns, rotor_count> result{};
+/// The motor order as data: how each rotor's command enters the torques about FRD x, y and z (roll, pitch, yaw), -1, 0
+/// or 1. Row = rotor, in the order of the commands.
+constexpr detail::TorqueSigns motor_torque_signs(const Airframe<double>& airframe) noexcept {
+  detail::TorqueSigns result{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto signs = allocation_signs(airframe, static_cast<int>(axis));
     for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) result[rotor][axis] = static_cast<int>(signs[rotor]);
@@ -41,28 +45,37 @@ constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs(const Airframe
   return result;
 }
 template <class Vehicle>
-constexpr std::array<TorqueSigns, rotor_count> motor_torque_signs() noexcept {
+constexpr detail::TorqueSigns motor_torque_signs() noexcept {
   return motor_torque_signs(Vehicle::template value<double>());
 }
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-constexpr bool same_text(std::string_view a, std::string_view b) noexcept { return a == b; }
-
-template <class Texts, class Others>
-constexpr bool same_texts(const Texts& texts, const Others& others) noexcept {
-  if (texts.size() != others.size()) return false;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (!same_text(texts[i], others[i])) return false;
+/// Numbers, texts, and arrays of them or of arrays.
+template <class Value, class Other>
+constexpr bool same_values(const Value& a, const Other& b) noexcept {
+  if constexpr (std::is_convertible_v<Value, std::string_view>) {
+    return std::string_view(a) == b;
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    return a == b;
+  } else {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (!same_values(a[i], b[i])) return false;
+    }
+    return true;
   }
-  return true;
 }
 
 template <class Array>
 constexpr bool all_finite_constants(const Array& values) noexcept {
   for (const auto& value : values) {
-    if (!is_finite_constant(value)) return false;
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
+      if (!is_finite_constant(value)) return false;
+    } else {
+      if (!all_finite_constants(value)) return false;
+    }
   }
   return true;
 }
@@ -115,18 +128,15 @@ constexpr bool describes(std::string_view text) noexcept {
 }
 
 /// The instants that a feature set sees.
-template <class Features, class = void>
-struct WindowOf {
+struct PresentAlone {
   static constexpr int taps = 1;
   static constexpr bool causal = true;
   static constexpr double period_s = 0.0;  ///< no period
 };
+template <class Features, class = void>
+struct WindowOf : PresentAlone {};
 template <class Features>
-struct WindowOf<Features, std::void_t<typename Features::Window>> {
-  static constexpr int taps = Features::Window::taps;
-  static constexpr bool causal = Features::Window::causal;
-  static constexpr double period_s = Features::Window::period_s;
-};
+struct WindowOf<Features, std::void_t<typename Features::Window>> : Features::Window {};
 
 /// Two periods count as one if they differ by no more than this share: clocks are measured.
 inline constexpr double period_tolerance = 0.01;
@@ -136,8 +146,8 @@ constexpr bool same_period(double a, double b) noexcept {
   return difference <= period_tolerance * b;
 }
 
-/// Entries of two allocations count as one if they differ by no more than this share of the largest of their row: what a
-/// float's rounding makes of their products.
+/// Entries of two allocations count as one if they differ by no more than this share of the largest of their row: what
+/// a float's rounding makes of their products.
 inline constexpr double allocation_tolerance = 4e-6;
 
 /// Entries `get(row, column)` against those expected.
@@ -186,9 +196,9 @@ template <class M>
 using StatedVerdictOf = std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>;
 
 /// Optional constants:
-///   slope_signs                        of du_i/d(angular acceleration), rotor by rotor about x, y, z, where proven, else 0
-///   residual_lower, residual_upper     the bounds of a residual's outputs
-///   distance_mean, distance_inverse_cholesky, distance_limit    z = L^-1 (x - mean), rows of the triangle one after the
+///   slope_signs                     of du_i/d(angular acceleration), rotor by rotor about x, y, z; 0: not proven
+///   residual_lower, residual_upper  the bounds of a residual's outputs
+///   distance_mean, distance_inverse_cholesky, distance_limit: z = L^-1 (x - mean), rows of the triangle one after the
 ///     other; |z| no larger than the limit is near the training features
 template <class M>
 using SlopeSignsOf = decltype(M::slope_signs);
@@ -238,7 +248,7 @@ constexpr bool same_header_allocation() noexcept {
 template <class M>
 constexpr bool true_slope_signs() noexcept {
   if constexpr (!StatedStructure<typename M::Network>::known) return true;
-  const auto signs = motor_torque_signs<typename M::Vehicle>();
+  const TorqueSigns signs = motor_torque_signs<typename M::Vehicle>();
   for (std::size_t rotor = 0; rotor < signs.size(); ++rotor) {
     for (std::size_t axis = 0; axis < signs[rotor].size(); ++axis) {
       if (!true_slope_sign(M::slope_signs[rotor][axis], signs[rotor][axis])) return false;
@@ -307,7 +317,7 @@ constexpr void require_optional_records() noexcept {
   }
 }
 
-/// What a header of format 3 says of itself beyond format 2, against what its types say.
+/// Compares the records of a header of format 3 with its types.
 template <class M>
 constexpr void require_records() noexcept {
   static_assert(is_detected<RecordNamesOf, M> && is_detected<RecordsOf, M>,
@@ -330,8 +340,8 @@ constexpr void require_records() noexcept {
     static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),
                   "pinnquad: the model's sample period is another than its window's (sample_period_s)");
     static_assert(
-        same_texts(M::column_names, extra_column_names<typename M::Features>) &&
-            same_texts(M::column_units, extra_column_units<typename M::Features>),
+        same_values(M::column_names, extra_column_names<typename M::Features>) &&
+            same_values(M::column_units, extra_column_units<typename M::Features>),
         "pinnquad: the model has other extra columns than its feature set now has (column_names, column_units)");
     static_assert(same_header_allocation<M>(),
                   "pinnquad: the model was trained for another allocation than its Vehicle now has (allocation)");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/exported/block_records.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
 
@@ -17,7 +18,6 @@ template <class Scalar>
 inline constexpr bool reads_in_place = __BYTE_ORDER__ ==
                                            __ORDER_LITTLE_ENDIAN__&& std::numeric_limits<Scalar>::is_iec559 &&
                                        (sizeof(Scalar) == 4 || sizeof(Scalar) == 8);
-}  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
@@ -31,82 +31,82 @@ struct ModelScales {
   using Outputs = typename Shape::Outputs;
   using Vehicle = typename Shape::Vehicle;
   static_assert(require_shape<Shape>());
-  static_assert(detail::reads_in_place<Scalar>,
+  static_assert(reads_in_place<Scalar>,
                 "pinnquad: a model block is read in place: float or double of IEEE 754, on a little-endian machine");
   using FeatureVector = std::array<Scalar, static_cast<std::size_t>(Features::size)>;
 
   Scaler<Scalar, Features::size> input{};
   Scaler<Scalar, OutputMap<Outputs>::size> output{};
-  FeatureVector envelope_lower = detail::ones<Scalar, Features::size>;
+  FeatureVector envelope_lower = ones<Scalar, Features::size>;
   FeatureVector envelope_upper{};
   std::uint64_t training_data_hash = 0;
   std::uint32_t training_rows = 0;
-  /// What the block says of itself, where it is of version 2.
-  ModelRecords<Scalar, Features::size, OutputMap<Outputs>::size> records{};
+  /// Stated by a block of version 2.
+  ModelRecords<Scalar> records{};
 };
 
-/// Rows of scalars in a block. As made, one row of zeros.
-template <class Scalar, int Columns>
-class BlockRows {
- public:
-  using value_type = std::array<Scalar, static_cast<std::size_t>(Columns)>;
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 
-  BlockRows() = default;
-  BlockRows(const Scalar* first, std::size_t count) noexcept : first_(first), count_(count) {}
-
-  std::size_t size() const noexcept { return count_; }
-  /// A copy of a row.
-  value_type operator[](std::size_t row) const noexcept {
-    value_type result{};
-    if (first_ != nullptr) std::memcpy(&result, first_ + row * std::size_t(Columns), sizeof result);
-    return result;
-  }
-
- private:
-  const Scalar* first_ = nullptr;
-  std::size_t count_ = 1;
-};
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
 /// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle.
-/// Lifetime: scalers and envelope are copied; weights and golden vectors are read in the block each time. A copy of a
-/// view looks into the same block. As made, a view declines: its envelope is empty, its self test fails, forward()
-/// gives NaN.
+/// Lifetime: scalers and envelope are copied; weights, golden vectors and optional records are read in the block each
+/// time. A copy of a view looks into the same block. As made, a view declines: its envelope is empty, its self test
+/// fails, forward() gives NaN.
 template <class ShapeType>
-class ModelView : public ModelScales<ShapeType> {
+class ModelView : public detail::ModelScales<ShapeType> {
  public:
   static constexpr ModelKind kind = ModelKind::view;
-  using Scales = ModelScales<ShapeType>;
+  using Scales = detail::ModelScales<ShapeType>;
   using typename Scales::Features;
   using typename Scales::Network;
   using typename Scales::Scalar;
 
-  BlockRows<Scalar, Features::size> golden_features{};
-  BlockRows<Scalar, rotor_count> golden_commands{};
+  /// Rows of scalars in the block. As made, one row of zeros.
+  template <int Columns>
+  struct Rows {
+    using value_type = std::array<Scalar, static_cast<std::size_t>(Columns)>;
+
+    const Scalar* first = nullptr;
+    std::size_t count = 1;
+
+    std::size_t size() const noexcept { return count; }
+    /// A copy of a row.
+    value_type operator[](std::size_t row) const noexcept {
+      value_type result{};
+      if (first != nullptr) std::memcpy(&result, first + row * std::size_t(Columns), sizeof result);
+      return result;
+    }
+  };
+
+  Rows<Features::size> golden_features{};
+  Rows<rotor_count> golden_commands{};
 
   /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
   /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
   /// another shape, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
-  /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a spread that is not
-  /// positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
+  /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a spread that is
+  /// not positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
   /// (exported/model_agreement.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
-  /// untouched unless the Status is ok.
-  /// Reads the whole block, twice: not for a control loop.
+  /// untouched unless the Status is ok. Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
     using Header = ModelBlockHeader;
     const auto* bytes = static_cast<const unsigned char*>(block);
-    const Status checked =
-        check_block(bytes, length,
-                    {sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, shape_hash<ShapeType>});
+    const Status checked = detail::check_block(
+        bytes, length,
+        {sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, shape_hash<ShapeType>});
     if (checked != Status::ok) return checked;
     const std::size_t whole = detail::read_u32(bytes + Header::length);
-    decltype(view.records) records{};
+    ModelRecords<Scalar> records{};
     std::size_t record_bytes = 0;
-    const Status read = detail::read_u32(bytes + Header::version) < 2
-                            ? Status::ok  // version 1 has none
-                            : RecordReader::read(bytes + Header::size, whole - Header::size - Header::checksum_size,
-                                                 records, record_bytes);
+    const Status read =
+        detail::read_u32(bytes + Header::version) < 2
+            ? Status::ok  // version 1 has none
+            : detail::RecordReader<ShapeType>::read(bytes + Header::size, whole - Header::size - Header::checksum_size,
+                                                    records, record_bytes);
     if (read != Status::ok) return read;
     const std::uint32_t golden = detail::read_u32(bytes + Header::golden_vectors);
     if (golden == 0 || Layout::length(golden) != whole - record_bytes) return Status::block_corrupt;
@@ -143,16 +143,12 @@ class ModelView : public ModelScales<ShapeType> {
   const Scalar* parameters() const noexcept { return parameters_; }
 
  private:
-  using RecordReader = BlockRecordReader<ShapeType>;
-
   template <class Array>
   static void copy(const Scalar* from, Array& to) noexcept {
     std::memcpy(&to, from, sizeof to);
   }
 
-  using Records = ModelRecords<Scalar, Features::size, OutputMap<typename Scales::Outputs>::size>;
-
-  static bool sound(const Scalar* scalars, std::size_t golden, const Records& records) noexcept {
+  static bool sound(const Scalar* scalars, std::size_t golden, const ModelRecords<Scalar>& records) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
     const std::size_t count = Layout::parameters(golden) + Layout::parameter_count;
     const Scalar* lower = scalars + Layout::envelope_lower;
@@ -176,10 +172,10 @@ class ModelView : public ModelScales<ShapeType> {
     if constexpr (Structure::known) {
       const Scalar* bounds = nullptr;
       if constexpr (Structure::at >= 0) bounds = scalars + Layout::parameters(golden) + Structure::at;
-      if (records.has_residual_range) {
-        sound &= detail::same_residual_range(detail::first_of<Scalar>(records.residual_lower),
-                                             detail::first_of<Scalar>(records.residual_upper), Structure::at >= 0,
-                                             bounds, scalars + Layout::output_spread, Layout::outputs);
+      if (records.residual_range != nullptr) {
+        sound &=
+            detail::same_residual_range(records.residual_range, records.residual_range + Layout::outputs,
+                                        Structure::at >= 0, bounds, scalars + Layout::output_spread, Layout::outputs);
       }
     }
     if constexpr (has_certificate<ShapeType>) {

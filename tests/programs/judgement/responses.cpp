@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "pinnquad/deploy/record_writer.hpp"
+#include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "support/monotone_shapes.hpp"

@@ -32,11 +32,11 @@ struct Edited {
 
   /// Offset of a record's bytes.
   std::size_t record(BlockRecord type) const {
-    std::size_t at = ModelBlockHeader::size + BlockRecordLayout::counts;
+    std::size_t at = ModelBlockHeader::size + ModelBlockHeader::record_counts;
     while ((detail::read_u32(bytes.data() + at) & 0x7fffu) != static_cast<unsigned>(type)) {
-      at += BlockRecordLayout::head + BlockRecordLayout::padded(detail::read_u32(bytes.data() + at + 4));
+      at += ModelBlockHeader::record_head + ModelBlockHeader::padded(detail::read_u32(bytes.data() + at + 4));
     }
-    return at + BlockRecordLayout::head;
+    return at + ModelBlockHeader::record_head;
   }
   /// Multiplies scalars of a record, `first` bytes behind its begin.
   void scale_record(BlockRecord type, std::size_t first, std::size_t count, double factor) {

@@ -25,7 +25,7 @@ class ModelOfFunction : public programs::TrainedNetwork {
 
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override { return function_(rows); }
   programs::DerivativeFigures derivatives(const pinnquad::RowSet&) const override { return {}; }
-  pinnquad::Exported export_to(const pinnquad::ModelFiles&, const std::string&, const pinnquad::RowSplit&,
+  pinnquad::Exported export_to(const pinnquad::Exported::Files&, const std::string&, const pinnquad::RowSplit&,
                                const pinnquad::Provenance&) const override {
     throw std::logic_error("a stand-in is not exported");
   }
