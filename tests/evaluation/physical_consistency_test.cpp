@@ -116,7 +116,7 @@ TEST_CASE("each measure stands for itself, with the angular acceleration along x
   const Series prediction = mapped(motion.sum, 0.5, 0.01);
   const auto result = pinnquad::physical_consistency(motion.sum, prediction, acceleration, 2);
   const auto spread = pinnquad::axis_deviation(acceleration, motion.sum);
-  const auto predicted = pinnquad::standardized_confidence_ellipse(acceleration, prediction, spread, 2);
+  const auto predicted = pinnquad::confidence_ellipse(acceleration, prediction, 2, spread);
   CHECK(result.predicted_standardized.angle_deg == predicted.angle_deg);
   CHECK(result.predicted_standardized.semi_major == predicted.semi_major);
   CHECK(result.angle_difference_deg == doctest::Approx(45 - predicted.angle_deg).epsilon(1e-9));
