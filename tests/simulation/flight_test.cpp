@@ -59,7 +59,7 @@ Commands<double> inverse_of(const Vehicle& quadrotor, const Sample& sample) {
 }
 
 std::vector<double> features_of(const Sample& s) {
-  const SampleValues v = to_values(s);
+  const Sample::Values v = to_values(s);
   std::vector<double> x(v.begin() + 1, v.begin() + 15);
   x.push_back(std::sin(s.yaw_rad));
   x.push_back(std::cos(s.yaw_rad));

@@ -119,7 +119,7 @@ inline std::optional<Implausible> find_implausible_command(const pinnquad::Fligh
 /// holds.
 inline std::optional<Implausible> find_out_of_range(const pinnquad::Flight& flight) {
   for (std::size_t row = 0; row < flight.size(); ++row) {
-    const pinnquad::SampleValues values = pinnquad::to_values(flight[row]);
+    const pinnquad::Sample::Values values = pinnquad::to_values(flight[row]);
     for (std::size_t field = 0; field < values.size(); ++field) {
       const ColumnPlausibility& column = column_plausibility[field];
       if (values[field] >= column.lowest && values[field] <= column.highest) continue;

@@ -4,6 +4,7 @@
 // Blocks, not a random draw: neighbouring rows are alike, and a draw would leak training rows into the test.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -97,11 +98,19 @@ RowSplit split_each_flight(const Dataset&&, const SplitShares& = {}) = delete;  
 
 namespace detail {
 
-/// Groups of flights, each group whole, in order of `groups`: the first ones train, the next validate, the last test.
-/// The borders are where the shares of the rows are met best, so that each block with a share above 0 has a group.
-inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& groups, const SplitShares& shares,
-                             const char* what) {
+/// Groups of flights that are not empty, each group whole: the first ones train, the next validate, the last test. The
+/// borders are where the shares of the rows are met best, so that each block with a share above 0 has a group.
+inline RowSplit split_groups(const Dataset& dataset, bool by_trajectory, const SplitShares& shares) {
   require_shares(shares);
+  std::vector<std::vector<const Flight*>> groups;
+  for (const Flight& flight : dataset.flights()) {
+    if (flight.empty()) continue;
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const std::vector<const Flight*>& other) {
+      return by_trajectory && !flight.trajectory.empty() && other.front()->trajectory == flight.trajectory;
+    });
+    if (group == groups.end()) group = groups.emplace(group);
+    group->push_back(&flight);
+  }
   std::vector<std::size_t> rows_before = {0};  // [i]: rows of the first i groups
   for (const auto& group : groups) {
     std::size_t rows = rows_before.back();
@@ -111,7 +120,8 @@ inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& grou
   const std::size_t validates = shares.validation > 0 ? 1 : 0, tests = shares.test > 0 ? 1 : 0;
   const std::size_t trains = shares.train > 0 ? 1 : 0;
   if (groups.size() < trains + validates + tests) {
-    throw std::invalid_argument("split: expected at least " + std::to_string(trains + validates + tests) + " " + what +
+    throw std::invalid_argument("split: expected at least " + std::to_string(trains + validates + tests) +
+                                (by_trajectory ? " trajectories" : " flights") +
                                 ", one for each block of rows, found " + std::to_string(groups.size()));
   }
   const double all_rows = static_cast<double>(rows_before.back());
@@ -147,31 +157,14 @@ inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& grou
 /// Each block takes as many flights as come closest to its share of the rows, and one at least; a flight without rows
 /// is in none. Throws std::invalid_argument, one line: shares that are no shares; fewer flights than blocks.
 inline RowSplit split_by_flight(const Dataset& dataset, const SplitShares& shares = {}) {
-  std::vector<std::vector<const Flight*>> groups;
-  for (const Flight& flight : dataset.flights()) {
-    if (!flight.empty()) groups.push_back({&flight});
-  }
-  return detail::split_groups(groups, shares, "flights");
+  return detail::split_groups(dataset, false, shares);
 }
 RowSplit split_by_flight(const Dataset&&, const SplitShares& = {}) = delete;
 
 /// The same with whole trajectories, in the order in which the dataset names them first: what is tested was never flown
 /// in training. A flight that names no trajectory is one of its own.
 inline RowSplit split_by_trajectory(const Dataset& dataset, const SplitShares& shares = {}) {
-  std::vector<std::vector<const Flight*>> groups;
-  for (const Flight& flight : dataset.flights()) {
-    if (flight.empty()) continue;
-    std::vector<const Flight*>* group = nullptr;
-    for (auto& other : groups) {
-      if (!flight.trajectory.empty() && other.front()->trajectory == flight.trajectory) group = &other;
-    }
-    if (group != nullptr) {
-      group->push_back(&flight);
-    } else {
-      groups.push_back({&flight});
-    }
-  }
-  return detail::split_groups(groups, shares, "trajectories");
+  return detail::split_groups(dataset, true, shares);
 }
 RowSplit split_by_trajectory(const Dataset&&, const SplitShares& = {}) = delete;
 

@@ -20,6 +20,8 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// A partial file, held by a lock (flock) that ends with its writer, however that ends.
 class PartialFile {
  public:
@@ -114,6 +116,8 @@ class PartialFile {
   int lock_{-1};
 };
 
+}  // namespace detail
+
 /// Writes `path.partial-N` in the folder of `path` and renames it to `path` on commit(). A file that was there stays as
 /// it was until then. Without commit() (an exception, an early return) the destructor removes the partial file; one
 /// that a killed program left is taken up again by the next writer of that path, one of a living writer is left alone.
@@ -138,6 +142,9 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   ~AtomicFile() { discard(); }
+
+  /// Takes away a partial file of that name if its writer is gone.
+  static void remove_abandoned(const std::string& name) noexcept { detail::PartialFile::remove_abandoned(name); }
 
   /// Where to write; binary, so line ends stay as written. Write errors are kept and reported by commit().
   std::ostream& stream() noexcept { return stream_; }
@@ -216,7 +223,7 @@ class AtomicFile {
 
   std::string path_;
   std::filesystem::path target_;
-  PartialFile partial_;
+  detail::PartialFile partial_;
   std::ofstream stream_;
   bool closed_{false};
 };
