@@ -76,8 +76,8 @@ struct AxisSeries {
 
 /// One model on one set of rows; validation_error and verdict by judge(model, split) alone.
 struct Judgement {
-  /// sign_violation_share() of pairs of rows that follow each other, per axis (docs/monotonicity.md). Large steps of the
-  /// angular acceleration are above half its standard deviation.
+  /// sign_violation_share() per axis, of pairs of rows that follow each other (docs/monotonicity.md). A large step of
+  /// the angular acceleration is above half its standard deviation.
   struct PairSigns {
     std::array<double, 3> all = no_axis_figures;
     std::array<double, 3> of_flown = no_axis_figures;  ///< of the flown commands

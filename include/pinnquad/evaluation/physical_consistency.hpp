@@ -65,11 +65,11 @@ inline detail::AxisDeviation axis_deviation(const std::vector<double>& x, const 
   return {std::sqrt(moments.variance_x), std::sqrt(moments.variance_y)};
 }
 
-/// The ellipse of the points (x[i] / deviation.x, y[i] / deviation.y): by default in their own units, else standardised,
-/// without a unit. With its own deviation a cloud lies at +-45 degrees whatever its correlation; a prediction's angle,
-/// in the target's deviation, says how far its slope or sign is off. Deviation: the paper does not say how its axes are
-/// scaled; in raw units roll and pitch stay below 1 degree, where its differences are 20 to 30 (docs/paper.md,
-/// deviation 12). NaN for fewer than two points and for a deviation of 0 or NaN.
+/// The ellipse of the points (x[i] / deviation.x, y[i] / deviation.y): by default in their own units, with a deviation
+/// standardised. In its own deviation a cloud lies at +-45 degrees whatever its correlation; in the target's, the angle
+/// of a prediction says how far its slope or sign is off. Deviation: the paper does not say how its axes are scaled; in
+/// raw units roll and pitch stay below 1 degree, where its differences are 20 to 30 (docs/paper.md, deviation 12). NaN
+/// for fewer than two points and for a deviation of 0 or NaN.
 /// Throws std::invalid_argument for series of different length.
 inline ConfidenceEllipse confidence_ellipse(const std::vector<double>& x, const std::vector<double>& y,
                                             double sigmas = 3, const detail::AxisDeviation& deviation = {}) {
