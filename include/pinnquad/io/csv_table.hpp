@@ -37,31 +37,27 @@ inline std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Follows a record character by character and tells whether it stands inside quotation marks. They open a cell only at
-/// its beginning: in `5" propeller` there is none.
-class QuotationState {
- public:
-  void follow(std::string_view text) noexcept {
-    for (const char c : text) {
-      if (place_ == Place::quoted) {
-        if (c == '"') place_ = Place::closed;
-      } else if (c == '"' && place_ == Place::closed) {
-        place_ = Place::quoted;  // doubled: a mark of the text
-      } else if (c == ',') {
-        place_ = Place::begin;
-      } else if (c == '"' && place_ == Place::begin) {
-        place_ = Place::quoted;
-      } else if (!(place_ == Place::begin && (c == ' ' || c == '\t'))) {
-        place_ = Place::plain;
-      }
+/// Where in a record a character stands, to tell whether it is inside quotation marks. They open a cell only at its
+/// beginning: in `5" propeller` there is none.
+enum class Quotation { begin, plain, quoted, closed };
+
+/// The place behind `text`, which begins at `place`.
+inline Quotation followed(Quotation place, std::string_view text) noexcept {
+  for (const char c : text) {
+    if (place == Quotation::quoted) {
+      if (c == '"') place = Quotation::closed;
+    } else if (c == '"' && place == Quotation::closed) {
+      place = Quotation::quoted;  // doubled: a mark of the text
+    } else if (c == ',') {
+      place = Quotation::begin;
+    } else if (c == '"' && place == Quotation::begin) {
+      place = Quotation::quoted;
+    } else if (!(place == Quotation::begin && (c == ' ' || c == '\t'))) {
+      place = Quotation::plain;
     }
   }
-  bool inside() const noexcept { return place_ == Place::quoted; }
-
- private:
-  enum class Place { begin, plain, quoted, closed };
-  Place place_ = Place::begin;
-};
+  return place;
+}
 
 }  // namespace detail
 
@@ -166,8 +162,8 @@ class CsvRecords {
   /// Throws InputError: a quoted cell without end, a record of more than 16 MiB, a read error.
   bool next(std::string_view& record) {
     line_ = next_line_;
-    QuotationState quotation;
-    std::size_t searched = 0, followed = 0;  // from begin_
+    Quotation place = Quotation::begin;
+    std::size_t searched = 0, read = 0;  // from begin_
     has_quotes_ = false;
     for (;;) {
       std::string_view text = unread();
@@ -180,11 +176,11 @@ class CsvRecords {
         end = text.size();
       }
       ++next_line_;
-      if (has_quotes_ || text.substr(followed, end - followed).find('"') != std::string_view::npos) {
+      if (has_quotes_ || text.substr(read, end - read).find('"') != std::string_view::npos) {
         has_quotes_ = true;
-        quotation.follow(text.substr(followed, end - followed));
-        followed = end;
-        if (quotation.inside()) {
+        place = followed(place, text.substr(read, end - read));
+        read = end;
+        if (place == Quotation::quoted) {
           if (end == text.size()) {
             throw InputError(file_.path(), line_, 0, "a closing quotation mark", "the end of the file");
           }
