@@ -232,7 +232,7 @@ TEST_CASE("a full flight: signed command sums follow angular accelerations, and 
     CHECK(correlation > 0.95);
     CHECK(correlation < 0.995);  // Fig. 2: the lag shows
   }
-  const DatasetSplit split = split_contiguous(flight.size());
+  const auto split = split_contiguous(flight.size());
   std::vector<double> lowest = features_of(flight[0]), highest = lowest;
   for (std::size_t i = split.train.begin; i < split.train.end; ++i) {
     const std::vector<double> x = features_of(flight[i]);

@@ -42,11 +42,10 @@ std::array<Scalar, static_cast<std::size_t>(Features::size)> sample_features(con
   return x;
 }
 
-/// Reads Inputs from consecutive rows of one flight. Contract of a specialisation: made of the rows, which may throw
-/// std::invalid_argument, one line, for what the flight has not measured; `bool read(row, inputs) const`, row an index
-/// of the flight within the rows: false where the rows do not hold what these inputs need, and then nothing is written.
-/// It never looks beyond its rows.
-/// This one looks at the row alone, by sample_inputs().
+/// Reads Inputs from consecutive rows of one flight, and never looks beyond them. Contract of a specialisation: it is
+/// made of the rows, and throws std::invalid_argument, one line, for what the flight has not measured. `bool read(row,
+/// inputs) const` takes an index of the flight within the rows; where they do not hold what the inputs need, it returns
+/// false and writes nothing. This one looks at the row alone, by sample_inputs().
 template <class Inputs>
 class FlightInputs {
  public:

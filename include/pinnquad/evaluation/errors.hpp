@@ -36,7 +36,7 @@ struct LinearRegression {
 
 /// Gauss-Jordan on the symmetric matrix of moments, of which only the features' rows are needed: one feature after
 /// another, the one that varies most beside those before it first. Features that those before explain up to `threshold`
-/// of their variance are left out. The number taken.
+/// of their variance are left out. Returns the number taken.
 template <std::size_t InputCount, std::size_t Size>
 int sweep(std::array<std::array<double, Size>, InputCount>& moments, std::array<bool, InputCount>& taken,
           double threshold) {

@@ -43,7 +43,7 @@ template <class DataSet>
 void check_no_leak() {
   const Flight flight = random_flight(400, 5);
   const study::Material<DataSet> material(flight);
-  const pinnquad::DatasetSplit& split = material.split;
+  const auto& split = material.split;
   CHECK(split.train.begin == 0);
   CHECK(split.validation.begin == split.train.end);
   CHECK(split.test.begin == split.validation.end);
