@@ -67,13 +67,6 @@ Verdict verdict_on(const Model& model, const RowSet& training, const RowSet& tes
 /// Of roll, pitch and yaw.
 inline constexpr std::array<double, 3> no_axis_figures = {not_a_number, not_a_number, not_a_number};
 
-/// Signed command sum and angular acceleration about one axis, row by row.
-struct AxisSeries {
-  std::vector<double> angular_acceleration;  ///< rad/s^2
-  std::vector<double> target;                ///< sum of the flown commands
-  std::vector<double> predicted;
-};
-
 /// One model on one set of rows; validation_error and verdict by judge(model, split) alone.
 struct Judgement {
   /// sign_violation_share() per axis, of pairs of rows that follow each other (docs/monotonicity.md). A large step of
@@ -135,8 +128,7 @@ Judgement judge(const ContextAirframe<Vehicle>& airframe, const RowSet& rows,
   result.errors = prediction_errors(predictions, targets);
   const std::array<AxisSeries, 3> series = axis_series(airframe, rows, predictions);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    result.axes[axis] =
-        physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);
+    result.axes[axis] = physical_consistency(series[axis]);
   }
   result.pairs = pair_signs(series);
   result.nominal_slopes = hover_slopes(airframe.template airframe<double>());

@@ -141,6 +141,13 @@ inline double sign_violation_share(const std::vector<double>& predicted_sum,
   return pairs == 0 ? not_a_number : static_cast<double>(violations) / static_cast<double>(pairs);
 }
 
+/// Signed command sum and angular acceleration about one axis, row by row, in time order.
+struct AxisSeries {
+  std::vector<double> angular_acceleration;  ///< rad/s^2
+  std::vector<double> target;                ///< sum of the flown commands
+  std::vector<double> predicted;
+};
+
 /// All measures of one axis of rotation (roll, pitch or yaw). Ellipses have x = angular acceleration, y = command sum.
 struct PhysicalConsistency {
   ConfidenceEllipse target;                  ///< raw units
@@ -155,24 +162,23 @@ struct PhysicalConsistency {
   double sign_violation_share = 0;           ///< see sign_violation_share()
 };
 
-/// Measures a predicted command sum against the one flown; rows in time order, omega_dot in rad/s^2.
+/// Measures a predicted command sum against the one flown; ellipses at 3 sigma.
 /// Throws std::invalid_argument for series of different length.
-inline PhysicalConsistency physical_consistency(const std::vector<double>& target_sum,
-                                                const std::vector<double>& predicted_sum,
-                                                const std::vector<double>& angular_acceleration, double sigmas = 3) {
-  const detail::AxisDeviation deviation = axis_deviation(angular_acceleration, target_sum);
+inline PhysicalConsistency physical_consistency(const AxisSeries& series) {
+  const std::vector<double>& x = series.angular_acceleration;
+  const detail::AxisDeviation deviation = axis_deviation(x, series.target);
   PhysicalConsistency result;
-  result.target = confidence_ellipse(angular_acceleration, target_sum, sigmas);
-  result.predicted = confidence_ellipse(angular_acceleration, predicted_sum, sigmas);
-  result.target_standardized = confidence_ellipse(angular_acceleration, target_sum, sigmas, deviation);
-  result.predicted_standardized = confidence_ellipse(angular_acceleration, predicted_sum, sigmas, deviation);
+  result.target = confidence_ellipse(x, series.target);
+  result.predicted = confidence_ellipse(x, series.predicted);
+  result.target_standardized = confidence_ellipse(x, series.target, 3, deviation);
+  result.predicted_standardized = confidence_ellipse(x, series.predicted, 3, deviation);
   result.angle_difference_deg =
       angle_difference_deg(result.target_standardized.angle_deg, result.predicted_standardized.angle_deg);
   result.raw_angle_difference_deg = angle_difference_deg(result.target.angle_deg, result.predicted.angle_deg);
-  result.slope_error = slope_error(target_sum, predicted_sum, angular_acceleration);
-  result.target_correlation = pearson_correlation(target_sum, angular_acceleration);
-  result.predicted_correlation = pearson_correlation(predicted_sum, angular_acceleration);
-  result.sign_violation_share = sign_violation_share(predicted_sum, angular_acceleration);
+  result.slope_error = slope_error(series.target, series.predicted, x);
+  result.target_correlation = pearson_correlation(series.target, x);
+  result.predicted_correlation = pearson_correlation(series.predicted, x);
+  result.sign_violation_share = sign_violation_share(series.predicted, x);
   return result;
 }
 
