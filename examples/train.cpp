@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `pinnquad train` from C++: flights in, a model that may fly out. It fits a structured model
 // (docs/structured_models.md), judges it on rows that it has not seen, and writes header, block and limits of trust.
-// Units are not checked here: `pinnquad train` refuses a log in degrees or in pulse widths.
 //   train FOLDER FLIGHT.csv...
 #include <cstdio>
 #include <exception>
@@ -19,6 +18,7 @@ int main(int count, char** arguments) try {
   for (int i = 2; i < count; ++i) {
     auto flight = read_flight_csv(arguments[i]);
     flight.name = std::filesystem::path(arguments[i]).filename().string();
+    require_plausible(arguments[i], flight);
     flights.add(std::move(flight));
   }
   const auto split = split_for_training(flights);  // one flight: 60 % train, 20 % validate, 20 % test, in time

@@ -7,6 +7,8 @@
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/data/motion_checks.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"

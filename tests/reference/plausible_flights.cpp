@@ -5,8 +5,8 @@
 #include <fstream>
 #include <string>
 
-#include "logs/plausibility.hpp"
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "reference/reference_rows.hpp"
 
 namespace {
@@ -16,7 +16,7 @@ using pinnquad::Vector3;
 
 /// The fault of a flight, in words; empty for none.
 std::string complaint(const Flight& flight) {
-  const auto found = programs::find_implausible(flight);
+  const auto found = pinnquad::find_implausible(flight);
   if (!found) return "";
   return "row " + std::to_string(found->row) + ": expected " + found->expected + ", found " + found->found;
 }

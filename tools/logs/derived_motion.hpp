@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "logs/common_rows.hpp"
-#include "logs/plausibility.hpp"
 #include "logs/savitzky_golay_choice.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 
 namespace programs {
@@ -115,7 +115,7 @@ inline double ground_height(const CommonRows& rows, const std::vector<double>& h
     if (!flew) before.push_back(height[row]);
   }
   if (!before.empty()) {
-    const double ground = detail::median_of(before);
+    const double ground = pinnquad::detail::median_of(before);
     result.told.push_back("ground at " + pinnquad::number_text(std::round(ground * 1000) / 1000) +
                           " m of the log's heights, as before take-off");
     return ground;

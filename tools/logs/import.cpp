@@ -21,11 +21,11 @@
 #include "logs/log_parts.hpp"
 #include "logs/mapping_choice.hpp"
 #include "logs/motor_order_check.hpp"
-#include "logs/plausibility.hpp"
 #include "logs/rate_frame.hpp"
 #include "logs/read_log.hpp"
 #include "logs/row_checks.hpp"
 #include "logs/row_rules.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 
 namespace programs {
@@ -396,7 +396,7 @@ class Import {
   /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no
   /// velocity.
   void require_plausible_flight(const pinnquad::Flight& flight, const std::string& source) const {
-    const auto found = find_implausible(flight);
+    const auto found = pinnquad::find_implausible(flight);
     if (!found) return;
     std::string causes;
     for (const std::string& warning : dataset_.warnings) causes += "; " + warning;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "logs/finding.hpp"
-#include "logs/motion_checks.hpp"
 #include "logs/specific_force.hpp"
+#include "pinnquad/data/motion_checks.hpp"
 
 namespace programs {
 
@@ -64,8 +64,8 @@ inline std::optional<Finding> check_rate_frame(const std::vector<pinnquad::Fligh
   double steps = 0;
   const auto judge = [&](const pinnquad::Sample& a, const pinnquad::Sample& b, const pinnquad::Vector3<double>& rate,
                          double dt_s) {
-    const pinnquad::Vector3<double> turning =
-        detail::turning_rate({a.roll_rad, a.pitch_rad, a.yaw_rad}, {b.roll_rad, b.pitch_rad, b.yaw_rad}, dt_s);
+    const pinnquad::Vector3<double> turning = pinnquad::detail::turning_rate(
+        {a.roll_rad, a.pitch_rad, a.yaw_rad}, {b.roll_rad, b.pitch_rad, b.yaw_rad}, dt_s);
     const auto expected = detail::logged_rates(a, b, turning);
     for (std::size_t frame = 0; frame < residual.size(); ++frame) {
       residual[frame] += (rate - expected[frame]).cwiseAbs2();
@@ -73,7 +73,7 @@ inline std::optional<Finding> check_rate_frame(const std::vector<pinnquad::Fligh
     rates += rate.cwiseAbs2();
     steps += 1;
   };
-  for (const pinnquad::Flight& segment : segments) detail::for_each_turning_step(segment, judge);
+  for (const pinnquad::Flight& segment : segments) pinnquad::detail::for_each_turning_step(segment, judge);
   if (!(rates.sum() > smallest_rates * steps)) return std::nullopt;
   std::array<double, detail::rate_frames> left{};
   for (std::size_t frame = 0; frame < left.size(); ++frame) {
@@ -101,7 +101,7 @@ inline std::optional<Finding> check_degrees(const std::vector<pinnquad::Flight>&
       all.push_back(sample);
     }
   }
-  const auto found = find_degrees_by_motion(all);
+  const auto found = pinnquad::find_degrees_by_motion(all);
   constexpr std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
   std::string columns;
   double number = 0;

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "logs/plausibility.hpp"
 #include "logs/specific_force.hpp"
+#include "pinnquad/data/plausibility.hpp"
 
 namespace programs {
 
@@ -88,7 +88,7 @@ inline RowMask grounded_rows(const pinnquad::Flight& flight, double period_s, co
     if (collective[row] >= share_of_high * usual && usual > 0) ratios.push_back(upward[row] / collective[row]);
   }
   if (ratios.empty()) return RowMask(rows, true);
-  const double made = detail::median_of(ratios);
+  const double made = pinnquad::detail::median_of(ratios);
   const auto half = static_cast<std::size_t>(rules.smoothing_s / (2 * period_s));
   const auto averaged = [&](std::vector<double> series) {
     std::vector<double> sums(rows + 1, 0.0);
@@ -142,7 +142,8 @@ inline std::vector<JudgedColumn> judged_columns(const pinnquad::Flight& flight) 
   constexpr double smallest_scale_of_q = 0.02;
   std::vector<JudgedColumn> columns;
   for (const std::size_t field : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u, 16u}) {
-    columns.push_back({detail::column_of(flight, field), column_plausibility[field].smallest_scale / 2});
+    columns.push_back(
+        {pinnquad::detail::column_of(flight, field), pinnquad::column_plausibility[field].smallest_scale / 2});
   }
   const std::size_t first = columns.size();
   columns.resize(first + 4, {{}, smallest_scale_of_q});
@@ -173,9 +174,9 @@ inline RowMask outlier_rows(const pinnquad::Flight& flight, double spreads = 12)
     for (std::size_t row = 0; row < values.size(); ++row) {
       const std::size_t begin = std::min(row > around ? row - around : 0, values.size() - (2 * around + 1));
       const auto from = values.begin() + static_cast<std::ptrdiff_t>(begin);
-      distance[row] = std::abs(values[row] - detail::median_of({from, from + (2 * around + 1)}));
+      distance[row] = std::abs(values[row] - pinnquad::detail::median_of({from, from + (2 * around + 1)}));
     }
-    const double scale = std::max(normal * detail::median_of(distance), column.smallest_scale);
+    const double scale = std::max(normal * pinnquad::detail::median_of(distance), column.smallest_scale);
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (!(distance[row] > spreads * scale)) continue;
       const double before = row > 0 ? std::abs(values[row - 1] - values[row]) : distance[row];

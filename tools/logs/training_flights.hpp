@@ -16,8 +16,8 @@
 
 #include "command_line/listed.hpp"
 #include "command_line/progress_line.hpp"
-#include "logs/plausibility.hpp"
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/data/split.hpp"
 
 namespace programs {
@@ -42,7 +42,7 @@ inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std
     bytes_read += bytes_of(path);
     pinnquad::Flight flight =
         pinnquad::read_flight_csv(path, one ? minimum_rows : pinnquad::minimum_flight_rows, extra);
-    require_plausible(path, flight);
+    pinnquad::require_plausible(path, flight);
     const std::uint64_t hash = pinnquad::content_hash(flight);
     const auto same = std::find(hashes.begin(), hashes.end(), hash);
     if (same != hashes.end()) {
@@ -72,7 +72,7 @@ inline void require_varied_commands(const std::vector<std::string>& paths, const
   for (const pinnquad::FlightRows& piece : block.pieces()) {
     std::size_t index = 0;
     while (&dataset[index] != piece.flight) ++index;
-    require_varied_commands(paths[index], *piece.flight, piece.rows, block_name);
+    pinnquad::require_varied_commands(paths[index], *piece.flight, piece.rows, block_name);
   }
 }
 

@@ -15,7 +15,7 @@
 #include "command_line/progress_line.hpp"
 #include "logs/dataset_folder.hpp"
 #include "logs/import.hpp"
-#include "logs/plausibility.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "training/hold_out.hpp"
 #include "training/log_export.hpp"
 #include "training/log_model.hpp"
@@ -77,8 +77,8 @@ inline void require_sound(const std::string& folder, const ImportedDataset& data
   for (std::size_t i = 0; i < files.size(); ++i) {
     const pinnquad::Flight& flight = dataset.flights[i];
     const std::string place = folder + "/" + files[i];
-    require_plausible(place, flight);
-    require_varied_commands(place, flight, {0, flight.size()}, "flight's");
+    pinnquad::require_plausible(place, flight);
+    pinnquad::require_varied_commands(place, flight, {0, flight.size()}, "flight's");
   }
   require_different_flights(dataset.flights);
   for (const Fold& fold : folds) {

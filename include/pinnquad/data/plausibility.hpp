@@ -14,15 +14,15 @@
 #include <system_error>
 #include <vector>
 
-#include "logs/motion_checks.hpp"
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/motion_checks.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/file_error.hpp"
 
-namespace programs {
+namespace pinnquad {
 
 namespace detail {
 
@@ -40,7 +40,7 @@ struct ColumnPlausibility {
 /// Per column, in the order of `sample_field_names`. Angles may be unwrapped. Commands are 0 to 1, with a float's
 /// rounding to spare.
 // clang-format off
-inline constexpr std::array<detail::ColumnPlausibility, pinnquad::sample_value_count> column_plausibility = {{
+inline constexpr std::array<detail::ColumnPlausibility, sample_value_count> column_plausibility = {{
     {"s", -1e12, 1e12, 0},
     {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1}, {"m/s^2", -1000, 1000, 1},
     {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20}, {"rad/s^2", -1e5, 1e5, 20},
@@ -60,10 +60,10 @@ namespace detail {
 
 inline constexpr std::size_t first_command_field = 17;
 
-inline std::vector<double> column_of(const pinnquad::Flight& flight, std::size_t field) {
+inline std::vector<double> column_of(const Flight& flight, std::size_t field) {
   std::vector<double> column;
   column.reserve(flight.size());
-  for (const pinnquad::Sample& sample : flight) column.push_back(pinnquad::to_values(sample)[field]);
+  for (const Sample& sample : flight) column.push_back(to_values(sample)[field]);
   return column;
 }
 
@@ -76,10 +76,9 @@ inline double median_of(std::vector<double> series) {
 
 /// The likely unit of commands outside 0..1, and how to convert them; empty if unknown. Nine cells in ten decide: a
 /// single wrong cell does not hide the rest.
-inline std::string command_mistake(const pinnquad::Flight& flight) {
+inline std::string command_mistake(const Flight& flight) {
   std::vector<double> cells;
-  for (const pinnquad::Sample& sample : flight)
-    cells.insert(cells.end(), sample.commands.begin(), sample.commands.end());
+  for (const Sample& sample : flight) cells.insert(cells.end(), sample.commands.begin(), sample.commands.end());
   const std::size_t cut = cells.size() / 20;
   std::sort(cells.begin(), cells.end());
   const double low = cells[cut], high = cells[cells.size() - 1 - cut];
@@ -93,23 +92,21 @@ inline std::string command_mistake(const pinnquad::Flight& flight) {
 }
 
 inline std::string range_text(const ColumnPlausibility& column) {
-  return pinnquad::number_text(column.lowest) + " to " + pinnquad::number_text(column.highest) + " " + column.unit;
+  return number_text(column.lowest) + " to " + number_text(column.highest) + " " + column.unit;
 }
 
-inline std::string column_text(std::size_t field) {
-  return "in column " + std::string(pinnquad::sample_field_names[field]);
-}
+inline std::string column_text(std::size_t field) { return "in column " + std::string(sample_field_names[field]); }
 
 /// The first cell of a command outside 0..1.
-inline std::optional<Implausible> find_implausible_command(const pinnquad::Flight& flight) {
+inline std::optional<Implausible> find_implausible_command(const Flight& flight) {
   for (std::size_t row = 0; row < flight.size(); ++row) {
-    for (std::size_t rotor = 0; rotor < pinnquad::rotor_count; ++rotor) {
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
       const double u = flight[row].commands[rotor];
       const std::size_t field = first_command_field + rotor;
       if (u >= column_plausibility[field].lowest && u <= column_plausibility[field].highest) continue;
       const std::string mistake = command_mistake(flight);
       return Implausible{row, field, "a command of 0 to 1 " + column_text(field),
-                         pinnquad::number_text(u) + (mistake.empty() ? "" : " (" + mistake + ")")};
+                         number_text(u) + (mistake.empty() ? "" : " (" + mistake + ")")};
     }
   }
   return std::nullopt;
@@ -117,21 +114,20 @@ inline std::optional<Implausible> find_implausible_command(const pinnquad::Fligh
 
 /// The first cell outside its column's physical range; NaN and infinity are outside every range, as is what no float
 /// holds.
-inline std::optional<Implausible> find_out_of_range(const pinnquad::Flight& flight) {
+inline std::optional<Implausible> find_out_of_range(const Flight& flight) {
   for (std::size_t row = 0; row < flight.size(); ++row) {
-    const pinnquad::Sample::Values values = pinnquad::to_values(flight[row]);
+    const Sample::Values values = to_values(flight[row]);
     for (std::size_t field = 0; field < values.size(); ++field) {
       const ColumnPlausibility& column = column_plausibility[field];
       if (values[field] >= column.lowest && values[field] <= column.highest) continue;
-      return Implausible{row, field, range_text(column) + " " + column_text(field),
-                         pinnquad::number_text(values[field])};
+      return Implausible{row, field, range_text(column) + " " + column_text(field), number_text(values[field])};
     }
   }
   return std::nullopt;
 }
 
 /// The cell of a column that is furthest from its median and has no neighbour like it.
-inline std::optional<Implausible> find_outlier(const pinnquad::Flight& flight, std::size_t field) {
+inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t field) {
   const ColumnPlausibility& column = column_plausibility[field];
   if (!(column.smallest_scale > 0) || flight.empty()) return std::nullopt;
   constexpr double normal = 1.4826;  // standard deviation of a normal column over its median absolute deviation
@@ -150,33 +146,31 @@ inline std::optional<Implausible> find_outlier(const pinnquad::Flight& flight, s
     if (std::max(before, after) > distance[row] / 2) continue;
     furthest = distance[row];
     worst = Implausible{row, field, "a value like its neighbours " + column_text(field),
-                        pinnquad::number_text(values[row]) + ", " +
-                            std::to_string(static_cast<long long>(furthest / scale)) +
-                            " robust spreads from the median " + pinnquad::number_text(median)};
+                        number_text(values[row]) + ", " + std::to_string(static_cast<long long>(furthest / scale)) +
+                            " robust spreads from the median " + number_text(median)};
   }
   return worst;
 }
 
 /// Rows further apart than those of any flight: a clock of another unit.
-inline std::optional<Implausible> find_other_clock(const pinnquad::Flight& flight) {
-  pinnquad::RowSet all;
+inline std::optional<Implausible> find_other_clock(const Flight& flight) {
+  RowSet all;
   all.add(flight, {0, flight.size()});
-  const double period_s = pinnquad::sample_period_s(all);
-  if (pinnquad::is_clock_time(period_s)) return std::nullopt;
-  return Implausible{1, 0,
-                     "rows at most " + pinnquad::number_text(pinnquad::longest_clock_s) + " s apart " + column_text(0),
-                     pinnquad::number_text(period_s) + " (milliseconds? Then write t / 1000)"};
+  const double period_s = sample_period_s(all);
+  if (is_clock_time(period_s)) return std::nullopt;
+  return Implausible{1, 0, "rows at most " + number_text(longest_clock_s) + " s apart " + column_text(0),
+                     number_text(period_s) + " (milliseconds? Then write t / 1000)"};
 }
 
 /// True where all three body rates stand still: a sensor that has stopped fits no attitude, whatever its unit.
-inline bool has_frozen_rates(const pinnquad::Flight& flight) {
-  return std::all_of(flight.begin(), flight.end(), [&flight](const pinnquad::Sample& sample) {
+inline bool has_frozen_rates(const Flight& flight) {
+  return std::all_of(flight.begin(), flight.end(), [&flight](const Sample& sample) {
     return sample.body_rates_rad_s == flight.front().body_rates_rad_s;
   });
 }
 
 /// Angles or rates that fit each other only in degrees.
-inline std::optional<Implausible> find_degrees(const pinnquad::Flight& flight) {
+inline std::optional<Implausible> find_degrees(const Flight& flight) {
   constexpr std::array<std::size_t, 3> angle_fields = {13, 14, 15};
   constexpr std::size_t first_rate_field = 10;
   const DegreesFound found = find_degrees_by_motion(flight);
@@ -198,19 +192,18 @@ inline std::optional<Implausible> find_degrees(const pinnquad::Flight& flight) {
 }
 
 /// InputError at the value of a flight that was read from `path`; without the file, at its place in one of ours.
-inline pinnquad::InputError implausible_in_file(const std::string& path, const Implausible& found) {
+inline InputError implausible_in_file(const std::string& path, const Implausible& found) {
   constexpr std::size_t lines_before_rows = 1;
   std::size_t rows = 0, in_line = found.row + lines_before_rows + 1, in_column = found.field + 1;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return {path, in_line, in_column, found.expected, found.found};
-  pinnquad::detail::for_each_csv_row(
-      path, {std::string(pinnquad::sample_field_names[found.field])}, 1,
-      [&](const std::vector<double>&, std::size_t line, const std::vector<std::size_t>& fields) {
-        if (rows++ != found.row) return;
-        in_line = line;
-        in_column = fields[0] + 1;
-      });
-  return pinnquad::InputError(path, in_line, in_column, found.expected, found.found);
+  for_each_csv_row(path, {std::string(sample_field_names[found.field])}, 1,
+                   [&](const std::vector<double>&, std::size_t line, const std::vector<std::size_t>& fields) {
+                     if (rows++ != found.row) return;
+                     in_line = line;
+                     in_column = fields[0] + 1;
+                   });
+  return InputError(path, in_line, in_column, found.expected, found.found);
 }
 
 }  // namespace detail
@@ -218,12 +211,12 @@ inline pinnquad::InputError implausible_in_file(const std::string& path, const I
 /// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of
 /// another unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its
 /// neighbours, accelerations that are not the derivatives of rates and velocity. None for a flight.
-inline std::optional<detail::Implausible> find_implausible(const pinnquad::Flight& flight) {
+inline std::optional<detail::Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
   if (auto found = detail::find_degrees(flight)) return found;
   if (auto found = detail::find_out_of_range(flight)) return found;
-  for (std::size_t field = 0; field < pinnquad::sample_value_count; ++field) {
+  for (std::size_t field = 0; field < sample_value_count; ++field) {
     if (auto found = detail::find_outlier(flight, field)) return found;
   }
   auto mistake = find_acceleration_mistake(flight);
@@ -236,16 +229,16 @@ inline std::optional<detail::Implausible> find_implausible(const pinnquad::Fligh
 
 /// Throws InputError where find_implausible() finds something in a flight that was read from `path`:
 ///   flight.csv:17:5: expected -1000 to 1000 m/s^2 in column vdot_bx, found 1e+39
-inline void require_plausible(const std::string& path, const pinnquad::Flight& flight) {
+inline void require_plausible(const std::string& path, const Flight& flight) {
   if (const auto found = find_implausible(flight)) throw detail::implausible_in_file(path, *found);
 }
 
 /// Throws InputError where a command stands still in a block of a flight that was read from `path`: it teaches nothing.
 /// `block_name`: "training".
-inline void require_varied_commands(const std::string& path, const pinnquad::Flight& flight,
-                                    const pinnquad::IndexRange& block, const std::string& block_name) {
+inline void require_varied_commands(const std::string& path, const Flight& flight, const IndexRange& block,
+                                    const std::string& block_name) {
   constexpr double smallest_range = 1e-6;  // a float's rounding
-  for (std::size_t rotor = 0; rotor < pinnquad::rotor_count && !block.empty(); ++rotor) {
+  for (std::size_t rotor = 0; rotor < rotor_count && !block.empty(); ++rotor) {
     double low = flight[block.begin].commands[rotor], high = low;
     for (std::size_t row = block.begin; row < block.end; ++row) {
       low = std::min(low, flight[row].commands[rotor]);
@@ -255,8 +248,8 @@ inline void require_varied_commands(const std::string& path, const pinnquad::Fli
     const std::size_t field = detail::first_command_field + rotor;
     throw detail::implausible_in_file(
         path, {block.begin, field, "commands that change " + detail::column_text(field),
-               pinnquad::number_text(low) + " in all " + std::to_string(block.size()) + " " + block_name + " rows"});
+               number_text(low) + " in all " + std::to_string(block.size()) + " " + block_name + " rows"});
   }
 }
 
-}  // namespace programs
+}  // namespace pinnquad

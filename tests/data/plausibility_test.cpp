@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // No flight is refused; every mistake that a log can hold is named with its line and column.
-#include "logs/plausibility.hpp"
+#include "pinnquad/data/plausibility.hpp"
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,6 @@
 namespace {
 
 using namespace pinnquad;
-using namespace programs;
 
 template <class PaperFlight, class Vehicle>
 Flight flown(std::uint64_t seed, std::size_t rows) {

@@ -16,7 +16,7 @@
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/io/decimal.hpp"
 
-namespace programs {
+namespace pinnquad {
 
 namespace detail {
 
@@ -36,15 +36,14 @@ struct DegreesFound {
 
 /// Body rates, mean over a step of `dt_s`, that turn the attitude (roll, pitch, yaw, rad) of its begin into that of its
 /// end.
-inline pinnquad::Vector3<double> turning_rate(const std::array<double, 3>& begin, const std::array<double, 3>& end,
-                                              double dt_s) {
+inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const std::array<double, 3>& end, double dt_s) {
   const auto quaternion = [](const std::array<double, 3>& angles) {
-    return pinnquad::from_euler(pinnquad::EulerAngles<double>{angles[0], angles[1], angles[2]});
+    return from_euler(EulerAngles<double>{angles[0], angles[1], angles[2]});
   };
-  const pinnquad::Quaternion<double> q = pinnquad::conjugate(quaternion(begin)) * quaternion(end);
+  const Quaternion<double> q = conjugate(quaternion(begin)) * quaternion(end);
   const double shorter_way = q.w < 0 ? -1 : 1;
   const double w = shorter_way * q.w;
-  const pinnquad::Vector3<double> v = shorter_way * pinnquad::Vector3<double>(q.x, q.y, q.z);
+  const Vector3<double> v = shorter_way * Vector3<double>(q.x, q.y, q.z);
   const double sine = v.norm();
   const double turn = sine > 1e-12 ? 2 * std::atan2(sine, w) / sine : 2.0;
   return v * (turn / dt_s);
@@ -52,13 +51,13 @@ inline pinnquad::Vector3<double> turning_rate(const std::array<double, 3>& begin
 
 /// Steps of at least `step_s`, without gaps, one after the other: visit(first row, last row).
 template <class Visit>
-void for_each_step(const pinnquad::Flight& flight, double step_s, Visit&& visit) {
+void for_each_step(const Flight& flight, double step_s, Visit&& visit) {
   constexpr double longest_step_s = 0.5;
   for (std::size_t first = 0, last = 0; first < flight.size(); first = last) {
     bool usable = true;
     const double begin_s = flight[first].time_s;
     for (last = first; usable && last + 1 < flight.size() && flight[last].time_s - begin_s < step_s; ++last) {
-      const pinnquad::Sample& next = flight[last + 1];
+      const Sample& next = flight[last + 1];
       usable = next.time_s - flight[last].time_s > 0 && next.time_s - begin_s <= longest_step_s;
     }
     if (last == first) break;
@@ -69,20 +68,20 @@ void for_each_step(const pinnquad::Flight& flight, double step_s, Visit&& visit)
 /// Steps of 0.2 s: visit(first sample, last sample, mean body rates over it, its length in s).
 /// A measured attitude jitters from row to row; over a step it turns.
 template <class Visit>
-void for_each_turning_step(const pinnquad::Flight& flight, Visit&& visit) {
+void for_each_turning_step(const Flight& flight, Visit&& visit) {
   constexpr double step_s = 0.2, largest = 1e4;  // beyond is no angle and no rate, whatever the unit
   for_each_step(flight, step_s, [&](std::size_t first, std::size_t last) {
     // rates by the trapezium rule from row to row, the attitude by its ends
-    pinnquad::Vector3<double> turned = pinnquad::Vector3<double>::Zero();
+    Vector3<double> turned = Vector3<double>::Zero();
     for (std::size_t row = first; row < last; ++row) {
-      const pinnquad::Sample& a = flight[row];
-      const pinnquad::Sample& b = flight[row + 1];
+      const Sample& a = flight[row];
+      const Sample& b = flight[row + 1];
       turned += (a.body_rates_rad_s + b.body_rates_rad_s) * ((b.time_s - a.time_s) / 2);
     }
     const double dt_s = flight[last].time_s - flight[first].time_s;
-    const pinnquad::Vector3<double> rate = turned / dt_s;
+    const Vector3<double> rate = turned / dt_s;
     bool usable = rate.norm() <= largest;
-    for (const pinnquad::Sample* end : {&flight[first], &flight[last]}) {
+    for (const Sample* end : {&flight[first], &flight[last]}) {
       for (const double angle : {end->roll_rad, end->pitch_rad, end->yaw_rad}) {
         usable = usable && std::abs(angle) <= largest;
       }
@@ -97,14 +96,13 @@ void for_each_turning_step(const pinnquad::Flight& flight, Visit&& visit) {
 /// turning of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to
 /// row. Degrees are found only where radians explain next to nothing (0.8 is left or more) and degrees more than half:
 /// a flight that hardly turns, noise and gaps in time decide nothing.
-inline detail::DegreesFound find_degrees_by_motion(const pinnquad::Flight& flight) {
+inline detail::DegreesFound find_degrees_by_motion(const Flight& flight) {
   constexpr double unexplained = 0.8, explained = 0.5;
   constexpr double smallest_rates = 1e-6;  // mean square
   constexpr std::size_t choices = 8;
   std::array<std::array<double, 2>, choices> residual{};  // [angles in degrees, a bit each][rates in degrees]
   double rates = 0, steps = 0;
-  const auto judge = [&](const pinnquad::Sample& a, const pinnquad::Sample& b, const pinnquad::Vector3<double>& rate,
-                         double dt_s) {
+  const auto judge = [&](const Sample& a, const Sample& b, const Vector3<double>& rate, double dt_s) {
     const std::array<double, 3> begin = {a.roll_rad, a.pitch_rad, a.yaw_rad},
                                 end = {b.roll_rad, b.pitch_rad, b.yaw_rad};
     rates += rate.squaredNorm();
@@ -113,12 +111,12 @@ inline detail::DegreesFound find_degrees_by_motion(const pinnquad::Flight& fligh
       std::array<double, 3> from = begin, to = end;
       for (std::size_t i = 0; i < 3; ++i) {
         if ((choice >> i & 1u) == 0) continue;
-        from[i] /= pinnquad::degrees_per_radian;
-        to[i] /= pinnquad::degrees_per_radian;
+        from[i] /= degrees_per_radian;
+        to[i] /= degrees_per_radian;
       }
-      const pinnquad::Vector3<double> turning = detail::turning_rate(from, to, dt_s);
+      const Vector3<double> turning = detail::turning_rate(from, to, dt_s);
       residual[choice][0] += (rate - turning).squaredNorm();
-      residual[choice][1] += (rate - turning * pinnquad::degrees_per_radian).squaredNorm();
+      residual[choice][1] += (rate - turning * degrees_per_radian).squaredNorm();
     }
   };
   detail::for_each_turning_step(flight, judge);
@@ -146,13 +144,12 @@ inline constexpr std::size_t fewest_acceleration_steps = 20;
 
 /// Sums over the steps of a flight: changes of three columns against the integrals of three accelerations.
 struct AccelerationSums {
-  pinnquad::Matrix<double, 3, 3> products =
-      pinnquad::Matrix<double, 3, 3>::Zero();  ///< row: axis that changes; column: acceleration
-  pinnquad::Vector3<double> changes = pinnquad::Vector3<double>::Zero();  ///< squares
-  pinnquad::Vector3<double> integrals = pinnquad::Vector3<double>::Zero();
+  Matrix<double, 3, 3> products = Matrix<double, 3, 3>::Zero();  ///< row: axis that changes; column: acceleration
+  Vector3<double> changes = Vector3<double>::Zero();             ///< squares
+  Vector3<double> integrals = Vector3<double>::Zero();
   double steps = 0;
 
-  void add(const pinnquad::Vector3<double>& change, const pinnquad::Vector3<double>& integral) {
+  void add(const Vector3<double>& change, const Vector3<double>& integral) {
     products += change * integral.transpose();
     changes += change.cwiseAbs2();
     integrals += integral.cwiseAbs2();
@@ -169,9 +166,8 @@ struct AccelerationSums {
 
 /// The integral of `acceleration(sample)` over the rows first to last, by the trapezium rule.
 template <class Acceleration>
-pinnquad::Vector3<double> integral(const pinnquad::Flight& flight, std::size_t first, std::size_t last,
-                                   const Acceleration& acceleration) {
-  pinnquad::Vector3<double> sum = pinnquad::Vector3<double>::Zero();
+Vector3<double> integral(const Flight& flight, std::size_t first, std::size_t last, const Acceleration& acceleration) {
+  Vector3<double> sum = Vector3<double>::Zero();
   for (std::size_t row = first; row < last; ++row) {
     const double half_s = (flight[row + 1].time_s - flight[row].time_s) / 2;
     sum += (acceleration(flight[row]) + acceleration(flight[row + 1])) * half_s;
@@ -185,7 +181,7 @@ inline std::optional<Implausible> wrong_axis(const AccelerationSums& sums, std::
   constexpr double follows = 0.35, better = 0.25;      // correlations
   constexpr double straight = 0.9, most_factor = 4.0;  // of a column that is its axis's but for a factor
   const auto axis_name = [&](Eigen::Index axis) {
-    return std::string(pinnquad::sample_field_names[first_integrated_field + static_cast<std::size_t>(axis)]);
+    return std::string(sample_field_names[first_integrated_field + static_cast<std::size_t>(axis)]);
   };
   for (Eigen::Index column = 0; column < 3; ++column) {
     const double own = sums.correlation(column, column);
@@ -202,7 +198,7 @@ inline std::optional<Implausible> wrong_axis(const AccelerationSums& sums, std::
     const double factor = own > straight ? sums.integrals[column] / sums.products(column, column) : 1;
     if (factor > most_factor || factor < 1 / most_factor) {
       return Implausible{0, field, expected,
-                         "about " + pinnquad::number_text(std::round(factor * 100) / 100) + " times that (its unit?)"};
+                         "about " + number_text(std::round(factor * 100) / 100) + " times that (its unit?)"};
     }
   }
   return std::nullopt;
@@ -214,14 +210,12 @@ inline constexpr std::array<const char*, acceleration_kinds> acceleration_kind_t
     "", "the world's acceleration in the body's axes (subtract w x v)",
     "what an accelerometer reads (add gravity in the body's axes, subtract w x v)",
     "the world's acceleration in axes north, east, down (turn it into the body, subtract w x v)"};
-inline std::array<pinnquad::Vector3<double>, acceleration_kinds> as_body_derivative(const pinnquad::Sample& sample) {
-  const pinnquad::Vector3<double> given = sample.linear_acceleration_m_s2;
-  const pinnquad::Vector3<double> turning = pinnquad::cross(sample.body_rates_rad_s, sample.velocity_m_s);
-  const pinnquad::Quaternion<double> q =
-      pinnquad::from_euler(pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
-  const pinnquad::Vector3<double> gravity =
-      pinnquad::world_to_body(q, pinnquad::Vector3<double>(0, 0, pinnquad::standard_gravity_m_s2<double>));
-  return {given, given - turning, given + gravity - turning, pinnquad::world_to_body(q, given) - turning};
+inline std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const Sample& sample) {
+  const Vector3<double> given = sample.linear_acceleration_m_s2;
+  const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
+  const Quaternion<double> q = from_euler(EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+  const Vector3<double> gravity = world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>));
+  return {given, given - turning, given + gravity - turning, world_to_body(q, given) - turning};
 }
 
 }  // namespace detail
@@ -234,22 +228,20 @@ inline std::array<pinnquad::Vector3<double>, acceleration_kinds> as_body_derivat
 /// the independent simulator's above 0.97 and 0.12, real logs above 0.73 and 0.45 (or 1.00 and 0.8); under gyro noise
 /// that drowns the motion 0 and 0.03.
 /// Limits: a column that noise drowns, an axis that hardly moves and a flight of few rows decide nothing.
-inline std::optional<detail::Implausible> find_acceleration_mistake(const pinnquad::Flight& flight) {
+inline std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
   constexpr std::size_t linear_field = 1, angular_field = 4, velocity_field = 7, rates_field = 10;
   constexpr double unexplained = 0.3, better = 0.25;
   detail::AccelerationSums angular, linear;
   std::array<double, detail::acceleration_kinds> left{};
   detail::for_each_step(flight, detail::acceleration_step_s, [&](std::size_t first, std::size_t last) {
-    const pinnquad::Vector3<double> rates = flight[last].body_rates_rad_s - flight[first].body_rates_rad_s;
-    const pinnquad::Vector3<double> velocity = flight[last].velocity_m_s - flight[first].velocity_m_s;
-    angular.add(rates, detail::integral(flight, first, last,
-                                        [](const pinnquad::Sample& sample) -> const pinnquad::Vector3<double>& {
-                                          return sample.angular_acceleration_rad_s2;
-                                        }));
+    const Vector3<double> rates = flight[last].body_rates_rad_s - flight[first].body_rates_rad_s;
+    const Vector3<double> velocity = flight[last].velocity_m_s - flight[first].velocity_m_s;
+    angular.add(rates, detail::integral(flight, first, last, [](const Sample& sample) -> const Vector3<double>& {
+                  return sample.angular_acceleration_rad_s2;
+                }));
     for (std::size_t kind = 0; kind < left.size(); ++kind) {
-      const pinnquad::Vector3<double> change =
-          detail::integral(flight, first, last,
-                           [kind](const pinnquad::Sample& sample) { return detail::as_body_derivative(sample)[kind]; });
+      const Vector3<double> change = detail::integral(
+          flight, first, last, [kind](const Sample& sample) { return detail::as_body_derivative(sample)[kind]; });
       if (kind == 0) linear.add(velocity, change);
       left[kind] += (velocity - change).squaredNorm();
     }
@@ -267,4 +259,4 @@ inline std::optional<detail::Implausible> find_acceleration_mistake(const pinnqu
   return detail::wrong_axis(linear, linear_field, velocity_field);
 }
 
-}  // namespace programs
+}  // namespace pinnquad
