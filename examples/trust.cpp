@@ -153,7 +153,7 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string(argv[1]) == "short") scale = {3000, 1, 1, 3};
 
   const Flight training = flown(calm(), 1, scale.rows);
-  const DatasetSplit blocks = split_contiguous(training.size());
+  const auto blocks = split_contiguous(training.size());
   const RowSet train(training, blocks.train), choose(training, blocks.validation);
   const auto settings = make_context<Settings>(train);
   ResidualTraining how;

@@ -106,15 +106,15 @@ TEST_CASE("rows of an independent simulator are read as they stand") {
 TEST_CASE("the order of columns does not matter, strangers are ignored") {
   const TemporaryFolder folder;
   const Flight flight = random_flight(12, 5);
-  pinnquad::CsvTable table;
-  table.header = {"stranger"};
-  for (const auto name : pinnquad::sample_field_names) table.header.insert(table.header.begin(), std::string(name));
+  std::vector<std::string> names = {"stranger"};
+  for (const auto name : pinnquad::sample_field_names) names.insert(names.begin(), std::string(name));
+  std::vector<std::vector<double>> rows;
   for (const auto& sample : flight) {
     const auto values = pinnquad::to_values(sample);
-    table.rows.emplace_back(values.rbegin(), values.rend());
-    table.rows.back().push_back(std::numeric_limits<double>::quiet_NaN());
+    rows.emplace_back(values.rbegin(), values.rend());
+    rows.back().push_back(std::numeric_limits<double>::quiet_NaN());
   }
-  write_csv(folder.path("mixed.csv"), table);
+  pinnquad::write_csv(folder.path("mixed.csv"), names, rows);
   CHECK(same_bits(read_flight_csv(folder.path("mixed.csv")), flight));
 }
 

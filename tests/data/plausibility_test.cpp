@@ -45,7 +45,7 @@ Flight changed(const std::function<void(Sample&)>& change) {
 /// A flight with one number changed.
 Flight with_cell(std::size_t row, std::size_t field, double value) {
   Flight flight = some_flight();
-  SampleValues values = to_values(flight[row]);
+  Sample::Values values = to_values(flight[row]);
   values[field] = value;
   flight[row] = to_sample(values);
   return flight;

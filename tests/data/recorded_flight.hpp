@@ -16,7 +16,7 @@ inline pinnquad::Flight random_flight(std::size_t rows, unsigned seed) {
   std::mt19937_64 engine(seed);
   pinnquad::Flight flight;
   for (std::size_t i = 0; i < rows; ++i) {
-    pinnquad::SampleValues values{};
+    pinnquad::Sample::Values values{};
     for (double& value : values) {
       value = pinnquad::standard_normal(engine) * std::pow(10.0, pinnquad::uniform(engine, -30, 30));
     }

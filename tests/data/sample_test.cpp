@@ -7,12 +7,11 @@
 
 using pinnquad::Sample;
 using pinnquad::sample_field_names;
-using pinnquad::SampleValues;
 
 namespace {
 
-SampleValues counted_values() {
-  SampleValues values{};
+Sample::Values counted_values() {
+  Sample::Values values{};
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = 100.0 + static_cast<double>(i);
   return values;
 }
@@ -28,7 +27,7 @@ TEST_CASE("the columns are those of the recorded reference flights") {
 }
 
 TEST_CASE("every column lands in the field its name says") {
-  const SampleValues values = counted_values();
+  const Sample::Values values = counted_values();
   const Sample sample = pinnquad::to_sample(values);
   const auto column = [&values](const std::string& name) {
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -56,5 +55,5 @@ TEST_CASE("every column lands in the field its name says") {
 
 TEST_CASE("flattening a sample and back changes nothing") {
   CHECK(pinnquad::to_values(pinnquad::to_sample(counted_values())) == counted_values());
-  CHECK(pinnquad::to_values(Sample{}) == SampleValues{});
+  CHECK(pinnquad::to_values(Sample{}) == Sample::Values{});
 }

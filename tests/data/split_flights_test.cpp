@@ -43,7 +43,8 @@ std::string names(const RowSet& rows) {
   return result;
 }
 
-std::string names(const Dataset& dataset, RowSet RowSplit::*block, const pinnquad::SplitShares& shares = {}) {
+std::string names(const Dataset& dataset, RowSet RowSplit::*block,
+                  const pinnquad::Split<double>& shares = pinnquad::usual_shares) {
   return names(split_by_flight(dataset, shares).*block);
 }
 

@@ -8,12 +8,11 @@
 #include <stdexcept>
 #include <vector>
 
-using pinnquad::DatasetSplit;
+using pinnquad::Split;
 using pinnquad::split_contiguous;
-using pinnquad::SplitShares;
 
 TEST_CASE("the paper's flight splits into 9000, 3000 and 3000 rows") {
-  const DatasetSplit split = split_contiguous(15000);
+  const auto split = split_contiguous(15000);
   CHECK(split.train.begin == 0);
   CHECK(split.train.size() == 9000);
   CHECK(split.validation.size() == 3000);
@@ -21,18 +20,18 @@ TEST_CASE("the paper's flight splits into 9000, 3000 and 3000 rows") {
 }
 
 TEST_CASE("blocks adjoin, cover every row once, and miss their share by at most one row") {
-  const std::vector<SplitShares> all_shares = {{0.6, 0.2, 0.2},
-                                               {0.7, 0.2, 0.1},
-                                               {0.2, 0.4, 0.4},
-                                               {0.2, 0, 0.8},
-                                               {0.8, 0.2, 0},
-                                               {1, 0, 0},
-                                               {1.0 / 3, 1.0 / 3, 1.0 / 3}};
-  for (const SplitShares& shares : all_shares) {
+  const std::vector<Split<double>> all_shares = {{0.6, 0.2, 0.2},
+                                                 {0.7, 0.2, 0.1},
+                                                 {0.2, 0.4, 0.4},
+                                                 {0.2, 0, 0.8},
+                                                 {0.8, 0.2, 0},
+                                                 {1, 0, 0},
+                                                 {1.0 / 3, 1.0 / 3, 1.0 / 3}};
+  for (const Split<double>& shares : all_shares) {
     for (std::size_t rows = 20; rows < 300; ++rows) {
       CAPTURE(rows);
       CAPTURE(shares.train);
-      const DatasetSplit split = split_contiguous(rows, shares);
+      const auto split = split_contiguous(rows, shares);
       CHECK(split.train.begin == 0);
       CHECK(split.train.end == split.validation.begin);
       CHECK(split.validation.end == split.test.begin);
@@ -52,14 +51,14 @@ TEST_CASE("blocks adjoin, cover every row once, and miss their share by at most 
 }
 
 TEST_CASE("halves round up") {
-  const DatasetSplit split = split_contiguous(9, {0.5, 0.25, 0.25});  // borders 4.5 and 6.75
+  const auto split = split_contiguous(9, {0.5, 0.25, 0.25});  // borders 4.5 and 6.75
   CHECK(split.train.end == 5);
   CHECK(split.validation.end == 7);
 }
 
 TEST_CASE("without a share of the test block the validation block ends with the rows, whatever the shares' rounding") {
   constexpr std::size_t rows = 4000000000;
-  const DatasetSplit split = split_contiguous(rows, {0.5, 0.5 - 9e-10, 0});
+  const auto split = split_contiguous(rows, {0.5, 0.5 - 9e-10, 0});
   CHECK(split.validation.end == rows);
   CHECK(split.test.size() == 0);
 }

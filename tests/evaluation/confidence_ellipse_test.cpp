@@ -13,7 +13,6 @@ using pinnquad::confidence_ellipse;
 using pinnquad::ConfidenceEllipse;
 using pinnquad::covariance_ellipse;
 using pinnquad::ellipse_outline;
-using pinnquad::standardized_confidence_ellipse;
 using pinnquad::detail::JointMoments;
 using Series = std::vector<double>;
 
@@ -168,24 +167,24 @@ TEST_CASE("standardised axes: units do not matter, and the target lies at 45 deg
   for (const double angle : {20.0, -20.0}) {
     const Cloud cloud = normal_cloud(500, 3, 1, angle, 9);
     const auto spread = pinnquad::axis_deviation(cloud.x, cloud.y);
-    const ConfidenceEllipse target = standardized_confidence_ellipse(cloud.x, cloud.y, spread);
+    const ConfidenceEllipse target = confidence_ellipse(cloud.x, cloud.y, 3, spread);
     CHECK(target.angle_deg == doctest::Approx(angle > 0 ? 45 : -45).epsilon(rounding));
     // a unit square's worth of variance on both axes: the squared semi-axes sum to 2 x 9
     CHECK(std::pow(target.semi_major, 2) + std::pow(target.semi_minor, 2) == doctest::Approx(18).epsilon(rounding));
 
     Series prediction = cloud.y;  // half the slope: below 45 degrees
     for (double& value : prediction) value *= 0.5;
-    const double standardised = std::abs(standardized_confidence_ellipse(cloud.x, prediction, spread).angle_deg);
+    const double standardised = std::abs(confidence_ellipse(cloud.x, prediction, 3, spread).angle_deg);
     CHECK(standardised < 40);
 
     Series x_in_mm = cloud.x;
     for (double& value : x_in_mm) value *= 1000;
     const auto spread_in_mm = pinnquad::axis_deviation(x_in_mm, cloud.y);
-    CHECK(std::abs(standardized_confidence_ellipse(x_in_mm, prediction, spread_in_mm).angle_deg) ==
+    CHECK(std::abs(confidence_ellipse(x_in_mm, prediction, 3, spread_in_mm).angle_deg) ==
           doctest::Approx(standardised).epsilon(rounding));
     CHECK(std::abs(confidence_ellipse(x_in_mm, prediction).angle_deg) < 1);  // raw angles depend on units
   }
-  CHECK(std::isnan(standardized_confidence_ellipse({1, 2}, {1, 2}, {1, 0}).angle_deg));
+  CHECK(std::isnan(confidence_ellipse({1, 2}, {1, 2}, 3, {1, 0}).angle_deg));
 }
 
 TEST_CASE("the standardised angle of a scaled prediction, in closed form") {
@@ -197,7 +196,7 @@ TEST_CASE("the standardised angle of a scaled prediction, in closed form") {
     Series prediction = cloud.y;
     for (double& value : prediction) value *= gain;
     const double angle =
-        standardized_confidence_ellipse(cloud.x, prediction, pinnquad::axis_deviation(cloud.x, cloud.y)).angle_deg;
+        confidence_ellipse(cloud.x, prediction, 3, pinnquad::axis_deviation(cloud.x, cloud.y)).angle_deg;
     CHECK(angle == doctest::Approx(std::atan2(2 * gain * r, 1 - gain * gain) / 2 / degree).epsilon(rounding));
   }
 }

@@ -101,7 +101,7 @@ TEST_CASE("violations are blind to scale, offset and a common change of sign") {
 
 TEST_CASE("a perfect prediction has no error, and its ellipses are the target's") {
   const Motion motion = noisy_motion(400, 6);
-  const auto result = pinnquad::physical_consistency(motion.sum, motion.sum, motion.angular_acceleration);
+  const auto result = pinnquad::physical_consistency({motion.angular_acceleration, motion.sum, motion.sum});
   CHECK(result.angle_difference_deg == 0);
   CHECK(result.raw_angle_difference_deg == 0);
   CHECK(result.slope_error == 0);
@@ -114,9 +114,9 @@ TEST_CASE("each measure stands for itself, with the angular acceleration along x
   const Motion motion = noisy_motion(400, 8);
   const Series& acceleration = motion.angular_acceleration;
   const Series prediction = mapped(motion.sum, 0.5, 0.01);
-  const auto result = pinnquad::physical_consistency(motion.sum, prediction, acceleration, 2);
+  const auto result = pinnquad::physical_consistency({acceleration, motion.sum, prediction});
   const auto spread = pinnquad::axis_deviation(acceleration, motion.sum);
-  const auto predicted = pinnquad::standardized_confidence_ellipse(acceleration, prediction, spread, 2);
+  const auto predicted = pinnquad::confidence_ellipse(acceleration, prediction, 3, spread);
   CHECK(result.predicted_standardized.angle_deg == predicted.angle_deg);
   CHECK(result.predicted_standardized.semi_major == predicted.semi_major);
   CHECK(result.angle_difference_deg == doctest::Approx(45 - predicted.angle_deg).epsilon(1e-9));

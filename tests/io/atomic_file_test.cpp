@@ -121,12 +121,11 @@ TEST_CASE("what killed writers leave does not pile up, and what a living one has
   CHECK(folder.read("out.txt") == "living");
   CHECK(folder.listing() == Names{"out.txt"});
 
-  using pinnquad::PartialFile;
   REQUIRE(killed());
-  PartialFile::remove_abandoned(folder.path("out.txt.partial-1"));
+  AtomicFile::remove_abandoned(folder.path("out.txt.partial-1"));
   CHECK(folder.listing() == Names{"out.txt"});
   const AtomicFile held(folder.path("out.txt"));
-  PartialFile::remove_abandoned(folder.path("out.txt.partial-1"));
+  AtomicFile::remove_abandoned(folder.path("out.txt.partial-1"));
   CHECK(folder.listing() == Names{"out.txt", "out.txt.partial-1"});
 }
 
@@ -142,7 +141,7 @@ TEST_CASE("files of partial names that no writer left are neither read, emptied 
   file.stream() << "text";
   file.commit();
   for (const std::string& name : before) {
-    if (name != "other") pinnquad::PartialFile::remove_abandoned(folder.path(name));
+    if (name != "other") AtomicFile::remove_abandoned(folder.path(name));
   }
   CHECK(folder.read("out.txt") == "text");
   CHECK(folder.read("other") == "of somebody");

@@ -13,7 +13,6 @@
 
 #include "support/temporary_folder.hpp"
 
-using pinnquad::CsvTable;
 using pinnquad::InputError;
 using pinnquad::OutputError;
 using pinnquad::read_csv;
@@ -59,18 +58,18 @@ TEST_CASE("any finite double survives writing and reading to the bit") {
   }
   const TemporaryFolder folder;
   write_csv(folder.path("bits.csv"), {"a", "b"}, rows);
-  const CsvTable table = read_csv(folder.path("bits.csv"), {"a", "b"});
-  REQUIRE(table.rows.size() == rows.size());
+  const Rows read = read_csv(folder.path("bits.csv"), {"a", "b"});
+  REQUIRE(read.size() == rows.size());
   std::size_t different = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t j = 0; j < 2; ++j) different += bits_of(rows[i][j]) != bits_of(table.rows[i][j]) ? 1 : 0;
+    for (std::size_t j = 0; j < 2; ++j) different += bits_of(rows[i][j]) != bits_of(read[i][j]) ? 1 : 0;
   }
   CHECK(different == 0);
 }
 
 TEST_CASE("a table is written with the shortest digits, one row a line") {
   const TemporaryFolder folder;
-  write_csv(folder.path("out.csv"), CsvTable{{"first", "second"}, {{0.1, 1e300}, {-2, 0.30000000000000004}}});
+  write_csv(folder.path("out.csv"), {"first", "second"}, {{0.1, 1e300}, {-2, 0.30000000000000004}});
   CHECK(folder.read("out.csv") == "first,second\n0.1,1e+300\n-2,0.30000000000000004\n");
   write_csv(folder.path("nan.csv"), {"x"}, {{std::numeric_limits<double>::quiet_NaN()}});
   CHECK(folder.read("nan.csv") == "x\nnan\n");
@@ -80,7 +79,7 @@ TEST_CASE("columns are found by name, wherever they stand and whatever stands be
   const TemporaryFolder folder;
   const Rows expected = {{1, 2}, {3, 4}};
   const auto rows_of = [&folder](const std::string& text) {
-    return read_csv(folder.write("in.csv", text), {"a", "b"}).rows;
+    return read_csv(folder.write("in.csv", text), {"a", "b"});
   };
   CHECK(rows_of("a,b\n1,2\n3,4\n") == expected);
   CHECK(rows_of("a,b\n1,2\n3,4") == expected);                          // no line end at the end
@@ -95,7 +94,7 @@ TEST_CASE("quotation marks as in RFC 4180, in the header and around numbers") {
   const TemporaryFolder folder;
   const Rows expected = {{1, 2}, {3, 4}};
   const auto rows_of = [&folder](const std::string& text, const std::vector<std::string>& columns) {
-    return read_csv(folder.write("in.csv", text), columns).rows;
+    return read_csv(folder.write("in.csv", text), columns);
   };
   CHECK(rows_of("\"a\",b\n1,\"2\"\n \" 3\" ,\"+4\"\t\n", {"a", "b"}) == expected);
   CHECK(rows_of("\"x, y\",\"say \"\"b\"\"\"\r\n1,2\r\n3,4\r\n", {"x, y", "say \"b\""}) == expected);
@@ -123,7 +122,7 @@ TEST_CASE("column names that need quotation marks are written with them, and rea
   const std::vector<std::string> names = {"plain", "a,b", "say \"c\"", " blank", "two\nlines"};
   write_csv(folder.path("out.csv"), names, {{1, 2, 3, 4, 5}});
   CHECK(folder.read("out.csv") == "plain,\"a,b\",\"say \"\"c\"\"\",\" blank\",\"two\nlines\"\n1,2,3,4,5\n");
-  CHECK(read_csv(folder.path("out.csv"), names).rows == Rows{{1, 2, 3, 4, 5}});
+  CHECK(read_csv(folder.path("out.csv"), names) == Rows{{1, 2, 3, 4, 5}});
 }
 
 TEST_CASE("records are whole wherever a block ends, and a file without line ends is not read into memory") {
@@ -136,9 +135,9 @@ TEST_CASE("records are whole wherever a block ends, and a file without line ends
       text +=
           std::to_string(row) + (row % 2 == 0 ? "," + filling : ",\"" + filling + "\n\"\"" + filling + "\"") + "\r\n";
     }
-    const CsvTable table = read_csv(folder.write("in.csv", text), {"a"});
-    REQUIRE(table.rows.size() == 30);
-    for (std::size_t row = 0; row < 30; ++row) CHECK(table.rows[row][0] == static_cast<double>(row));
+    const Rows rows = read_csv(folder.write("in.csv", text), {"a"});
+    REQUIRE(rows.size() == 30);
+    for (std::size_t row = 0; row < 30; ++row) CHECK(rows[row][0] == static_cast<double>(row));
   }
   CHECK(complaint(folder, "a,b\n1,2\n" + std::string(std::size_t{17} << 20, 'x')) ==
         "in.csv:3: expected a record of at most 16 MiB, found a longer one");
@@ -188,10 +187,10 @@ TEST_CASE("a file that cannot be read is named without a line") {
 TEST_CASE("the caller says how many rows are enough") {
   const TemporaryFolder folder;
   const std::string path = folder.write("in.csv", "a\n1\n2\n");
-  CHECK(read_csv(path, {"a"}, 2).rows.size() == 2);
+  CHECK(read_csv(path, {"a"}, 2).size() == 2);
   CHECK_THROWS_WITH_AS(read_csv(path, {"a"}, 3), (path + ":3: expected at least 3 rows of data, found 2").c_str(),
                        InputError);
-  CHECK(read_csv(folder.write("in.csv", "a\n"), {"a"}, 0).rows.empty());
+  CHECK(read_csv(folder.write("in.csv", "a\n"), {"a"}, 0).empty());
 }
 
 TEST_CASE("a table that is no table is refused before a file is made") {

@@ -34,5 +34,5 @@ TEST_CASE("links to regular files are read") {
   const TemporaryFolder folder;
   folder.write("in.csv", "a\n1\n");
   std::filesystem::create_symlink("in.csv", folder.path("link.csv"));
-  CHECK(pinnquad::read_csv(folder.path("link.csv"), {"a"}).rows.size() == 1);
+  CHECK(pinnquad::read_csv(folder.path("link.csv"), {"a"}).size() == 1);
 }

@@ -47,14 +47,14 @@ std::string real_logs() { return pinnquad::test::reference_folder() + "/flight_l
 TEST_CASE("real logs are flights, one by one and end to end; in degrees they are none" *
           doctest::skip(!std::ifstream(real_logs()))) {
   const std::string path = real_logs();
-  const pinnquad::CsvTable table =
+  const auto rows =
       pinnquad::read_csv(path, {"t",  "abx", "aby",  "abz",   "dwx", "dwy", "dwz", "vbx", "vby", "vbz", "wx",
                                 "wy", "wz",  "roll", "pitch", "yaw", "pz",  "u1",  "u2",  "u3",  "u4"});
   std::vector<Flight> flights(1);
   Flight joined;
   double offset_s = 0;
-  for (const auto& row : table.rows) {
-    pinnquad::SampleValues values;
+  for (const auto& row : rows) {
+    pinnquad::Sample::Values values;
     std::copy(row.begin(), row.end(), values.begin());
     pinnquad::Sample sample = pinnquad::to_sample(values);
     sample.linear_acceleration_m_s2 -= pinnquad::cross(sample.body_rates_rad_s, sample.velocity_m_s);

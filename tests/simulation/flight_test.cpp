@@ -59,7 +59,7 @@ Commands<double> inverse_of(const Vehicle& quadrotor, const Sample& sample) {
 }
 
 std::vector<double> features_of(const Sample& s) {
-  const SampleValues v = to_values(s);
+  const Sample::Values v = to_values(s);
   std::vector<double> x(v.begin() + 1, v.begin() + 15);
   x.push_back(std::sin(s.yaw_rad));
   x.push_back(std::cos(s.yaw_rad));
@@ -232,7 +232,7 @@ TEST_CASE("a full flight: signed command sums follow angular accelerations, and 
     CHECK(correlation > 0.95);
     CHECK(correlation < 0.995);  // Fig. 2: the lag shows
   }
-  const DatasetSplit split = split_contiguous(flight.size());
+  const auto split = split_contiguous(flight.size());
   std::vector<double> lowest = features_of(flight[0]), highest = lowest;
   for (std::size_t i = split.train.begin; i < split.train.end; ++i) {
     const std::vector<double> x = features_of(flight[i]);

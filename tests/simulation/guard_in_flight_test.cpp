@@ -51,7 +51,7 @@ Tally flown(std::uint64_t seed, double max_speed_m_s) {
   const Flown inverse{typename Flown::Guard(formula)};
   Tally tally;
   const auto row = [&](const FlightRow& at) {
-    const auto inputs = SampleInputs<MotionInputs<float>>::from(at.sample);
+    const auto inputs = sample_inputs<MotionInputs<float>>(at.sample);
     const PlaceAndTime<double> place{at.vehicle.body.position_m, at.vehicle.time_s};
     Commands<float> commands{}, expected{};
     typename Flown::Report report;

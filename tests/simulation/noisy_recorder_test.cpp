@@ -47,22 +47,23 @@ VehicleState<double> turning() {
 constexpr Commands<double> some_commands{0.41, 0.52, 0.63, 0.74};
 
 /// `count` rows of the same instant: what differs from row to row is noise.
-std::vector<SampleValues> rows_of_one_instant(const RecorderErrors& errors, std::size_t count, std::uint64_t seed = 5) {
+std::vector<Sample::Values> rows_of_one_instant(const RecorderErrors& errors, std::size_t count,
+                                                std::uint64_t seed = 5) {
   Recorder recorder(Engine(seed), errors);
   const VehicleState<double> state = turning();
   recorder.hold(some_commands, state.time_s - 0.002);
-  std::vector<SampleValues> rows;
+  std::vector<Sample::Values> rows;
   for (std::size_t i = 0; i < count; ++i) rows.push_back(to_values(recorder(vehicle(), state, some_commands)));
   return rows;
 }
 
-SampleValues exact_row() { return to_values(ExactRecorder{}(vehicle(), turning(), some_commands)); }
+Sample::Values exact_row() { return to_values(ExactRecorder{}(vehicle(), turning(), some_commands)); }
 
 constexpr std::size_t first_acceleration = 4, first_velocity = 7, first_rate = 10, first_angle = 13, altitude = 16;
 
-std::vector<double> noise_of(const std::vector<SampleValues>& rows, std::size_t field) {
+std::vector<double> noise_of(const std::vector<Sample::Values>& rows, std::size_t field) {
   std::vector<double> noise;
-  for (const SampleValues& row : rows) noise.push_back(row[field] - exact_row()[field]);
+  for (const Sample::Values& row : rows) noise.push_back(row[field] - exact_row()[field]);
   return noise;
 }
 
@@ -99,7 +100,7 @@ TEST_CASE("gyro noise: white in the rates, its difference over the interval in t
   RecorderErrors errors;
   errors.gyro_noise_rad_s = 0.02;
   errors.derivative_interval_s = 0.008;
-  const std::vector<SampleValues> rows = rows_of_one_instant(errors, count);
+  const std::vector<Sample::Values> rows = rows_of_one_instant(errors, count);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
     const std::vector<double> rates = noise_of(rows, first_rate + axis);
@@ -114,7 +115,7 @@ TEST_CASE("gyro noise: white in the rates, its difference over the interval in t
       CHECK(std::abs(pearson_correlation(rates, noise_of(rows, first_rate + other))) < sampling_error);
     }
   }
-  for (const SampleValues& row : rows) {
+  for (const Sample::Values& row : rows) {
     for (const std::size_t field : {1u, 2u, 3u, 7u, 8u, 9u, 13u, 14u, 15u, 16u, 17u, 18u, 19u, 20u}) {
       REQUIRE(row[field] == exact_row()[field]);  // and nothing else
     }
@@ -126,7 +127,7 @@ TEST_CASE("velocity and attitude noise have the deviations ordered") {
   RecorderErrors errors;
   errors.velocity_noise_m_s = 0.1;
   errors.attitude_noise_rad = 0.01;
-  const std::vector<SampleValues> rows = rows_of_one_instant(errors, 20000);
+  const std::vector<Sample::Values> rows = rows_of_one_instant(errors, 20000);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK(within(sampling_error, deviation(noise_of(rows, first_velocity + axis)), 0.1));
     CHECK(deviation(noise_of(rows, first_rate + axis)) == 0);
@@ -141,7 +142,7 @@ TEST_CASE("one error changed leaves the noise of the others alone") {
   gyro.gyro_noise_rad_s = both.gyro_noise_rad_s = 0.02;
   both.velocity_noise_m_s = 0.3;
   both.command_jitter_s = 0.01;
-  const std::vector<SampleValues> a = rows_of_one_instant(gyro, 50), b = rows_of_one_instant(both, 50);
+  const std::vector<Sample::Values> a = rows_of_one_instant(gyro, 50), b = rows_of_one_instant(both, 50);
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (std::size_t field = 0; field < 3; ++field) {
       REQUIRE(a[i][first_rate + field] == b[i][first_rate + field]);

@@ -52,7 +52,7 @@ using InputsOf = typename InverseDynamics<Model>::Inputs;
 
 template <class Model>
 InputsOf<Model> inputs_of(const Sample& sample) {
-  return SampleInputs<InputsOf<Model>>::from(sample);
+  return sample_inputs<InputsOf<Model>>(sample);
 }
 
 template <class Model>

@@ -42,7 +42,7 @@ inline std::string panel(double left, double right, double top, double bottom) {
 
 /// Shades the three blocks of the 60/20/20 split over a time axis, named along the upper edge.
 inline std::string shaded_split(const std::vector<double>& time_s, bool named) {
-  const pinnquad::DatasetSplit split = pinnquad::split_contiguous(time_s.size());
+  const auto split = pinnquad::split_contiguous(time_s.size());
   struct Block {
     const char* name;
     const char* colour;

@@ -144,7 +144,7 @@ class FlightReplay {
       const bool asked = !is_altitude || std::any_of(Features::names.begin(), Features::names.end(), asks);
       if (asked && !std::isfinite(value)) add_to_list(names, name);
     };
-    const pinnquad::SampleValues values = pinnquad::to_values(flight[row]);
+    const pinnquad::Sample::Values values = pinnquad::to_values(flight[row]);
     constexpr std::size_t first_command = pinnquad::sample_value_count - pinnquad::rotor_count;
     for (std::size_t i = 1; i < first_command; ++i) look(std::string(pinnquad::sample_field_names[i]), values[i]);
     for (const char* name : pinnquad::extra_column_names<Features>) {

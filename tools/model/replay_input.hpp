@@ -58,7 +58,7 @@ inline pinnquad::Flight read_flight_with_gaps(const std::string& path) {
   if (rows == 0) throw pinnquad::InputError(path, 2, 0, "a row of data", "none");
   flight.reserve(rows);
   for (std::size_t row = 0; row < rows; ++row) {
-    pinnquad::SampleValues values;
+    pinnquad::Sample::Values values;
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = columns[i]->values[row];
     if (!std::isfinite(values[0]) || (row > 0 && !(values[0] > flight.back().time_s))) {
       throw pinnquad::InputError(path, static_cast<std::size_t>(topic.place[row]), 0,

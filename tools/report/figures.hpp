@@ -31,11 +31,11 @@ struct StudySeries {
 /// Reads series/model<ID>.csv. The signs of the sums come from the airframe's allocation, which all airframes of the
 /// paper's rotor order share. Throws InputError.
 inline StudySeries read_study_series(const std::string& path) {
-  const pinnquad::CsvTable table = pinnquad::read_csv(
+  const auto rows = pinnquad::read_csv(
       path, {"time_s", "wdot_x", "wdot_y", "wdot_z", "u1", "u2", "u3", "u4", "p1", "p2", "p3", "p4"}, 3);
   constexpr auto airframe = pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>();
   StudySeries series;
-  for (const std::vector<double>& row : table.rows) {
+  for (const std::vector<double>& row : rows) {
     series.time_s.push_back(row[0]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto signs = pinnquad::allocation_signs(airframe, static_cast<int>(axis));

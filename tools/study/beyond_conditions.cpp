@@ -44,9 +44,9 @@ ToldAirframe the_truth() { return {Airframe::name, the_vehicle()}; }
 
 /// The first `share` of the rows trains, a third as many behind them validate, the last fifth of the flight tests.
 RowSplit beginning(const Flight& flight, double share) {
-  const pinnquad::DatasetSplit whole = pinnquad::split_contiguous(flight.size(), {1 - test_share, 0, test_share});
+  const auto whole = pinnquad::split_contiguous(flight.size(), {1 - test_share, 0, test_share});
   const double validates = share / 3, rest = 1 - share - validates;
-  const pinnquad::DatasetSplit blocks = pinnquad::split_contiguous(flight.size(), {share, validates, rest});
+  const auto blocks = pinnquad::split_contiguous(flight.size(), {share, validates, rest});
   RowSplit split;
   split.train.add(flight, blocks.train);
   split.validation.add(flight, {blocks.validation.begin, std::min(blocks.validation.end, whole.test.begin)});
@@ -60,7 +60,7 @@ bool is_slow(const pinnquad::Sample& sample) { return sample.velocity_m_s.norm()
 
 RowSplit by_speed(const OfFlights& flights) {
   const Flight& flight = *flights.front();
-  const pinnquad::DatasetSplit blocks = pinnquad::split_contiguous(flight.size());
+  const auto blocks = pinnquad::split_contiguous(flight.size());
   RowSplit split;
   split.train = rows_where(flight, blocks.train, is_slow);
   split.validation = rows_where(flight, blocks.validation, is_slow);

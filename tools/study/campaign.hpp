@@ -100,7 +100,7 @@ class StudyFolder {
         const std::string name = entry.path().filename().string();
         if (name.find(".csv.partial-") == std::string::npos && name.find(".json.partial-") == std::string::npos)
           continue;
-        pinnquad::PartialFile::remove_abandoned(entry.path().string());
+        pinnquad::AtomicFile::remove_abandoned(entry.path().string());
       }
     }
   }
@@ -111,17 +111,17 @@ class StudyFolder {
 
 /// Predictions of a model on its test rows, beside the commands flown.
 inline void write_series(const std::string& path, const pinnquad::Flight& flight, const Outcome& outcome) {
-  pinnquad::CsvTable table;
-  table.header = {"time_s", "wdot_x", "wdot_y", "wdot_z", "u1", "u2", "u3", "u4", "p1", "p2", "p3", "p4"};
+  std::vector<std::vector<double>> rows;
   for (std::size_t i = 0; i < outcome.predictions.size(); ++i) {
     const pinnquad::Sample& sample = flight[outcome.test_rows.begin + i];
     std::vector<double> row = {sample.time_s};
     for (int axis = 0; axis < 3; ++axis) row.push_back(sample.angular_acceleration_rad_s2[axis]);
     for (const double u : sample.commands) row.push_back(u);
     for (const double u : outcome.predictions[i]) row.push_back(u);
-    table.rows.push_back(std::move(row));
+    rows.push_back(std::move(row));
   }
-  pinnquad::write_csv(path, table);
+  pinnquad::write_csv(path, {"time_s", "wdot_x", "wdot_y", "wdot_z", "u1", "u2", "u3", "u4", "p1", "p2", "p3", "p4"},
+                      rows);
 }
 
 /// A study in its folder.

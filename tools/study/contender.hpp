@@ -44,7 +44,7 @@ struct Material {
         validation(pinnquad::standardised<float>(context, rows, split.validation)) {}
 
   const pinnquad::Flight& flight;
-  pinnquad::DatasetSplit split;
+  pinnquad::Split<pinnquad::IndexRange> split;
   Context context;
   pinnquad::TrainingData<float, Features::size, pinnquad::rotor_count> data;
   pinnquad::TrainingData<float, Features::size, pinnquad::rotor_count> validation;
@@ -129,7 +129,7 @@ struct Contender {
 template <class DataSet>
 Contender contender(std::string id, nlohmann::json description) {
   const std::size_t rows = DataSet::Flight::plan().samples;
-  const pinnquad::DatasetSplit split = pinnquad::split_contiguous(rows, DataSet::shares);
+  const auto split = pinnquad::split_contiguous(rows, DataSet::shares);
   Contender result;
   result.id = id;
   result.flight = DataSet::Flight::name;

@@ -35,8 +35,7 @@ inline std::string ellipses_drawing(const std::vector<EllipsesRow>& models, cons
                    y0 = top + static_cast<double>(m) * (panel + 92);
       const drawing::Axis x{-range, range, x0, x0 + panel}, y{-range, range, y0 + panel, y0};
       const auto deviation = pinnquad::axis_deviation(s.angular_acceleration, s.target);
-      const pinnquad::PhysicalConsistency c =
-          pinnquad::physical_consistency(s.target, s.predicted, s.angular_acceleration);
+      const pinnquad::PhysicalConsistency c = pinnquad::physical_consistency(s);
       text += drawing::horizontal_axis(x, y0, y0 + panel, 5, std::string(rates[axis]) + ", target std. dev.") +
               drawing::vertical_axis(y, x0, x0 + panel, 5, "");
       drawing::Trace target, predicted;

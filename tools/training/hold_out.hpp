@@ -115,7 +115,7 @@ inline std::vector<std::uint64_t> row_hashes(const pinnquad::RowSet& rows) {
   hashes.reserve(rows.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     pinnquad::detail::Fnv1a fnv;
-    const pinnquad::SampleValues values = pinnquad::to_values(rows[row]);
+    const pinnquad::Sample::Values values = pinnquad::to_values(rows[row]);
     for (std::size_t i = 1; i < values.size(); ++i) pinnquad::detail::absorb_number(fnv, values[i]);
     hashes.push_back(fnv.hash);
   }

@@ -22,12 +22,12 @@ namespace programs {
 constexpr std::array<const char*, 3> axis_names = {"roll", "pitch", "yaw"};
 
 using pinnquad::axis_series;
-using pinnquad::AxisFigures;
 using pinnquad::AxisSeries;
 using pinnquad::judge;
 using pinnquad::no_axis_figures;
 using pinnquad::pair_signs;
-using pinnquad::PairSigns;
+using AxisFigures = std::array<double, 3>;  ///< of roll, pitch and yaw
+using PairSigns = pinnquad::Judgement::PairSigns;
 
 /// Commands of every row of a block, one model's.
 using Predictions = std::vector<pinnquad::Commands<double>>;

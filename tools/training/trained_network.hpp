@@ -91,7 +91,7 @@ class NetworkOfModel : public TrainedNetwork {
         rows, [&](const pinnquad::Flight& flight, std::size_t row, const typename Model::FeatureVector& x) {
           line.clear();
           if constexpr (asks_for_motion) {
-            const Inputs in = pinnquad::SampleInputs<Inputs>::from(flight[row]);
+            const Inputs in = pinnquad::sample_inputs<Inputs>(flight[row]);
             for (const auto* vector : {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s,
                                        &in.body_rates_rad_s}) {
               for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));

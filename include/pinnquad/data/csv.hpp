@@ -55,7 +55,7 @@ inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows 
         }
         // room for all rows at once: growing would hold the flight twice
         if (flight.empty()) flight.reserve(detail::most_records(path, fields.size()));
-        SampleValues row;
+        Sample::Values row;
         std::copy_n(values.begin(), row.size(), row.begin());
         flight.push_back(to_sample(row), values.data() + row.size(), extra.size());
       });
@@ -83,7 +83,7 @@ void write_flight_csv(const std::string& path, const Flight& flight, const Obser
   detail::CsvWriter writer(path, columns);
   std::vector<double> values(columns.size());
   for (std::size_t i = 0; i < flight.size(); ++i) {
-    const SampleValues sample = to_values(flight[i]);
+    const Sample::Values sample = to_values(flight[i]);
     std::copy(sample.begin(), sample.end(), values.begin());
     for (std::size_t k = 0; k < flight.columns().size(); ++k) {
       values[sample.size() + k] = flight.columns()[k].values[i];

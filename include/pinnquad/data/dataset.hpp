@@ -24,10 +24,14 @@
 
 namespace pinnquad {
 
+inline constexpr std::size_t sample_value_count = 21;
+
 /// One row of a recorded flight: the motion at one instant and the commands that cause it.
 /// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world. docs/guide.md has the same as columns of a
 /// CSV.
 struct Sample {
+  using Values = std::array<double, sample_value_count>;  ///< its numbers in the order of `sample_field_names`
+
   double time_s = 0;  ///< strictly increasing from row to row; any start
   /// Derivative of the body-frame velocity, FRD: v_dot_B = R^T a_world - omega x v_B (Eq. (1)).
   Vector3<double> linear_acceleration_m_s2 = Vector3<double>::Zero();
@@ -44,11 +48,6 @@ struct Sample {
   Commands<double> commands{};
 };
 
-inline constexpr std::size_t sample_value_count = 21;
-
-/// The numbers of one Sample in the order of `sample_field_names`.
-using SampleValues = std::array<double, sample_value_count>;
-
 /// Column names of a recorded flight, in the order of `to_values`.
 inline constexpr std::array<std::string_view, sample_value_count> sample_field_names = {
     // clang-format off
@@ -63,7 +62,7 @@ inline constexpr std::array<std::string_view, sample_value_count> sample_field_n
 // clang-format on
 
 /// The sample as 21 numbers, ordered as `sample_field_names`.
-inline SampleValues to_values(const Sample& sample) {
+inline Sample::Values to_values(const Sample& sample) {
   const auto& v_dot = sample.linear_acceleration_m_s2;
   const auto& omega_dot = sample.angular_acceleration_rad_s2;
   const auto& v = sample.velocity_m_s;
@@ -82,7 +81,7 @@ inline SampleValues to_values(const Sample& sample) {
 }
 
 /// The inverse of `to_values`.
-inline Sample to_sample(const SampleValues& values) {
+inline Sample to_sample(const Sample::Values& values) {
   const auto vector_at = [&values](std::size_t first) {
     return Vector3<double>(values[first], values[first + 1], values[first + 2]);
   };
@@ -115,10 +114,6 @@ struct ExtraColumn : ColumnName {
 /// columns.
 class Flight {
  public:
-  using value_type = Sample;
-  using iterator = std::vector<Sample>::iterator;
-  using const_iterator = std::vector<Sample>::const_iterator;
-
   std::string name;        ///< by which a dataset, a message or a report means this flight
   std::string trajectory;  ///< a split by trajectory parts no flights of one trajectory. May be empty
   double weight = 1;       ///< how often its rows are seen in training, relative to those of other flights
@@ -134,10 +129,10 @@ class Flight {
   const Sample& operator[](std::size_t row) const { return samples_[row]; }
   const Sample& front() const { return samples_.front(); }
   const Sample& back() const { return samples_.back(); }
-  iterator begin() noexcept { return samples_.begin(); }
-  iterator end() noexcept { return samples_.end(); }
-  const_iterator begin() const noexcept { return samples_.begin(); }
-  const_iterator end() const noexcept { return samples_.end(); }
+  auto begin() noexcept { return samples_.begin(); }
+  auto end() noexcept { return samples_.end(); }
+  auto begin() const noexcept { return samples_.begin(); }
+  auto end() const noexcept { return samples_.end(); }
 
   void reserve(std::size_t rows) {
     samples_.reserve(rows);

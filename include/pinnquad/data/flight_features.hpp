@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Recorded rows as the inputs and the features of a feature set, for training, judgement and export.
-// A feature set with an Inputs struct of its own specialises SampleInputs for it.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "pinnquad/data/dataset.hpp"
@@ -16,54 +16,43 @@
 
 namespace pinnquad {
 
-/// `static Inputs from(const Sample&)`.
+/// Inputs of a row alone: its motion, and its altitude where they have one. Specialised for Inputs of another kind.
 template <class Inputs>
-struct SampleInputs;
-
-template <class Scalar>
-struct SampleInputs<MotionInputs<Scalar>> {
-  static MotionInputs<Scalar> from(const Sample& sample) {
-    const Quaternion<double> q = from_euler(EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
-    MotionInputs<Scalar> inputs;
-    inputs.linear_acceleration_m_s2 = sample.linear_acceleration_m_s2.cast<Scalar>();
-    inputs.angular_acceleration_rad_s2 = sample.angular_acceleration_rad_s2.cast<Scalar>();
-    inputs.velocity_m_s = sample.velocity_m_s.cast<Scalar>();
-    inputs.body_rates_rad_s = sample.body_rates_rad_s.cast<Scalar>();
-    inputs.attitude = {Scalar(q.w), Scalar(q.x), Scalar(q.y), Scalar(q.z)};
-    return inputs;
-  }
-};
-
-template <class Scalar>
-struct SampleInputs<MotionInputsWithAltitude<Scalar>> {
-  static MotionInputsWithAltitude<Scalar> from(const Sample& sample) {
-    MotionInputsWithAltitude<Scalar> inputs;
-    static_cast<MotionInputs<Scalar>&>(inputs) = SampleInputs<MotionInputs<Scalar>>::from(sample);
-    inputs.altitude_m = Scalar(sample.altitude_m);
-    return inputs;
-  }
-};
+Inputs sample_inputs(const Sample& sample) {
+  using Scalar = typename decltype(Inputs::body_rates_rad_s)::Scalar;
+  constexpr bool with_altitude = std::is_same_v<Inputs, MotionInputsWithAltitude<Scalar>>;
+  static_assert(with_altitude || std::is_same_v<Inputs, MotionInputs<Scalar>>,
+                "pinnquad: an Inputs struct of your own needs a specialisation of sample_inputs()");
+  const Quaternion<double> q = from_euler(EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+  Inputs inputs;
+  inputs.linear_acceleration_m_s2 = sample.linear_acceleration_m_s2.cast<Scalar>();
+  inputs.angular_acceleration_rad_s2 = sample.angular_acceleration_rad_s2.cast<Scalar>();
+  inputs.velocity_m_s = sample.velocity_m_s.cast<Scalar>();
+  inputs.body_rates_rad_s = sample.body_rates_rad_s.cast<Scalar>();
+  inputs.attitude = {Scalar(q.w), Scalar(q.x), Scalar(q.y), Scalar(q.z)};
+  if constexpr (with_altitude) inputs.altitude_m = Scalar(sample.altitude_m);
+  return inputs;
+}
 
 /// Feature vector X of a sample, physical units.
 template <class Features, class Scalar>
 std::array<Scalar, static_cast<std::size_t>(Features::size)> sample_features(const Sample& sample) {
   std::array<Scalar, static_cast<std::size_t>(Features::size)> x{};
-  Features::extract(SampleInputs<typename Features::template Inputs<Scalar>>::from(sample), x.data());
+  Features::extract(sample_inputs<typename Features::template Inputs<Scalar>>(sample), x.data());
   return x;
 }
 
-/// Reads Inputs from consecutive rows of one flight. Contract of a specialisation: made of the rows, which may throw
-/// std::invalid_argument, one line, for what the flight has not measured; `bool read(row, inputs) const`, row an index
-/// of the flight within the rows: false where the rows do not hold what these inputs need, and then nothing is written.
-/// It never looks beyond its rows.
-/// This one, for every Inputs that has a SampleInputs, looks at the row alone.
+/// Reads Inputs from consecutive rows of one flight, and never looks beyond them. Contract of a specialisation: it is
+/// made of the rows, and throws std::invalid_argument, one line, for what the flight has not measured. `bool read(row,
+/// inputs) const` takes an index of the flight within the rows; where they do not hold what the inputs need, it returns
+/// false and writes nothing. This one looks at the row alone, by sample_inputs().
 template <class Inputs>
 class FlightInputs {
  public:
   explicit FlightInputs(const FlightRows& rows) : flight_(rows.flight) {}
 
   bool read(std::size_t row, Inputs& inputs) const {
-    inputs = SampleInputs<Inputs>::from((*flight_)[row]);
+    inputs = sample_inputs<Inputs>((*flight_)[row]);
     return true;
   }
 

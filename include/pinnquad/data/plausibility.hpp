@@ -116,7 +116,7 @@ inline std::optional<Implausible> find_implausible_command(const Flight& flight)
 /// holds.
 inline std::optional<Implausible> find_out_of_range(const Flight& flight) {
   for (std::size_t row = 0; row < flight.size(); ++row) {
-    const SampleValues values = to_values(flight[row]);
+    const Sample::Values values = to_values(flight[row]);
     for (std::size_t field = 0; field < values.size(); ++field) {
       const ColumnPlausibility& column = column_plausibility[field];
       if (values[field] >= column.lowest && values[field] <= column.highest) continue;

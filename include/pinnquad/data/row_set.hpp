@@ -66,9 +66,10 @@ class RowSet {
 };
 
 /// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of
-/// two pieces differ by more than `tolerance` of the first: then there is no one period. To the nanosecond, as a block
+/// two pieces differ by more than a hundredth of the first: then there is no one period. To the nanosecond, as a block
 /// holds it: times are sums of steps.
-inline double sample_period_s(const RowSet& rows, double tolerance = 0.01) {
+inline double sample_period_s(const RowSet& rows) {
+  constexpr double tolerance = 0.01;
   double period = 0;
   for (const FlightRows& piece : rows.pieces()) {
     std::vector<double> steps;

@@ -4,6 +4,7 @@
 // Blocks, not a random draw: neighbouring rows are alike, and a draw would leak training rows into the test.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -14,26 +15,26 @@
 
 namespace pinnquad {
 
-/// Shares of the rows, each in 0..1, their sum 1. Default: the split of Sec. 5. A share of 0 leaves that block out.
-struct SplitShares {
-  double train = 0.6;
-  double validation = 0.2;
-  double test = 0.2;
+/// One part to train on, one to validate on, one to test on: rows, or their shares.
+template <class Part>
+struct Split {
+  Part train{};
+  Part validation{};
+  Part test{};
 };
 
-/// Three adjoining blocks, in time order, that cover every row once.
-struct DatasetSplit {
-  IndexRange train;
-  IndexRange validation;
-  IndexRange test;
-};
+/// Three sets that cover every row of a dataset once; views, the dataset must outlive them.
+using RowSplit = Split<RowSet>;
+
+/// Shares of the rows in Sec. 5. Each is in 0..1, their sum is 1; a share of 0 leaves that block out.
+inline constexpr Split<double> usual_shares = {0.6, 0.2, 0.2};
 
 /// Rows that a block with a share above 0 needs at least: local monotonicity looks at pairs.
 inline constexpr std::size_t minimum_block_rows = 2;
 
 namespace detail {
 /// Throws std::invalid_argument, in one line, for shares that are no shares.
-inline void require_shares(const SplitShares& shares) {
+inline void require_shares(const Split<double>& shares) {
   constexpr double sum_tolerance = 1e-9;  // decimal shares such as 0.7 + 0.2 + 0.1 miss 1 by a few ulp
   const auto is_share = [](double share) { return share >= 0 && share <= 1; };
   if (!is_share(shares.train) || !is_share(shares.validation) || !is_share(shares.test) ||
@@ -49,14 +50,14 @@ inline void require_shares(const SplitShares& shares) {
 ///   train = [0, round(rows train)), validation = [.., round(rows (train + validation))), test = [.., rows)
 /// so that 15000 rows give 9000 / 3000 / 3000 by default. Each block is within one row of its exact share.
 /// Throws std::invalid_argument, in one line: shares that are no shares; too few rows for `minimum_block_rows`.
-inline DatasetSplit split_contiguous(std::size_t rows, const SplitShares& shares = {}) {
+inline Split<IndexRange> split_contiguous(std::size_t rows, const Split<double>& shares = usual_shares) {
   detail::require_shares(shares);
   const auto border = [rows](double share) {
     const double exact = static_cast<double>(rows) * share;
     const auto rounded = static_cast<std::size_t>(std::floor(exact + 0.5));
     return rounded < rows ? rounded : rows;
   };
-  DatasetSplit split;
+  Split<IndexRange> split;
   split.train = {0, border(shares.train)};
   split.validation = {split.train.end, shares.test > 0 ? border(shares.train + shares.validation) : rows};
   split.test = {split.validation.end, rows};
@@ -74,34 +75,35 @@ inline DatasetSplit split_contiguous(std::size_t rows, const SplitShares& shares
   return split;
 }
 
-/// Three sets that cover every row of a dataset once; views, the dataset must outlive them.
-struct RowSplit {
-  RowSet train;
-  RowSet validation;
-  RowSet test;
-};
-
 /// Each flight into three contiguous blocks, as split_contiguous() does it: the end of every flight is tested. A
 /// dataset of one flight is split as that flight. Throws what split_contiguous() throws.
-inline RowSplit split_each_flight(const Dataset& dataset, const SplitShares& shares = {}) {
+inline RowSplit split_each_flight(const Dataset& dataset, const Split<double>& shares = usual_shares) {
   RowSplit split;
   for (const Flight& flight : dataset.flights()) {
-    const DatasetSplit blocks = split_contiguous(flight.size(), shares);
+    const Split<IndexRange> blocks = split_contiguous(flight.size(), shares);
     split.train.add(flight, blocks.train);
     split.validation.add(flight, blocks.validation);
     split.test.add(flight, blocks.test);
   }
   return split;
 }
-RowSplit split_each_flight(const Dataset&&, const SplitShares& = {}) = delete;  // its rows would be gone
+RowSplit split_each_flight(const Dataset&&, const Split<double>& = usual_shares) = delete;  // its rows would be gone
 
 namespace detail {
 
-/// Groups of flights, each group whole, in order of `groups`: the first ones train, the next validate, the last test.
-/// The borders are where the shares of the rows are met best, so that each block with a share above 0 has a group.
-inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& groups, const SplitShares& shares,
-                             const char* what) {
+/// Groups of flights that are not empty, each group whole: the first ones train, the next validate, the last test. The
+/// borders are where the shares of the rows are met best, so that each block with a share above 0 has a group.
+inline RowSplit split_groups(const Dataset& dataset, bool by_trajectory, const Split<double>& shares) {
   require_shares(shares);
+  std::vector<std::vector<const Flight*>> groups;
+  for (const Flight& flight : dataset.flights()) {
+    if (flight.empty()) continue;
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const std::vector<const Flight*>& other) {
+      return by_trajectory && !flight.trajectory.empty() && other.front()->trajectory == flight.trajectory;
+    });
+    if (group == groups.end()) group = groups.emplace(group);
+    group->push_back(&flight);
+  }
   std::vector<std::size_t> rows_before = {0};  // [i]: rows of the first i groups
   for (const auto& group : groups) {
     std::size_t rows = rows_before.back();
@@ -111,7 +113,8 @@ inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& grou
   const std::size_t validates = shares.validation > 0 ? 1 : 0, tests = shares.test > 0 ? 1 : 0;
   const std::size_t trains = shares.train > 0 ? 1 : 0;
   if (groups.size() < trains + validates + tests) {
-    throw std::invalid_argument("split: expected at least " + std::to_string(trains + validates + tests) + " " + what +
+    throw std::invalid_argument("split: expected at least " + std::to_string(trains + validates + tests) +
+                                (by_trajectory ? " trajectories" : " flights") +
                                 ", one for each block of rows, found " + std::to_string(groups.size()));
   }
   const double all_rows = static_cast<double>(rows_before.back());
@@ -146,34 +149,17 @@ inline RowSplit split_groups(const std::vector<std::vector<const Flight*>>& grou
 /// Whole flights, in the dataset's order: the first ones train, then come those that validate, and the last ones test.
 /// Each block takes as many flights as come closest to its share of the rows, and one at least; a flight without rows
 /// is in none. Throws std::invalid_argument, one line: shares that are no shares; fewer flights than blocks.
-inline RowSplit split_by_flight(const Dataset& dataset, const SplitShares& shares = {}) {
-  std::vector<std::vector<const Flight*>> groups;
-  for (const Flight& flight : dataset.flights()) {
-    if (!flight.empty()) groups.push_back({&flight});
-  }
-  return detail::split_groups(groups, shares, "flights");
+inline RowSplit split_by_flight(const Dataset& dataset, const Split<double>& shares = usual_shares) {
+  return detail::split_groups(dataset, false, shares);
 }
-RowSplit split_by_flight(const Dataset&&, const SplitShares& = {}) = delete;
+RowSplit split_by_flight(const Dataset&&, const Split<double>& = usual_shares) = delete;
 
 /// The same with whole trajectories, in the order in which the dataset names them first: what is tested was never flown
 /// in training. A flight that names no trajectory is one of its own.
-inline RowSplit split_by_trajectory(const Dataset& dataset, const SplitShares& shares = {}) {
-  std::vector<std::vector<const Flight*>> groups;
-  for (const Flight& flight : dataset.flights()) {
-    if (flight.empty()) continue;
-    std::vector<const Flight*>* group = nullptr;
-    for (auto& other : groups) {
-      if (!flight.trajectory.empty() && other.front()->trajectory == flight.trajectory) group = &other;
-    }
-    if (group != nullptr) {
-      group->push_back(&flight);
-    } else {
-      groups.push_back({&flight});
-    }
-  }
-  return detail::split_groups(groups, shares, "trajectories");
+inline RowSplit split_by_trajectory(const Dataset& dataset, const Split<double>& shares = usual_shares) {
+  return detail::split_groups(dataset, true, shares);
 }
-RowSplit split_by_trajectory(const Dataset&&, const SplitShares& = {}) = delete;
+RowSplit split_by_trajectory(const Dataset&&, const Split<double>& = usual_shares) = delete;
 
 /// The split of `pinnquad train`: one flight in contiguous blocks, several as whole flights.
 inline RowSplit split_for_training(const Dataset& dataset) {

@@ -36,7 +36,7 @@ struct LinearRegression {
 
 /// Gauss-Jordan on the symmetric matrix of moments, of which only the features' rows are needed: one feature after
 /// another, the one that varies most beside those before it first. Features that those before explain up to `threshold`
-/// of their variance are left out. The number taken.
+/// of their variance are left out. Returns the number taken.
 template <std::size_t InputCount, std::size_t Size>
 int sweep(std::array<std::array<double, Size>, InputCount>& moments, std::array<bool, InputCount>& taken,
           double threshold) {
@@ -59,6 +59,23 @@ int sweep(std::array<std::array<double, Size>, InputCount>& moments, std::array<
     }
   }
 }
+
+/// Errors e_i = prediction_i - target_i of one output over n rows, t its targets:
+///   mean_absolute    = sum |e_i| / n               in the unit of the output; Delta Y of Table 3
+///   root_mean_square = sqrt(sum e_i^2 / n)         in the unit of the output
+///   r_squared        = 1 - sum e_i^2 / sum (t_i - mean t)^2    1 is perfect, 0 as good as the mean, NaN for constant t
+struct ErrorMeasures {
+  double mean_absolute = 0;
+  double root_mean_square = 0;
+  double r_squared = 0;
+};
+
+/// Errors per motor, and the arithmetic mean of each measure over the motors.
+template <std::size_t Motors>
+struct PredictionErrors {
+  std::array<ErrorMeasures, Motors> per_motor{};
+  ErrorMeasures mean;
+};
 
 }  // namespace detail
 
@@ -112,27 +129,6 @@ detail::LinearRegression<InputCount, OutputCount> fit_linear_regression(
   }
   return fit;
 }
-
-namespace detail {
-
-/// Errors e_i = prediction_i - target_i of one output over n rows, t its targets:
-///   mean_absolute    = sum |e_i| / n               in the unit of the output; Delta Y of Table 3
-///   root_mean_square = sqrt(sum e_i^2 / n)         in the unit of the output
-///   r_squared        = 1 - sum e_i^2 / sum (t_i - mean t)^2    1 is perfect, 0 as good as the mean, NaN for constant t
-struct ErrorMeasures {
-  double mean_absolute = 0;
-  double root_mean_square = 0;
-  double r_squared = 0;
-};
-
-/// Errors per motor, and the arithmetic mean of each measure over the motors.
-template <std::size_t Motors>
-struct PredictionErrors {
-  std::array<ErrorMeasures, Motors> per_motor{};
-  ErrorMeasures mean;
-};
-
-}  // namespace detail
 
 /// Compares predictions with targets, row by row. A NaN in a column gives NaN for that motor and the mean.
 /// Throws std::invalid_argument for no rows or tables of different length.

@@ -64,33 +64,25 @@ Verdict verdict_on(const Model& model, const RowSet& training, const RowSet& tes
   return verdict_on(model_errors(model, test), bar.mean.r_squared);
 }
 
-/// Roll, pitch, yaw.
-using AxisFigures = std::array<double, 3>;
-inline constexpr AxisFigures no_axis_figures = {not_a_number, not_a_number, not_a_number};
-
-/// sign_violation_share() of pairs of rows that follow each other (docs/monotonicity.md). Large steps of the angular
-/// acceleration are above half its standard deviation.
-struct PairSigns {
-  AxisFigures all = no_axis_figures;
-  AxisFigures of_flown = no_axis_figures;  ///< of the flown commands
-  AxisFigures large = no_axis_figures;     ///< among large steps
-  AxisFigures large_of_flown = no_axis_figures;
-};
-
-/// Signed command sum and angular acceleration about one axis, row by row.
-struct AxisSeries {
-  std::vector<double> angular_acceleration;  ///< rad/s^2
-  std::vector<double> target;                ///< sum of the flown commands
-  std::vector<double> predicted;
-};
+/// Of roll, pitch and yaw.
+inline constexpr std::array<double, 3> no_axis_figures = {not_a_number, not_a_number, not_a_number};
 
 /// One model on one set of rows; validation_error and verdict by judge(model, split) alone.
 struct Judgement {
+  /// sign_violation_share() per axis, of pairs of rows that follow each other (docs/monotonicity.md). A large step of
+  /// the angular acceleration is above half its standard deviation.
+  struct PairSigns {
+    std::array<double, 3> all = no_axis_figures;
+    std::array<double, 3> of_flown = no_axis_figures;  ///< of the flown commands
+    std::array<double, 3> large = no_axis_figures;     ///< among large steps
+    std::array<double, 3> large_of_flown = no_axis_figures;
+  };
+
   detail::PredictionErrors<rotor_count> errors;
   std::array<PhysicalConsistency, 3> axes;  ///< roll, pitch, yaw
   PairSigns pairs;
-  AxisFigures nominal_slopes = no_axis_figures;  ///< hover_slopes() of the airframe, s^2/rad
-  double validation_error = not_a_number;        ///< mean absolute error of the commands on the validation rows
+  std::array<double, 3> nominal_slopes = no_axis_figures;  ///< hover_slopes() of the airframe, s^2/rad
+  double validation_error = not_a_number;  ///< mean absolute error of the commands on the validation rows
   Verdict verdict{};
 };
 
@@ -112,9 +104,9 @@ std::array<AxisSeries, 3> axis_series(const ContextAirframe<Vehicle>& airframe, 
   return series;
 }
 
-inline PairSigns pair_signs(const std::array<AxisSeries, 3>& series) {
+inline Judgement::PairSigns pair_signs(const std::array<AxisSeries, 3>& series) {
   constexpr double large_step_share = 0.5;  // of the standard deviation
-  PairSigns result;
+  Judgement::PairSigns result;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const AxisSeries& s = series[axis];
     const double large = large_step_share * std::sqrt(joint_moments(s.angular_acceleration, s.target).variance_x);
@@ -136,8 +128,7 @@ Judgement judge(const ContextAirframe<Vehicle>& airframe, const RowSet& rows,
   result.errors = prediction_errors(predictions, targets);
   const std::array<AxisSeries, 3> series = axis_series(airframe, rows, predictions);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    result.axes[axis] =
-        physical_consistency(series[axis].target, series[axis].predicted, series[axis].angular_acceleration);
+    result.axes[axis] = physical_consistency(series[axis]);
   }
   result.pairs = pair_signs(series);
   result.nominal_slopes = hover_slopes(airframe.template airframe<double>());

@@ -35,18 +35,6 @@ struct PairedComparison {
 
 namespace detail {
 
-/// Doubled mid-ranks of sorted magnitudes: whole numbers even with ties, so that rank sums can index an array.
-inline std::vector<std::size_t> doubled_ranks(const std::vector<double>& sorted) {
-  std::vector<std::size_t> ranks(sorted.size());
-  for (std::size_t first = 0; first < sorted.size();) {
-    std::size_t end = first;
-    while (end < sorted.size() && sorted[end] == sorted[first]) ++end;
-    for (std::size_t i = first; i < end; ++i) ranks[i] = first + 1 + end;  // ranks first+1 .. end, twice their mean
-    first = end;
-  }
-  return ranks;
-}
-
 /// P(W <= w) for W the sum of those ranks whose sign comes up positive, all 2^n signs equally likely.
 /// Each rank doubles the distribution: p(s) = (p(s) + p(s - rank)) / 2; exact in a double up to 50 ranks.
 inline double signed_rank_cdf(const std::vector<std::size_t>& ranks, std::size_t w) {

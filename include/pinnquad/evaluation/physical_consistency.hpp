@@ -18,6 +18,12 @@ namespace pinnquad {
 
 namespace detail {
 inline constexpr double pi = 3.14159265358979323846;
+
+/// Standard deviation along each axis: the units in which a standardised ellipse is measured.
+struct AxisDeviation {
+  double x = 1;
+  double y = 1;
+};
 }  // namespace detail
 
 /// An ellipse in the plane of x and y: centre, semi-axes, angle of the major axis from +x towards +y in (-90, 90].
@@ -52,23 +58,6 @@ inline ConfidenceEllipse covariance_ellipse(const detail::JointMoments& moments,
   return ellipse;
 }
 
-/// The ellipse of the points (x[i], y[i]), in their units. NaN for fewer than two points.
-/// Throws std::invalid_argument for series of different length.
-inline ConfidenceEllipse confidence_ellipse(const std::vector<double>& x, const std::vector<double>& y,
-                                            double sigmas = 3) {
-  return covariance_ellipse(joint_moments(x, y), sigmas);
-}
-
-namespace detail {
-
-/// Standard deviation along each axis: the units in which a standardised ellipse is measured.
-struct AxisDeviation {
-  double x = 1;
-  double y = 1;
-};
-
-}  // namespace detail
-
 /// The standard deviations of the points (x[i], y[i]); to be taken from the target, for the target's and the
 /// prediction's ellipse.
 inline detail::AxisDeviation axis_deviation(const std::vector<double>& x, const std::vector<double>& y) {
@@ -76,13 +65,14 @@ inline detail::AxisDeviation axis_deviation(const std::vector<double>& x, const 
   return {std::sqrt(moments.variance_x), std::sqrt(moments.variance_y)};
 }
 
-/// The ellipse of the points (x[i] / deviation.x, y[i] / deviation.y), no unit. With its own deviation a cloud lies at
-/// +-45 degrees whatever its correlation; a prediction's angle, in the target's deviation, says how far its slope or
-/// sign is off. Deviation: the paper does not say how its axes are scaled; in raw units roll and pitch stay below 1
-/// degree, where its differences are 20 to 30 (docs/paper.md, deviation 12). NaN ellipse if a deviation is 0 or NaN.
+/// The ellipse of the points (x[i] / deviation.x, y[i] / deviation.y): by default in their own units, with a deviation
+/// standardised. In its own deviation a cloud lies at +-45 degrees whatever its correlation; in the target's, the angle
+/// of a prediction says how far its slope or sign is off. Deviation: the paper does not say how its axes are scaled; in
+/// raw units roll and pitch stay below 1 degree, where its differences are 20 to 30 (docs/paper.md, deviation 12). NaN
+/// for fewer than two points and for a deviation of 0 or NaN.
 /// Throws std::invalid_argument for series of different length.
-inline ConfidenceEllipse standardized_confidence_ellipse(const std::vector<double>& x, const std::vector<double>& y,
-                                                         const detail::AxisDeviation& deviation, double sigmas = 3) {
+inline ConfidenceEllipse confidence_ellipse(const std::vector<double>& x, const std::vector<double>& y,
+                                            double sigmas = 3, const detail::AxisDeviation& deviation = {}) {
   detail::JointMoments moments = joint_moments(x, y);
   if (!(deviation.x > 0) || !(deviation.y > 0)) return {};
   moments.mean_x /= deviation.x;
@@ -151,6 +141,13 @@ inline double sign_violation_share(const std::vector<double>& predicted_sum,
   return pairs == 0 ? not_a_number : static_cast<double>(violations) / static_cast<double>(pairs);
 }
 
+/// Signed command sum and angular acceleration about one axis, row by row, in time order.
+struct AxisSeries {
+  std::vector<double> angular_acceleration;  ///< rad/s^2
+  std::vector<double> target;                ///< sum of the flown commands
+  std::vector<double> predicted;
+};
+
 /// All measures of one axis of rotation (roll, pitch or yaw). Ellipses have x = angular acceleration, y = command sum.
 struct PhysicalConsistency {
   ConfidenceEllipse target;                  ///< raw units
@@ -165,25 +162,23 @@ struct PhysicalConsistency {
   double sign_violation_share = 0;           ///< see sign_violation_share()
 };
 
-/// Measures a predicted command sum against the one flown; rows in time order, omega_dot in rad/s^2.
+/// Measures a predicted command sum against the one flown; ellipses at 3 sigma.
 /// Throws std::invalid_argument for series of different length.
-inline PhysicalConsistency physical_consistency(const std::vector<double>& target_sum,
-                                                const std::vector<double>& predicted_sum,
-                                                const std::vector<double>& angular_acceleration, double sigmas = 3) {
-  const detail::AxisDeviation deviation = axis_deviation(angular_acceleration, target_sum);
+inline PhysicalConsistency physical_consistency(const AxisSeries& series) {
+  const std::vector<double>& x = series.angular_acceleration;
+  const detail::AxisDeviation deviation = axis_deviation(x, series.target);
   PhysicalConsistency result;
-  result.target = confidence_ellipse(angular_acceleration, target_sum, sigmas);
-  result.predicted = confidence_ellipse(angular_acceleration, predicted_sum, sigmas);
-  result.target_standardized = standardized_confidence_ellipse(angular_acceleration, target_sum, deviation, sigmas);
-  result.predicted_standardized =
-      standardized_confidence_ellipse(angular_acceleration, predicted_sum, deviation, sigmas);
+  result.target = confidence_ellipse(x, series.target);
+  result.predicted = confidence_ellipse(x, series.predicted);
+  result.target_standardized = confidence_ellipse(x, series.target, 3, deviation);
+  result.predicted_standardized = confidence_ellipse(x, series.predicted, 3, deviation);
   result.angle_difference_deg =
       angle_difference_deg(result.target_standardized.angle_deg, result.predicted_standardized.angle_deg);
   result.raw_angle_difference_deg = angle_difference_deg(result.target.angle_deg, result.predicted.angle_deg);
-  result.slope_error = slope_error(target_sum, predicted_sum, angular_acceleration);
-  result.target_correlation = pearson_correlation(target_sum, angular_acceleration);
-  result.predicted_correlation = pearson_correlation(predicted_sum, angular_acceleration);
-  result.sign_violation_share = sign_violation_share(predicted_sum, angular_acceleration);
+  result.slope_error = slope_error(series.target, series.predicted, x);
+  result.target_correlation = pearson_correlation(series.target, x);
+  result.predicted_correlation = pearson_correlation(series.predicted, x);
+  result.sign_violation_share = sign_violation_share(series.predicted, x);
   return result;
 }
 

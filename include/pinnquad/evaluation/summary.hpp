@@ -34,6 +34,34 @@ inline double mean_of(const std::vector<double>& series) {
   return mean + residual / count;
 }
 
+/// Doubled mid-ranks of a sorted series: whole numbers even with ties, so that rank sums can index an array.
+inline std::vector<std::size_t> doubled_ranks(const std::vector<double>& sorted) {
+  std::vector<std::size_t> ranks(sorted.size());
+  for (std::size_t first = 0; first < sorted.size();) {
+    std::size_t end = first;
+    while (end < sorted.size() && !(sorted[first] < sorted[end])) ++end;
+    for (std::size_t i = first; i < end; ++i) ranks[i] = first + 1 + end;  // ranks first+1 .. end, twice their mean
+    first = end;
+  }
+  return ranks;
+}
+
+inline void require_equal_length(const char* who, std::size_t first, std::size_t second) {
+  if (first != second) {
+    throw std::invalid_argument(std::string(who) + ": expected series of equal length, found " + std::to_string(first) +
+                                " and " + std::to_string(second));
+  }
+}
+
+/// First and second moments of paired series x, y: means, and the 2x2 covariance matrix (divisor n - 1).
+struct JointMoments {
+  double mean_x = not_a_number;
+  double mean_y = not_a_number;
+  double variance_x = not_a_number;
+  double variance_y = not_a_number;
+  double covariance = not_a_number;
+};
+
 }  // namespace detail
 
 /// Mean and standard deviation of a series, in its unit.
@@ -55,26 +83,6 @@ inline Summary summarize(const std::vector<double>& series) {
   summary.deviation = std::sqrt(squares / static_cast<double>(series.size() - 1));
   return summary;
 }
-
-namespace detail {
-
-inline void require_equal_length(const char* who, std::size_t first, std::size_t second) {
-  if (first != second) {
-    throw std::invalid_argument(std::string(who) + ": expected series of equal length, found " + std::to_string(first) +
-                                " and " + std::to_string(second));
-  }
-}
-
-/// First and second moments of paired series x, y: means, and the 2x2 covariance matrix (divisor n - 1).
-struct JointMoments {
-  double mean_x = not_a_number;
-  double mean_y = not_a_number;
-  double variance_x = not_a_number;
-  double variance_y = not_a_number;
-  double covariance = not_a_number;
-};
-
-}  // namespace detail
 
 /// Moments of the pairs (x[i], y[i]). Variances and covariance are NaN for fewer than two pairs.
 /// Throws std::invalid_argument for series of different length.
@@ -123,20 +131,18 @@ inline double auroc(const std::vector<double>& scores, const std::vector<bool>& 
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] < scores[b]; });
-  double ranks = 0, positives = 0;
-  for (std::size_t first = 0; first < order.size();) {
-    std::size_t last = first;
-    double among = 0;
-    for (; last < order.size() && !(scores[order[first]] < scores[order[last]]); ++last) {
-      among += positive[order[last]] ? 1 : 0;
-    }
-    ranks += among * (static_cast<double>(first + last + 1) / 2);  // ranks first + 1 to last
-    positives += among;
-    first = last;
+  std::vector<double> sorted;
+  for (const std::size_t row : order) sorted.push_back(scores[row]);
+  const std::vector<std::size_t> ranks = detail::doubled_ranks(sorted);
+  double rank_sum = 0, positives = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (!positive[order[i]]) continue;
+    rank_sum += static_cast<double>(ranks[i]) / 2;
+    positives += 1;
   }
   const double negatives = static_cast<double>(order.size()) - positives;
   if (!(positives > 0 && negatives > 0)) return not_a_number;
-  return (ranks - positives * (positives + 1) / 2) / (positives * negatives);
+  return (rank_sum - positives * (positives + 1) / 2) / (positives * negatives);
 }
 
 }  // namespace pinnquad

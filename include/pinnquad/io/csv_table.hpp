@@ -37,76 +37,92 @@ inline std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Follows a record character by character and tells whether it stands inside quotation marks. They open a cell only at
-/// its beginning: in `5" propeller` there is none.
-class QuotationState {
- public:
-  void follow(std::string_view text) noexcept {
-    for (const char c : text) {
-      if (place_ == Place::quoted) {
-        if (c == '"') place_ = Place::closed;
-      } else if (c == '"' && place_ == Place::closed) {
-        place_ = Place::quoted;  // doubled: a mark of the text
-      } else if (c == ',') {
-        place_ = Place::begin;
-      } else if (c == '"' && place_ == Place::begin) {
-        place_ = Place::quoted;
-      } else if (!(place_ == Place::begin && (c == ' ' || c == '\t'))) {
-        place_ = Place::plain;
-      }
+/// Where in a record a character stands, to tell whether it is inside quotation marks. They open a cell only at its
+/// beginning: in `5" propeller` there is none.
+enum class Quotation { begin, plain, quoted, closed };
+
+/// The place behind `text`, which begins at `place`.
+inline Quotation followed(Quotation place, std::string_view text) noexcept {
+  for (const char c : text) {
+    if (place == Quotation::quoted) {
+      if (c == '"') place = Quotation::closed;
+    } else if (c == '"' && place == Quotation::closed) {
+      place = Quotation::quoted;  // doubled: a mark of the text
+    } else if (c == ',') {
+      place = Quotation::begin;
+    } else if (c == '"' && place == Quotation::begin) {
+      place = Quotation::quoted;
+    } else if (!(place == Quotation::begin && (c == ' ' || c == '\t'))) {
+      place = Quotation::plain;
     }
   }
-  bool inside() const noexcept { return place_ == Place::quoted; }
+  return place;
+}
 
- private:
-  enum class Place { begin, plain, quoted, closed };
-  Place place_ = Place::begin;
-};
+}  // namespace detail
 
-/// The cells of a record with quotation marks; `unquoted` holds the text of the quoted ones. A cell that goes on behind
-/// its closing mark is taken as it stands.
-inline void split_quoted_fields(std::string_view record, std::vector<std::string_view>& fields, std::string& unquoted) {
+/// The cells of a record. In one with quotation marks `unquoted` is to be given: it holds the text of the quoted cells,
+/// and a cell that goes on behind its closing mark is taken as it stands.
+inline void split_fields(std::string_view record, std::vector<std::string_view>& fields,
+                         std::string* unquoted = nullptr) {
   fields.clear();
-  unquoted.clear();
-  unquoted.reserve(record.size());  // then an append moves nothing
+  if (unquoted != nullptr) {
+    unquoted->clear();
+    unquoted->reserve(record.size());  // then an append moves nothing
+  }
   for (;;) {
-    std::string_view rest = record;
-    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
     std::size_t comma = record.find(',');
+    std::size_t i = unquoted != nullptr ? record.find_first_not_of(" \t") : std::string_view::npos;
     bool whole = false;
-    if (!rest.empty() && rest[0] == '"') {
-      const std::size_t begin = unquoted.size();
-      std::size_t i = 1;
-      for (; i < rest.size(); ++i) {
-        if (rest[i] == '"') {
-          if (i + 1 >= rest.size() || rest[i + 1] != '"') break;
+    if (i != std::string_view::npos && record[i] == '"') {
+      const std::size_t begin = unquoted->size();
+      for (++i; i < record.size(); ++i) {
+        if (record[i] == '"') {
+          if (i + 1 >= record.size() || record[i + 1] != '"') break;
           ++i;
         }
-        unquoted += rest[i];
+        *unquoted += record[i];
       }
-      const std::size_t behind = rest.find_first_not_of(" \t", i + 1);
-      const std::size_t offset = record.size() - rest.size();
-      whole = i < rest.size() && (behind == std::string_view::npos || rest[behind] == ',');
-      comma = behind == std::string_view::npos ? behind : record.find(',', offset + behind);
-      if (whole) fields.push_back(std::string_view(unquoted).substr(begin));
+      const std::size_t behind = record.find_first_not_of(" \t", i + 1);
+      whole = i < record.size() && (behind == std::string_view::npos || record[behind] == ',');
+      comma = behind == std::string_view::npos ? behind : record.find(',', behind);
+      if (whole) fields.push_back(std::string_view(*unquoted).substr(begin));
     }
-    if (!whole) fields.push_back(trimmed(record.substr(0, comma)));
+    if (!whole) fields.push_back(detail::trimmed(record.substr(0, comma)));
     if (comma == std::string_view::npos) return;
     record.remove_prefix(comma + 1);
   }
 }
 
-}  // namespace detail
-
-/// The cells of a line without quotation marks.
-inline void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(detail::trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return;
-    line.remove_prefix(comma + 1);
+/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column
+/// that is missing or there twice, and for cells between semicolons or tabs.
+inline std::vector<std::size_t> locate_columns(const std::string& path, const std::vector<std::string_view>& header,
+                                               const std::vector<std::string>& columns) {
+  std::vector<std::size_t> fields;
+  for (const std::string& name : columns) {
+    const std::size_t missing = header.size();
+    std::size_t found = missing;
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (header[i] != name) continue;
+      if (found != missing) {
+        throw InputError(path, 1, i + 1, "one column named " + name,
+                         "a second one (the first is column " + std::to_string(found + 1) + ")");
+      }
+      found = i;
+    }
+    if (found == missing) {
+      const bool semicolons = header.size() == 1 && header[0].find(';') != std::string_view::npos;
+      const bool tabs = header.size() == 1 && header[0].find('\t') != std::string_view::npos;
+      if (semicolons || tabs) {
+        throw InputError(path, 1, 0, "commas between the cells (export the table with them)",
+                         semicolons ? "semicolons" : "tabs");
+      }
+      throw InputError(path, 1, 0, "a column named " + name,
+                       "none of that name among " + std::to_string(header.size()) + " columns");
+    }
+    fields.push_back(found);
   }
+  return fields;
 }
 
 namespace detail {
@@ -146,8 +162,8 @@ class CsvRecords {
   /// Throws InputError: a quoted cell without end, a record of more than 16 MiB, a read error.
   bool next(std::string_view& record) {
     line_ = next_line_;
-    QuotationState quotation;
-    std::size_t searched = 0, followed = 0;  // from begin_
+    Quotation place = Quotation::begin;
+    std::size_t searched = 0, read = 0;  // from begin_
     has_quotes_ = false;
     for (;;) {
       std::string_view text = unread();
@@ -160,11 +176,11 @@ class CsvRecords {
         end = text.size();
       }
       ++next_line_;
-      if (has_quotes_ || text.substr(followed, end - followed).find('"') != std::string_view::npos) {
+      if (has_quotes_ || text.substr(read, end - read).find('"') != std::string_view::npos) {
         has_quotes_ = true;
-        quotation.follow(text.substr(followed, end - followed));
-        followed = end;
-        if (quotation.inside()) {
+        place = followed(place, text.substr(read, end - read));
+        read = end;
+        if (place == Quotation::quoted) {
           if (end == text.size()) {
             throw InputError(file_.path(), line_, 0, "a closing quotation mark", "the end of the file");
           }
@@ -185,7 +201,7 @@ class CsvRecords {
   std::uintmax_t bytes() const noexcept { return file_.bytes_read() - (end_ - begin_); }
   /// The cells of the last record; valid until the next call of this, or of next().
   void split(std::string_view record, std::vector<std::string_view>& cells) {
-    has_quotes_ ? split_quoted_fields(record, cells, unquoted_) : split_fields(record, cells);
+    split_fields(record, cells, has_quotes_ ? &unquoted_ : nullptr);
   }
 
  private:
@@ -211,47 +227,6 @@ class CsvRecords {
   bool has_quotes_ = false;
   std::string unquoted_;
 };
-
-}  // namespace detail
-
-/// A table of numbers; every row as long as the header.
-struct CsvTable {
-  std::vector<std::string> header;
-  std::vector<std::vector<double>> rows;
-};
-
-/// Field index (from 0) of each wanted column in the header line of a file. Throws InputError, one line, for a column
-/// that is missing or there twice, and for cells between semicolons or tabs.
-inline std::vector<std::size_t> locate_columns(const std::string& path, const std::vector<std::string_view>& header,
-                                               const std::vector<std::string>& columns) {
-  std::vector<std::size_t> fields;
-  for (const std::string& name : columns) {
-    const std::size_t missing = header.size();
-    std::size_t found = missing;
-    for (std::size_t i = 0; i < header.size(); ++i) {
-      if (header[i] != name) continue;
-      if (found != missing) {
-        throw InputError(path, 1, i + 1, "one column named " + name,
-                         "a second one (the first is column " + std::to_string(found + 1) + ")");
-      }
-      found = i;
-    }
-    if (found == missing) {
-      const bool semicolons = header.size() == 1 && header[0].find(';') != std::string_view::npos;
-      const bool tabs = header.size() == 1 && header[0].find('\t') != std::string_view::npos;
-      if (semicolons || tabs) {
-        throw InputError(path, 1, 0, "commas between the cells (export the table with them)",
-                         semicolons ? "semicolons" : "tabs");
-      }
-      throw InputError(path, 1, 0, "a column named " + name,
-                       "none of that name among " + std::to_string(header.size()) + " columns");
-    }
-    fields.push_back(found);
-  }
-  return fields;
-}
-
-namespace detail {
 
 /// The names of a file's columns as its header has them; none of an empty file.
 inline std::vector<std::string> csv_header(const std::string& path) {
@@ -321,26 +296,6 @@ void for_each_csv_row(const std::string& path, const std::vector<std::string>& c
   }
 }
 
-}  // namespace detail
-
-/// Reads the named columns of a table, in the order asked for. In the file they may stand in any order; other columns
-/// are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end,
-/// quotation marks as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled
-/// column, a row of other length, a cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than
-/// `minimum_rows` rows.
-inline CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
-                         std::size_t minimum_rows = 1) {
-  CsvTable table;
-  table.header = columns;
-  detail::for_each_csv_row(path, columns, minimum_rows,
-                           [&table](const std::vector<double>& values, std::size_t, const std::vector<std::size_t>&) {
-                             table.rows.push_back(values);
-                           });
-  return table;
-}
-
-namespace detail {
-
 /// Writes a table row by row; the file appears whole, on commit(), or not at all. NaN and Inf are written as nan and
 /// inf (gnuplot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
 /// std::invalid_argument for a row of other length than the header and a column without a name.
@@ -387,6 +342,21 @@ class CsvWriter {
 
 }  // namespace detail
 
+/// The rows of a table: the named columns, in the order asked for. In the file they may stand in any order; other
+/// columns are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end,
+/// quotation marks as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled
+/// column, a row of other length, a cell that is empty, text, NaN, Inf or beyond the range of a double, fewer than
+/// `minimum_rows` rows.
+inline std::vector<std::vector<double>> read_csv(const std::string& path, const std::vector<std::string>& columns,
+                                                 std::size_t minimum_rows = 1) {
+  std::vector<std::vector<double>> rows;
+  detail::for_each_csv_row(path, columns, minimum_rows,
+                           [&rows](const std::vector<double>& values, std::size_t, const std::vector<std::size_t>&) {
+                             rows.push_back(values);
+                           });
+  return rows;
+}
+
 /// Writes a table that stands in memory; see CsvWriter.
 inline void write_csv(const std::string& path, const std::vector<std::string>& header,
                       const std::vector<std::vector<double>>& rows) {
@@ -394,7 +364,5 @@ inline void write_csv(const std::string& path, const std::vector<std::string>& h
   for (const std::vector<double>& row : rows) writer.row(row.data(), row.size());
   writer.commit();
 }
-
-inline void write_csv(const std::string& path, const CsvTable& table) { write_csv(path, table.header, table.rows); }
 
 }  // namespace pinnquad

@@ -31,8 +31,8 @@ inline constexpr std::uintmax_t most_input_bytes = std::uintmax_t{1} << 33;
 
 }  // namespace detail
 
-/// Throws InputError, one line, for all that is there and is not such a file. What is absent passes: who opens it has
-/// the system's reason.
+/// Throws InputError, one line, for all that is there and is no regular file of such a size. An absent file passes:
+/// opening it gives the system's reason.
 inline void require_regular_file(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code ignored;

@@ -56,9 +56,7 @@ bool draw(const std::string& folder) {
   const std::vector<std::string> models = {"linearized", "vanilla", "physics_informed"};
   const programs::AxisSeries series = ellipse_cloud();
   programs::Judgement judged;
-  for (pinnquad::PhysicalConsistency& axis : judged.axes) {
-    axis = pinnquad::physical_consistency(series.target, series.predicted, series.angular_acceleration);
-  }
+  for (pinnquad::PhysicalConsistency& axis : judged.axes) axis = pinnquad::physical_consistency(series);
   return programs::plot_trajectory(folder + "/trajectory.svg", spiral(8)) &&
          programs::plot_trajectory(folder + "/slow_trajectory.svg", spiral(3)) &&
          programs::plot_errors(folder + "/errors.svg",

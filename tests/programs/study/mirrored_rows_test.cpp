@@ -55,7 +55,7 @@ void take_accelerations(const Airframe<double>& airframe, Sample& sample) {
 }
 
 void check_alike(const Sample& a, const Sample& b) {
-  const SampleValues left = to_values(a), right = to_values(b);
+  const Sample::Values left = to_values(a), right = to_values(b);
   for (std::size_t i = 0; i < left.size(); ++i)
     CHECK(left[i] == doctest::Approx(right[i]).epsilon(tolerance).scale(10));
 }

@@ -19,7 +19,7 @@ Flight random_flight(std::size_t rows, unsigned seed) {
   std::mt19937_64 engine(seed);
   Flight flight;
   for (std::size_t row = 0; row < rows; ++row) {
-    pinnquad::SampleValues values{};
+    pinnquad::Sample::Values values{};
     for (double& value : values) value = pinnquad::uniform(engine, 0.1, 0.9);
     values[0] = 0.05 * static_cast<double>(row);
     flight.push_back(pinnquad::to_sample(values));
@@ -43,7 +43,7 @@ template <class DataSet>
 void check_no_leak() {
   const Flight flight = random_flight(400, 5);
   const study::Material<DataSet> material(flight);
-  const pinnquad::DatasetSplit& split = material.split;
+  const auto& split = material.split;
   CHECK(split.train.begin == 0);
   CHECK(split.validation.begin == split.train.end);
   CHECK(split.test.begin == split.validation.end);
@@ -79,12 +79,12 @@ TEST_CASE("a row of a series holds time, acceleration and commands of the row th
   const pinnquad_test::TemporaryFolder folder;
   const std::string path = folder.write("series.csv", "");
   study::write_series(path, flight, outcome);
-  const pinnquad::CsvTable table = pinnquad::read_csv(
+  const auto rows = pinnquad::read_csv(
       path, {"time_s", "wdot_x", "wdot_y", "wdot_z", "u1", "u2", "u3", "u4", "p1", "p2", "p3", "p4"});
-  REQUIRE(table.rows.size() == 13);
+  REQUIRE(rows.size() == 13);
   for (std::size_t i = 0; i < 13; ++i) {
     const pinnquad::Sample& sample = flight[17 + i];
-    const auto& row = table.rows[i];
+    const auto& row = rows[i];
     CHECK(row[0] == sample.time_s);
     for (std::size_t k = 0; k < 3; ++k) {
       CHECK(row[1 + k] == sample.angular_acceleration_rad_s2[static_cast<Eigen::Index>(k)]);
