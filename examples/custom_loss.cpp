@@ -37,8 +37,8 @@ int main() {
   const Flight flight = fly(quadrotor, pilot, plan).flight;
 
   const IndexRange everything = {0, flight.size()};
-  const Settings settings = make_context<Settings>(flight, everything);
-  const auto data = standardised<float>(settings, flight, everything);
+  const Settings settings = make_context<Settings>({flight, everything});
+  const auto data = standardised<float>(settings, {flight, everything});
   std::mt19937_64 engine(1);
   const auto network = initialised<Net>(engine);
   const auto trainer = std::make_unique<Trainer<Net, Loss, Adam, Settings>>(network, Loss{}, Adam{}, settings);

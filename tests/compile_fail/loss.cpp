@@ -12,9 +12,9 @@
 // CASE NOT_A_FORM: pinnquad: LocalMonotonicity's third argument is not a form
 // CASE NO_ANGULAR_ACCELERATION: pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/schedule/schedule.hpp"
-#include "pinnquad/training/context.hpp"
 
 namespace {
 
@@ -74,7 +74,7 @@ using Knowledge = Context<PaperFeatures, PaperQuadrotor>;
 }  // namespace
 
 int main() {
-  using Batch = pinnquad::LossBatch<double, 16, 4, 8>;
+  using Batch = pinnquad::detail::LossBatch<double, 16, 4, 8>;
   Batch batch;
   batch.resize(2);
   Batch::Gradient gradient;

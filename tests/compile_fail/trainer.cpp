@@ -60,13 +60,13 @@ struct Square {
 
 /// An optimiser without a learning rate, and one that may throw.
 struct Rateless {
-  int begin(long) const { return 0; }
+  int begin(long, double) const { return 0; }
   template <class Pack, class Scalar>
   void update(int, Scalar*, const Scalar*, Scalar*, Scalar*, int) const noexcept {}
 };
 struct MayThrow {
   double learning_rate = 1.0;
-  int begin(long) const { return 0; }
+  int begin(long, double) const { return 0; }
   template <class Pack, class Scalar>
   void update(int, Scalar*, const Scalar*, Scalar*, Scalar*, int) const {}
   double factor(double) const { return 1.0; }
@@ -141,7 +141,7 @@ using Trainer = pinnquad::Trainer<Net, Loss, Optimizer, Knowledge, pinnquad::Shu
 }  // namespace
 
 int main() {
-  using Model = decltype(pinnquad::make_trained_model(Net{}, Knowledge{}, {}, {}));
+  using Model = decltype(pinnquad::make_trained_model(Net{}, Knowledge{}, {}));
   return static_cast<int>(sizeof(Trainer) + sizeof(Model) + sizeof(Nothing) + sizeof(Reverse) + sizeof(Square) +
                           sizeof(Rateless) + sizeof(MayThrow)) > 0
              ? 0

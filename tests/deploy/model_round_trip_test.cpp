@@ -146,7 +146,7 @@ TEST_CASE("the demonstration's header is what the writer writes") {
 
 TEST_CASE("so is one in double, with a window, optional records and an airframe that its trainer was given") {
   using Given = WithGivenAirframe<OwnRacerV3>;
-  const ContextAirframe<GivenAirframe> airframe(OwnRacerV3::vehicle_name, OwnRacerV3Airframe::value<double>());
+  const GivenAirframe airframe(OwnRacerV3::vehicle_name, OwnRacerV3Airframe::value<double>());
   CHECK(comparable(written<Given>(trained<Given>({airframe}))) == comparable(text_of("models/v3/own_racer.hpp")));
   CHECK(largest_golden_difference<OwnRacerV3>() <= 1e-12);
 }
@@ -154,11 +154,11 @@ TEST_CASE("so is one in double, with a window, optional records and an airframe 
 TEST_CASE("the hash that is written is the one that the compiler works out") {
   CHECK(says_its_hash<DemoQuadrotorV3>(trained<DemoQuadrotorV3>()));
   using Given = WithGivenAirframe<OwnRacerV3>;
-  const ContextAirframe<GivenAirframe> airframe(OwnRacerV3::vehicle_name, OwnRacerV3Airframe::value<double>());
+  const GivenAirframe airframe(OwnRacerV3::vehicle_name, OwnRacerV3Airframe::value<double>());
   CHECK(says_its_hash<OwnRacerV3, Given>(trained<Given>({airframe})));
   auto other = OwnRacerV3Airframe::value<double>();
   other.mass_kg += 1e-15;
-  const ContextAirframe<GivenAirframe> heavier(OwnRacerV3::vehicle_name, other);
+  const GivenAirframe heavier(OwnRacerV3::vehicle_name, other);
   CHECK_FALSE(says_its_hash<OwnRacerV3, Given>(trained<Given>({heavier})));
 }
 

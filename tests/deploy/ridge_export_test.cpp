@@ -33,7 +33,7 @@ namespace {
 using Features =
     PartlyWindowed<WithColumns<PhysicsFeatures, BatteryVoltage>, AccelerationFeatures, 3, PeriodMicroseconds<20000>>;
 using Setting = Context<Features, PaperQuadrotor>;
-using Affine = AffineAnswer<Setting>;
+using Affine = decltype(affine_answer<Setting>(AffineMap{}));
 using Residual = Network<float, InputSize<Features::size>, Clip, Dense<6>, Silu, Dense<4>>;
 
 /// A motion that wanders, its commands by specific force, angular acceleration and voltage.

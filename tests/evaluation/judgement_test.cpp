@@ -41,7 +41,7 @@ std::vector<Commands<double>> flown(const RowSet& rows) {
 TEST_CASE("the flown commands themselves have no error, and the signs of the flown") {
   const Flight flight = test::random_flight_rows(200, 4);
   const RowSet rows(flight, {0, 200});
-  const ContextAirframe<PaperQuadrotor> airframe;
+  const Context<PaperFeatures, PaperQuadrotor> airframe;
   const Judgement judged = judge(airframe, rows, flown(rows));
   CHECK(judged.errors.mean.mean_absolute == 0);
   CHECK(judged.errors.mean.r_squared == 1);

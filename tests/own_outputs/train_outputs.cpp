@@ -33,9 +33,9 @@ auto train(const Flight& flight, const std::string& folder, const std::string& f
   using Surroundings = Context<PaperFeatures, PaperQuadrotor, Schema>;
   using Net = Mlp<float, InputSize<PaperFeatures::size>, Hidden<2, 20>, OutputSize<OutputMap<Schema>::size>, Tanh>;
   using Loss = PaperLoss<Constant>;
-  const IndexRange rows{0, flight.size()};
-  const auto context = make_context<Surroundings>(flight, rows);
-  const auto data = standardised<float>(context, flight, rows);
+  const RowSet rows(flight, {0, flight.size()});
+  const auto context = make_context<Surroundings>(rows);
+  const auto data = standardised<float>(context, rows);
   std::mt19937_64 engine(5);
   Loss loss;
   std::apply([](auto&... term) { ((term.schedule.value = 1e-3), ...); }, loss.terms);
@@ -43,7 +43,7 @@ auto train(const Flight& flight, const std::string& folder, const std::string& f
       std::make_unique<Trainer<Net, Loss, Adam, Surroundings>>(initialised<Net>(engine), loss, Adam{}, context);
   constexpr int epochs = 240;
   for (int epoch = 0; epoch < epochs; ++epoch) trainer->epoch(data, {epoch, epochs}, engine);
-  auto model = make_trained_model(trainer->network(), context, flight, rows);
+  auto model = make_trained_model(trainer->network(), context, rows);
   write_model_header(folder + "/" + file, name, model, golden_of(flight),
                      {"simulated flight", content_hash(flight), flight.size(), 5, epochs, "PaperLoss"});
   return model;

@@ -44,7 +44,7 @@ pinnquad new again --model out.hpp >/dev/null
 grep -qF 'using MyNetwork = Mlp<float, InputSize<16>, Hidden<2, 16>, OutputSize<4>, Tanh>;' again/model.hpp || fail "another network"
 grep -qF '"MyModel"' again/main.cpp || fail "the name of the header is lost"
 sed 's/MyModelAirframe/OwnAirframe/g' again/model.hpp >renamed.hpp
-for line in 'a.mass_kg = ' 'a.rotors\[3\] = ' 'ContextAirframe<MyAirframe> '; do
+for line in 'a.mass_kg = ' 'a.rotors\[3\] = ' 'MyAirframe my_airframe'; do
   [ "$(grep "$line" renamed.hpp)" = "$(grep "$line" $project/model.hpp)" ] || fail "another airframe: $line"
 done
 pinnquad new crazyflie --model "$source_dir/examples/models/crazyflie_2_1.hpp" --name Tiny >/dev/null

@@ -12,6 +12,7 @@
 #include "pinnquad/regression/ridge.hpp"
 
 using namespace pinnquad;
+using namespace pinnquad::detail;
 
 namespace {
 

@@ -160,7 +160,6 @@ TEST_CASE("leaving out a group by subtraction is a refit to the rows of the othe
   std::vector<RegressionSums> groups;
   for (const auto& piece : pieces) groups.push_back(sums_of(piece[0], piece[1]));
   const std::vector<double> penalties = {0, 1e-4, 1e-2, 0.3};
-  const pinnquad::detail::PenaltyChoice choice = choose_penalty(groups, penalties);
   std::size_t best = 0;
   std::vector<double> expected;
   for (const double penalty : penalties) {
@@ -182,10 +181,7 @@ TEST_CASE("leaving out a group by subtraction is a refit to the rows of the othe
     expected.push_back(squares / (2 * all_rows));
     if (expected.back() < expected[best]) best = expected.size() - 1;
   }
-  for (std::size_t i = 0; i < penalties.size(); ++i) {
-    CHECK(choice.mean_squared_error[i] == doctest::Approx(expected[i]).epsilon(1e-8));
-  }
-  CHECK(choice.penalty == penalties[best]);
+  CHECK(choose_penalty(groups, penalties) == penalties[best]);
 }
 
 TEST_CASE("noise calls for a penalty, many clean rows for none") {
@@ -193,8 +189,8 @@ TEST_CASE("noise calls for a penalty, many clean rows for none") {
   std::vector<RegressionSums> noisy, plain;
   for (int group = 0; group < 4; ++group) noisy.push_back(random_sums(engine, 30, 12, 0.0));
   for (int group = 0; group < 4; ++group) plain.push_back(random_sums(engine, 3, 3000, 0.0));
-  CHECK(choose_penalty(noisy).penalty > 1e-2);
-  CHECK(choose_penalty(plain).penalty < 1e-2);
+  CHECK(choose_penalty(noisy) > 1e-2);
+  CHECK(choose_penalty(plain) < 1e-2);
 }
 
 TEST_CASE("what has no answer is refused in a line") {

@@ -9,6 +9,7 @@
 #include "pinnquad/core/random.hpp"
 
 using namespace pinnquad;
+using namespace pinnquad::detail;
 
 namespace {
 

@@ -9,12 +9,12 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/training/context.hpp"
+#include "pinnquad/loss/context.hpp"
 
 namespace pinnquad::test {
 
 template <class Scalar, int OutputCount = rotor_count>
-using PaperBatch = LossBatch<Scalar, PaperFeatures::size, OutputCount, 64>;
+using PaperBatch = detail::LossBatch<Scalar, PaperFeatures::size, OutputCount, 64>;
 
 /// A series with these values.
 inline Eigen::ArrayXd array(std::initializer_list<double> values) {

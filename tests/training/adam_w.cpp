@@ -72,7 +72,7 @@ struct Notes {
 /// Gradient descent that looks at its rate where it uses it: in update().
 struct Descent {
   double learning_rate = 0.1;
-  int begin(long) const { return 0; }
+  int begin(long, double) const { return 0; }
   template <class Pack, class Scalar>
   void update(int, Scalar* parameters, const Scalar* gradient, Scalar*, Scalar*, int count) const noexcept {
     for (int i = 0; i < count; ++i) parameters[i] -= Scalar(learning_rate) * gradient[i];

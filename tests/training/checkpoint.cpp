@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 using pinnquad::Checkpoint;
-using pinnquad::EarlyStopping;
 
 namespace {
 
@@ -61,9 +60,8 @@ TEST_CASE("an empty checkpoint has no network to fly, instead of one of zeros") 
 TEST_CASE("early stopping: `patience` epochs without a lower error, then no more; 0 waits for ever") {
   const auto epochs_run = [](int patience, int best_epoch, int epochs) {
     Checkpoint<int> best;
-    const EarlyStopping stopping{patience};
     int epoch = 0;
-    for (; epoch < epochs && !stopping.reached(best, epoch); ++epoch) {
+    for (; epoch < epochs && !best.is_stale(epoch, patience); ++epoch) {
       best.offer(epoch, epoch <= best_epoch ? 10.0 - epoch : 100.0, Source{epoch});
     }
     return epoch;
@@ -74,6 +72,6 @@ TEST_CASE("early stopping: `patience` epochs without a lower error, then no more
   CHECK(epochs_run(3, 99, 100) == 100);
   // errors that are never finite: ends too
   Checkpoint<int> none;
-  CHECK_FALSE(EarlyStopping{3}.reached(none, 2));
-  CHECK(EarlyStopping{3}.reached(none, 3));
+  CHECK_FALSE(none.is_stale(2, 3));
+  CHECK(none.is_stale(3, 3));
 }

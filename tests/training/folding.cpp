@@ -19,7 +19,6 @@ using pinnquad::BatchNorm;
 using pinnquad::BatchNormMlp;
 using pinnquad::Dense;
 using pinnquad::DenseWithoutBias;
-using pinnquad::Folded;
 using pinnquad::folded;
 using pinnquad::Hidden;
 using pinnquad::InputSize;
@@ -28,6 +27,7 @@ using pinnquad::Network;
 using pinnquad::OutputSize;
 using pinnquad::Relu;
 using pinnquad::Tanh;
+using pinnquad::detail::Folded;
 using pinnquad::test::fill_uniform;
 using pinnquad::test::random_batch_norm_network;
 

@@ -49,10 +49,10 @@ Flight some_flight() {
   return flight;
 }
 
-ContextAirframe<GivenAirframe> given_crazyflie() { return {Crazyflie::name, Crazyflie::value<double>()}; }
+GivenAirframe given_crazyflie() { return {Crazyflie::name, Crazyflie::value<double>()}; }
 
 template <class ContextType>
-auto trained(const Flight& flight, const ContextAirframe<typename ContextType::Vehicle>& airframe) {
+auto trained(const Flight& flight, const detail::ContextAirframe<typename ContextType::Vehicle>& airframe) {
   const RowSet rows(flight, {0, 400});
   const auto context = make_context<ContextType>(rows, airframe);
   const auto data = standardised<double>(context, rows);
@@ -109,8 +109,7 @@ TEST_CASE("a given airframe stands before its model, and the model names it") {
 TEST_CASE("a given airframe that can't fly is refused") {
   Airframe<double> heavy = Crazyflie::value<double>();
   heavy.mass_kg = 1;
-  CHECK_THROWS_WITH_AS((ContextAirframe<GivenAirframe>("heavy", heavy)), "the airframe 'heavy' can't fly",
-                       std::invalid_argument);
+  CHECK_THROWS_WITH_AS((GivenAirframe("heavy", heavy)), "the airframe 'heavy' can't fly", std::invalid_argument);
 }
 
 TEST_CASE("the sample period of rows is the median step, none where flights differ") {

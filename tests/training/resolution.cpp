@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/training/resolution.hpp"
+#include "pinnquad/training/training_data.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,8 @@
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 
-using pinnquad::ColumnStatistics;
-using pinnquad::resolution_of;
+using pinnquad::detail::ColumnStatistics;
+using pinnquad::detail::resolution_of;
 
 namespace {
 
@@ -24,7 +24,7 @@ ColumnStatistics statistics(const std::vector<std::array<double, 1>>& rows) {
   const auto each_row = [&](const auto& visit) {
     for (const auto& row : rows) visit(row);
   };
-  return pinnquad::column_statistics<1>(each_row, [](std::size_t) { return "m/s"; })[0];
+  return pinnquad::detail::column_statistics<1>(each_row, [](std::size_t) { return "m/s"; })[0];
 }
 
 }  // namespace

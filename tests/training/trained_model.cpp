@@ -46,9 +46,9 @@ TEST_CASE_TEMPLATE("predict() is scale, plain forward pass, scale back", Context
                    Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>) {
   const Flight flight = random_flight_rows(60, 151);
   std::mt19937_64 engine(152);
-  const auto context = make_context<ContextType>(flight, {0, 60});
+  const auto context = make_context<ContextType>({flight, {0, 60}});
   const auto net = initialised<Small<float>>(engine);
-  const auto model = make_trained_model(net, context, flight, {0, 60});
+  const auto model = make_trained_model(net, context, {flight, {0, 60}});
   for (const auto& sample : flight) {
     const auto x = pinnquad::sample_features<PaperFeatures, double>(sample);
     std::vector<double> z(16);
@@ -72,8 +72,8 @@ TEST_CASE("the envelope: the range of the training rows, a tenth wider on both s
   flight[40].velocity_m_s[0] = 20.0;
   flight[80].velocity_m_s[0] = 500.0;  // not a training row
   std::mt19937_64 engine(154);
-  const auto context = make_context<PaperContext>(flight, {0, 60});
-  const auto model = make_trained_model(initialised<Small<double>>(engine), context, flight, {0, 60});
+  const auto context = make_context<PaperContext>({flight, {0, 60}});
+  const auto model = make_trained_model(initialised<Small<double>>(engine), context, {flight, {0, 60}});
   CHECK(model.envelope_lower[6] == doctest::Approx(-35.0));
   CHECK(model.envelope_upper[6] == doctest::Approx(25.0));
   for (std::size_t row = 0; row < 60; ++row) {
@@ -94,8 +94,8 @@ TEST_CASE("the envelope of a feature that stands still: about where it stood, by
     sample.angular_acceleration_rad_s2[2] = 0;
   }
   std::mt19937_64 engine(159);
-  const auto context = make_context<PaperContext>(flight, {0, 60});
-  const auto model = make_trained_model(initialised<Small<float>>(engine), context, flight, {0, 60});
+  const auto context = make_context<PaperContext>({flight, {0, 60}});
+  const auto model = make_trained_model(initialised<Small<float>>(engine), context, {flight, {0, 60}});
   const auto stands = [&](std::size_t i, double value, double margin) {
     CHECK(double(model.envelope_lower[i]) == doctest::Approx(value - margin).epsilon(1e-6));
     CHECK(double(model.envelope_upper[i]) == doctest::Approx(value + margin).epsilon(1e-6));
@@ -127,7 +127,7 @@ TEST_CASE("weights that weigh nothing are exported as 0, no others") {
   net.parameters[1] = -1e-42F;  // denormal
   net.parameters[2] = 1e-19F;
   net.parameters[3] = -0.25F;
-  const auto model = make_trained_model(net, make_context<PaperContext>(flight, {0, 10}), flight, {0, 10});
+  const auto model = make_trained_model(net, make_context<PaperContext>({flight, {0, 10}}), {flight, {0, 10}});
   CHECK(model.network.parameters[0] == 0.0F);
   CHECK(model.network.parameters[1] == 0.0F);
   CHECK(model.network.parameters[2] == 1e-19F);
@@ -138,9 +138,9 @@ TEST_CASE("batch norm is folded: the model holds plain layers and predicts what 
   using Normed = pinnquad::BatchNormMlp<float, InputSize<16>, Hidden<1, 7>, OutputSize<4>, Relu>;
   const Flight flight = random_flight_rows(60, 156);
   std::mt19937_64 engine(157);
-  const auto context = make_context<PaperContext>(flight, {0, 60});
+  const auto context = make_context<PaperContext>({flight, {0, 60}});
   const auto net = pinnquad::test::random_batch_norm_network<Normed>(engine);
-  const auto model = make_trained_model(net, context, flight, {0, 60});
+  const auto model = make_trained_model(net, context, {flight, {0, 60}});
   CHECK((std::is_same_v<std::decay_t<decltype(model)>::Network, Small<float>>));
   for (const auto& sample : flight) {
     const auto x = pinnquad::sample_features<PaperFeatures, float>(sample);

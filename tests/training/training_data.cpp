@@ -32,8 +32,8 @@ constexpr double sum_tolerance = 1e-12;
 
 TEST_CASE("the training rows have mean 0 and spread 1; other rows are scaled alike") {
   const Flight flight = random_flight_rows(150, 141);
-  const auto context = make_context<PaperContext>(flight, {0, 100});
-  const auto data = standardised<double>(context, flight, IndexRange{0, 100});
+  const auto context = make_context<PaperContext>({flight, {0, 100}});
+  const auto data = standardised<double>(context, {flight, {0, 100}});
   REQUIRE(data.size() == 100);
   const auto check = [](const std::vector<double>& values, std::size_t columns) {
     for (std::size_t column = 0; column < columns; ++column) {
@@ -48,7 +48,7 @@ TEST_CASE("the training rows have mean 0 and spread 1; other rows are scaled ali
   };
   check(data.features, 16);
   check(data.outputs, 4);
-  const auto rest = standardised<double>(context, flight, IndexRange{90, 150});
+  const auto rest = standardised<double>(context, {flight, {90, 150}});
   REQUIRE(rest.size() == 60);
   for (int k = 0; k < 16; ++k) CHECK(rest.features_of(3)[k] == data.features_of(93)[k]);
   for (int k = 0; k < 4; ++k) {
@@ -71,8 +71,8 @@ TEST_CASE("with altitude: the altitude that was recorded is the last feature") {
 
 TEST_CASE("features are those of X in physical units") {
   const Flight flight = random_flight_rows(30, 142);
-  const auto context = make_context<PaperContext>(flight, {0, 30});
-  const auto data = standardised<double>(context, flight, IndexRange{0, 30});
+  const auto context = make_context<PaperContext>({flight, {0, 30}});
+  const auto data = standardised<double>(context, {flight, {0, 30}});
   const auto physical = [&](int row, std::size_t i) {
     return data.features_of(row)[i] * context.input.standard_deviation[i] + context.input.mean[i];
   };
@@ -94,7 +94,7 @@ TEST_CASE("features are those of X in physical units") {
 
 TEST_CASE("spread of the signed sums: rows of Eq. (2) over the training set") {
   const Flight flight = random_flight_rows(40, 143);
-  const auto context = make_context<PaperContext>(flight, {10, 40});
+  const auto context = make_context<PaperContext>({flight, {10, 40}});
   const double rows[3][4] = {{-1, 1, 1, -1}, {1, -1, 1, -1}, {1, 1, -1, -1}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double sum = 0.0, squares = 0.0;
@@ -112,8 +112,8 @@ TEST_CASE("spread of the signed sums: rows of Eq. (2) over the training set") {
 TEST_CASE("rotor speeds: outputs in rev/s") {
   const Flight flight = random_flight_rows(20, 144);
   using SpeedContext = Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>;
-  const auto context = make_context<SpeedContext>(flight, {0, 20});
-  const auto data = standardised<double>(context, flight, IndexRange{0, 20});
+  const auto context = make_context<SpeedContext>({flight, {0, 20}});
+  const auto data = standardised<double>(context, {flight, {0, 20}});
   for (int row = 0; row < 20; ++row) {
     for (std::size_t k = 0; k < 4; ++k) {
       const double speed_rev_s =
@@ -130,21 +130,21 @@ TEST_CASE("a column that varies only by rounding or noise gets the spread 1, one
     CAPTURE(noise);
     Flight flight = random_flight_rows(60, 146);
     for (std::size_t i = 0; i < 60; ++i) flight[i].velocity_m_s[1] = 2.5 + (i % 2 == 0 ? noise : -noise);
-    CHECK(make_context<PaperContext>(flight, {0, 60}).input.standard_deviation[7] == 1.0);
-    CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}) == std::vector<std::string>{"v_by"});
+    CHECK(make_context<PaperContext>({flight, {0, 60}}).input.standard_deviation[7] == 1.0);
+    CHECK(pinnquad::still_features<PaperFeatures>({flight, {0, 60}}) == std::vector<std::string>{"v_by"});
   }
   Flight flight = random_flight_rows(60, 146);
   for (std::size_t i = 0; i < 60; ++i) flight[i].velocity_m_s[1] = 2.5 + (i % 2 == 0 ? 0.02 : -0.02);
-  CHECK(make_context<PaperContext>(flight, {0, 60}).input.standard_deviation[7] == doctest::Approx(0.02));
-  CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}).empty());
+  CHECK(make_context<PaperContext>({flight, {0, 60}}).input.standard_deviation[7] == doctest::Approx(0.02));
+  CHECK(pinnquad::still_features<PaperFeatures>({flight, {0, 60}}).empty());
 }
 
 TEST_CASE("yaw 0 all flight: sine and cosine stand still, and so does a yaw that is not 0") {
   for (const double yaw : {0.0, 0.7, -2.1}) {
     Flight flight = random_flight_rows(60, 147);
     for (auto& sample : flight) sample.yaw_rad = yaw;
-    CHECK(pinnquad::still_features<PaperFeatures>(flight, {0, 60}) == std::vector<std::string>{"sin_yaw", "cos_yaw"});
-    const auto context = make_context<PaperContext>(flight, {0, 60});
+    CHECK(pinnquad::still_features<PaperFeatures>({flight, {0, 60}}) == std::vector<std::string>{"sin_yaw", "cos_yaw"});
+    const auto context = make_context<PaperContext>({flight, {0, 60}});
     CHECK(context.input.standard_deviation[14] == 1.0);
     CHECK(context.input.standard_deviation[15] == 1.0);
   }
@@ -155,9 +155,9 @@ TEST_CASE("a column that does not vary gets the spread 1, whatever its value") {
     CAPTURE(still);
     Flight flight = random_flight_rows(77, 145);
     for (auto& sample : flight) sample.velocity_m_s[1] = still;
-    const auto context = make_context<PaperContext>(flight, {0, 77});
+    const auto context = make_context<PaperContext>({flight, {0, 77}});
     CHECK(context.input.standard_deviation[7] == 1.0);
-    const auto data = standardised<double>(context, flight, IndexRange{0, 77});
+    const auto data = standardised<double>(context, {flight, {0, 77}});
     CHECK(std::fabs(data.features_of(5)[7]) <= 1e-9);  // the mean's rounding
   }
 }
@@ -177,13 +177,13 @@ TEST_CASE("rows of many flights are one set: as if they had been flown in one, w
   rows.add(dataset[1], {0, 30});
 
   const auto context = make_context<PaperContext>(rows);
-  const auto expected = make_context<PaperContext>(whole, {0, 120});
+  const auto expected = make_context<PaperContext>({whole, {0, 120}});
   CHECK(context.input.mean == expected.input.mean);
   CHECK(context.input.standard_deviation == expected.input.standard_deviation);
   CHECK(context.output.mean == expected.output.mean);
   CHECK(context.signed_sum_spread == expected.signed_sum_spread);
   const auto data = standardised<float>(context, rows);
-  const auto one = standardised<float>(expected, whole, IndexRange{0, 120});
+  const auto one = standardised<float>(expected, {whole, {0, 120}});
   CHECK(data.features == one.features);
   CHECK(data.outputs == one.outputs);
   CHECK(one.weights.empty());

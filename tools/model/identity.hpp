@@ -14,8 +14,8 @@
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
-#include "pinnquad/training/context_airframe.hpp"
 
 namespace programs {
 
@@ -39,7 +39,7 @@ struct ModelHints {
   std::optional<NamedAirframe> own;  ///< that the header brings with it; `airframe` goes before it
 };
 
-using RunTimeAirframe = pinnquad::ContextAirframe<pinnquad::GivenAirframe>;
+using RunTimeAirframe = pinnquad::GivenAirframe;
 
 /// What was found.
 struct Identity {

@@ -11,9 +11,9 @@
 #include "model/block.hpp"
 #include "model/identity.hpp"
 #include "model/run_time_answer.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
-#include "pinnquad/training/context_airframe.hpp"
 #include "training/derivatives.hpp"
 
 namespace programs {

@@ -15,7 +15,7 @@ namespace {
 
 using pinnquad::Flight;
 using pinnquad::RowSplit;
-using ToldAirframe = pinnquad::ContextAirframe<pinnquad::GivenAirframe>;
+using ToldAirframe = pinnquad::GivenAirframe;
 using OfFlights = std::vector<const Flight*>;
 
 constexpr double payload_share = 0.2;  ///< of the airframe's mass, at its centre

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/training/context_airframe.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "study/flights.hpp"
 
 namespace study {
@@ -22,8 +22,8 @@ struct Condition {
   std::string name;     ///< in rows.csv, the flight's column
   std::string summary;  ///< for the page
   Told told = Told::the_truth;
-  pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;  ///< that models are told and judged by
-  std::vector<std::string> flights;                             ///< names for fly_for_beyond()
+  pinnquad::GivenAirframe airframe;  ///< that models are told and judged by
+  std::vector<std::string> flights;  ///< names for fly_for_beyond()
   /// Rows of these flights, in the order of `flights`; views of them.
   std::function<pinnquad::RowSplit(const std::vector<const pinnquad::Flight*>&)> split;
   /// The flight of the closed loop; none: no flight.
@@ -34,7 +34,7 @@ struct Condition {
 std::vector<Condition> flown_conditions();
 
 /// Of a recorded flight, 60 / 20 / 20. `airframe`: what flew it.
-Condition given_condition(const std::string& name, const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe);
+Condition given_condition(const std::string& name, const pinnquad::GivenAirframe& airframe);
 
 /// Those of `all` that are named, each once, in their order; all for no names. Throws std::invalid_argument, one line.
 std::vector<Condition> chosen_conditions(std::vector<Condition> all, const std::vector<std::string>& names);

@@ -38,7 +38,7 @@ class JudgedNetwork : public JudgedModel {
 template <class Predict>
 class JudgedFormula : public JudgedModel {
  public:
-  JudgedFormula(pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe, Predict predict)
+  JudgedFormula(pinnquad::GivenAirframe airframe, Predict predict)
       : airframe_(std::move(airframe)), predict_(std::move(predict)) {}
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override {
     programs::Predictions result;
@@ -50,7 +50,7 @@ class JudgedFormula : public JudgedModel {
   }
 
  private:
-  pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe_;
+  pinnquad::GivenAirframe airframe_;
   Predict predict_;
 };
 

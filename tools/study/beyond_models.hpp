@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/training/context_airframe.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "training/derivatives.hpp"
 #include "training/judgement.hpp"
 #include "training/model_predictions.hpp"
@@ -56,7 +56,7 @@ class JudgedModelOf : public JudgedModel {
 /// The training to do: models and data.
 struct BeyondTask {
   const pinnquad::RowSplit& split;
-  pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;  ///< as the model is told it
+  pinnquad::GivenAirframe airframe;  ///< as the model is told it
   std::uint64_t seed = 0;
   int epochs = 0;
   std::function<bool()> goes_on;  ///< asked before each epoch

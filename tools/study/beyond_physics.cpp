@@ -69,7 +69,7 @@ BeyondTraining train_ridge(const BeyondTask& task) {
   const auto groups = pinnquad::regression_sums(context, pinnquad::left_out_groups(task.split.train));
   pinnquad::RegressionSums sums = groups.front();
   for (std::size_t i = 1; i < groups.size(); ++i) sums += groups[i];
-  const double penalty = groups.size() < 2 ? 0.0 : pinnquad::choose_penalty(groups).penalty;
+  const double penalty = groups.size() < 2 ? 0.0 : pinnquad::choose_penalty(groups);
   const auto answer = pinnquad::affine_answer<Context>(pinnquad::fit_ridge(sums, penalty));
   return {judged(answer, context, task.split.train), false, false};
 }

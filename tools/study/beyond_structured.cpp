@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Models that are monotone by construction (training/structured/residual_fit.hpp) and no recipe's: with other features,
 // on the rigid body's inverse, with a network that is shown the angular acceleration.
+#include <optional>
 #include <random>
 
 #include "pinnquad/features/motion_parts.hpp"
@@ -18,9 +19,9 @@ template <class Features, class Outputs, class Bound, class Fit>
 BeyondTraining train_structured(const BeyondTask& task, Slopes slopes, const Fit& fit_answer) {
   using Context = pinnquad::Context<Features, pinnquad::GivenAirframe, Outputs>;
   const auto context = pinnquad::make_context<Context>(task.split.train, task.airframe);
-  pinnquad::SlopeRule rule;
-  if (slopes == Slopes::pinned) rule.pinned = pinnquad::hover_slopes(context.template airframe<double>());
-  const pinnquad::AffineMap map = pinnquad::fit_monotone_base(context, task.split.train, rule);
+  std::optional<pinnquad::AxisSlopes> pinned;
+  if (slopes == Slopes::pinned) pinned = pinnquad::hover_slopes(context.template airframe<double>());
+  const pinnquad::AffineMap map = pinnquad::fit_monotone_base(context, task.split.train, pinned);
   pinnquad::ResidualTraining how;
   how.epochs = task.epochs;
   std::mt19937_64 engine(task.seed);

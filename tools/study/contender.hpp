@@ -39,9 +39,9 @@ struct Material {
   explicit Material(const pinnquad::Flight& rows)
       : flight(rows),
         split(pinnquad::split_contiguous(rows.size(), DataSet::shares)),
-        context(pinnquad::make_context<Context>(rows, split.train)),
-        data(pinnquad::standardised<float>(context, rows, split.train)),
-        validation(pinnquad::standardised<float>(context, rows, split.validation)) {}
+        context(pinnquad::make_context<Context>({rows, split.train})),
+        data(pinnquad::standardised<float>(context, {rows, split.train})),
+        validation(pinnquad::standardised<float>(context, {rows, split.validation})) {}
 
   const pinnquad::Flight& flight;
   pinnquad::Split<pinnquad::IndexRange> split;
@@ -148,7 +148,7 @@ Contender contender(std::string id, nlohmann::json description) {
 /// `predictions_of(range)` judged on the test rows, and on the validation rows if there are any.
 template <class DataSet, class PredictionsOf>
 void judge(const Material<DataSet>& material, const PredictionsOf& predictions_of, Outcome& outcome) {
-  const pinnquad::ContextAirframe<Airframe> airframe;
+  const auto& airframe = material.context;
   const auto& split = material.split;
   outcome.test_rows = split.test;
   outcome.predictions = predictions_of(split.test);
@@ -192,8 +192,8 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
         std::make_unique<Trainer>(pinnquad::initialised<Network>(engine), loss, optimizer_used, material.context);
     const bool chooses = DataSet::chooses_weights && (assignment.best_weights || assignment.patience > 0);
     const auto best = std::make_unique<pinnquad::Checkpoint<Network>>();
-    const pinnquad::EarlyStopping stopping{chooses ? assignment.patience : 0};
-    for (int epoch = 0; epoch < assignment.epochs && !stopping.reached(*best, epoch); ++epoch) {
+    const int patience = chooses ? assignment.patience : 0;
+    for (int epoch = 0; epoch < assignment.epochs && !best->is_stale(epoch, patience); ++epoch) {
       if (workshop.stopped()) return false;
       trainer->epoch(material.data, {epoch, assignment.epochs}, engine);
       if (chooses) best->offer(epoch, trainer->validate(material.validation).mean_absolute, *trainer);
@@ -202,7 +202,7 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
     outcome.best_weights = chooses && assignment.best_weights && !best->empty();
     outcome.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto model = pinnquad::make_trained_model(outcome.best_weights ? best->network() : trainer->network(),
-                                                    material.context, material.flight, material.split.train);
+                                                    material.context, {material.flight, material.split.train});
     judge(
         material,
         [&](const pinnquad::IndexRange& range) {

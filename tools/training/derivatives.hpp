@@ -13,9 +13,9 @@
 
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/nn/scaler.hpp"
-#include "pinnquad/training/context_airframe.hpp"
 #include "training/model_predictions.hpp"
 #include "training/run_time_network.hpp"
 
@@ -84,7 +84,7 @@ class NetworkDerivatives {
   using OutputScaler = pinnquad::Scaler<double, Map::size>;
 
   NetworkDerivatives(std::vector<RunTimeNetwork<double>> summands, const InputScaler& input, const OutputScaler& output,
-                     const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe)
+                     const pinnquad::GivenAirframe& airframe)
       : summands_(std::move(summands)),
         input_(input),
         output_(output),
@@ -92,7 +92,7 @@ class NetworkDerivatives {
         signs_{airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()} {}
   /// Parameters as RunTimeNetwork takes them.
   NetworkDerivatives(NetworkSpec spec, const std::vector<double>& parameters, const InputScaler& input,
-                     const OutputScaler& output, const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe)
+                     const OutputScaler& output, const pinnquad::GivenAirframe& airframe)
       : NetworkDerivatives({RunTimeNetwork<double>(std::move(spec), parameters)}, input, output, airframe) {}
 
   AxisDerivatives operator()(const pinnquad::Sample& sample) const {
@@ -160,8 +160,7 @@ class NetworkDerivatives {
   std::vector<RunTimeNetwork<double>> summands_;
   InputScaler input_;
   OutputScaler output_;
-  decltype(std::declval<pinnquad::ContextAirframe<pinnquad::GivenAirframe>>()
-               .template output_setting<Outputs, double>()) setting_;
+  decltype(std::declval<pinnquad::GivenAirframe>().template output_setting<Outputs, double>()) setting_;
   std::array<std::array<double, pinnquad::rotor_count>, 3> signs_;
 };
 
@@ -205,8 +204,7 @@ auto derivatives_of(const Model& model) {
   return Derivatives(std::move(summands),
                      scaler_of<typename Derivatives::InputScaler>(model.input.mean, model.input.standard_deviation),
                      scaler_of<typename Derivatives::OutputScaler>(model.output.mean, model.output.standard_deviation),
-                     pinnquad::ContextAirframe<pinnquad::GivenAirframe>(std::string(model.airframe_name()),
-                                                                        model.template airframe<double>()));
+                     pinnquad::GivenAirframe(std::string(model.airframe_name()), model.template airframe<double>()));
 }
 
 /// Of a formula, by a central difference: exact where a rotor's thrust is proportional to its command.
@@ -214,7 +212,7 @@ auto derivatives_of(const Model& model) {
 template <class Predict>
 class FormulaDerivatives {
  public:
-  FormulaDerivatives(const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe, Predict predict)
+  FormulaDerivatives(const pinnquad::GivenAirframe& airframe, Predict predict)
       : predict_(std::move(predict)),
         signs_{airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()} {}
 
@@ -238,7 +236,7 @@ class FormulaDerivatives {
 };
 
 /// Of model 1.
-inline auto linear_derivatives(const pinnquad::ContextAirframe<pinnquad::GivenAirframe>& airframe) {
+inline auto linear_derivatives(const pinnquad::GivenAirframe& airframe) {
   const auto told = airframe.airframe<double>();
   return FormulaDerivatives(airframe, [told, rotors = pinnquad::Rotors<double>(told)](const pinnquad::Sample& sample) {
     return linear_prediction(told, rotors, sample);

@@ -31,7 +31,7 @@ Context log_context(const LogFit& fit, const pinnquad::RowSet& rows) {
   pinnquad::each_features<typename Context::Features, double>(
       rows, [&any](const pinnquad::Flight&, std::size_t, const auto&) { any = true; });
   if (!any) throw std::invalid_argument("no row has all features that are asked for");
-  const pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe(fit.airframe.name, fit.airframe.value);
+  const pinnquad::GivenAirframe airframe(fit.airframe.name, fit.airframe.value);
   return pinnquad::make_context<Context>(rows, airframe);
 }
 

@@ -16,7 +16,7 @@
 
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
-#include "pinnquad/training/context_airframe.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "training/hold_out.hpp"
 #include "training/log_errors.hpp"
 #include "training/log_model.hpp"
@@ -91,7 +91,7 @@ inline Predictions predictions_of(const LogModelKind& kind, const TrainedNetwork
 }  // namespace detail
 
 inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const NamedAirframe& given) {
-  const pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe{given.name, given.value};
+  const pinnquad::GivenAirframe airframe{given.name, given.value};
   return {airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()};
 }
 

@@ -88,7 +88,7 @@ inline double answered_share(const FinishedFit& fit) {
 inline PairSigns pair_signs(const LogPlan& plan, const pinnquad::RowSet& rows, const Predictions& held_out,
                             const std::vector<bool>& counts) {
   const PredictedRows counted = rows_that_count(rows, held_out, counts);
-  const pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe{plan.airframe.name, plan.airframe.value};
+  const pinnquad::GivenAirframe airframe{plan.airframe.name, plan.airframe.value};
   return programs::pair_signs(axis_series(airframe, counted.rows, counted.predictions));
 }
 

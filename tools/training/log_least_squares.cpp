@@ -27,7 +27,7 @@ const std::array<std::vector<std::string>, 4> physics_terms = {{{"s_z", "v_bz", 
 }  // namespace
 
 pinnquad::AffineMap solved_ridge(const std::vector<pinnquad::RegressionSums>& groups) {
-  const double penalty = groups.size() < 2 ? 0.0 : pinnquad::choose_penalty(groups).penalty;
+  const double penalty = groups.size() < 2 ? 0.0 : pinnquad::choose_penalty(groups);
   return pinnquad::fit_ridge(sum_of(groups), penalty);
 }
 

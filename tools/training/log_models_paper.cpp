@@ -23,7 +23,9 @@ std::shared_ptr<const TrainedNetwork> fit_linearized(const LogFit& fit) {
   const pinnquad::RowSet rows = rows_not_held_out(fit);
   Context context = log_context<Context>(fit, rows);
   context.output.mean = {};
-  return log_model_of(pinnquad::AffineAnswer<Context>{}, context, rows);
+  return log_model_of(
+      pinnquad::Network<float, pinnquad::InputSize<Context::Features::size>, pinnquad::Dense<Context::output_count>>{},
+      context, rows);
 }
 
 }  // namespace

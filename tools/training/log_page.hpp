@@ -163,7 +163,7 @@ inline std::vector<ErrorsOver> errors_over(const LogPageInput& in, const std::ve
 
 /// Command sums of the rows that count, flown and predicted.
 inline std::array<AxisSeries, 3> counted_series(const LogPageInput& in, std::size_t kind) {
-  const pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe{in.plan.airframe.name, in.plan.airframe.value};
+  const pinnquad::GivenAirframe airframe{in.plan.airframe.name, in.plan.airframe.value};
   const auto predictions = shown_predictions(in, kind);
   std::array<AxisSeries, 3> all;
   for (std::size_t fold = 0; fold < in.plan.folds.size(); ++fold) {

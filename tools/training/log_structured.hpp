@@ -10,6 +10,7 @@
 #include <array>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "command_line/interrupt.hpp"
@@ -37,8 +38,8 @@ class LogStructured {
       pinnquad::Network<float, pinnquad::InputSize<pinnquad::residual_inputs<FeatureSet>>, pinnquad::Clip,
                         pinnquad::Dense<48>, pinnquad::Silu, pinnquad::Dense<48>, pinnquad::Silu, pinnquad::Dense<4>>;
   using Optimizer = pinnquad::Scheduled<pinnquad::AdamW, pinnquad::CosineDecay>;
-  using Trainer = pinnquad::Trainer<Network, pinnquad::Mse, Optimizer, pinnquad::ResidualContext<Context>,
-                                    pinnquad::ShuffledBatches, 128>;
+  using Shown = decltype(pinnquad::residual_context(std::declval<const Context&>()));
+  using Trainer = pinnquad::Trainer<Network, pinnquad::Mse, Optimizer, Shown, pinnquad::ShuffledBatches, 128>;
   using Data = typename Trainer::Data;
   using Answer = pinnquad::MonotonePredictor<FeatureSet, Network>;
 

@@ -16,7 +16,7 @@
 #include "command_line/listed.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/training/context_airframe.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "pinnquad/training/structured/fit_structured.hpp"
 #include "pinnquad/training/training_data.hpp"
 #include "training/losses.hpp"
@@ -24,11 +24,11 @@
 
 namespace programs {
 
-using pinnquad::AltitudeRule;
+using AltitudeRule = pinnquad::StructuredSettings::Altitude;
 
 /// The training to do: models and data.
 struct TrainingPlan {
-  pinnquad::ContextAirframe<pinnquad::GivenAirframe> airframe;
+  pinnquad::GivenAirframe airframe;
   bool library_airframe = false;  ///< see NetworkOfModel
   const pinnquad::RowSplit& split;
   std::vector<LossName> losses;

@@ -23,7 +23,7 @@ std::string thousandths(double error) {
   return text;
 }
 
-std::string reason_of(const pinnquad::AltitudeChoice& choice) {
+std::string reason_of(const pinnquad::StructuredFits::Choice& choice) {
   if (!choice.error_with) return "as --altitude asks";
   return "error on the validation rows with it " + thousandths(*choice.error_with) + ", without " +
          thousandths(*choice.error_without) + (choice.taken ? "" : "; a fifth less would take it");
@@ -54,7 +54,7 @@ class SideBySide {
     if (epoch > 0) epochs_done_.fetch_add(1);
     return !interrupted();
   }
-  void chose(const pinnquad::AltitudeChoice& choice) {
+  void chose(const pinnquad::StructuredFits::Choice& choice) {
     chosen_ = true;
     if (plan_.silent) return;
     std::printf("      the structured model is %s the altitude: %s\n", choice.taken ? "shown" : "not shown",
@@ -77,7 +77,7 @@ std::vector<Training> train_structured(const TrainingPlan& plan) {
   settings.first_seed = plan.first_seed;
   settings.seeds = plan.seeds;
   const pinnquad::StructuredFits fits = pinnquad::fit_structured(plan.split, plan.airframe, settings, SideBySide(plan));
-  const pinnquad::AltitudeChoice& choice = fits.altitude;
+  const pinnquad::StructuredFits::Choice& choice = fits.altitude;
   nlohmann::json altitude = {{"asked", plan.altitude == AltitudeRule::yes  ? "yes"
                                        : plan.altitude == AltitudeRule::no ? "no"
                                                                            : "auto"},
@@ -89,7 +89,7 @@ std::vector<Training> train_structured(const TrainingPlan& plan) {
   if (choice.error_with) altitude["validation_mae"] = *choice.error_with;
   if (choice.error_without) altitude["validation_mae_without"] = *choice.error_without;
   std::vector<Training> done;
-  for (const pinnquad::StructuredFit& fit : fits.models) {
+  for (const pinnquad::StructuredFits::Fit& fit : fits.models) {
     const auto network = std::visit(
         [](const auto& model) -> std::shared_ptr<const TrainedNetwork> {
           using Model = std::decay_t<decltype(model)>;
@@ -144,12 +144,12 @@ Recipe structured_recipe() {
                                    {"least_altitude_gain", pinnquad::StructuredSettings{}.least_altitude_gain}};
   recipe.train = train_all_and_structured;
   recipe.besides = {structured};
-  recipe.besides_in_words = std::string(structured.title) + ": affine map of " +
-                            std::to_string(pinnquad::InverseFeatures::size) + " features, " +
-                            std::to_string(pinnquad::MonotoneBase<pinnquad::InverseFeatures>::parameter_count) +
-                            " numbers, and on what it leaves " +
-                            network_in_words<pinnquad::StructuredResidual<pinnquad::InverseFeatures>>("2 x 32 ReLU") +
-                            ", kept where the validation rows gain";
+  recipe.besides_in_words =
+      std::string(structured.title) + ": affine map of " + std::to_string(pinnquad::InverseFeatures::size) +
+      " features, " + std::to_string(pinnquad::MonotoneBase<pinnquad::InverseFeatures>::parameter_count) +
+      " numbers, and on what it leaves " +
+      network_in_words<pinnquad::StructuredFits::Residual<pinnquad::InverseFeatures>>("2 x 32 ReLU") +
+      ", kept where the validation rows gain";
   recipe.still_features = still_features_of_both;
   return recipe;
 }

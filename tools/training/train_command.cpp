@@ -76,7 +76,7 @@ void warn_of_still_features(const std::vector<std::string>& still, programs::Tra
 }
 
 /// The pictures of the networks `shown` (indices of results), the best of each kind.
-void draw(const ContextAirframe<GivenAirframe>& airframe, const std::string& folder, const RowSet& test,
+void draw(const GivenAirframe& airframe, const std::string& folder, const RowSet& test,
           const std::vector<programs::Result>& results, const std::vector<programs::Predictions>& predictions,
           const std::vector<std::size_t>& shown, const std::vector<std::string>& kinds) {
   std::vector<std::string> shown_names;
@@ -160,7 +160,7 @@ void warn_of_better_network(const std::vector<programs::LossName>& losses, const
 
 /// Proof of an export's signs, as `certify` finds it in the header.
 void say_certificate(const TrainOptions& options, const programs::TrainedNetwork& network,
-                     const ContextAirframe<GivenAirframe>& airframe, programs::TrainingReport& report) {
+                     const GivenAirframe& airframe, programs::TrainingReport& report) {
   const std::optional<Certificate> certificate = network.certificate();
   if (!certificate || !certificate->proven()) {
     std::printf("  nothing is proven of its signs: `pinnquad certify %s/model.hpp` looks for a counterexample\n",

@@ -14,8 +14,8 @@
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/features/features.hpp"
+#include "pinnquad/loss/context.hpp"
 #include "pinnquad/outputs/hover_slopes.hpp"
-#include "pinnquad/training/context_airframe.hpp"
 
 namespace pinnquad {
 
@@ -86,9 +86,9 @@ struct Judgement {
   Verdict verdict{};
 };
 
-/// Roll, pitch, yaw. As many predictions as rows.
-template <class Vehicle>
-std::array<AxisSeries, 3> axis_series(const ContextAirframe<Vehicle>& airframe, const RowSet& rows,
+/// Roll, pitch, yaw. As many predictions as rows. `airframe`: a GivenAirframe, a Context or a TrainedModel.
+template <class AirframeSource>
+std::array<AxisSeries, 3> axis_series(const AirframeSource& airframe, const RowSet& rows,
                                       const std::vector<Commands<double>>& predictions) {
   const std::array<std::array<double, rotor_count>, 3> signs = {
       airframe.template signs<Roll>(), airframe.template signs<Pitch>(), airframe.template signs<Yaw>()};
@@ -119,9 +119,8 @@ inline Judgement::PairSigns pair_signs(const std::array<AxisSeries, 3>& series) 
 }
 
 /// Judges commands, one for each row. Throws std::invalid_argument for no rows or another number of commands.
-template <class Vehicle>
-Judgement judge(const ContextAirframe<Vehicle>& airframe, const RowSet& rows,
-                const std::vector<Commands<double>>& predictions) {
+template <class AirframeSource>
+Judgement judge(const AirframeSource& airframe, const RowSet& rows, const std::vector<Commands<double>>& predictions) {
   std::vector<Commands<double>> targets;
   for (std::size_t i = 0; i < rows.size(); ++i) targets.push_back(rows[i].commands);
   Judgement result;
@@ -162,8 +161,7 @@ std::vector<Commands<double>> predicted_commands(const Model& model, const RowSe
 /// std::invalid_argument for a split with an empty part.
 template <class Model>
 Judgement judge(const Model& model, const RowSplit& split) {
-  Judgement result = judge(static_cast<const ContextAirframe<typename Model::Vehicle>&>(model), split.test,
-                           predicted_commands(model, split.test));
+  Judgement result = judge(model, split.test, predicted_commands(model, split.test));
   result.validation_error = model_errors(model, split.validation).mean.mean_absolute;
   result.verdict =
       verdict_on(result.errors, linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Losses between an angular acceleration and the matching signed sum of motor commands: local monotonicity (Algorithm 1:
-// where one rises, the other should rise too), and Pearson's correlation for the comparison (Sec. 4.2 argues against it).
+// Losses between an angular acceleration and the matching signed sum of motor commands: local monotonicity (Algorithm
+// 1: where one rises, the other should rise too), and Pearson's correlation for the comparison (Sec. 4.2 argues against
+// it).
 #pragma once
 
 #include <cmath>
@@ -59,10 +60,13 @@ struct SignedCommandSum {
     angular_acceleration = batch.features.row(Context::Features::angular_acceleration + Axis::axis).transpose().array();
   }
 
-  /// Adds dL/d prediction, given dL/dm.
-  template <class Gradient>
-  void add_gradient(const Array& by_commands, Gradient& gradient) const {
+  /// The value of `compare(m, n, dL/dm)`; adds dL/d prediction to `gradient`.
+  template <class Compare, class Gradient>
+  Scalar evaluate(const Compare& compare, Gradient& gradient) const {
+    Array by_commands = Array::Zero(commands.size());
+    const Scalar value = compare(commands, angular_acceleration, by_commands);
     gradient.array() += slope.rowwise() * by_commands.transpose();
+    return value;
   }
 
  private:
@@ -165,8 +169,8 @@ struct Literal {
   }
 };
 
-/// Form of the loss for equal steps, not only equal signs, on standardised series (not in the paper): mean over the pairs
-/// of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0.
+/// Form of the loss for equal steps, not only equal signs, on standardised series (not in the paper): mean over the
+/// pairs of (step(m_{i+1} - m_i) - step(n_{i+1} - n_i))^2; N = 1 gives 0.
 struct Match {
   static constexpr double gain = 3.0;
   static constexpr bool physical_units = false;
@@ -231,10 +235,8 @@ struct LocalMonotonicity {
       series.angular_acceleration *=
           Scalar(context.input.standard_deviation[feature]);  // differences: the mean drops out
     }
-    typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
-    const Scalar value = Form::compare(step, series.commands, series.angular_acceleration, weight, by_commands);
-    series.add_gradient(by_commands, gradient);
-    return value;
+    return series.evaluate(
+        [&](const auto& m, const auto& n, auto& by_m) { return Form::compare(step, m, n, weight, by_m); }, gradient);
   }
 };
 
@@ -263,13 +265,9 @@ struct PearsonCorrelation {
   template <class Context, class Batch, class Gradient>
   typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
                                   Gradient& gradient) const {
-    using Scalar = typename Batch::Scalar;
-    using Series = detail::SignedCommandSum<Axis, Context, Batch>;
-    const Series series(context, batch, Scalar(1));
-    typename Series::Array by_commands = Series::Array::Zero(series.commands.size());
-    const Scalar value = pearson_loss(series.commands, series.angular_acceleration, weight, by_commands);
-    series.add_gradient(by_commands, gradient);
-    return value;
+    const detail::SignedCommandSum<Axis, Context, Batch> series(context, batch, typename Batch::Scalar(1));
+    return series.evaluate([&](const auto& m, const auto& n, auto& by_m) { return pearson_loss(m, n, weight, by_m); },
+                           gradient);
   }
 };
 

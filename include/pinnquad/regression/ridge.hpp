@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Jacobi>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -96,11 +97,9 @@ struct EigenPairs {
   Eigen::MatrixXd vectors;
 };
 
-}  // namespace detail
-
 /// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit
 /// that fits a ridge four seconds longer to compile, for a case that is rare.
-inline detail::EigenPairs eigen_pairs(Eigen::MatrixXd a) {
+inline EigenPairs eigen_pairs(Eigen::MatrixXd a) {
   constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
   const Eigen::Index size = a.rows();
   Eigen::MatrixXd vectors = Eigen::MatrixXd::Identity(size, size);
@@ -130,7 +129,7 @@ inline Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::Ma
   // Far above rounding: what is left of a variance that the other columns explain is a difference of equals.
   constexpr double enough = 1e4;
   if (factors.info() == Eigen::Success && factors.rcond() > enough * rounding) return factors.solve(b);
-  const detail::EigenPairs pairs = eigen_pairs(a);
+  const EigenPairs pairs = eigen_pairs(a);
   const double largest = a.rows() > 0 ? pairs.values.maxCoeff() : 0.0;
   Eigen::MatrixXd x = Eigen::MatrixXd::Zero(b.rows(), b.cols());
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
@@ -150,48 +149,74 @@ inline std::optional<Eigen::MatrixXd> whitening_of(const Eigen::MatrixXd& a) {
   return factors.matrixL().solve(Eigen::MatrixXd::Identity(a.rows(), a.cols()));
 }
 
-namespace detail {
-inline void require_penalty(double penalty) {
-  if (!(penalty >= 0) || penalty > 1e12) {
-    throw std::invalid_argument("ridge: expected a penalty from 0, found " + std::to_string(penalty));
-  }
+/// sum of factor x weight over `terms` >= least, or = least.
+struct WeightBound {
+  std::vector<std::pair<int, double>> terms;  ///< feature and factor
+  double least = 0;
+  bool pinned = false;
+};
+
+/// All rows of one group or more.
+inline RegressionSums total(const std::vector<RegressionSums>& groups) {
+  RegressionSums all = groups.front();
+  for (std::size_t i = 1; i < groups.size(); ++i) all += groups[i];
+  return all;
 }
+
+/// The normal equations A X = B of the features that are taken; `columns` are these.
+struct RidgeSystem {
+  std::vector<int> columns;
+  Eigen::MatrixXd a, b;
+  Eigen::VectorXd mean;
+
+  RidgeSystem(const RegressionSums& sums, double penalty, const std::vector<bool>& taken) {
+    if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
+    if (!(penalty >= 0) || penalty > 1e12) {
+      throw std::invalid_argument("ridge: expected a penalty from 0, found " + std::to_string(penalty));
+    }
+    for (int i = 0; i < sums.inputs(); ++i) {
+      if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);
+    }
+    const Eigen::MatrixXd covariances = sums.covariances();
+    mean = sums.means();
+    const auto size = static_cast<Eigen::Index>(columns.size());
+    a.resize(size, size);
+    b.resize(size, sums.outputs());
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const int row = columns[std::size_t(i)];
+      for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(row, columns[std::size_t(j)]);
+      a(i, i) += penalty;
+      for (int k = 0; k < sums.outputs(); ++k) b(i, k) = covariances(row, sums.inputs() + k);
+    }
+  }
+
+  /// The map of a solution X. A feature that is not taken has the weight 0.
+  AffineMap map(const RegressionSums& sums, const Eigen::MatrixXd& solution) const {
+    AffineMap map;
+    map.inputs = sums.inputs();
+    map.outputs = sums.outputs();
+    map.weights.assign(std::size_t(map.inputs) * std::size_t(map.outputs), 0.0);
+    for (int k = 0; k < map.outputs; ++k) {
+      double at_mean = 0;
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const double weight = solution(Eigen::Index(i), k);
+        map.weights[std::size_t(k * map.inputs + columns[i])] = weight;
+        at_mean += weight * mean[columns[i]];
+      }
+      map.intercept.push_back(mean[map.inputs + k] - at_mean);
+    }
+    return map;
+  }
+};
+
 }  // namespace detail
 
 /// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A
-/// feature that stands still, or that the others repeat, does no harm, without a penalty too (regression/ridge.hpp).
-/// Throws std::invalid_argument for no rows and for a penalty that is no number from 0.
+/// feature that stands still, or that the others repeat, does no harm, without a penalty too. Throws
+/// std::invalid_argument for no rows and for a penalty that is no number from 0.
 inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken = {}) {
-  if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
-  detail::require_penalty(penalty);
-  std::vector<int> columns;
-  for (int i = 0; i < sums.inputs(); ++i) {
-    if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);
-  }
-  const Eigen::MatrixXd covariances = sums.covariances();
-  const auto size = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd a(size, size), b(size, sums.outputs());
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(columns[std::size_t(i)], columns[std::size_t(j)]);
-    a(i, i) += penalty;
-    for (int k = 0; k < sums.outputs(); ++k) b(i, k) = covariances(columns[std::size_t(i)], sums.inputs() + k);
-  }
-  const Eigen::MatrixXd solution = solve_symmetric(a, b);
-  const Eigen::VectorXd mean = sums.means();
-  AffineMap map;
-  map.inputs = sums.inputs();
-  map.outputs = sums.outputs();
-  map.weights.assign(std::size_t(map.inputs) * std::size_t(map.outputs), 0.0);
-  for (int k = 0; k < map.outputs; ++k) {
-    double at_mean = 0;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const int column = columns[std::size_t(i)];
-      map.weights[std::size_t(k * map.inputs + column)] = solution(i, k);
-      at_mean += solution(i, k) * mean[column];
-    }
-    map.intercept.push_back(mean[map.inputs + k] - at_mean);
-  }
-  return map;
+  const detail::RidgeSystem system(sums, penalty, taken);
+  return system.map(sums, detail::solve_symmetric(system.a, system.b));
 }
 
 /// Sum of (y - map(x))^2 over the rows and outputs of these sums.
@@ -216,57 +241,32 @@ inline std::vector<double> usual_penalties() {
   return {1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0};
 }
 
-namespace detail {
-
-struct PenaltyChoice {
-  double penalty = 0;  ///< of the least error; of equals the largest
-  std::vector<double>
-      mean_squared_error;  ///< of each candidate, over all rows, each predicted by a fit without its group
-};
-
-}  // namespace detail
-
 /// The penalty that predicts best what was left out: each group of rows (a trajectory with its repeats) by the fit to
-/// all others. Throws std::invalid_argument for fewer than two groups or no candidate.
-inline detail::PenaltyChoice choose_penalty(const std::vector<RegressionSums>& groups,
-                                            const std::vector<double>& candidates = usual_penalties(),
-                                            const std::vector<bool>& taken = {}) {
+/// all others; of equals the largest. Throws std::invalid_argument for fewer than two groups or no candidate.
+inline double choose_penalty(const std::vector<RegressionSums>& groups,
+                             const std::vector<double>& candidates = usual_penalties(),
+                             const std::vector<bool>& taken = {}) {
   if (groups.size() < 2) {
     throw std::invalid_argument("ridge: expected two groups of rows or more, to leave one out in turn, found " +
                                 std::to_string(groups.size()));
   }
   if (candidates.empty()) throw std::invalid_argument("ridge: expected a penalty to choose, found none");
-  RegressionSums all = groups.front();
-  for (std::size_t i = 1; i < groups.size(); ++i) all += groups[i];
-  detail::PenaltyChoice choice;
-  choice.mean_squared_error.assign(candidates.size(), 0.0);
+  const RegressionSums all = detail::total(groups);
+  std::vector<double> errors(candidates.size(), 0.0);  // mean squared, over all rows
   for (const RegressionSums& left_out : groups) {
     RegressionSums others = all;
     others -= left_out;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      choice.mean_squared_error[i] +=
-          squared_error(left_out, fit_ridge(others, candidates[i], taken)) / (all.rows() * all.outputs());
+      errors[i] += squared_error(left_out, fit_ridge(others, candidates[i], taken)) / (all.rows() * all.outputs());
     }
   }
   std::size_t best = 0;
   for (std::size_t i = 1; i < candidates.size(); ++i) {
-    const double error = choice.mean_squared_error[i], least = choice.mean_squared_error[best];
+    const double error = errors[i], least = errors[best];
     if (error < least || (!(error > least) && candidates[i] > candidates[best])) best = i;
   }
-  choice.penalty = candidates[best];
-  return choice;
+  return candidates[best];
 }
-
-namespace detail {
-
-/// sum of factor x weight over `terms` >= least, or = least.
-struct WeightBound {
-  std::vector<std::pair<int, double>> terms;  ///< feature and factor
-  double least = 0;
-  bool pinned = false;
-};
-
-}  // namespace detail
 
 /// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Each choice of bounds that hold
 /// with equality is solved; of those that keep all bounds the one of least cost is taken, which is the minimum: the
@@ -275,37 +275,25 @@ struct WeightBound {
 inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken,
                                    const std::vector<detail::WeightBound>& bounds) {
   constexpr std::size_t most_bounds = 8;
-  if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
   if (sums.outputs() != 1) {
     throw std::invalid_argument("ridge: expected one output, found " + std::to_string(sums.outputs()));
   }
-  detail::require_penalty(penalty);
   if (bounds.size() > most_bounds) throw std::invalid_argument("ridge: expected 8 bounds at most");
-  const Eigen::MatrixXd covariances = sums.covariances();
-  const Eigen::VectorXd mean = sums.means();
-  std::vector<int> columns, place(static_cast<std::size_t>(sums.inputs()), -1);
-  for (int i = 0; i < sums.inputs(); ++i) {
-    if (!taken.empty() && !taken[std::size_t(i)]) continue;
-    place[std::size_t(i)] = static_cast<int>(columns.size());
-    columns.push_back(i);
-  }
-  const auto size = static_cast<Eigen::Index>(columns.size());
+  const detail::RidgeSystem system(sums, penalty, taken);
+  const auto size = static_cast<Eigen::Index>(system.columns.size());
   const auto count = static_cast<Eigen::Index>(bounds.size());
-  Eigen::MatrixXd a(size, size), right = Eigen::MatrixXd::Zero(size, 1 + count);  // the free fit, then each bound's
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(columns[std::size_t(i)], columns[std::size_t(j)]);
-    a(i, i) += penalty;
-    right(i, 0) = covariances(columns[std::size_t(i)], sums.inputs());
-  }
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, 1 + count);  // the free fit, then each bound's
+  right.col(0) = system.b;
   for (Eigen::Index k = 0; k < count; ++k) {
     for (const auto& [feature, factor] : bounds[std::size_t(k)].terms) {
-      const bool has = feature >= 0 && feature < sums.inputs();
-      const int row = has ? place[std::size_t(feature)] : -1;
-      if (row < 0) throw std::invalid_argument("ridge: a bound of feature " + std::to_string(feature) + ", not taken");
-      right(row, 1 + k) = factor;
+      const auto column = std::find(system.columns.begin(), system.columns.end(), feature);
+      if (column == system.columns.end()) {
+        throw std::invalid_argument("ridge: a bound of feature " + std::to_string(feature) + ", not taken");
+      }
+      right(column - system.columns.begin(), 1 + k) = factor;
     }
   }
-  const Eigen::MatrixXd solution = solve_symmetric(a, right);
+  const Eigen::MatrixXd solution = detail::solve_symmetric(system.a, right);
   const Eigen::MatrixXd by = right.rightCols(count), moved = solution.rightCols(count);
   const Eigen::VectorXd free = solution.col(0);
   constexpr double tolerance = 1e-9;  // of a bound that holds with equality, after rounding
@@ -329,7 +317,7 @@ inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, c
           gram(i, j) = by.col(held[std::size_t(i)]).dot(moved.col(held[std::size_t(j)]));
         missing(i, 0) = bounds[std::size_t(held[std::size_t(i)])].least - by.col(held[std::size_t(i)]).dot(free);
       }
-      const Eigen::MatrixXd forces = solve_symmetric(gram, missing);
+      const Eigen::MatrixXd forces = detail::solve_symmetric(gram, missing);
       for (Eigen::Index i = 0; i < rows; ++i) weights += forces(i, 0) * moved.col(held[std::size_t(i)]);
     }
     bool keeps = true;
@@ -339,25 +327,14 @@ inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, c
       keeps = keeps && short_of <= tolerance * scale;
     }
     if (!keeps) continue;
-    const double cost = weights.dot(a * weights) - 2 * weights.dot(right.col(0));
+    const double cost = weights.dot(system.a * weights) - 2 * weights.dot(right.col(0));
     if (best.size() == 0 || cost < least_cost) {
       best = weights;
       least_cost = cost;
     }
   }
   if (best.size() == 0 && size > 0) throw std::invalid_argument("ridge: no weights keep all bounds");
-  AffineMap map;
-  map.inputs = sums.inputs();
-  map.outputs = 1;
-  map.weights.assign(std::size_t(map.inputs), 0.0);
-  double at_mean = 0;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const int column = columns[std::size_t(i)];
-    map.weights[std::size_t(column)] = best[i];
-    at_mean += best[i] * mean[column];
-  }
-  map.intercept = {mean[sums.inputs()] - at_mean};
-  return map;
+  return system.map(sums, best);
 }
 
 }  // namespace pinnquad

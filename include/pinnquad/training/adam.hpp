@@ -26,7 +26,7 @@ struct Adam {
     double rate;        ///< learning_rate / (1 - b1^t)
     double root_scale;  ///< 1 / sqrt(1 - b2^t)
   };
-  Step begin(long t) const {
+  Step begin(long t, double /*done*/ = 0) const {
     const double n = static_cast<double>(t);
     return {learning_rate / (1.0 - std::pow(beta_1, n)), 1.0 / std::sqrt(1.0 - std::pow(beta_2, n))};
   }
@@ -79,7 +79,9 @@ struct AdamW {
     Adam::Step adam;
     double decay;  ///< 1 - learning_rate decay
   };
-  Step begin(long t) const { return {without_decay().begin(t), 1.0 - learning_rate * weight_decay}; }
+  Step begin(long t, double /*done*/ = 0) const {
+    return {without_decay().begin(t), 1.0 - learning_rate * weight_decay};
+  }
 
   /// Throws std::invalid_argument for numbers that Adam refuses too.
   constexpr void check() const {

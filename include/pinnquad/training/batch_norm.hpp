@@ -4,12 +4,14 @@
 #pragma once
 
 #include "pinnquad/nn/batch_norm.hpp"
-#include "pinnquad/training/batch_layer.hpp"
+#include "pinnquad/training/backward.hpp"
 
 namespace pinnquad {
 
 /// Share of a batch's statistics in the running ones (PyTorch's `momentum`).
 inline constexpr double batch_norm_momentum = 0.1;
+
+namespace detail {
 
 /// Forward: xhat = (x - mean) / sqrt(var + 1e-5), y = gamma xhat + beta; mean and var (divisor N) of the N samples.
 /// Backward: dbeta = sum dy, dgamma = sum dy xhat, dx = gamma / sqrt(var + 1e-5) (dy - dbeta / N - xhat dgamma / N).
@@ -17,17 +19,14 @@ inline constexpr double batch_norm_momentum = 0.1;
 /// One sample has no variance: it is normalised by the running statistics, which stay as they are, and the gradient is
 /// that of the affine map which remains. (PyTorch refuses such a batch.) The optimiser sees gamma and beta only.
 template <class Scalar, int Size, class Pack, int BatchSize>
-struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
+struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void>
+    : BatchParameters<Scalar, 2 * padded<Pack>(Size)> {  // gamma, then beta
   static_assert(BatchSize > 1, "pinnquad: batch norm can't be trained in batches of one sample; they have no variance");
-  static constexpr bool in_place = false;
-  static constexpr bool needs_output = false;
   static constexpr bool couples_samples = true;
-  static constexpr bool whole_tiles = false;
   static constexpr int stride = padded<Pack>(Size);
-  static constexpr int size = 2 * stride;
 
-  alignas(64) Scalar stored[size] = {};  // gamma, then beta
-  alignas(64) Scalar gradient[size] = {};
+  using BatchParameters<Scalar, 2 * stride>::stored;
+  using BatchParameters<Scalar, 2 * stride>::gradient;
   alignas(64) Scalar running_mean[stride] = {};
   alignas(64) Scalar running_variance[stride] = {};
   alignas(64) Scalar mean[stride] = {};               // of the last batch
@@ -59,8 +58,6 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
       parameters[2 * Size + i] = parameters[3 * Size + i] = Scalar(0);
     }
   }
-  void refresh() noexcept {}
-
   void forward(const Scalar* x, Scalar* y, int samples) noexcept {
     batch_samples = samples;
     if (samples > 1) {
@@ -184,8 +181,6 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
   }
 };
 
-/// Batch norm has no rule for a single sample; the batch form above trains it.
-template <class Scalar, int Size>
-inline constexpr bool is_trainable<BatchNormLayer<Scalar, Size>> = true;
+}  // namespace detail
 
 }  // namespace pinnquad

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The weights of a training that are kept: the best by an error on validation rows, or the mean of the last steps.
-//   Checkpoint<Network> best;  EarlyStopping stopping{30};
-//   for (int epoch = 0; epoch < epochs && !stopping.reached(best, epoch); ++epoch) {
+//   Checkpoint<Network> best;
+//   for (int epoch = 0; epoch < epochs && !best.is_stale(epoch, 30); ++epoch) {
 //     trainer.epoch(data, {epoch, epochs}, engine);
 //     best.offer(epoch, trainer.validate(validation).mean_absolute, trainer);
 //   }
@@ -33,6 +33,9 @@ class Checkpoint {
   bool empty() const noexcept { return epoch_ < 0; }
   int epoch() const noexcept { return epoch_; }     ///< -1 before the first
   double error() const noexcept { return error_; }  ///< infinite before the first
+  /// True if the error has not fallen for `patience` epochs, so that `epoch` (from 0) need not be begun; 0 waits for
+  /// ever.
+  bool is_stale(int epoch, int patience) const noexcept { return patience > 0 && epoch - epoch_ > patience; }
   /// Throws std::logic_error if none was taken: before the first offer, or if every error was NaN.
   const NetworkType& network() const {
     if (empty()) throw std::logic_error("Checkpoint: expected a network with an error, found none");
@@ -43,17 +46,6 @@ class Checkpoint {
   NetworkType network_{};
   double error_ = std::numeric_limits<double>::infinity();
   int epoch_ = -1;
-};
-
-/// Ends a training whose error has not fallen for `patience` epochs; 0 never ends one.
-struct EarlyStopping {
-  int patience = 0;
-
-  /// True if `epoch` (from 0) need not be begun.
-  template <class NetworkType>
-  bool reached(const Checkpoint<NetworkType>& best, int epoch) const noexcept {
-    return patience > 0 && epoch - best.epoch() > patience;
-  }
 };
 
 /// The moving mean of the weights over the last steps: less noise than any single step has, at no cost in flight.

@@ -12,55 +12,52 @@ namespace pinnquad {
 
 namespace detail {
 
-/// Moves specs from the second list to the first: a Dense takes the BatchNorm behind it along.
-template <class Done, class Left>
-struct FoldSpecs;
-template <class... Done>
-struct FoldSpecs<SpecList<Done...>, SpecList<>> {
-  using type = SpecList<Done...>;
+template <class Spec>
+struct FoldedSpec {
+  using type = Spec;
+  static constexpr bool takes_batch_norm = false;
 };
-template <class... Done, class Spec, class... Left>
-struct FoldSpecs<SpecList<Done...>, SpecList<Spec, Left...>> : FoldSpecs<SpecList<Done..., Spec>, SpecList<Left...>> {
-  static_assert(!std::is_same<Spec, BatchNorm>::value,
+template <int Out>
+struct FoldedSpec<Dense<Out>> {
+  using type = Dense<Out>;
+  static constexpr bool takes_batch_norm = true;
+};
+template <int Out>
+struct FoldedSpec<DenseWithoutBias<Out>> : FoldedSpec<Dense<Out>> {};
+
+/// Moves layers to the network `Done`, behind the layer `Before`; a BatchNorm is left out.
+template <class Done, class Before, class... Left>
+struct FoldSpecs {
+  using type = Done;
+};
+template <class Scalar, class InputSize, class... Done, class Before, class Spec, class... Left>
+struct FoldSpecs<Network<Scalar, InputSize, Done...>, Before, Spec, Left...>
+    : FoldSpecs<Network<Scalar, InputSize, Done..., typename FoldedSpec<Spec>::type>, Spec, Left...> {};
+template <class Scalar, class InputSize, class... Done, class Before, class... Left>
+struct FoldSpecs<Network<Scalar, InputSize, Done...>, Before, BatchNorm, Left...>
+    : FoldSpecs<Network<Scalar, InputSize, Done...>, BatchNorm, Left...> {
+  static_assert(FoldedSpec<Before>::takes_batch_norm,
                 "pinnquad: a BatchNorm that does not follow a Dense can't be folded into one, so it can't be exported");
 };
-template <class... Done, int Out, class... Left>
-struct FoldSpecs<SpecList<Done...>, SpecList<DenseWithoutBias<Out>, Left...>>
-    : FoldSpecs<SpecList<Done..., Dense<Out>>, SpecList<Left...>> {};
-template <class... Done, int Out, class... Left>
-struct FoldSpecs<SpecList<Done...>, SpecList<DenseWithoutBias<Out>, BatchNorm, Left...>>
-    : FoldSpecs<SpecList<Done..., Dense<Out>>, SpecList<Left...>> {};
-template <class... Done, int Out, class... Left>
-struct FoldSpecs<SpecList<Done...>, SpecList<Dense<Out>, BatchNorm, Left...>>
-    : FoldSpecs<SpecList<Done..., Dense<Out>>, SpecList<Left...>> {};
 
 template <class Predictor>
 struct FoldNetwork {
   using type = Predictor;
 };
 template <class Scalar, class InputSize, class... Specs>
-struct FoldNetwork<Network<Scalar, InputSize, Specs...>> {
-  template <class List>
-  struct Of;
-  template <class... Folded>
-  struct Of<SpecList<Folded...>> {
-    using type = Network<Scalar, InputSize, Folded...>;
-  };
-  using type = typename Of<typename FoldSpecs<SpecList<>, SpecList<Specs...>>::type>::type;
+struct FoldNetwork<Network<Scalar, InputSize, Specs...>> : FoldSpecs<Network<Scalar, InputSize>, InputSize, Specs...> {
 };
 
-/// Copies a layer's parameters; a missing bias becomes 0. Returns how many were written.
-template <class Layer, class Scalar>
-int copy_layer(Layer, const Scalar* from, Scalar* to) {
-  for (int i = 0; i < Layer::parameter_count; ++i) to[i] = from[i];
-  return Layer::parameter_count;
-}
+/// The network without its BatchNorms: Dense, DenseWithoutBias and a BatchNorm behind either become one Dense. A
+/// network that has none of them, and a predictor that is no network (model/predictor.hpp), is its own folded type.
+template <class NetworkType>
+using Folded = typename FoldNetwork<NetworkType>::type;
+
+/// Parameters that a layer gets by folding: a bias of 0.
+template <class Layer>
+inline constexpr int folded_bias = 0;
 template <class Scalar, int In, int Out>
-int copy_layer(DenseWithoutBiasLayer<Scalar, In, Out>, const Scalar* from, Scalar* to) {
-  for (int i = 0; i < Out * In; ++i) to[i] = from[i];
-  for (int i = 0; i < Out; ++i) to[Out * In + i] = Scalar(0);
-  return Out * In + Out;
-}
+inline constexpr int folded_bias<DenseWithoutBiasLayer<Scalar, In, Out>> = Out;
 
 /// W'_i = s_i W_i, b'_i = s_i (b_i - mean_i) + beta_i with s_i = gamma_i / sqrt(variance_i + 1e-5); computed in double.
 template <class Scalar, int Size>
@@ -77,45 +74,36 @@ void fold_into_dense(BatchNormLayer<Scalar, Size>, const Scalar* norm, Scalar* d
   }
 }
 template <class Layer>
-struct IsBatchNorm : std::false_type {};
+inline constexpr bool is_batch_norm = false;
 template <class Scalar, int Size>
-struct IsBatchNorm<BatchNormLayer<Scalar, Size>> : std::true_type {};
-
-template <class NetworkType>
-typename FoldNetwork<NetworkType>::type without_batch_norm(const NetworkType& network) {
-  using Scalar = typename NetworkType::Scalar;
-  typename FoldNetwork<NetworkType>::type result;
-  Scalar* end = result.parameters.data();  // behind the last layer written
-  Scalar* last = end;                      // that layer
-  unroll<NetworkType::layer_count>([&](auto index) {
-    using Layer = typename NetworkType::template Layer<decltype(index)::value>;
-    const Scalar* own = network.parameters.data() + NetworkType::Sizes::offset(index);
-    if constexpr (IsBatchNorm<Layer>::value) {
-      using Before = typename NetworkType::template Layer<decltype(index)::value - 1>;
-      fold_into_dense(Layer{}, own, last, Before::inputs);
-    } else {
-      last = end;
-      end += copy_layer(Layer{}, own, last);
-    }
-  });
-  return result;
-}
+inline constexpr bool is_batch_norm<BatchNormLayer<Scalar, Size>> = true;
 
 }  // namespace detail
-
-/// The network without its BatchNorms: Dense, DenseWithoutBias and a BatchNorm behind either become one Dense. A
-/// network that has none of them, and a predictor that is no network (model/predictor.hpp), is its own folded type.
-template <class NetworkType>
-using Folded = typename detail::FoldNetwork<NetworkType>::type;
 
 /// The same outputs to rounding as `network` with its running statistics, from plain layers. A network without batch
 /// norm is returned bit for bit.
 template <class NetworkType>
-Folded<NetworkType> folded(const NetworkType& network) {
+detail::Folded<NetworkType> folded(const NetworkType& network) {
   if constexpr (!is_network<NetworkType>) {
     return network;
   } else {
-    return detail::without_batch_norm(network);
+    using Scalar = typename NetworkType::Scalar;
+    detail::Folded<NetworkType> result;
+    Scalar* end = result.parameters.data();  // behind the last layer written
+    Scalar* last = end;                      // that layer
+    unroll<NetworkType::layer_count>([&](auto index) {
+      using Layer = typename NetworkType::template Layer<decltype(index)::value>;
+      const Scalar* own = network.parameters.data() + NetworkType::Sizes::offset(index);
+      if constexpr (detail::is_batch_norm<Layer>) {
+        using Before = typename NetworkType::template Layer<decltype(index)::value - 1>;
+        detail::fold_into_dense(Layer{}, own, last, Before::inputs);
+      } else {
+        last = end;
+        for (int i = 0; i < Layer::parameter_count; ++i) last[i] = own[i];
+        end += Layer::parameter_count + detail::folded_bias<Layer>;
+      }
+    });
+    return result;
   }
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Initial weights. Contract: `template <class Layer, class Engine> void initialise(Scalar* parameters, Engine&) const`.
+// Initial weights: Xavier (Glorot and Bengio 2010), uniform: W in +-sqrt(6 / (inputs + outputs)), biases 0.
 #pragma once
 
 #include <cmath>
+#include <utility>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
@@ -11,57 +13,39 @@
 
 namespace pinnquad {
 
-/// Xavier (Glorot and Bengio 2010), uniform: W in +-sqrt(6 / (inputs + outputs)), biases 0. Other layers with
-/// parameters start at 0 unless they have `initialise(parameters, engine)` themselves.
-struct XavierUniform {
-  template <class Scalar, int In, int Out, class Engine>
-  void initialise(DenseLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
-    initialise(DenseWithoutBiasLayer<Scalar, In, Out>{}, parameters, engine);
-    for (int i = 0; i < Out; ++i) parameters[Out * In + i] = Scalar(0);
-  }
-  template <class Scalar, int In, int Out, class Engine>
-  void initialise(DenseWithoutBiasLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
-    const double limit = std::sqrt(6.0 / (In + Out));
-    for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
-  }
-  /// gamma 1, beta 0, mean 0, variance 1: nearly the identity. Draws nothing.
-  template <class Scalar, int Size, class Engine>
-  void initialise(BatchNormLayer<Scalar, Size>, Scalar* parameters, Engine&) const {
-    for (int i = 0; i < Size; ++i) {
-      parameters[i] = Scalar(1);
-      parameters[Size + i] = Scalar(0);
-      parameters[2 * Size + i] = Scalar(0);
-      parameters[3 * Size + i] = Scalar(1);
-    }
-  }
-  template <class Layer, class Scalar, class Engine>
-  void initialise(Layer, Scalar* parameters, Engine& engine) const {
-    if constexpr (brings_own<Layer, Scalar, Engine>(0)) {
-      Layer::initialise(parameters, engine);
-    } else {
-      for (int i = 0; i < Layer::parameter_count; ++i) parameters[i] = Scalar(0);
-    }
-  }
+namespace detail {
+template <class Layer, class Scalar, class Engine>
+using InitialiseOf = decltype(Layer::initialise(std::declval<Scalar*>(), std::declval<Engine&>()));
 
- private:
-  template <class Layer, class Scalar, class Engine>
-  static constexpr auto brings_own(int)
-      -> decltype(Layer::initialise(static_cast<Scalar*>(nullptr), std::declval<Engine&>()), true) {
-    return true;
-  }
-  template <class Layer, class Scalar, class Engine>
-  static constexpr bool brings_own(long) {
-    return false;
-  }
-};
+/// Parameters are 0 before. A layer may bring `static void initialise(Scalar* parameters, Engine&)`.
+template <class Layer, class Scalar, class Engine>
+void initialise(Layer, [[maybe_unused]] Scalar* parameters, [[maybe_unused]] Engine& engine) {
+  if constexpr (is_detected<InitialiseOf, Layer, Scalar, Engine>) Layer::initialise(parameters, engine);
+}
+template <class Scalar, int In, int Out, class Engine>
+void initialise(DenseWithoutBiasLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) {
+  const double limit = std::sqrt(6.0 / (In + Out));
+  for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
+}
+template <class Scalar, int In, int Out, class Engine>
+void initialise(DenseLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) {
+  initialise(DenseWithoutBiasLayer<Scalar, In, Out>{}, parameters, engine);
+}
+/// Nearly the identity. Draws nothing.
+template <class Scalar, int Size, class Engine>
+void initialise(BatchNormLayer<Scalar, Size>, Scalar* parameters, Engine&) {
+  for (int i = 0; i < Size; ++i) parameters[i] = parameters[3 * Size + i] = Scalar(1);  // gamma, variance
+}
+}  // namespace detail
 
-/// A network with initial weights, layer by layer from one engine: the same seed gives the same bits.
-template <class NetworkType, class Initialization = XavierUniform, class Engine>
-NetworkType initialised(Engine& engine, const Initialization& initialization = {}) {
+/// A network with initial weights, layer by layer from one engine: the same seed gives the same bits. Other layers with
+/// parameters start at 0, unless they have `initialise(parameters, engine)` themselves.
+template <class NetworkType, class Engine>
+NetworkType initialised(Engine& engine) {
   NetworkType network;
   unroll<NetworkType::layer_count>([&](auto index) {
     using Layer = typename NetworkType::template Layer<decltype(index)::value>;
-    initialization.initialise(Layer{}, network.parameters.data() + NetworkType::Sizes::offset(index), engine);
+    detail::initialise(Layer{}, network.parameters.data() + NetworkType::Sizes::offset(index), engine);
   });
   return network;
 }

@@ -3,20 +3,15 @@
 #pragma once
 
 #include <tuple>
+#include <utility>
 
 #include "pinnquad/nn/network.hpp"
-#include "pinnquad/training/batch_layer.hpp"
+#include "pinnquad/training/backward.hpp"
 #include "pinnquad/training/batch_norm.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-template <class Layers, class Pack, int BatchSize>
-struct BatchLayers;
-template <class... Layers, class Pack, int BatchSize>
-struct BatchLayers<std::tuple<Layers...>, Pack, BatchSize> {
-  using type = std::tuple<BatchLayer<Layers, Pack, BatchSize>...>;
-};
 
 /// Activations of one layer, [sample][padded width]; empty for layers that work in the buffer of the layer before.
 template <class Scalar, int Size>
@@ -26,14 +21,12 @@ struct ActivationBuffer {
 template <class Scalar>
 struct ActivationBuffer<Scalar, 0> {};
 
-}  // namespace detail
-
 /// Gradient of a scalar loss by all parameters, for up to BatchSize samples.
 /// Tiles may be wider than the batch. The rows past its samples are zeros in every activation and in every dL/dy, and
 /// only Dense, which makes 0 of them, is run on them: they add nothing to a gradient, whatever a layer gives for an
 /// input of zeros. Use: input() <- standardised samples, forward(n), output_delta() <- dL/dy, backward(n), then each
 /// layer's `gradient`.
-template <class NetworkType, int BatchSize, class PackType = NativePack<typename NetworkType::Scalar>>
+template <class NetworkType, int BatchSize, class PackType = pinnquad::NativePack<typename NetworkType::Scalar>>
 class NetworkGradient {
  public:
   using Scalar = typename NetworkType::Scalar;
@@ -65,14 +58,14 @@ class NetworkGradient {
   /// Outputs of the first `samples` inputs (at most `capacity`), batch norm by the statistics of these samples.
   void forward(int samples) noexcept {
     clear_padding(input_, input_stride, samples);
-    detail::walk_forward<NetworkType, Kernel>(Forward<true>{{}, *this}, samples);
+    walk_forward<NetworkType, Kernel>(Forward<true>{{}, *this}, samples);
   }
 
   /// The same with batch norm's running statistics: outputs of the network as it will fly. backward() does not fit
   /// this pass.
   void predict(int samples) noexcept {
     clear_padding(input_, input_stride, samples);
-    detail::walk_forward<NetworkType, Kernel>(Forward<false>{{}, *this}, samples);
+    walk_forward<NetworkType, Kernel>(Forward<false>{{}, *this}, samples);
   }
 
   /// Running statistics follow the batch of the last forward().
@@ -85,7 +78,7 @@ class NetworkGradient {
   /// Gradients of all layers.
   void backward(int samples) noexcept {
     clear_padding(delta_[0], output_stride, samples);
-    detail::walk_back<NetworkType, detail::FusesNothing>(Backward{{}, *this, samples}, Deltas{delta_[0], delta_[1]});
+    walk_back<NetworkType, FusesNothing>(Backward{{}, *this, samples}, Deltas{delta_[0], delta_[1]});
   }
 
   /// function(layer, integral_constant<index>) for every layer.
@@ -102,7 +95,9 @@ class NetworkGradient {
   static constexpr int layer_count = NetworkType::layer_count;
   static constexpr int last = layer_count - 1;
   static constexpr int widest = padded<Pack>(NetworkType::widest);
-  using Layers = typename detail::BatchLayers<typename NetworkType::Layers, Pack, BatchSize>::type;
+  template <class... Layers>
+  static std::tuple<BatchLayer<Layers, Pack, BatchSize>...> batched(const std::tuple<Layers...>&);
+  using Layers = decltype(batched(std::declval<typename NetworkType::Layers>()));
   template <int Index>
   using Layer = std::tuple_element_t<static_cast<std::size_t>(Index), Layers>;
 
@@ -116,7 +111,7 @@ class NetworkGradient {
   /// True for a layer in the buffer of the layer before it, or of the inputs.
   template <int Index>
   static constexpr bool overwrites() noexcept {
-    return detail::runs_with_layer_before<NetworkType, Kernel, Index>() || (Index == 0 && Layer<Index>::in_place);
+    return runs_with_layer_before<NetworkType, Kernel, Index>() || (Index == 0 && Layer<Index>::in_place);
   }
   template <int Index>
   static constexpr int stride = padded<Pack>(NetworkType::template Layer<Index>::outputs);
@@ -124,7 +119,7 @@ class NetworkGradient {
   struct BuffersOf;
   template <int... Index>
   struct BuffersOf<std::integer_sequence<int, Index...>> {
-    using type = std::tuple<detail::ActivationBuffer<Scalar, overwrites<Index>() ? 0 : capacity * stride<Index>>...>;
+    using type = std::tuple<ActivationBuffer<Scalar, overwrites<Index>() ? 0 : capacity * stride<Index>>...>;
   };
   using Buffers = typename BuffersOf<std::make_integer_sequence<int, layer_count>>::type;
 
@@ -152,15 +147,16 @@ class NetworkGradient {
 
   /// A layer, and the one that works in its buffer.
   template <bool Training>
-  struct Forward : detail::StepByStep {
+  struct Forward : StepByStep {
     NetworkGradient& of;
     template <class Step>
     int visit(int samples) const noexcept {
+      Scalar* values = of.template activations<Step::index>();
       of.template run<Step::index, Training>(samples);
       if constexpr (Step::fused) {
-        std::get<Step::index + 1>(of.layers_).forward(of.template activations<Step::index>(), samples);
+        std::get<Step::index + 1>(of.layers_).forward(values, values, samples);
       }
-      clear_padding(of.template activations<Step::index>(), stride<Step::index>, samples);
+      clear_padding(values, stride<Step::index>, samples);
       return samples;
     }
   };
@@ -174,7 +170,7 @@ class NetworkGradient {
         const Scalar* before = activations<Index - 1>();
         for (int i = 0; i < rows * stride<Index>; ++i) values[i] = before[i];
       }
-      layer.forward(values, rows);
+      layer.forward(values, values, rows);
     } else if constexpr (Layer<Index>::couples_samples && !Training) {
       layer.predict(activations<Index - 1>(), values, rows);
     } else {
@@ -187,7 +183,7 @@ class NetworkGradient {
     Scalar* here;
     Scalar* other;
   };
-  struct Backward : detail::StepByStep {
+  struct Backward : StepByStep {
     NetworkGradient& of;
     int samples;
     template <class Step>
@@ -195,13 +191,13 @@ class NetworkGradient {
       constexpr int index = Step::index;
       auto& layer = std::get<index>(of.layers_);
       const int rows = rows_of<index>(samples);
+      const Scalar* values = of.template activations<index>();
       if constexpr (Layer<index>::in_place) {
-        layer.backward(of.template activations<index>(), delta.here, rows);
+        layer.backward(values, values, delta.here, delta.here, rows);
         return delta;
       } else {
         Scalar* previous = index > 0 ? delta.other : nullptr;
-        layer.backward(of.template activations<index - 1>(), of.template activations<index>(), delta.here, previous,
-                       rows);
+        layer.backward(of.template activations<index - 1>(), values, delta.here, previous, rows);
         if constexpr (index > 0) clear_padding(previous, stride<index - 1>, samples);
         return {delta.other, delta.here};
       }
@@ -213,5 +209,7 @@ class NetworkGradient {
   alignas(64) Scalar input_[capacity * input_stride] = {};
   alignas(64) Scalar delta_[2][capacity * widest] = {};
 };
+
+}  // namespace detail
 
 }  // namespace pinnquad

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The contract of an optimiser: `Step begin(long step) const` once per batch (steps from 1), then per layer
+// The contract of an optimiser: `Step begin(long step, double done) const` once per batch, then per layer
 //   template <class Pack> void update(const Step&, Scalar* parameters, const Scalar* gradient, Scalar* first,
 //                                     Scalar* second, int count) const noexcept;
-// on whole packs; `first` and `second` are the optimiser's to keep. One that follows the training's progress has
-// `begin(long step, double done)` instead; done = share of all steps taken before this one, 0 <= done < 1.
+// on whole packs; `first` and `second` are the optimiser's to keep. Steps count from 1; done = share of all steps taken
+// before this one, 0 <= done < 1.
 #pragma once
 
 #include <type_traits>
@@ -18,40 +18,18 @@ namespace pinnquad {
 
 namespace detail {
 template <class T>
-using BeginOf = decltype(std::declval<const T&>().begin(1L));
-template <class T>
-using BeginWithProgressOf = decltype(std::declval<const T&>().begin(1L, 0.0));
-
-template <class T>
-auto begin_step(const T& optimizer, long step, [[maybe_unused]] double done) {
-  if constexpr (is_detected<BeginWithProgressOf, T>) {
-    return optimizer.begin(step, done);
-  } else {
-    return optimizer.begin(step);
-  }
-}
-template <class T>
-using StepOf = decltype(begin_step(std::declval<const T&>(), 1L, 0.0));
-
+using StepOf = decltype(std::declval<const T&>().begin(1L, 0.0));
 template <class T>
 using UpdateOf = std::enable_if_t<noexcept(std::declval<const T&>().template update<GenericPack<double, 4>>(
     std::declval<const StepOf<T>&>(), static_cast<double*>(nullptr), static_cast<const double*>(nullptr),
     static_cast<double*>(nullptr), static_cast<double*>(nullptr), 4))>;
-template <class T>
-constexpr bool fulfils_optimizer() noexcept {
-  if constexpr (is_detected<BeginOf, T> || is_detected<BeginWithProgressOf, T>) {
-    return is_detected<UpdateOf, T>;
-  } else {
-    return false;
-  }
-}
 template <class T>
 using LearningRateOf = decltype(std::declval<T&>().learning_rate *= 0.5);
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_optimizer = detail::fulfils_optimizer<T>();
+inline constexpr bool is_optimizer = is_detected<detail::UpdateOf, T>;
 
 /// An optimiser whose learning rate follows a rate over the training: `Scheduled<AdamW, CosineDecay>`.
 /// Step t of T (from 0) is the optimiser's with learning_rate * rate.factor(t / T) in place of learning_rate, in
@@ -78,7 +56,7 @@ struct Scheduled {
   Step begin(long t, double done) const {
     Optimizer now = optimizer;
     now.learning_rate *= rate.factor(done);
-    return {now, detail::begin_step(now, t, done)};
+    return {now, now.begin(t, done)};
   }
   template <class Pack, class Scalar>
   void update(const Step& step, Scalar* parameters, const Scalar* gradient, Scalar* first, Scalar* second,

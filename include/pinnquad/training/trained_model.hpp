@@ -7,7 +7,6 @@
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/network.hpp"
-#include "pinnquad/training/context.hpp"
 #include "pinnquad/training/folding.hpp"
 #include "pinnquad/training/training_data.hpp"
 
@@ -15,7 +14,7 @@ namespace pinnquad {
 
 /// Values of the network's own scalar type, as the exported header holds them.
 template <class NetworkType, class ContextType>
-struct TrainedModel : ContextAirframe<typename ContextType::Vehicle> {
+struct TrainedModel : detail::ContextAirframe<typename ContextType::Vehicle> {
   static_assert(NetworkType::outputs == ContextType::output_count,
                 "pinnquad: a trained model's network has one output per output of its context's schema");
   static_assert(NetworkType::inputs == ContextType::Features::size,
@@ -52,19 +51,19 @@ struct TrainedModel : ContextAirframe<typename ContextType::Vehicle> {
   }
 };
 
-/// Weights smaller than this become 0. Weight decay leaves a dead neuron weights of 1e-30 and below: no prediction changes by a
-/// bit that matters, but their products would be denormal and cost a hundred times an ordinary operation in flight.
-inline constexpr double negligible_weight = 1e-20;
-
-/// Joins a network with the scalers of its context and the envelope of its training rows: their range, wider by
-/// ColumnStatistics::margin(). Batch norm is folded away: what is judged and exported is the network that flies.
+/// Joins a network with the scalers of its context and the envelope of its training rows: their range, wider by a tenth
+/// on both sides (detail::ColumnStatistics). Batch norm is folded away: the network that is judged and exported flies.
 template <class NetworkType, class ContextType>
-TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
-                                                                  const ContextType& context, const RowSet& training) {
-  using Model = TrainedModel<Folded<NetworkType>, ContextType>;
+TrainedModel<detail::Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
+                                                                          const ContextType& context,
+                                                                          const RowSet& training) {
+  using Model = TrainedModel<detail::Folded<NetworkType>, ContextType>;
   using Scalar = typename Model::Scalar;
   Model model{context};
   model.network = folded(network);
+  // Weight decay leaves a dead neuron weights of 1e-30 and below. As 0 they change no prediction by a bit that matters;
+  // their products would be denormal and cost a hundred times an ordinary operation in flight.
+  constexpr double negligible_weight = 1e-20;
   for (Scalar& weight : model.network.parameters) {
     if (std::abs(static_cast<double>(weight)) < negligible_weight) weight = Scalar(0);
   }
@@ -78,17 +77,11 @@ TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkT
   cast(context.output, model.output);
   const auto columns = detail::feature_statistics<typename Model::Features>(training);
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const ColumnStatistics& column = columns[i];
+    const auto& column = columns[i];
     model.envelope_lower[i] = static_cast<Scalar>(column.lowest - column.margin());
     model.envelope_upper[i] = static_cast<Scalar>(column.highest + column.margin());
   }
   return model;
-}
-template <class NetworkType, class ContextType>
-TrainedModel<Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
-                                                                  const ContextType& context, const Flight& flight,
-                                                                  const IndexRange& training) {
-  return make_trained_model(network, context, RowSet(flight, training));
 }
 
 }  // namespace pinnquad

@@ -12,7 +12,6 @@
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/training/adam.hpp"
-#include "pinnquad/training/context.hpp"
 #include "pinnquad/training/flush_denormals.hpp"
 #include "pinnquad/training/network_gradient.hpp"
 #include "pinnquad/training/optimizer.hpp"
@@ -32,12 +31,6 @@ struct ShuffledBatches {
 struct TimeOrderedBatches {
   template <class Engine>
   void arrange(std::vector<int>&, Engine&) const {}
-};
-
-/// Errors of a network on rows that it is not trained on; batch norm by its running statistics.
-struct ValidationErrors {
-  double mean_squared = 0;   ///< over rows and outputs, standardised: what Mse is on these rows
-  double mean_absolute = 0;  ///< over rows and outputs, in the units of the output schema
 };
 
 /// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.5 MB for the
@@ -62,6 +55,12 @@ class Trainer {
   using Network = NetworkType;
   using Scalar = typename Network::Scalar;
   using Data = TrainingData<Scalar, Network::inputs, Network::outputs>;
+
+  /// Errors on rows that the network is not trained on; batch norm by its running statistics.
+  struct ValidationErrors {
+    double mean_squared = 0;   ///< over rows and outputs, standardised: the Mse of these rows
+    double mean_absolute = 0;  ///< over rows and outputs, in the units of the output schema
+  };
 
   /// Throws std::invalid_argument if a number of the loss, of its schedules, of the optimiser or of the context makes
   /// no sense (data/settings.hpp).
@@ -119,11 +118,10 @@ class Trainer {
     const Scalar value = differentiate(data, rows, size);
     gradient_.follow_statistics();
     const auto step = begin_step();
-    gradient_.each([&](auto& layer, auto index) {
+    gradient_.each([&](auto& layer, auto) {
       if constexpr (std::decay_t<decltype(layer)>::size > 0) {
-        auto& moments = std::get<decltype(index)::value>(moments_);
-        optimizer_.template update<Pack>(step, layer.stored, layer.gradient, moments.first, moments.second,
-                                         std::decay_t<decltype(layer)>::size);
+        optimizer_.template update<Pack>(step, layer.stored, layer.gradient, layer.first_moment, layer.second_moment,
+                                         layer.size);
         layer.refresh();
       }
     });
@@ -221,22 +219,9 @@ class Trainer {
   long steps() const noexcept { return steps_; }
 
  private:
-  using Gradient = NetworkGradient<Network, BatchSize>;
+  using Gradient = detail::NetworkGradient<Network, BatchSize>;
   using Pack = typename Gradient::Pack;
-  using Batch = LossBatch<Scalar, Network::inputs, Network::outputs, BatchSize>;
-
-  /// First and second moment of one layer's stored parameters.
-  template <int Size>
-  struct Moments {
-    alignas(64) Scalar first[Size > 0 ? Size : 1] = {};
-    alignas(64) Scalar second[Size > 0 ? Size : 1] = {};
-  };
-  template <class Layers>
-  struct MomentsOf;
-  template <class... Layers>
-  struct MomentsOf<std::tuple<Layers...>> {
-    using type = std::tuple<Moments<BatchLayer<Layers, Pack, BatchSize>::size>...>;
-  };
+  using Batch = detail::LossBatch<Scalar, Network::inputs, Network::outputs, BatchSize>;
 
   [[noreturn]] static void refuse(const std::string& reason) { throw std::invalid_argument("Trainer: " + reason); }
 
@@ -254,7 +239,7 @@ class Trainer {
     const double epochs =
         context_.progress.epochs > 0 ? context_.progress.epochs : 1;  // the context's, outside epoch()
     const double within = static_cast<double>(batch_of_epoch_) / batches_per_epoch_;
-    return detail::begin_step(optimizer_, steps_, (context_.progress.epoch + within) / epochs);
+    return optimizer_.begin(steps_, (context_.progress.epoch + within) / epochs);
   }
 
   LossType loss_;
@@ -262,7 +247,6 @@ class Trainer {
   ContextType context_;
   Order order_policy_;
   Gradient gradient_{};
-  typename MomentsOf<typename Network::Layers>::type moments_{};
   Batch loss_batch_{};
   typename Batch::Gradient output_gradient_{};
   std::vector<int> order_;

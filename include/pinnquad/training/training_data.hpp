@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Flights as rows for the trainer: standardised features and outputs, and the context that says how they were
-// standardised. Each function takes a set of rows, or a flight and a range of its rows.
+// standardised.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/training/context.hpp"
-#include "pinnquad/training/resolution.hpp"
+#include "pinnquad/loss/context.hpp"
 
 namespace pinnquad {
 
@@ -29,8 +30,100 @@ struct TrainingData {
 
 namespace detail {
 
-/// Outputs of a sample with these features in the schema's physical units. `setting`:
-/// ContextAirframe::output_setting().
+/// In the unit itself.
+struct Resolution {
+  double smallest_deviation;  ///< a standard deviation below this is rounding or noise
+  double still_margin;        ///< how far a quantity that stood still may be from where it stood
+};
+
+/// Of a quantity with this unit (units of a feature set or an output schema) about `mean`:
+///   unit      m/s^2  rad/s^2  m/s   rad/s  rad    1       m     rev/s  V
+///   smallest  0.01   0.01     0.01  0.001  0.001  0.0001  0.01  0.01   0.01
+///   margin    0.2    0.5      0.1   0.05   0.05   0.05    0.2   0.5    0.5
+/// Any other unit: a millionth and a hundredth of |mean|, of 1 for a smaller mean. No smallest deviation is below a
+/// millionth of |mean|: a float's rounding.
+inline Resolution resolution_of(std::string_view unit, double mean) {
+  struct Named {
+    std::string_view unit;
+    Resolution resolution;
+  };
+  constexpr std::array<Named, 9> named = {{{"m/s^2", {0.01, 0.2}},
+                                           {"rad/s^2", {0.01, 0.5}},
+                                           {"m/s", {0.01, 0.1}},
+                                           {"rad/s", {0.001, 0.05}},
+                                           {"rad", {0.001, 0.05}},
+                                           {"1", {0.0001, 0.05}},
+                                           {"m", {0.01, 0.2}},
+                                           {"rev/s", {0.01, 0.5}},
+                                           {"V", {0.01, 0.5}}}};
+  constexpr double rounding = 1e-6;
+  const double magnitude = std::abs(mean);
+  for (const Named& known : named) {
+    if (known.unit != unit) continue;
+    Resolution resolution = known.resolution;
+    if (resolution.smallest_deviation < rounding * magnitude) resolution.smallest_deviation = rounding * magnitude;
+    return resolution;
+  }
+  const double scale = magnitude > 1 ? magnitude : 1.0;
+  return {rounding * scale, 0.01 * scale};
+}
+
+/// Statistics of a column of training rows.
+struct ColumnStatistics {
+  double mean = 0;
+  double standard_deviation = 0;  ///< divisor n
+  double lowest = 0;
+  double highest = 0;
+  Resolution resolution{0, 0};
+
+  bool still() const noexcept { return !(standard_deviation >= resolution.smallest_deviation); }
+
+  /// Divisor of the column: 1 if it stands still.
+  double scale() const noexcept { return still() ? 1.0 : standard_deviation; }
+
+  /// By how much the envelope is wider than the range, on both sides: a tenth of the range, no less than the smallest
+  /// deviation, or than the still margin if the column stands still.
+  double margin() const noexcept {
+    constexpr double envelope_margin = 0.1;
+    const double least = still() ? resolution.still_margin : resolution.smallest_deviation;
+    const double share = envelope_margin * (highest - lowest);
+    return share > least ? share : least;
+  }
+};
+
+/// Statistics of every column of a table that is made row by row and never held, by two passes: `each_row(visit)` calls
+/// `visit(row)` for every row, an array of Size numbers, the same ones in the same order each time. `unit_of(i)` is
+/// the unit of column i.
+template <std::size_t Size, class EachRow, class UnitOf>
+std::array<ColumnStatistics, Size> column_statistics(const EachRow& each_row, const UnitOf& unit_of) {
+  std::array<ColumnStatistics, Size> columns;
+  std::array<double, Size> sums{}, squares{};
+  std::size_t rows = 0;
+  each_row([&](const auto& row) {
+    for (std::size_t i = 0; i < Size; ++i) sums[i] += row[i];
+    ++rows;
+  });
+  const double count = static_cast<double>(rows);
+  for (std::size_t i = 0; i < Size; ++i) columns[i].mean = sums[i] / count;
+  bool first = true;
+  each_row([&](const auto& row) {
+    for (std::size_t i = 0; i < Size; ++i) {
+      ColumnStatistics& column = columns[i];
+      const double value = row[i];
+      squares[i] += (value - column.mean) * (value - column.mean);
+      column.lowest = first || value < column.lowest ? value : column.lowest;
+      column.highest = first || value > column.highest ? value : column.highest;
+    }
+    first = false;
+  });
+  for (std::size_t i = 0; i < Size; ++i) {
+    columns[i].standard_deviation = std::sqrt(squares[i] / count);
+    columns[i].resolution = resolution_of(unit_of(i), columns[i].mean);
+  }
+  return columns;
+}
+
+/// Outputs of a sample with these features in the schema's physical units. `setting`: the context's output_setting().
 template <class ContextType, class FeatureVector, class Setting>
 std::array<double, static_cast<std::size_t>(ContextType::output_count)> sample_outputs(const FeatureVector& x,
                                                                                        const Sample& sample,
@@ -39,6 +132,18 @@ std::array<double, static_cast<std::size_t>(ContextType::output_count)> sample_o
   std::array<double, static_cast<std::size_t>(Map::size)> outputs{};
   Map::from_commands(x.data(), sample.commands.data(), setting, outputs.data());
   return outputs;
+}
+
+/// Calls `visit(flight, row, x, y)` for every row that has features: these and the outputs, both standardised.
+template <class ContextType, class Visit>
+void each_standardised(const ContextType& context, const RowSet& rows, const Visit& visit) {
+  const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
+  each_features<typename ContextType::Features, double>(rows, [&](const Flight& flight, std::size_t row, auto x) {
+    auto y = sample_outputs<ContextType>(x, flight[row], setting);
+    context.input.standardise(x.data(), x.data());
+    context.output.standardise(y.data(), y.data());
+    visit(flight, row, x, y);
+  });
 }
 
 /// Statistics of every feature, physical units.
@@ -54,7 +159,7 @@ std::array<ColumnStatistics, static_cast<std::size_t>(Features::size)> feature_s
 
 }  // namespace detail
 
-/// Names of the features that stand still in the training rows (training/resolution.hpp): the network can't learn their
+/// Names of the features that stand still in the training rows (detail::resolution_of()): the network can't learn their
 /// effect, and its model is valid only where they stay.
 template <class Features>
 std::vector<std::string> still_features(const RowSet& training) {
@@ -65,15 +170,13 @@ std::vector<std::string> still_features(const RowSet& training) {
   }
   return names;
 }
-template <class Features>
-std::vector<std::string> still_features(const Flight& flight, const IndexRange& training) {
-  return still_features<Features>(RowSet(flight, training));
-}
 
 /// The context of a training set: scalers of its rows. A column that stands still is divided by 1.
-/// Flights count by their rows, whatever their weights. `airframe`: where the context's Vehicle is a GivenAirframe.
+/// Flights count by their rows, whatever their weights. `airframe`: a value of the context's Vehicle, for a
+/// GivenAirframe; of another there is nothing to give.
 template <class ContextType>
-ContextType make_context(const RowSet& rows, const ContextAirframe<typename ContextType::Vehicle>& airframe) {
+ContextType make_context(const RowSet& rows,
+                         const detail::ContextAirframe<typename ContextType::Vehicle>& airframe = {}) {
   using Features = typename ContextType::Features;
   constexpr auto inputs = static_cast<std::size_t>(Features::size);
   constexpr std::size_t outputs = std::size_t(ContextType::output_count), axes = 3;
@@ -96,7 +199,7 @@ ContextType make_context(const RowSet& rows, const ContextAirframe<typename Cont
     if (i < inputs) return Features::units[i];
     return i < inputs + outputs ? OutputMap<typename ContextType::Outputs>::units[i - inputs] : CommandOutputs::unit;
   };
-  const auto columns = column_statistics<inputs + outputs + axes>(each_row, unit_of);
+  const auto columns = detail::column_statistics<inputs + outputs + axes>(each_row, unit_of);
   ContextType context{airframe};
   for (std::size_t i = 0; i < inputs; ++i) {
     context.input.mean[i] = columns[i].mean;
@@ -109,14 +212,6 @@ ContextType make_context(const RowSet& rows, const ContextAirframe<typename Cont
   for (std::size_t i = 0; i < axes; ++i) context.signed_sum_spread[i] = columns[inputs + outputs + i].scale();
   return context;
 }
-template <class ContextType>
-ContextType make_context(const RowSet& rows) {
-  return make_context<ContextType>(rows, ContextAirframe<typename ContextType::Vehicle>{});
-}
-template <class ContextType>
-ContextType make_context(const Flight& flight, const IndexRange& range) {
-  return make_context<ContextType>(RowSet(flight, range));
-}
 
 /// Rows, standardised by a context (that of the training set, for every block), with the weights of their flights.
 template <class Scalar, class ContextType>
@@ -128,22 +223,12 @@ TrainingData<Scalar, ContextType::Features::size, ContextType::output_count> sta
   data.outputs.reserve(rows.size() * static_cast<std::size_t>(ContextType::output_count));
   const bool weighted = std::any_of(rows.pieces().begin(), rows.pieces().end(),
                                     [](const FlightRows& piece) { return piece.flight->weight != 1; });
-  const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
-  each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, auto x) {
-    auto y = detail::sample_outputs<ContextType>(x, flight[row], setting);
-    context.input.standardise(x.data(), x.data());
-    context.output.standardise(y.data(), y.data());
+  detail::each_standardised(context, rows, [&](const Flight& flight, std::size_t, const auto& x, const auto& y) {
     for (const double v : x) data.features.push_back(static_cast<Scalar>(v));
     for (const double v : y) data.outputs.push_back(static_cast<Scalar>(v));
     if (weighted) data.weights.push_back(flight.weight);
   });
   return data;
-}
-template <class Scalar, class ContextType>
-TrainingData<Scalar, ContextType::Features::size, ContextType::output_count> standardised(const ContextType& context,
-                                                                                          const Flight& flight,
-                                                                                          const IndexRange& range) {
-  return standardised<Scalar>(context, RowSet(flight, range));
 }
 
 }  // namespace pinnquad

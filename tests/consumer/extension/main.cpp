@@ -89,9 +89,9 @@ void check_contracts() {
 
 void check_gradient(const pinnquad::Flight& flight) {
   const pinnquad::IndexRange all{0, flight.size()};
-  auto context = pinnquad::make_context<Knowledge>(flight, all);
+  auto context = pinnquad::make_context<Knowledge>({flight, all});
   context.progress = {3, 5};
-  const auto data = pinnquad::standardised<double>(context, flight, all);
+  const auto data = pinnquad::standardised<double>(context, {flight, all});
   std::mt19937_64 engine(5);
   auto network = pinnquad::initialised<Network<double>>(engine);
   std::vector<int> rows;
@@ -120,7 +120,7 @@ void check_gradient(const pinnquad::Flight& flight) {
 }
 
 Network<float> train(const pinnquad::Flight& flight, const Knowledge& context) {
-  const auto data = pinnquad::standardised<float>(context, flight, {0, flight.size()});
+  const auto data = pinnquad::standardised<float>(context, {flight, {0, flight.size()}});
   std::mt19937_64 engine(7);
   pinnquad::Adam adam;
   adam.learning_rate = 5e-3;
@@ -189,9 +189,9 @@ int main() {
   const auto flight = recorded(1000, 1);
   check_gradient(flight);
   const pinnquad::IndexRange all{0, flight.size()};
-  const auto context = pinnquad::make_context<Knowledge>(flight, all);
+  const auto context = pinnquad::make_context<Knowledge>({flight, all});
   const auto network = train(flight, context);
   check_kernels(network);
-  fly(pinnquad::make_trained_model(network, context, flight, all));
+  fly(pinnquad::make_trained_model(network, context, {flight, all}));
   return faults == 0 ? 0 : 1;
 }

@@ -109,7 +109,7 @@ TEST_CASE("derivatives of a sum through a window: by an angular acceleration tha
   using Model = TrainedModel<Sum<Affine, Residual>, Context<Window, GivenAirframe>>;
   std::mt19937_64 engine(6);
   std::uniform_real_distribution<double> any(-1, 1);
-  Model model{ContextAirframe<GivenAirframe>("paper", airframe_value<PaperQuadrotor, double>())};
+  Model model{GivenAirframe("paper", airframe_value<PaperQuadrotor, double>())};
   for (double& parameter : model.network.parameters) parameter = any(engine);
   for (double& spread : model.input.standard_deviation) spread = 1.5 + any(engine);
   for (double& spread : model.output.standard_deviation) spread = 1.5 + any(engine);
@@ -139,7 +139,7 @@ TEST_CASE("derivatives of a residual are its base's too") {
   using Net = Network<double, InputSize<16>, Dense<4>>;
   using Model = TrainedModel<Net, Context<PaperFeatures, GivenAirframe, ResidualOutputs<LinearizedBase>>>;
   const Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
-  Model model{ContextAirframe<GivenAirframe>("paper", airframe)};
+  Model model{GivenAirframe("paper", airframe)};
   model.input.standard_deviation.fill(1);
   model.output.standard_deviation.fill(1);
   const auto derivatives = programs::derivatives_of(model);
@@ -156,7 +156,7 @@ TEST_CASE("derivatives of a residual are its base's too") {
 TEST_CASE("rows that a window leaves without an answer are told by NaN, the others stand in their places") {
   using Window = PartlyWindowed<PhysicsFeatures, AccelerationFeatures, 3, PeriodMicroseconds<20000>, Centred>;
   using Model = TrainedModel<Network<float, InputSize<Window::size>, Dense<4>>, Context<Window, GivenAirframe>>;
-  Model model{ContextAirframe<GivenAirframe>("paper", airframe_value<PaperQuadrotor, double>())};
+  Model model{GivenAirframe("paper", airframe_value<PaperQuadrotor, double>())};
   model.input.standard_deviation.fill(1);
   model.output.standard_deviation.fill(1);
   model.network.parameters[3] = 1;  // u1: the present angular acceleration about x
@@ -181,7 +181,7 @@ TEST_CASE("rows that a window leaves without an answer are told by NaN, the othe
 
 TEST_CASE("model 1 commands J / (lever x thrust) per angular acceleration") {
   constexpr Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
-  const ContextAirframe<GivenAirframe> given("paper", airframe);
+  const GivenAirframe given("paper", airframe);
   const auto derivatives = programs::linear_derivatives(given);
   std::mt19937_64 engine(3);
   for (const Sample& row : samples(5, engine)) {

@@ -88,8 +88,7 @@ TEST_CASE("what is affine in the features is found, through a window, and the mo
   const auto sums = regression_sums(context, left_out_groups(rows));
   RegressionSums all = sums[0];
   all += sums[1];
-  const auto model =
-      make_trained_model(affine_answer<Setting>(fit_ridge(all, choose_penalty(sums).penalty)), context, rows);
+  const auto model = make_trained_model(affine_answer<Setting>(fit_ridge(all, choose_penalty(sums))), context, rows);
   int answered = 0;
   each_features<Window, float>(RowSet(unseen, {0, 50}), [&](const Flight& flight, std::size_t row, const auto& x) {
     const Commands<float> u = model.predict(x);

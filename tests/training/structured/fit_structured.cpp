@@ -16,6 +16,8 @@ using namespace pinnquad;
 
 namespace {
 
+using Altitude = StructuredSettings::Altitude;
+
 const Dataset& flights() {
   static const Dataset dataset = [] {
     FlightPlan plan = AgileFlight::plan();
@@ -29,7 +31,7 @@ const Dataset& flights() {
   return dataset;
 }
 
-StructuredSettings quick(AltitudeRule altitude) {
+StructuredSettings quick(Altitude altitude) {
   StructuredSettings settings;
   settings.residual.epochs = 3;
   settings.altitude = altitude;
@@ -42,7 +44,7 @@ StructuredFits fitted(const StructuredSettings& settings) {
   return fit_structured<PaperQuadrotor>(split_for_training(flights()), settings);
 }
 
-std::vector<float> parameters_of(const StructuredFit& fit) {
+std::vector<float> parameters_of(const StructuredFits::Fit& fit) {
   return std::visit(
       [](const auto& model) {
         return std::vector<float>(model.network.parameters.begin(), model.network.parameters.end());
@@ -50,7 +52,7 @@ std::vector<float> parameters_of(const StructuredFit& fit) {
       fit.model);
 }
 
-bool shown_the_altitude(const StructuredFit& fit) { return fit.model.index() >= 2; }
+bool shown_the_altitude(const StructuredFits::Fit& fit) { return fit.model.index() >= 2; }
 
 /// The last job first, and a word of each call.
 struct Backwards {
@@ -61,7 +63,7 @@ struct Backwards {
     for (std::size_t i = count; i-- > 0;) static_cast<void>(job(i));
   }
   bool goes_on(int) const { return true; }
-  void chose(const AltitudeChoice&) const { *calls += "chose, "; }
+  void chose(const StructuredFits::Choice&) const { *calls += "chose, "; }
 };
 
 struct StopsAfter {
@@ -69,22 +71,23 @@ struct StopsAfter {
   bool* chosen;
   template <class Job>
   void run(std::size_t count, const Job& job) const {
-    InTurn{}.run(count, job);
+    for (std::size_t i = 0; i < count && job(i); ++i) {
+    }
   }
   bool goes_on(int) const { return --*epochs_left >= 0; }
-  void chose(const AltitudeChoice&) const { *chosen = true; }
+  void chose(const StructuredFits::Choice&) const { *chosen = true; }
 };
 
 }  // namespace
 
 TEST_CASE("the altitude is shown as the rule says; by validation, where the error falls by the share that is asked") {
-  const StructuredFits without = fitted(quick(AltitudeRule::no)), with = fitted(quick(AltitudeRule::yes));
+  const StructuredFits without = fitted(quick(Altitude::no)), with = fitted(quick(Altitude::yes));
   REQUIRE(without.models.size() == 3);
   REQUIRE(with.models.size() == 3);
   CHECK(!without.altitude.taken);
   CHECK(with.altitude.taken);
   CHECK(!with.altitude.error_with);
-  StructuredSettings settings = quick(AltitudeRule::by_validation);
+  StructuredSettings settings = quick(Altitude::by_validation);
   for (const double least : {-1000.0, 0.999999}) {
     settings.least_altitude_gain = least;
     const StructuredFits chosen = fitted(settings);
@@ -103,7 +106,7 @@ TEST_CASE("the altitude is shown as the rule says; by validation, where the erro
 
 TEST_CASE("what runs the fits, and in which order, changes no model") {
   std::string calls;
-  const StructuredSettings settings = quick(AltitudeRule::by_validation);
+  const StructuredSettings settings = quick(Altitude::by_validation);
   const StructuredFits in_turn = fitted(settings);
   const StructuredFits backwards =
       fit_structured<PaperQuadrotor>(split_for_training(flights()), settings, Backwards{&calls});
@@ -115,7 +118,7 @@ TEST_CASE("what runs the fits, and in which order, changes no model") {
 }
 
 TEST_CASE("what is stopped before the choice leaves nothing, and after it the models that were finished") {
-  StructuredSettings settings = quick(AltitudeRule::by_validation);
+  StructuredSettings settings = quick(Altitude::by_validation);
   for (const int epochs : {4, 8, 100}) {
     int left = epochs;
     bool chosen = false;
@@ -128,7 +131,7 @@ TEST_CASE("what is stopped before the choice leaves nothing, and after it the mo
 }
 
 TEST_CASE("pinned slopes are the airframe's, and every model is proven") {
-  StructuredSettings settings = quick(AltitudeRule::no);
+  StructuredSettings settings = quick(Altitude::no);
   settings.pinned_slopes = true;
   const StructuredFits pinned = fitted(settings);
   const AxisSlopes own = hover_slopes(airframe_value<PaperQuadrotor, double>());
@@ -141,10 +144,10 @@ TEST_CASE("pinned slopes are the airframe's, and every model is proven") {
 }
 
 TEST_CASE("of errors that are not finite none is the best") {
-  StructuredSettings settings = quick(AltitudeRule::no);
+  StructuredSettings settings = quick(Altitude::no);
   settings.seeds = 1;
   StructuredFits fits = fitted(settings);
-  const StructuredFit one = fits.models.front();
+  const StructuredFits::Fit one = fits.models.front();
   fits.models.assign(4, one);
   const double errors[] = {std::nan(""), 0.2, 0.1, std::nan("")};
   for (std::size_t i = 0; i < 4; ++i) fits.models[i].validation_error = errors[i];

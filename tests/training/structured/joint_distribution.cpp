@@ -52,7 +52,7 @@ RowSet all(const Flight& flight) { return RowSet(flight, {0, flight.size()}); }
 
 TEST_CASE("the squared distance is (x - mean)' C^-1 (x - mean) of the shrunk covariance, by a dense inverse") {
   const Flight flight = normal_rows(400, 1);
-  const auto fitted = fit_joint_distribution<Features>(all(flight), 0.05);
+  const auto fitted = detail::fit_joint_distribution<Features>(all(flight), 0.05);
   Vector6 mean = Vector6::Zero();
   for (const Sample& sample : flight) mean += features(sample) / 400;
   Matrix6 covariance = Matrix6::Zero();
@@ -71,7 +71,7 @@ TEST_CASE("the squared distance is (x - mean)' C^-1 (x - mean) of the shrunk cov
 
 TEST_CASE("of normal rows it is distributed as chi square with as many degrees of freedom as features") {
   const Flight flight = normal_rows(20000, 3), fresh = normal_rows(20000, 4);
-  const auto fitted = fit_joint_distribution<Features>(all(flight));
+  const auto fitted = detail::fit_joint_distribution<Features>(all(flight));
   double sum = 0;
   int beyond_5 = 0, beyond_1 = 0;
   for (const Sample& sample : fresh) {
@@ -91,7 +91,7 @@ TEST_CASE("rows that break what all training rows keep are far, and a feature th
     sample.angular_acceleration_rad_s2[1] = 2 * sample.angular_acceleration_rad_s2[0];  // no inverse without shrinkage
     sample.body_rates_rad_s[2] = 7;
   }
-  const auto fitted = fit_joint_distribution<Features>(all(flight));
+  const auto fitted = detail::fit_joint_distribution<Features>(all(flight));
   auto x = fitted.mean;
   CHECK(fitted.squared_distance(x) == 0);
   x[5] += 3;
@@ -107,14 +107,14 @@ TEST_CASE("rows that break what all training rows keep are far, and a feature th
 
 TEST_CASE("too few rows and shares that are none are refused") {
   const Flight few = normal_rows(6, 6), enough = normal_rows(7, 6);
-  CHECK_THROWS_AS(fit_joint_distribution<Features>(all(few)), std::invalid_argument);
-  CHECK_NOTHROW(fit_joint_distribution<Features>(all(enough)));
+  CHECK_THROWS_AS(detail::fit_joint_distribution<Features>(all(few)), std::invalid_argument);
+  CHECK_NOTHROW(detail::fit_joint_distribution<Features>(all(enough)));
   for (const double share : {0.0, -0.1, 1.1, std::nan("")}) {
-    CHECK_THROWS_AS(fit_joint_distribution<Features>(all(enough), share), std::invalid_argument);
+    CHECK_THROWS_AS(detail::fit_joint_distribution<Features>(all(enough), share), std::invalid_argument);
   }
   // a share that is lost in the rounding of correlations without an inverse
   Flight dependent = normal_rows(500, 7);
   for (Sample& sample : dependent) sample.angular_acceleration_rad_s2[1] = 2 * sample.angular_acceleration_rad_s2[0];
-  CHECK_NOTHROW(fit_joint_distribution<Features>(all(dependent)));
-  CHECK_THROWS_AS(fit_joint_distribution<Features>(all(dependent), 1e-30), std::invalid_argument);
+  CHECK_NOTHROW(detail::fit_joint_distribution<Features>(all(dependent)));
+  CHECK_THROWS_AS(detail::fit_joint_distribution<Features>(all(dependent), 1e-30), std::invalid_argument);
 }

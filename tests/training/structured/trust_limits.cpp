@@ -30,7 +30,7 @@ TEST_CASE("a limit by enough blocks is exceeded by new ones as often as asked, w
     for (int trial = 0; trial < trials; ++trial) {
       std::vector<double> maxima;
       for (int i = 0; i < blocks; ++i) maxima.push_back(draw());
-      const double limit = alarm_limit(maxima, blocks_per_alarm);
+      const double limit = detail::alarm_limit(maxima, blocks_per_alarm);
       for (int i = 0; i < fresh; ++i) exceeded += draw() > limit ? 1 : 0;
     }
     CHECK(exceeded * blocks_per_alarm / (trials * fresh) == doctest::Approx(1).epsilon(0.15));
@@ -45,11 +45,11 @@ TEST_CASE("with fewer blocks the tail is continued: right for a power law, beyon
     power.push_back(std::pow(beyond, -0.5));
     exponential.push_back(-std::log(beyond));
   }
-  CHECK(alarm_limit(power, 10000) == doctest::Approx(100).epsilon(0.1));
-  CHECK(alarm_limit(exponential, 10000) > std::log(10000.0));
-  CHECK(alarm_limit(exponential, 10000) < 4 * std::log(10000.0));
-  CHECK_THROWS_AS(alarm_limit(std::vector<double>(7, 1.0), 60), std::invalid_argument);
-  CHECK_THROWS_AS(alarm_limit(std::vector<double>(20, 0.0), 60), std::invalid_argument);
+  CHECK(detail::alarm_limit(power, 10000) == doctest::Approx(100).epsilon(0.1));
+  CHECK(detail::alarm_limit(exponential, 10000) > std::log(10000.0));
+  CHECK(detail::alarm_limit(exponential, 10000) < 4 * std::log(10000.0));
+  CHECK_THROWS_AS(detail::alarm_limit(std::vector<double>(7, 1.0), 60), std::invalid_argument);
+  CHECK_THROWS_AS(detail::alarm_limit(std::vector<double>(20, 0.0), 60), std::invalid_argument);
 }
 
 namespace {
@@ -109,7 +109,7 @@ TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as a
   CHECK(trust.command_residual_cleared < trust.command_residual_limit);
   CHECK(trust.command_residual_cleared > 0.0159);  // mean |error| = 0.02 sqrt(2 / pi)
   const auto alarms = [&](const Flight& flight) {
-    const TrustSeries series = trust_series(Stub{}, trust.distribution, RowSet(flight, {0, flight.size()}));
+    const auto series = trust_series(Stub{}, trust.distribution, RowSet(flight, {0, flight.size()}));
     std::array<int, 2> count{};
     for (const double most : block_maxima(series.squared_distances, 200))
       count[0] += most > trust.squared_distance_limit ? 1 : 0;

@@ -21,21 +21,18 @@
 
 namespace pinnquad {
 
-/// An affine map of a context's features to its outputs.
-template <class ContextType, class Scalar = float>
-using AffineAnswer = Network<Scalar, InputSize<ContextType::Features::size>, Dense<ContextType::output_count>>;
-
-/// Throws std::invalid_argument for a map of other sizes.
-template <class ContextType, class Scalar = float>
-AffineAnswer<ContextType, Scalar> affine_answer(const AffineMap& map) {
-  AffineAnswer<ContextType, Scalar> predictor;
+/// An affine map of a context's features to its outputs, as a predictor (a float Network of one Dense). Throws
+/// std::invalid_argument for a map of other sizes.
+template <class ContextType>
+auto affine_answer(const AffineMap& map) {
+  Network<float, InputSize<ContextType::Features::size>, Dense<ContextType::output_count>> predictor;
   if (map.weights.size() + map.intercept.size() != predictor.parameters.size() || map.inputs != predictor.inputs) {
     throw std::invalid_argument("affine_answer: expected a map of " + std::to_string(predictor.inputs) +
                                 " features to " + std::to_string(predictor.outputs) + " outputs, found another");
   }
   auto to = predictor.parameters.begin();
-  for (const double v : map.weights) *to++ = static_cast<Scalar>(v);
-  for (const double v : map.intercept) *to++ = static_cast<Scalar>(v);
+  for (const double v : map.weights) *to++ = static_cast<float>(v);
+  for (const double v : map.intercept) *to++ = static_cast<float>(v);
   return predictor;
 }
 
@@ -64,27 +61,24 @@ void take_away(const AffineMap& map, TrainingData<Scalar, InputCount, OutputCoun
 /// Groups for cross-validation: trajectories with their repeats; where there is one trajectory, flights; where there is
 /// one flight, its quarters.
 inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
-  const auto grouped = [&](const auto& name_of) {
-    std::vector<RowSet> groups;
+  std::vector<RowSet> groups;
+  for (const bool by_trajectory : {true, false}) {
+    groups.clear();
     std::vector<std::string> names;
     for (const FlightRows& piece : rows.pieces()) {
-      const std::string name = name_of(*piece.flight);
+      const Flight& flight = *piece.flight;
+      const bool named = by_trajectory && !flight.trajectory.empty();
+      const std::string name = named ? "trajectory " + flight.trajectory : "flight " + flight.name;
       const auto found = std::find(names.begin(), names.end(), name);
       const auto at = static_cast<std::size_t>(found - names.begin());
       if (found == names.end()) {
         names.push_back(name);
         groups.emplace_back();
       }
-      groups[at].add(*piece.flight, piece.rows);
+      groups[at].add(flight, piece.rows);
     }
-    return groups;
-  };
-  std::vector<RowSet> groups = grouped([](const Flight& flight) {
-    return flight.trajectory.empty() ? "flight " + flight.name : "trajectory " + flight.trajectory;
-  });
-  if (groups.size() > 1) return groups;
-  groups = grouped([](const Flight& flight) { return flight.name; });
-  if (groups.size() > 1) return groups;
+    if (groups.size() > 1) return groups;
+  }
   constexpr std::size_t parts = 4;
   groups.assign(rows.empty() ? 0 : parts, {});
   for (const FlightRows& piece : rows.pieces()) {
@@ -100,13 +94,8 @@ inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
 /// Sums of standardised features and of `target(y, commands)`, y the standardised outputs.
 template <class ContextType, class Target>
 RegressionSums regression_sums(const ContextType& context, const RowSet& rows, int targets, const Target& target) {
-  using Features = typename ContextType::Features;
-  RegressionSums sums(Features::size, targets);
-  const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
-  each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, auto x) {
-    auto y = detail::sample_outputs<ContextType>(x, flight[row], setting);
-    context.input.standardise(x.data(), x.data());
-    context.output.standardise(y.data(), y.data());
+  RegressionSums sums(ContextType::Features::size, targets);
+  detail::each_standardised(context, rows, [&](const Flight& flight, std::size_t row, const auto& x, const auto& y) {
     const std::vector<double> values = target(y, flight[row].commands);
     sums.add(x.data(), values.data());
   });
@@ -132,14 +121,6 @@ std::vector<RegressionSums> regression_sums(const ContextType& context, const st
   return sums;
 }
 
-/// The source of a base's slopes, s^2/rad.
-struct SlopeRule {
-  /// Fixed slopes, such as hover_slopes(), for a model of quiet flights that is to fly agile ones. None: learnt.
-  std::optional<AxisSlopes> pinned{};
-  /// A learnt slope is at least this share of the airframe's own, also where the rows say otherwise.
-  double least_share = 0.01;
-};
-
 /// The sizes and scales of a base, without its types: the equations are compiled once for all feature sets.
 struct MonotoneShape {
   int inputs = 0;
@@ -164,10 +145,13 @@ MonotoneShape monotone_shape(const ContextType& context) {
 
 /// The base of a structured model: per axis command a ridge regression that sees its own angular acceleration alone,
 /// with a slope above 0. Standardised features to standardised axis commands. Each penalty is chosen by leaving out one
-/// group in turn. In a window the rule holds for the slope of the present and for the sum over all taps; `pinned` is
-/// the sum. Throws std::invalid_argument for no rows, and for a rule whose slopes are not above 0.
+/// group in turn. A slope is learnt, and at least a hundredth of the airframe's own, also where the rows say otherwise.
+/// `pinned`, s^2/rad, fixes it, such as at hover_slopes() for a model of quiet flights that is to fly agile ones. In a
+/// window this holds for the slope of the present and for the sum over all taps; `pinned` is the sum. Throws
+/// std::invalid_argument for no rows, and for pinned slopes that are not above this hundredth.
 inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector<RegressionSums>& groups,
-                                   const SlopeRule& rule = {}) {
+                                   const std::optional<AxisSlopes>& pinned = {}) {
+  constexpr double least_share = 0.01;
   if (groups.empty()) throw std::invalid_argument("monotone base: expected rows with all features, found none");
   AffineMap all;
   all.inputs = shape.inputs;
@@ -181,8 +165,8 @@ inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector
     }
     if (axis >= 0) {
       const auto of_axis = static_cast<std::size_t>(axis);
-      const double least = rule.least_share * shape.airframe_slopes[of_axis];
-      if (!(least > 0) || (rule.pinned && !((*rule.pinned)[of_axis] > least))) {
+      const double least = least_share * shape.airframe_slopes[of_axis];
+      if (!(least > 0) || (pinned && !((*pinned)[of_axis] > least))) {
         throw std::invalid_argument(
             "monotone base: expected slopes above 0 and above the least share of the airframe's");
       }
@@ -194,19 +178,17 @@ inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector
         held.terms.emplace_back(place + axis, factor);
       }
       present.least = held.least = least;
-      if (rule.pinned) {
+      if (pinned) {
         held.pinned = true;
-        held.least = (*rule.pinned)[of_axis];
+        held.least = (*pinned)[of_axis];
       }
       bounds.push_back(held);
       if (shape.places.size() > 1) bounds.push_back(present);
     }
     std::vector<RegressionSums> parts;
     for (const RegressionSums& group : groups) parts.push_back(group.of_output(output));
-    RegressionSums sums = parts.front();
-    for (std::size_t i = 1; i < parts.size(); ++i) sums += parts[i];
-    const double penalty = parts.size() < 2 ? 0.0 : choose_penalty(parts, usual_penalties(), taken).penalty;
-    const AffineMap one = fit_bounded_ridge(sums, penalty, taken, bounds);
+    const double penalty = parts.size() < 2 ? 0.0 : choose_penalty(parts, usual_penalties(), taken);
+    const AffineMap one = fit_bounded_ridge(detail::total(parts), penalty, taken, bounds);
     all.weights.insert(all.weights.end(), one.weights.begin(), one.weights.end());
     all.intercept.push_back(one.intercept.front());
   }
@@ -215,18 +197,19 @@ inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector
 
 /// The same from rows, in the groups of left_out_groups().
 template <class ContextType>
-AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows, const SlopeRule& rule = {}) {
-  return fit_monotone_base(monotone_shape(context), regression_sums(context, left_out_groups(rows)), rule);
+AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows,
+                            const std::optional<AxisSlopes>& pinned = {}) {
+  return fit_monotone_base(monotone_shape(context), regression_sums(context, left_out_groups(rows)), pinned);
 }
 
 /// The predictor of such a map.
-template <class ContextType, class Scalar = float>
-MonotoneBase<typename ContextType::Features, Scalar> monotone_base(const AffineMap& map) {
+template <class ContextType>
+MonotoneBase<typename ContextType::Features> monotone_base(const AffineMap& map) {
   using Features = typename ContextType::Features;
-  using Base = MonotoneBase<Features, Scalar>;
+  using Base = MonotoneBase<Features>;
   Base base;
   const auto weight = [&](int output, int feature) {
-    return static_cast<Scalar>(
+    return static_cast<float>(
         map.weights.at(static_cast<std::size_t>(output) * Features::size + static_cast<std::size_t>(feature)));
   };
   auto* const to = base.parameters.data();
@@ -236,7 +219,7 @@ MonotoneBase<typename ContextType::Features, Scalar> monotone_base(const AffineM
   for (int output = 0; output < Base::outputs; ++output) {
     Base::Threes::each_other(
         [&](int feature, int n) { to[Base::weights + output * Base::Threes::others + n] = weight(output, feature); });
-    to[Base::intercepts + output] = static_cast<Scalar>(map.intercept.at(static_cast<std::size_t>(output)));
+    to[Base::intercepts + output] = static_cast<float>(map.intercept.at(static_cast<std::size_t>(output)));
   }
   return base;
 }

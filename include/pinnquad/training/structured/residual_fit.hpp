@@ -33,6 +33,8 @@ struct ResidualTraining {
   double least_gain = 0.01;
 };
 
+namespace detail {
+
 /// A base, its residual, and the choice between base alone and both.
 template <class FeatureSet, class Predictor>
 struct ResidualFit {
@@ -44,7 +46,6 @@ struct ResidualFit {
   double base_error = 0, error = 0;  ///< mean absolute error of the commands on the validation rows
 };
 
-namespace detail {
 template <class Threes, std::size_t Size>
 constexpr std::array<const char*, static_cast<std::size_t>(Threes::others)> other_texts(
     const std::array<const char*, Size>& all) noexcept {
@@ -53,7 +54,6 @@ constexpr std::array<const char*, static_cast<std::size_t>(Threes::others)> othe
       [&](int feature, int n) { kept[static_cast<std::size_t>(n)] = all[static_cast<std::size_t>(feature)]; });
   return kept;
 }
-}  // namespace detail
 
 /// A feature set without its angular accelerations.
 template <class FeatureSet>
@@ -65,8 +65,8 @@ struct ResidualFeatures {
   static constexpr int size = residual_inputs<FeatureSet>;
   static constexpr int angular_acceleration = -1;
 
-  static constexpr auto names = detail::other_texts<Threes>(FeatureSet::names);
-  static constexpr auto units = detail::other_texts<Threes>(FeatureSet::units);
+  static constexpr auto names = other_texts<Threes>(FeatureSet::names);
+  static constexpr auto units = other_texts<Threes>(FeatureSet::units);
 
   template <class AnyInputs>
   static Status check(const AnyInputs& in) noexcept {
@@ -80,16 +80,16 @@ struct ResidualFeatures {
   }
 };
 
+}  // namespace detail
+
 /// The context of a residual: that of the whole model without the angular accelerations. Its outputs are axis commands
 /// without a base: a base would not find its features here.
 template <class ContextType>
-using ResidualContext =
-    Context<ResidualFeatures<typename ContextType::Features>, typename ContextType::Vehicle, AxisCommandOutputs>;
-
-template <class ContextType>
-ResidualContext<ContextType> residual_context(const ContextType& context) {
-  ResidualContext<ContextType> residual{static_cast<const ContextAirframe<typename ContextType::Vehicle>&>(context)};
-  ResidualContext<ContextType>::Features::Threes::each_other([&](int feature, int n) {
+auto residual_context(const ContextType& context) {
+  using Vehicle = typename ContextType::Vehicle;
+  using Residual = Context<detail::ResidualFeatures<typename ContextType::Features>, Vehicle, AxisCommandOutputs>;
+  Residual residual{static_cast<const detail::ContextAirframe<Vehicle>&>(context)};
+  Residual::Features::Threes::each_other([&](int feature, int n) {
     residual.input.mean[static_cast<std::size_t>(n)] = context.input.mean[static_cast<std::size_t>(feature)];
     residual.input.standard_deviation[static_cast<std::size_t>(n)] =
         context.input.standard_deviation[static_cast<std::size_t>(feature)];
@@ -109,7 +109,7 @@ TrainingData<Scalar, residual_inputs<FeatureSet>, OutputCount> residual_rows(
   rows.features.reserve(static_cast<std::size_t>(all.size()) * static_cast<std::size_t>(residual_inputs<FeatureSet>));
   for (int row = 0; row < all.size(); ++row) {
     const Scalar* x = all.features_of(row);
-    ResidualFeatures<FeatureSet>::Threes::each_other([&](int feature, int) { rows.features.push_back(x[feature]); });
+    MonotoneBase<FeatureSet>::Threes::each_other([&](int feature, int) { rows.features.push_back(x[feature]); });
   }
   return rows;
 }
@@ -194,20 +194,6 @@ ResidualFit<typename ContextType::Features, Predictor> fit_residual(const Contex
   return fit;
 }
 
-}  // namespace detail
-
-/// A residual that is not shown the angular acceleration, on the base `map`, bounded to its outputs on the training
-/// rows. `Residual`: a float Network of residual_inputs<Features> features and 4 outputs. `goes_on(epoch)` is asked
-/// before each epoch. Throws std::invalid_argument for rows that are too few.
-template <class Residual, class ContextType, class Engine, class GoesOn>
-auto fit_monotone(const ContextType& context, const RowSet& training, const RowSet& validation, const AffineMap& map,
-                  const ResidualTraining& how, Engine& engine, const GoesOn& goes_on) {
-  using Features = typename ContextType::Features;
-  return detail::fit_residual<Residual, MonotoneResidual<Features, Residual>, MonotonePredictor<Features, Residual>>(
-      context, residual_context(context), [](const auto& rows) { return residual_rows<Features>(rows); },
-      [](const auto&) {}, training, validation, map, how, engine, goes_on);
-}
-
 /// Keeps a network that is shown the angular acceleration from turning a base's slope round. Each column of its first
 /// layer that takes an angular acceleration is scaled by min(1, share slope / d). d is the path bound of its effect on
 /// the other three axis commands and of what it takes off the slope of its own, so that each rotor keeps its direction
@@ -277,13 +263,27 @@ class PathProjection {
   std::array<double, 3> allowed_{};
 };
 
+}  // namespace detail
+
+/// A residual that is not shown the angular acceleration, on the base `map`, bounded to its outputs on the training
+/// rows. `Residual`: a float Network of residual_inputs<Features> features and 4 outputs. `goes_on(epoch)` is asked
+/// before each epoch. Throws std::invalid_argument for rows that are too few.
+template <class Residual, class ContextType, class Engine, class GoesOn>
+auto fit_monotone(const ContextType& context, const RowSet& training, const RowSet& validation, const AffineMap& map,
+                  const ResidualTraining& how, Engine& engine, const GoesOn& goes_on) {
+  using Features = typename ContextType::Features;
+  return detail::fit_residual<Residual, MonotoneResidual<Features, Residual>, MonotonePredictor<Features, Residual>>(
+      context, residual_context(context), [](const auto& rows) { return residual_rows<Features>(rows); },
+      [](const auto&) {}, training, validation, map, how, engine, goes_on);
+}
+
 /// As fit_monotone(), but the residual is shown all features. `Residual`: at most 3 Dense layers with Relu, Tanh or
 /// Softplus between them. `share`: of a slope, the most that the residual may take away.
 template <class Residual, class ContextType, class Engine, class GoesOn>
 auto fit_path_bounded(const ContextType& context, const RowSet& training, const RowSet& validation,
                       const AffineMap& map, const ResidualTraining& how, Engine& engine, const GoesOn& goes_on,
                       double share = 0.9) {
-  const PathProjection<ContextType, Residual> projection(context, map, share);
+  const detail::PathProjection<ContextType, Residual> projection(context, map, share);
   return detail::fit_residual<Residual, Saturated<PathBounded<Residual>>,
                               PathBoundedPredictor<typename ContextType::Features, Residual>>(
       context, context, [](auto rows) { return rows; }, [&](auto& trained) { trained.project(projection); }, training,

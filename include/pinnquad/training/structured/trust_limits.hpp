@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Limits of trust: the joint distribution of a model's training rows, and limits of distance and command residual that validation flights pass with a chosen false-alarm rate (docs/trust.md).
+// Limits of trust (docs/trust.md): the joint distribution of a model's training rows, and limits of distance and
+// command residual that validation flights pass with a chosen false-alarm rate.
 #pragma once
 
 #include <algorithm>
@@ -19,29 +20,51 @@
 
 namespace pinnquad {
 
-/// Share of the covariance that is replaced by independent features of the same standard deviation. Features that go
-/// together in all rows (one a linear map of others) leave it without an inverse; with this share no eigenvalue of the
-/// correlations is below it, so that a float's rounding stays below a hundredth of a deviation, and what breaks such a
-/// rule by a deviation is 30 deviations away.
-inline constexpr double usual_shrinkage = 1e-3;
+/// The demands on the two limits, and how fast the command residual's mean forgets.
+struct TrustSettings {
+  double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
+  double block_s = 10;              ///< alarms less than this apart are one
+  double command_residual_factor = 0.2;
+  /// Share of the covariance that is replaced by independent features of the same standard deviation. Features that go
+  /// together in all rows (one a linear map of others) leave it without an inverse. With this share no eigenvalue of
+  /// the correlations is below it: a float's rounding stays below a hundredth of a deviation, and a row that breaks
+  /// such a rule by a deviation is 30 deviations away.
+  double shrinkage = 1e-3;
+};
 
+namespace detail {
+
+/// Mean and covariance of features: the whitening W has W covariance W' = 1.
 template <int Size>
 struct JointDistribution {
   static constexpr std::size_t factor_size = std::size_t(Size) * (std::size_t(Size) + 1) / 2;
   std::array<double, std::size_t(Size)> mean{};  ///< physical units
   std::array<double, factor_size> whitening{};   ///< of x - mean; lower triangular, column after column
 
-  /// As the flight side works it out; of its training rows the mean is about Size.
-  template <class Scalar>
-  double squared_distance(const std::array<Scalar, std::size_t(Size)>& x) const noexcept {
+  /// Squared length of the sums of `term(weight, j)` over the columns j of the whitening.
+  template <class Term>
+  double squared_length(const Term& term) const noexcept {
     std::array<double, std::size_t(Size)> white{};
     std::size_t at = 0;
-    for (std::size_t j = 0; j < x.size(); ++j) {
-      for (std::size_t i = j; i < x.size(); ++i) white[i] += whitening[at++] * (static_cast<double>(x[j]) - mean[j]);
+    for (std::size_t j = 0; j < white.size(); ++j) {
+      for (std::size_t i = j; i < white.size(); ++i) white[i] += term(whitening[at++], j);
     }
     double squared = 0;
     for (const double w : white) squared += w * w;
     return squared;
+  }
+  /// As the flight side works it out; of its training rows the mean is about Size.
+  template <class Scalar>
+  double squared_distance(const std::array<Scalar, std::size_t(Size)>& x) const noexcept {
+    return squared_length([&](double w, std::size_t j) { return w * (static_cast<double>(x[j]) - mean[j]); });
+  }
+  /// No features within the envelope have a greater squared distance: each row of |W| times the envelope's half-widths
+  /// about the mean. A limit above it never triggers beside TrainingEnvelope.
+  template <class Bounds>
+  double greatest_squared_distance(const Bounds& lower, const Bounds& upper) const {
+    return squared_length([&](double w, std::size_t j) {
+      return std::abs(w) * std::max(static_cast<double>(upper[j]) - mean[j], mean[j] - static_cast<double>(lower[j]));
+    });
   }
 };
 
@@ -49,13 +72,14 @@ struct JointDistribution {
 /// deviation 1 that the scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for
 /// no more rows than features.
 template <class Features>
-JointDistribution<Features::size> fit_joint_distribution(const RowSet& training, double shrinkage = usual_shrinkage) {
+JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
+                                                         double shrinkage = TrustSettings{}.shrinkage) {
   constexpr auto size = static_cast<std::size_t>(Features::size);
   if (!(shrinkage > 0 && shrinkage <= 1)) {
     throw std::invalid_argument("joint distribution: expected a shrinkage above 0 and up to 1, found " +
                                 std::to_string(shrinkage));
   }
-  const auto columns = detail::feature_statistics<Features>(training);
+  const auto columns = feature_statistics<Features>(training);
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Zero(Features::size, Features::size);  // its lower triangle
   std::size_t rows = 0;
   each_features<Features, double>(training, [&](const Flight&, std::size_t, const auto& x) {
@@ -87,35 +111,6 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
   return result;
 }
 
-/// The demands on the two limits, and how fast the command residual's mean forgets.
-struct TrustSettings {
-  double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
-  double block_s = 10;              ///< alarms less than this apart are one
-  double command_residual_factor = 0.2;
-  double shrinkage = usual_shrinkage;
-};
-
-/// Limits and what they are limits of; values in double.
-template <int Size>
-struct FittedTrust {
-  JointDistribution<Size> distribution{};
-  double squared_distance_limit = 0;  ///< of the squared distance
-  double command_residual_factor = 0;
-  double command_residual_limit = 0;
-  double command_residual_cleared = 0;  ///< half-way from the usual mean to the limit
-  double update_period_s = 0;           ///< of the rows that the command residual was fitted on
-};
-
-/// The greatest value of each `rows` values that follow each other; what is left at the end is no block.
-inline std::vector<double> block_maxima(const std::vector<double>& values, std::size_t rows) {
-  std::vector<double> maxima;
-  for (std::size_t first = 0; rows > 0 && first + rows <= values.size(); first += rows) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
-    maxima.push_back(*std::max_element(begin, begin + static_cast<std::ptrdiff_t>(rows)));
-  }
-  return maxima;
-}
-
 /// Fewer say nothing of a tail.
 inline constexpr std::size_t least_alarm_blocks = 8;
 
@@ -143,6 +138,58 @@ inline double alarm_limit(std::vector<double> maxima, double blocks_per_alarm) {
   return start * std::pow(blocks_per_alarm * static_cast<double>(tail) / count, exponent);
 }
 
+/// The figures that have limits, row by row.
+struct TrustSeries {
+  std::vector<double> squared_distances;
+  std::vector<double> errors;  ///< mean over the rotors of |command predicted - command flown|
+};
+
+/// Seconds from row to row, over all pieces: all time over all steps, so that no short piece counts for more. 0 where
+/// no piece has two rows.
+inline double mean_period_s(const RowSet& rows) {
+  double lasts_s = 0, steps = 0;
+  for (const FlightRows& piece : rows.pieces()) {
+    lasts_s += (*piece.flight)[piece.rows.end - 1].time_s - (*piece.flight)[piece.rows.begin].time_s;
+    steps += static_cast<double>(piece.rows.size() - 1);
+  }
+  return steps > 0 ? lasts_s / steps : 0;
+}
+
+/// The command residual of a model that is as wrong as commands of 0 to 1 let it be, mean over the rows. A limit above
+/// it never triggers.
+inline double greatest_command_residual(const RowSet& rows) {
+  double sum = 0;
+  for (const FlightRows& piece : rows.pieces()) {
+    for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+      for (const double u : (*piece.flight)[row].commands) sum += std::max(u, 1 - u) / rotor_count;
+    }
+  }
+  return sum / static_cast<double>(rows.size());
+}
+
+}  // namespace detail
+
+/// Limits and what they are limits of; values in double.
+template <int Size>
+struct FittedTrust {
+  detail::JointDistribution<Size> distribution{};
+  double squared_distance_limit = 0;  ///< of the squared distance
+  double command_residual_factor = 0;
+  double command_residual_limit = 0;
+  double command_residual_cleared = 0;  ///< half-way from the usual mean to the limit
+  double update_period_s = 0;           ///< of the rows that the command residual was fitted on
+};
+
+/// The greatest value of each `rows` values that follow each other; what is left at the end is no block.
+inline std::vector<double> block_maxima(const std::vector<double>& values, std::size_t rows) {
+  std::vector<double> maxima;
+  for (std::size_t first = 0; rows > 0 && first + rows <= values.size(); first += rows) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    maxima.push_back(*std::max_element(begin, begin + static_cast<std::ptrdiff_t>(rows)));
+  }
+  return maxima;
+}
+
 /// m <- m + factor (e - m), from 0: CommandResidualMonitor's means of a flight's errors.
 inline std::vector<double> command_residual_means(const std::vector<double>& errors, double factor) {
   std::vector<double> means;
@@ -151,17 +198,12 @@ inline std::vector<double> command_residual_means(const std::vector<double>& err
   return means;
 }
 
-/// The figures that have limits, row by row.
-struct TrustSeries {
-  std::vector<double> squared_distances;
-  std::vector<double> errors;  ///< mean over the rotors of |command predicted - command flown|
-};
-
-/// Of the rows that have features.
+/// The figures of the rows that have features: `squared_distances`, and `errors`.
 template <class Model>
-TrustSeries trust_series(const Model& model, const JointDistribution<Model::Features::size>& distribution,
-                         const RowSet& rows) {
-  TrustSeries series;
+detail::TrustSeries trust_series(const Model& model,
+                                 const detail::JointDistribution<Model::Features::size>& distribution,
+                                 const RowSet& rows) {
+  detail::TrustSeries series;
   each_features<typename Model::Features, typename Model::Scalar>(
       rows, [&](const Flight& flight, std::size_t row, const auto& x) {
         series.squared_distances.push_back(distribution.squared_distance(x));
@@ -175,63 +217,23 @@ TrustSeries trust_series(const Model& model, const JointDistribution<Model::Feat
   return series;
 }
 
-/// Seconds from row to row, over all pieces: all time over all steps, so that no short piece counts for more. 0 where
-/// no piece has two rows.
-inline double mean_period_s(const RowSet& rows) {
-  double lasts_s = 0, steps = 0;
-  for (const FlightRows& piece : rows.pieces()) {
-    lasts_s += (*piece.flight)[piece.rows.end - 1].time_s - (*piece.flight)[piece.rows.begin].time_s;
-    steps += static_cast<double>(piece.rows.size() - 1);
-  }
-  return steps > 0 ? lasts_s / steps : 0;
-}
-
-/// The command residual of a model that is as wrong as commands of 0 to 1 let it be, mean over the rows. A limit above it
-/// never triggers.
-inline double greatest_command_residual(const RowSet& rows) {
-  double sum = 0;
-  for (const FlightRows& piece : rows.pieces()) {
-    for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
-      for (const double u : (*piece.flight)[row].commands) sum += std::max(u, 1 - u) / rotor_count;
-    }
-  }
-  return sum / static_cast<double>(rows.size());
-}
-
-/// No features within the envelope have a greater squared distance: each row of |W| times the envelope's half-widths
-/// about the mean. A limit above it never triggers beside TrainingEnvelope.
-template <int Size, class Bounds>
-double greatest_squared_distance(const JointDistribution<Size>& distribution, const Bounds& lower,
-                                 const Bounds& upper) {
-  std::array<double, std::size_t(Size)> white{};
-  std::size_t at = 0;
-  for (std::size_t j = 0; j < white.size(); ++j) {
-    const double away = std::max(static_cast<double>(upper[j]) - distribution.mean[j],
-                                 distribution.mean[j] - static_cast<double>(lower[j]));
-    for (std::size_t i = j; i < white.size(); ++i) white[i] += std::abs(distribution.whitening[at++]) * away;
-  }
-  double squared = 0;
-  for (const double w : white) squared += w * w;
-  return squared;
-}
-
 /// The distribution of the training rows, and limits by validation rows that the model was not trained on; each piece
-/// of a flight is a flight of its own to the command residual. Throws std::invalid_argument for rows that are too few, and
-/// for a limit that could never trigger: the tail of few blocks, continued too far.
+/// of a flight is a flight of its own to the command residual. Throws std::invalid_argument for rows that are too few,
+/// and for a limit that could never trigger: the tail of few blocks, continued too far.
 template <class Model>
 FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
                                              const TrustSettings& settings = {}) {
   FittedTrust<Model::Features::size> trust;
-  trust.distribution = fit_joint_distribution<typename Model::Features>(training, settings.shrinkage);
+  trust.distribution = detail::fit_joint_distribution<typename Model::Features>(training, settings.shrinkage);
   trust.command_residual_factor = settings.command_residual_factor;
-  trust.update_period_s = mean_period_s(validation);
+  trust.update_period_s = detail::mean_period_s(validation);
   const auto rows = trust.update_period_s > 0
                         ? static_cast<std::size_t>(std::max(1.0, std::round(settings.block_s / trust.update_period_s)))
                         : std::size_t(1);
   std::vector<double> distances, residuals, usual;
   for (const FlightRows& piece : validation.pieces()) {
     if (piece.rows.size() < 2) continue;
-    const TrustSeries series = trust_series(model, trust.distribution, RowSet(*piece.flight, piece.rows));
+    const auto series = trust_series(model, trust.distribution, RowSet(*piece.flight, piece.rows));
     const std::vector<double> means = command_residual_means(series.errors, settings.command_residual_factor);
     const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
       to.insert(to.end(), from.begin(), from.end());
@@ -247,24 +249,24 @@ FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& t
   };
   const std::string found = text(static_cast<double>(validation.size()) * trust.update_period_s) + " s (" +
                             std::to_string(residuals.size()) + " whole blocks of " + text(settings.block_s) + " s)";
-  if (residuals.size() < least_alarm_blocks) {
+  if (residuals.size() < detail::least_alarm_blocks) {
     throw std::invalid_argument("limits of trust: expected at least " +
-                                text(static_cast<double>(least_alarm_blocks) * settings.block_s) +
+                                text(static_cast<double>(detail::least_alarm_blocks) * settings.block_s) +
                                 " s of validation rows, found " + found + ": more or longer flights make more");
   }
   const double blocks_per_alarm = settings.seconds_per_alarm / settings.block_s;
-  trust.squared_distance_limit = alarm_limit(distances, blocks_per_alarm);
-  trust.command_residual_limit = alarm_limit(residuals, blocks_per_alarm);
+  trust.squared_distance_limit = detail::alarm_limit(distances, blocks_per_alarm);
+  trust.command_residual_limit = detail::alarm_limit(residuals, blocks_per_alarm);
   const auto require_below = [&](const char* what, double limit, double greatest, const char* of) {
     if (limit < greatest) return;
     throw std::invalid_argument(std::string("limits of trust: expected a limit of the ") + what + " below " +
                                 text(greatest) + ", " + of + ", found " + text(limit) + " by validation rows of " +
                                 found + ": it could never trigger; more or longer flights make a better one");
   };
-  require_below("command residual", trust.command_residual_limit, greatest_command_residual(validation),
+  require_below("command residual", trust.command_residual_limit, detail::greatest_command_residual(validation),
                 "the most that commands of 0 to 1 can be wrong by");
   require_below("squared distance", trust.squared_distance_limit,
-                greatest_squared_distance(trust.distribution, model.envelope_lower, model.envelope_upper),
+                trust.distribution.greatest_squared_distance(model.envelope_lower, model.envelope_upper),
                 "the most within the envelope");
   double sum = 0;
   for (const double mean : usual) sum += mean;
