@@ -14,7 +14,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -84,36 +83,6 @@ struct ExactRecorder {
     for (std::size_t i = 0; i < commands.size(); ++i) sample.commands[i] = clip_command(commands[i]);
     return sample;
   }
-};
-
-/// Another recorder's rows, and extra columns beside them. A Column is what features/extra_columns.hpp says, with a
-/// `double operator()(const Quadrotor&, const VehicleState<double>&)`: what its sensor shows at the present instant.
-template <class Recorder, class... Column>
-class ColumnRecorder {
-  static_assert(!detail::has_columns<Recorder>,
-                "pinnquad: this recorder has columns of its own already: name all in one ColumnRecorder");
-
- public:
-  explicit ColumnRecorder(Recorder recorder = Recorder{}, Column... column)
-      : recorder_(std::move(recorder)), columns_(std::move(column)...) {}
-
-  void hold(const Commands<double>& commands, double time_s) { recorder_.hold(commands, time_s); }
-  template <class... Effects>
-  Sample operator()(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle,
-                    const Commands<double>& commands) {
-    return recorder_(quadrotor, vehicle, commands);
-  }
-  Status status() const noexcept { return detail::recorder_status(recorder_); }
-
-  std::vector<ColumnName> columns() const { return {ColumnName{Column::name, Column::unit}...}; }
-  template <class... Effects>
-  void measure(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle, double* values) {
-    std::apply([&](auto&... column) { ((*values++ = column(quadrotor, vehicle)), ...); }, columns_);
-  }
-
- private:
-  Recorder recorder_;
-  std::tuple<Column...> columns_;
 };
 
 /// The errors of a log. The defaults are none: NoisyRecorder then writes ExactRecorder's numbers.

@@ -273,22 +273,15 @@ struct RecordedFlight {
   FlightReport report;
 };
 
-/// The argument of an observer after each row: how far the flight is, the true state, and the row as recorded.
-struct FlightRow {
-  std::size_t rows_done;
-  std::size_t rows;  ///< of the plan
-  const VehicleState<double>& vehicle;
-  const Sample& sample;
-};
-
 /// Angle between the body's down axis and the world's, 0..pi.
 inline double tilt_rad(const Quaternion<double>& attitude) noexcept {
   const double upright = body_down_axis(attitude)[2];
   return std::acos(upright < -1 ? -1 : upright);  // upside down, rounding goes beyond
 }
 
-/// Flies and records. `observer(const FlightRow&)` is called after each row. A Status that isn't ok, or the ground,
-/// ends the flight (simulation/simulator.hpp); the rows up to there are kept and the report says where.
+/// Flies and records. `observer(const Simulator<Vehicle, Pilot, Recorder>&)` is called after each row: it sees the true
+/// state, and the row as the last of the recording. A Status that isn't ok, or the ground, ends the flight; the rows up
+/// to there are kept and the report says where.
 template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder>
 RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan, Observer observer,
                    const Recorder& recorder = Recorder{}) {
@@ -308,7 +301,7 @@ RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPla
     if (report.rows == 0 || altitude_m > report.max_altitude_m) report.max_altitude_m = altitude_m;
     if (saturated(simulator.commands())) ++saturated_rows;
     ++report.rows;
-    observer(FlightRow{report.rows, plan.samples, simulator.vehicle(), simulator.recording().back()});
+    observer(std::as_const(simulator));
   }
   report.end = simulator.end();
   report.status = simulator.status();
@@ -320,7 +313,7 @@ RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPla
 
 template <class Vehicle, class Pilot>
 RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan = {}) {
-  return fly(quadrotor, pilot, plan, [](const FlightRow&) {});
+  return fly(quadrotor, pilot, plan, [](const auto&) {});
 }
 
 }  // namespace pinnquad
