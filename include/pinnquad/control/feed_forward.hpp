@@ -81,12 +81,11 @@ struct FallbackCount {
   static constexpr std::size_t index(Status status) noexcept { return static_cast<std::size_t>(status) % statuses; }
 };
 
-/// The network's prediction for the motion wanted, or its guard's fallback, counted by Status. `InverseDynamics` has
-/// the interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in
-/// its guard the policy declines where the network does. A model with a past gets a window of the motions asked for,
-/// and declines as `warming_up` first. A model that asks for more than MotionInputs (altitude, battery voltage) needs
-/// `Measured`, called before each prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs&
-/// present) noexcept` sets it.
+/// The network's prediction for the motion wanted, or its guard's fallback, counted by Status. `InverseDynamics`: as in
+/// inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in its guard the
+/// policy declines where the network does. A model with a past gets a window of the motions asked for, and declines as
+/// `warming_up` first. A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, which
+/// sets it before each prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs&) noexcept`.
 template <class InverseDynamics, class Measured = detail::MotionAlone>
 class NetworkInverse {
  public:
@@ -129,8 +128,6 @@ class NetworkInverse {
   }
 
   const FallbackCount& count() const noexcept { return count_; }
-  /// The source of what the motion does not say.
-  Measured& measured() noexcept { return measured_; }
 
  private:
   template <class Scalar>

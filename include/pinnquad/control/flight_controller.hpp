@@ -133,7 +133,6 @@ class FlightController {
                                       Scalar gravity_m_s2 = standard_gravity_m_s2<Scalar>) noexcept
       : gains_(gains), limits_(limits), gravity_m_s2_(gravity_m_s2) {}
 
-  constexpr const FlightGains<Scalar>& gains() const noexcept { return gains_; }
   constexpr const FlightLimits<Scalar>& limits() const noexcept { return limits_; }
   constexpr Scalar gravity_m_s2() const noexcept { return gravity_m_s2_; }
 
@@ -181,10 +180,11 @@ class FlightController {
     status = attitude_error(state, acceleration, Heading<Scalar>{sin(point.yaw_rad), cos(point.yaw_rad)}, error);
     if (status != Status::ok) return status;
     // `error` also turns vectors from the axes of the attitude wanted into those of the body
-    const Accelerations<Scalar> moved{body_derivative(state, point.acceleration_m_s2),
-                                      body_to_world(error, flat.angular_acceleration_rad_s2)};
-    const Accelerations<Scalar> corrected{world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2),
-                                          angular_feedback(state, error, body_to_world(error, flat.body_rates_rad_s))};
+    Accelerations<Scalar> moved, corrected;
+    moved.linear_m_s2 = body_derivative(state, point.acceleration_m_s2);
+    moved.angular_rad_s2 = body_to_world(error, flat.angular_acceleration_rad_s2);
+    corrected.linear_m_s2 = world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2);
+    corrected.angular_rad_s2 = angular_feedback(state, error, body_to_world(error, flat.body_rates_rad_s));
     if (!(all_finite(moved.linear_m_s2) && all_finite(moved.angular_rad_s2) && all_finite(corrected.linear_m_s2) &&
           all_finite(corrected.angular_rad_s2))) {
       return Status::output_not_finite;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The paper's three flights (Sec. 5.2) as types: which effects act, who flies, for how long. The pilots' styles are
-// fitted to what a vehicle can do at a place, found through its own inverse: a heavy one is not asked to climb as a
-// racer does. Contract of a flight: `name`, `summary`, `Vehicle` and `SwitchableVehicle` (the same effects, and a
-// ground effect that a program may choose), `ground_effect` (of the flight as the paper has it), `plan()` and
-// `pilot(vehicle, engine, max_speed_m_s)`.
+// The paper's three flights (Sec. 5.2) as types: effects, pilot, duration. The pilots' styles are fitted to what a
+// vehicle can do at a place, found through its own inverse. Contract of a flight: `name`, `summary`, `Vehicle` and
+// `SwitchableVehicle` (the same effects, and a ground effect that a program may choose), `ground_effect` (the paper's),
+// `plan()` and `pilot(vehicle, engine, max_speed_m_s)`.
 #pragma once
 
 #include <limits>
@@ -45,10 +44,9 @@ double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) 
   });
 }
 
-/// The default style, fitted to what the vehicle can do at a place; found through its own inverse, drag included.
-/// No climb that takes more than 60 % of the thrust above hover, no descent with less than 35 % of the hover's or
-/// faster than 1.5 times the climb; turns, sticks and changes of velocity are calmed in proportion where hover leaves
-/// less than 35 % of the command.
+/// The default style, fitted to what the vehicle can do at a place, drag included. No climb takes more than 60 % of the
+/// thrust above hover, no descent less than 35 % of the hover's; none is faster than 1.5 times the climb. Turns, sticks
+/// and changes of velocity are calmed in proportion where hover leaves less than 35 % of the command.
 template <class... Effects>
 PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m,
                        double max_speed_m_s = PilotStyle{}.max_speed_m_s) {

@@ -36,11 +36,10 @@ struct NearGroundStyle {
   double braking_m{3};    ///< room left to the border when a target velocity is chosen
 };
 
-/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. The
-/// height follows a profile from leg to leg, h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T (take-off,
-/// landing, and a traverse, which changes height on the way), and the climb asked for is h' + lead h'' + gain (h -
-/// height). Velocities north and east are targets followed with a lag, as are yaw rates; stick noise goes on all the
-/// time.
+/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. In
+/// take-off, traverse and landing the height follows h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T; the
+/// climb asked for is h' + lead h'' + gain (h - height). Velocities north and east and yaw rates are targets followed
+/// with a lag, under stick noise.
 template <class Engine>
 class NearGroundPilot {
  public:

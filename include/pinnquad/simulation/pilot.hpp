@@ -41,8 +41,8 @@ struct ThumbStyle {
   double yaw_spread_rad_s{0.062};
 };
 
-/// Stick noise. Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between frames.
-/// Three draws per frame: roll, pitch, yaw.
+/// Stick noise. Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between
+/// frames. Three draws per frame: roll, pitch, yaw.
 class Thumbs {
  public:
   explicit Thumbs(const ThumbStyle& style)

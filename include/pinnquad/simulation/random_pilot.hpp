@@ -28,10 +28,10 @@ struct PilotStyle {
   double braking_m{6};  ///< room left to the border when a target velocity is chosen
 };
 
-/// Draws a target velocity (any direction; the greatest speed and the vertical more often), holds it for a random time,
-/// and asks for it with a lag. A component that would lead out of the box before its time is up is turned round. Yaw
-/// rate targets change with it; stick noise goes on all the time. A turn against the thrust limits can carry the
-/// vehicle past what was asked for: beyond easing_share the velocity is asked for less, by the ramp in `eased`.
+/// Draws a target velocity (any direction; the greatest speed and the vertical more often) and a yaw rate, holds them
+/// for a random time, and asks for them with a lag, under stick noise. A component that would lead out of the box
+/// before its time is up is turned round. A turn against the thrust limits can carry the vehicle past what was asked
+/// for: beyond easing_share less velocity is asked for.
 template <class Engine>
 class RandomPilot {
  public:

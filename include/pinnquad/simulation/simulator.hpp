@@ -53,13 +53,12 @@ using GroundEffectSwitchOf = decltype(std::declval<Vehicle&>().set_ground_effect
 }  // namespace detail
 
 /// Flies `Vehicle` (a Quadrotor<double, Effects...> or a SwitchableQuadrotor) as `Pilot` asks and records it by
-/// `Recorder`; all are copies, and so is a copy of a simulator, which flies on like its original.
-/// A tick: the pilot's set point, the controller's demand, the inverse's commands, desaturated, and physics
-/// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
-/// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
-/// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row,
-/// and no_solution on the way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that
-/// moment, and what was recorded stays.
+/// `Recorder`; all are copies, and so is a copy of a simulator, which flies on like its original. A tick: the pilot's
+/// set point, the controller's demand, the inverse's commands, desaturated, and physics steps under them. After every
+/// `controls_per_sample` ticks a row is recorded, at exact multiples of the sample period. The flight ends by itself
+/// when a row finds the vehicle at the ground, or where a Status isn't ok: at the start the airframe's, the hover
+/// trim's, a recorder's, `out_of_range` for clocks that do not run; on the way `not_finite`, `no_solution` and
+/// `output_not_finite`, also of a row. vehicle() and the recording stay as they were then.
 template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
 class Simulator {
   static_assert(is_pilot<Pilot>, "pinnquad: this type is no pilot (simulation/pilot.hpp)");
@@ -255,7 +254,7 @@ class Simulator {
   Status status_{Status::ok};
 };
 
-/// A flight in figures. Ranges are those of the true motion, not of what a recorder made of it, at the recorded rows.
+/// A flight in figures. Ranges are those of the true motion at the recorded rows.
 struct FlightReport {
   FlightEnd end{FlightEnd::completed};
   Status status{Status::ok};

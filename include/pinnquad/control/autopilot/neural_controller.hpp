@@ -173,13 +173,13 @@ class NeuralController {
       Commands<float> answer{};
       report.status = ask(*inverse, reaction, answer, report);
       if (has_output(report.status)) {
-        const CommandRange<float> range{settings_.lowest_command, settings_.highest_command};
-        last_commands_ = desaturate(vehicle_.rotors(), answer, range);
+        last_commands_ = desaturate(vehicle_.rotors(), answer, range());
         const float lift = take_off_.lift();
         if (lift < 1.0f) {
-          for (float& u : last_commands_) u = range.lower + lift * (u - range.lower);
+          const float idle = settings_.lowest_command;
+          for (float& u : last_commands_) u = idle + lift * (u - idle);
         }
-        expected_us_ = lift < 1.0f || saturated(last_commands_, range) ? 0 : now_us;
+        expected_us_ = lift < 1.0f || saturated(last_commands_, range()) ? 0 : now_us;
         answered_us_ = now_us;
         answered_ = true;
       } else {
@@ -229,6 +229,8 @@ class NeuralController {
   const Vehicle& vehicle() const noexcept { return vehicle_; }
 
  private:
+  CommandRange<float> range() const noexcept { return {settings_.lowest_command, settings_.highest_command}; }
+
   void take_checksum(std::uint32_t checksum) noexcept {
     if (checksum_ != 0 && checksum != checksum_) {
       bias_alarm_.reset();
