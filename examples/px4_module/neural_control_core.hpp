@@ -198,7 +198,8 @@ class NeuralControl {
   static pinnquad::Vector3<float> vector(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
 
   void take_resets(const VehicleLocalPosition& m) noexcept {
-    pinnquad::autopilot::EstimateJump by;
+    pinnquad::autopilot::LocalState by;
+    float turned_rad = 0;
     bool jumps = false;
     const auto reset = [&](std::uint8_t counter, std::uint8_t before) noexcept {
       const bool moved = has_local_ && counter != before;
@@ -215,12 +216,12 @@ class NeuralControl {
       by.velocity_m_s[1] = m.delta_vxy[1];
     }
     if (reset(m.vz_reset_counter, local_.vz_reset_counter)) by.velocity_m_s[2] = m.delta_vz;
-    if (reset(m.heading_reset_counter, local_.heading_reset_counter)) by.yaw_rad = m.delta_heading;
+    if (reset(m.heading_reset_counter, local_.heading_reset_counter)) turned_rad = m.delta_heading;
     local_ = m;
     has_local_ = true;
     if (jumps && pinnquad::all_finite(by.position_m) && pinnquad::all_finite(by.velocity_m_s) &&
-        pinnquad::is_finite(by.yaw_rad)) {
-      controller_.jump(by);
+        pinnquad::is_finite(turned_rad)) {
+      controller_.jump(by, turned_rad);
     }
   }
 

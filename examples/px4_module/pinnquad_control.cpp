@@ -69,19 +69,27 @@ PinnquadControl::PinnquadControl()
   _core.propulsion(_propulsion);
 }
 
-pinnquad::autopilot::ControllerSettings PinnquadControl::controller_settings() const {
-  const auto us = [](int32_t time_ms) { return static_cast<uint64_t>(time_ms) * 1000; };
-  pinnquad::autopilot::ControllerSettings settings;
-  settings.ages.body_rates_us = us(_param_age_rates.get());
-  settings.ages.attitude_us = us(_param_age_attitude.get());
-  settings.ages.local_us = us(_param_age_position.get());
-  settings.ages.set_point_us = us(_param_age_setpoint.get());
-  settings.outputs = {_propulsion.thrust(_param_out_min.get()), _propulsion.thrust(1.0f)};
-  settings.gains = {_param_gain_position.get(), _param_gain_velocity.get(), _param_gain_tilt.get(),
-                    _param_gain_yaw.get(),      _param_gain_rate.get(),     _param_gain_yaw_rate.get()};
-  settings.speeds = {_param_speed_horizontal.get(), _param_speed_up.get(), _param_speed_down.get(),
-                     _param_take_off.get()};
-  settings.bias = {_param_bias_bandwidth.get(), _param_bias_most.get()};
+pinnquad::autopilot::CoreSettings PinnquadControl::controller_settings() const {
+  const auto us = [](int32_t time_ms) { return static_cast<uint32_t>(time_ms) * 1000; };
+  pinnquad::autopilot::CoreSettings settings;
+  settings.body_rates_us = us(_param_age_rates.get());
+  settings.attitude_us = us(_param_age_attitude.get());
+  settings.local_us = us(_param_age_position.get());
+  settings.set_point_us = us(_param_age_setpoint.get());
+  settings.lowest_command = _propulsion.thrust(_param_out_min.get());
+  settings.highest_command = _propulsion.thrust(1.0f);
+  settings.position_1_s = _param_gain_position.get();
+  settings.velocity_1_s = _param_gain_velocity.get();
+  settings.tilt_1_s = _param_gain_tilt.get();
+  settings.yaw_1_s = _param_gain_yaw.get();
+  settings.roll_pitch_rate_1_s = _param_gain_rate.get();
+  settings.yaw_rate_1_s = _param_gain_yaw_rate.get();
+  settings.horizontal_speed_m_s = _param_speed_horizontal.get();
+  settings.climb_m_s = _param_speed_up.get();
+  settings.descent_m_s = _param_speed_down.get();
+  settings.take_off_s = _param_take_off.get();
+  settings.bias_bandwidth_1_s = _param_bias_bandwidth.get();
+  settings.most_bias_m_s2 = _param_bias_most.get();
   return settings;
 }
 

@@ -60,7 +60,7 @@ using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
 #include "trust.hpp"
 using FlownLimits = TrainedQuadModelTrust;
 #else
-using FlownLimits = pinnquad::autopilot::NoTrust;
+using FlownLimits = void;  // without limits of trust
 #endif
 
 class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
@@ -94,7 +94,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
                                         pinnquad::ModelBlockLayout<Model>::most_record_bytes();
 
   void Run() override;
-  pinnquad::autopilot::ControllerSettings controller_settings() const;
+  pinnquad::autopilot::CoreSettings controller_settings() const;
   pinnquad_px4::StickSpeeds stick_speeds() const;
   /// Reads, opens and tests a model; the one that flies stays where it is. Of the shell's thread.
   pinnquad::Status load_model(const char* path);

@@ -120,12 +120,12 @@ TEST_CASE("on the reference there is no feedback, and the reference motion is th
     FlatMotion<double> flat;
     REQUIRE(flat_motion(point, standard_gravity_m_s2<double>, flat) == Status::ok);
     const State<double> state{point.position_m, point.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
-    TrackingDemand<double> demand;
-    REQUIRE(controller(state, point, demand) == Status::ok);
-    CHECK(demand.feedback_acceleration_m_s2.norm() <= rounding);
-    CHECK(demand.feedback_angular_acceleration_rad_s2.norm() <= rounding);
-    CHECK((demand.reference.angular_rad_s2 - flat.angular_acceleration_rad_s2).norm() <= rounding);
-    CHECK((world_acceleration(state, demand.reference.linear_m_s2) - point.acceleration_m_s2).norm() <= rounding);
+    Accelerations<double> reference, feedback;
+    REQUIRE(controller(state, point, reference, feedback) == Status::ok);
+    CHECK(feedback.linear_m_s2.norm() <= rounding);
+    CHECK(feedback.angular_rad_s2.norm() <= rounding);
+    CHECK((reference.angular_rad_s2 - flat.angular_acceleration_rad_s2).norm() <= rounding);
+    CHECK((world_acceleration(state, reference.linear_m_s2) - point.acceleration_m_s2).norm() <= rounding);
   }
 }
 
@@ -184,11 +184,11 @@ TEST_CASE("gains: what each error alone asks for, of the pilot and of a trajecto
   constexpr double rounding = 1e-12;
   for (const Error& e : {velocity, roll, pitch, roll_rate, pitch_rate, yaw_rate, yaw, position}) {
     CAPTURE(e.what);
-    TrackingDemand<double> tracking;
-    REQUIRE(controller(e.state, TrajectoryPoint<double>{}, tracking) == Status::ok);
-    const Vector3<double> linear = body_to_world(e.state.attitude, tracking.feedback_acceleration_m_s2);
+    Accelerations<double> reference, feedback;
+    REQUIRE(controller(e.state, TrajectoryPoint<double>{}, reference, feedback) == Status::ok);
+    const Vector3<double> linear = body_to_world(e.state.attitude, feedback.linear_m_s2);
     CHECK((linear - e.linear_m_s2).norm() <= rounding);
-    CHECK((tracking.feedback_angular_acceleration_rad_s2 - e.angular_rad_s2).norm() <= 100 * rounding);
+    CHECK((feedback.angular_rad_s2 - e.angular_rad_s2).norm() <= 100 * rounding);
     Accelerations<double> demand;
     REQUIRE(controller(e.state, SetPoint<double>{}, demand) == Status::ok);
     const Vector3<double> nothing = Vector3<double>::Zero();
@@ -346,9 +346,8 @@ TEST_CASE("finite numbers never come to not_finite, wherever a sum overflows") {
     wanted.yaw_rate_rad_s = any();
     point.position_m = vector();
     point.velocity_m_s = vector();
-    Accelerations<float> demand;
-    TrackingDemand<float> tracking;
-    for (const Status status : {controller(state, wanted, demand), controller(state, point, tracking)}) {
+    Accelerations<float> demand, feedback;
+    for (const Status status : {controller(state, wanted, demand), controller(state, point, demand, feedback)}) {
       overflowed += status == Status::output_not_finite;
       REQUIRE(status != Status::not_finite);
     }
@@ -364,10 +363,11 @@ TEST_CASE("numbers so large that a sum overflows: a Status, and the demand is le
   demand.linear_m_s2[0] = 42;
   CHECK(controller(state, SetPoint<float>{}, demand) == Status::output_not_finite);
   CHECK(demand.linear_m_s2[0] == 42);
-  TrackingDemand<float> tracking;
-  tracking.feedback_acceleration_m_s2[0] = 42;
-  CHECK(controller(state, TrajectoryPoint<float>{}, tracking) == Status::output_not_finite);
-  CHECK(tracking.feedback_acceleration_m_s2[0] == 42);
+  Accelerations<float> feedback;
+  feedback.linear_m_s2[0] = 42;
+  CHECK(controller(state, TrajectoryPoint<float>{}, demand, feedback) == Status::output_not_finite);
+  CHECK(demand.linear_m_s2[0] == 42);
+  CHECK(feedback.linear_m_s2[0] == 42);
 }
 
 TEST_CASE(

@@ -329,7 +329,7 @@ TEST_CASE("gyro noise that drowns the motion decides nothing; where some is left
     const NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(5), errors);
     const Flight flight =
         fly(
-            vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(2)), plan, [](const FlightRow&) {}, recorder)
+            vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(2)), plan, [](const auto&) {}, recorder)
             .flight;
     CHECK(!find_acceleration_mistake(flight));
     CHECK(find_acceleration_mistake(with_accelerations(flight, -unchanged, unchanged)).has_value() ==

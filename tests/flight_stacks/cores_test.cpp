@@ -170,7 +170,6 @@ TEST_CASE("PX4: a model that is refused changes no bit of what flies; one that i
 }
 
 TEST_CASE("PX4: silence, step by step: holds, levels, keeps, gives up") {
-  using pinnquad::autopilot::AgeLimits;
   const auto last_at = [](std::uint64_t rates_age, std::uint64_t attitude_age, std::uint64_t local_age,
                           std::uint64_t set_point_age) {
     Px4 px4;
@@ -188,12 +187,13 @@ TEST_CASE("PX4: silence, step by step: holds, levels, keeps, gives up") {
     static_cast<void>(px4.core.run(px4.motors, px4.status));
     return px4.reaction();
   };
-  const AgeLimits limits;
+  const pinnquad::autopilot::CoreSettings limits;
+  const std::uint64_t longest_us = limits.local_us + limits.level_us;
   CHECK(last_at(limits.body_rates_us, limits.attitude_us, limits.local_us, limits.set_point_us) == Reaction::flies);
   CHECK(last_at(0, 0, 0, limits.set_point_us + 1) == Reaction::holds_position);
   CHECK(last_at(0, 0, limits.local_us + 1, limits.set_point_us + 1) == Reaction::levels);
-  CHECK(last_at(0, 0, limits.local_us + limits.level_us, 0) == Reaction::levels);
-  CHECK(last_at(0, 0, limits.local_us + limits.level_us + 1, 0) == Reaction::gives_up);
+  CHECK(last_at(0, 0, longest_us, 0) == Reaction::levels);
+  CHECK(last_at(0, 0, longest_us + 1, 0) == Reaction::gives_up);
   CHECK(last_at(limits.body_rates_us + 1, 0, 0, 0) == Reaction::gives_up);  // its last commands are 10 s old
   CHECK(last_at(0, limits.attitude_us + 1, 0, 0) == Reaction::gives_up);
   CHECK(last_at(0, 0, static_cast<std::uint64_t>(-1), 0) == Reaction::gives_up);  // a stamp of the future
@@ -262,7 +262,7 @@ TEST_CASE("whatever comes in, what goes out is a command within its limits") {
   };
   Px4 px4;
   Crazyflie cf;
-  const pinnquad::autopilot::OutputLimits limits;
+  const pinnquad::autopilot::CoreSettings limits;
   int px4_answers = 0, cf_answers = 0;
   for (std::uint64_t tick = 0; tick < 100'000; ++tick) {
     for (float& v : px4.rates.xyz) v = hostile(0);
@@ -277,7 +277,7 @@ TEST_CASE("whatever comes in, what goes out is a command within its limits") {
     if (px4.run(10'000'000 + 1000 * tick)) {
       ++px4_answers;
       bool sound = true;
-      for (const float u : px4.motors.control) sound &= u >= limits.lower && u <= limits.upper;
+      for (const float u : px4.motors.control) sound &= u >= limits.lowest_command && u <= limits.highest_command;
       REQUIRE(sound);
     }
     for (float& v : cf.state.gyro) v = hostile(0);
@@ -291,7 +291,7 @@ TEST_CASE("whatever comes in, what goes out is a command within its limits") {
     if (cf.step(static_cast<std::uint32_t>(10'000 + 2 * tick))) {
       ++cf_answers;
       bool sound = true;
-      for (const float u : cf.m) sound &= u >= limits.lower && u <= limits.upper;
+      for (const float u : cf.m) sound &= u >= limits.lowest_command && u <= limits.highest_command;
       REQUIRE(sound);
     }
   }

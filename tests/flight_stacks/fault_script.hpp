@@ -38,7 +38,7 @@ struct Fault {
   Reaction worst;  ///< exactly this is the worst reaction while it lasts
 };
 
-/// The same for every flight; limits are those of AgeLimits{}.
+/// The same for every flight; limits are those of CoreSettings{}.
 inline constexpr std::array<Fault, 19> fault_script = {{
     {4.0, 0.008, FaultKind::rates_stop, 0, "body rates stop for 8 ms", Reaction::flies},
     {5.0, 0.015, FaultKind::attitude_stops, 0, "attitude stops for 15 ms", Reaction::flies},

@@ -49,8 +49,8 @@ class FaultyFlight {
 
   static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20;
 
-  explicit FaultyFlight(const AgeLimits& ages = {})
-      : stack_(ControllerSettings{ages}),
+  explicit FaultyFlight(const CoreSettings& settings = {})
+      : stack_(settings),
         vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), pinnquad::paper_site<double>()),
         own_({}, pinnquad::flight_limits(vehicle_.airframe(), 1.0)) {}
 
@@ -263,11 +263,10 @@ class FaultyFlight {
       commands_ = answer.commands;
       return;
     }
-    pinnquad::TrackingDemand<double> demand;
-    if (own_(body_.body, held_, demand) != Status::ok) return;
-    pinnquad::Accelerations<double> wanted = demand.reference;
-    wanted.linear_m_s2 += demand.feedback_acceleration_m_s2;
-    wanted.angular_rad_s2 += demand.feedback_angular_acceleration_rad_s2;
+    pinnquad::Accelerations<double> wanted, feedback;
+    if (own_(body_.body, held_, wanted, feedback) != Status::ok) return;
+    wanted.linear_m_s2 += feedback.linear_m_s2;
+    wanted.angular_rad_s2 += feedback.angular_rad_s2;
     pinnquad::Commands<double> commands{};
     if (pinnquad::inverse_commands(vehicle_, body_.body, wanted, body_.time_s, commands) == Status::ok) {
       commands_ = pinnquad::desaturate(vehicle_.rotors(), commands);

@@ -11,7 +11,7 @@
 namespace {
 
 using namespace pinnquad::autopilot::test;
-using pinnquad::autopilot::AgeLimits;
+using pinnquad::autopilot::CoreSettings;
 using pinnquad::autopilot::Reaction;
 
 constexpr double duration_s = 33, calm_duration_s = 20;
@@ -158,7 +158,7 @@ TEST_CASE("without faults the network flies, and tracks") {
 
 /// The proof of these flights: with the age limits out of reach the same outage, alone, ends on the ground.
 TEST_CASE("without the age limits a module falls") {
-  AgeLimits none;
+  CoreSettings none;
   none.body_rates_us = none.attitude_us = none.local_us = none.set_point_us = 1'000'000'000;
   for (const FaultKind kind : {FaultKind::attitude_stops, FaultKind::rates_stop}) {
     const std::array<Fault, 1> outage = {{{6, 6, kind, 0, "outage", Reaction::flies}}};

@@ -184,10 +184,11 @@ TEST_CASE("flown by hand nothing is asked, and the record says so") {
 }
 
 TEST_CASE("settings are those that the controller was made with") {
-  pinnquad::autopilot::ControllerSettings made;
-  made.ages.attitude_us = 12'000;
-  made.outputs = {0.1f, 0.9f};
-  made.gains.tilt_1_s = 7;
+  CoreSettings made;
+  made.attitude_us = 12'000;
+  made.lowest_command = 0.1f;
+  made.highest_command = 0.9f;
+  made.tilt_1_s = 7;
   const pinnquad::autopilot::NeuralController<DemoQuadModel> controller(made);
   const CoreSettings settings = controller.settings();
   CHECK(settings.attitude_us == 12'000);

@@ -17,11 +17,8 @@ namespace {
 using namespace pinnquad::autopilot::test;
 using pinnquad::TrajectoryPoint;
 using pinnquad::Vector3;
-using pinnquad::autopilot::ControllerSettings;
+using pinnquad::autopilot::CoreSettings;
 using pinnquad::autopilot::Reaction;
-using pinnquad::autopilot::SpeedLimits;
-
-constexpr pinnquad::autopilot::OutputLimits outputs{};
 
 /// A battery that is weaker than the airframe says.
 struct WeakBattery {
@@ -43,7 +40,7 @@ class Flight {
  public:
   using Vehicle = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, WeakBattery>;
 
-  explicit Flight(double thrust_scale, const ControllerSettings& settings = {})
+  explicit Flight(double thrust_scale, const CoreSettings& settings = {})
       : vehicle_(pinnquad::airframe_value<typename Model::Vehicle, double>(), {}, {}, WeakBattery{thrust_scale}),
         controller_(settings) {
     REQUIRE(controller_.offer_model(block_.data(), block_.size()) == pinnquad::Status::ok);
@@ -102,21 +99,20 @@ class Flight {
 };
 
 template <class Model>
-void far_places(const SpeedLimits& limits) {
+void far_places(const CoreSettings& settings) {
   constexpr double most_overshoot_m = 0.5, rounding = 1.05;
   const auto fly = [&](const Vector3<double>& way, double most_m_s) {
-    const Track track =
-        Flight<Model>(1.0, {{}, {}, {}, limits}).fly(Flight<Model>::start_m + way, way.norm() / most_m_s + 10, 1e9);
+    const Track track = Flight<Model>(1.0, settings).fly(Flight<Model>::start_m + way, way.norm() / most_m_s + 10, 1e9);
     MESSAGE("step of ", way.norm(), " m: up to ", track.fastest_m_s, " m/s, ", track.overshoot_m, " m too far");
     CHECK(track.fastest_m_s <= most_m_s * rounding);
     CHECK(track.fastest_m_s >= 0.8 * most_m_s);
     CHECK(track.overshoot_m <= most_overshoot_m);
     CHECK(track.error_m <= 0.1);
   };
-  fly({50, 0, 0}, static_cast<double>(limits.horizontal_m_s));
-  fly({30, -40, 0}, static_cast<double>(limits.horizontal_m_s));
-  fly({0, 0, -25}, static_cast<double>(limits.climb_m_s));
-  fly({0, 0, 25}, static_cast<double>(limits.descent_m_s));
+  fly({50, 0, 0}, static_cast<double>(settings.horizontal_speed_m_s));
+  fly({30, -40, 0}, static_cast<double>(settings.horizontal_speed_m_s));
+  fly({0, 0, -25}, static_cast<double>(settings.climb_m_s));
+  fly({0, 0, 25}, static_cast<double>(settings.descent_m_s));
 }
 
 /// Hovering, told everything at 1 s.
@@ -128,7 +124,7 @@ struct Standing {
   std::uint64_t now_us = 1'000'000;
   pinnquad::Commands<float> commands{};
 
-  explicit Standing(const ControllerSettings& settings = {}) : controller(settings) {
+  explicit Standing(const CoreSettings& settings = {}) : controller(settings) {
     REQUIRE(controller.offer_model(block.data(), block.size()) == pinnquad::Status::ok);
   }
   void step() {
@@ -148,15 +144,24 @@ struct Standing {
 
 TEST_CASE("a place 50 m away: within the speed limit, and no more than half a metre too far") {
   far_places<DemoQuadModel>({});
-  far_places<DemoQuadModel>({6, 3, 1.5f});
-  far_places<CrazyflieModel>({5, 2, 1});
+  const auto speeds = [](float horizontal_m_s, float climb_m_s, float descent_m_s) {
+    CoreSettings settings;
+    settings.horizontal_speed_m_s = horizontal_m_s;
+    settings.climb_m_s = climb_m_s;
+    settings.descent_m_s = descent_m_s;
+    return settings;
+  };
+  far_places<DemoQuadModel>(speeds(6, 3, 1.5f));
+  far_places<CrazyflieModel>(speeds(5, 2, 1));
 }
 
 TEST_CASE("a battery a fifth too weak: the droop is gone after 3 s; without the estimate it stays") {
   constexpr double most_m = 0.01;
   const Vector3<double> here = Flight<DemoQuadModel>::start_m;
   const Track with = Flight<DemoQuadModel>(0.8).fly(here, 8, 3);
-  const Track without = Flight<DemoQuadModel>(0.8, {{}, {}, {}, {}, {0, 3}}).fly(here, 8, 3);
+  CoreSettings no_estimate;
+  no_estimate.bias_bandwidth_1_s = 0;
+  const Track without = Flight<DemoQuadModel>(0.8, no_estimate).fly(here, 8, 3);
   const Track small = Flight<CrazyflieModel>(0.8).fly(here, 8, 3);
   MESSAGE("sinks ", with.deepest_m, " m, after 3 s ", with.late_height_error_m, " m too high or low; without ",
           without.late_height_error_m, " m; Crazyflie after 3 s ", small.late_height_error_m, " m");
@@ -199,7 +204,7 @@ TEST_CASE(
     "a bias at its bound along the thrust raises the alarm, one across it or short of it none; a quarter clears it") {
   constexpr float step_s = 0.002f;
   const Vector3<float> upright(0, 0, 1);
-  pinnquad::autopilot::BiasAlarm alarm;
+  pinnquad::autopilot::detail::BiasAlarm alarm;
   // how long it takes to change its mind, at most 5 s
   const auto changes_after_s = [&](const Vector3<float>& bias_m_s2, const Vector3<float>& down) {
     pinnquad::BiasEstimate<float> bias;
@@ -270,8 +275,9 @@ TEST_CASE("the alarm of a bias at its bound begins anew on the ground, in other 
 }
 
 TEST_CASE("at the motors' ends the bias stays") {
-  constexpr pinnquad::autopilot::OutputLimits little{0.02f, 0.8f};
-  Standing standing({{}, little});
+  CoreSettings little;
+  little.highest_command = 0.8f;
+  Standing standing(little);
   standing.controller.situation({true, false});
   standing.wanted.position_m = {0, 0, -1000};  // as much thrust as there is
   standing.wanted.acceleration_m_s2 = {9, 0, -30};
@@ -281,7 +287,7 @@ TEST_CASE("at the motors' ends the bias stays") {
   }
   float largest = 0;
   for (const float u : standing.commands) largest = std::max(largest, u);
-  REQUIRE(largest >= little.upper);
+  REQUIRE(largest >= little.highest_command);
   CHECK(standing.controller.bias().acceleration_m_s2().norm() == 0);
 }
 
@@ -298,7 +304,7 @@ TEST_CASE("on the ground the rotors idle until a set point asks to go up; then t
   for (int i = 0; i < 200; ++i) {
     REQUIRE(standing.controller.set_point(standing.now_us, standing.wanted) == pinnquad::Status::ok);
     standing.step();
-    REQUIRE(thrust() == doctest::Approx(double(outputs.lower)));
+    REQUIRE(thrust() == doctest::Approx(double(CoreSettings{}.lowest_command)));
   }
   standing.wanted.position_m[2] = -2;
   float before = thrust(), steepest = 0;
@@ -321,7 +327,8 @@ TEST_CASE("on the ground the rotors idle until a set point asks to go up; then t
 TEST_CASE("an estimator that moves its estimate by 3 m and 0.4 rad moves nothing else") {
   Standing standing;
   standing.controller.situation({true, false});
-  const pinnquad::autopilot::EstimateJump by{{3, -1, 0.5f}, {0.2f, 0, -0.1f}, 0.4f};
+  const pinnquad::autopilot::LocalState by{{3, -1, 0.5f}, {0.2f, 0, -0.1f}};
+  constexpr float turned_rad = 0.4f;
   const auto turned = [&](float yaw_rad) { return pinnquad::from_euler<float>({0, 0, yaw_rad}); };
   const auto step = [&](float yaw_rad) {
     REQUIRE(standing.controller.body_rates(standing.now_us, {0, 0, 0}) == pinnquad::Status::ok);
@@ -332,12 +339,12 @@ TEST_CASE("an estimator that moves its estimate by 3 m and 0.4 rad moves nothing
   };
   const auto unmoved = [&] {
     const pinnquad::Commands<float> before = step(0);
-    standing.controller.jump(by);
+    standing.controller.jump(by, turned_rad);
     standing.local.position_m += by.position_m;
-    const pinnquad::Commands<float> after = step(by.yaw_rad);
+    const pinnquad::Commands<float> after = step(turned_rad);
     CHECK(standing.controller.record().jump_position_m[0] == 3);
     for (std::size_t i = 0; i < after.size(); ++i) CHECK(after[i] == doctest::Approx(double(before[i])).epsilon(0.01));
-    step(by.yaw_rad);
+    step(turned_rad);
     CHECK(standing.controller.record().jump_position_m[0] == 0);
   };
   SUBCASE("on its way to a set point") {

@@ -25,11 +25,12 @@ namespace {
 
 using namespace battery;
 
-/// The pack's sensor.
-struct Voltmeter : BatteryVoltage {
+/// The vehicle's rows, and the voltage that the pack's sensor shows.
+struct VoltageRecorder : ExactRecorder {
+  std::vector<ColumnName> columns() const { return {{BatteryVoltage::name, BatteryVoltage::unit}}; }
   template <class Quadrotor>
-  double operator()(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state) const {
-    return pack.voltage_V(state.time_s);
+  void measure(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state, double* values) const {
+    values[0] = pack.voltage_V(state.time_s);
   }
   Pack pack;
 };
@@ -41,11 +42,10 @@ Flight recorded(const std::string& folder, double start_V, std::uint64_t seed) {
   plan.samples = 1500;
   const RandomPilot<std::mt19937_64> pilot(std::mt19937_64(seed), pilot_style(quadrotor, plan.start_m, 5.0),
                                            quadrotor.site().ground_z_m);
-  Voltmeter voltmeter;
-  voltmeter.pack.start_V = start_V;
-  const ColumnRecorder<ExactRecorder, Voltmeter> recorder(ExactRecorder{}, voltmeter);
+  VoltageRecorder recorder;
+  recorder.pack.start_V = start_V;
   const RecordedFlight flown = fly(
-      quadrotor, pilot, plan, [](const FlightRow&) {}, recorder);
+      quadrotor, pilot, plan, [](const auto&) {}, recorder);
   const std::string path = folder + "/flight_" + std::to_string(seed) + ".csv";
   write_flight_csv(path, flown.flight);
   Flight flight = read_flight_csv(path, minimum_flight_rows, wanted_columns<Past>());

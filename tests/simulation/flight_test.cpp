@@ -315,12 +315,11 @@ TEST_CASE("an observer is told each row, with the true state") {
   FlightPlan plan;
   plan.samples = 7;
   std::size_t calls = 0;
-  fly(vehicle(), SteadyPilot{}, plan, [&calls](const FlightRow& row) {
+  fly(vehicle(), SteadyPilot{}, plan, [&calls](const auto& flies) {
     ++calls;
-    CHECK(row.rows_done == calls);
-    CHECK(row.rows == 7);
-    CHECK(row.vehicle.time_s == row.sample.time_s);
-    CHECK(row.vehicle.body.position_m[2] == doctest::Approx(-35));
+    CHECK(flies.recording().size() == calls);
+    CHECK(flies.vehicle().time_s == flies.recording().back().time_s);
+    CHECK(flies.vehicle().body.position_m[2] == doctest::Approx(-35));
   });
   CHECK(calls == 7);
 }

@@ -50,9 +50,9 @@ Tally flown(std::uint64_t seed, double max_speed_m_s) {
   const Formula formula(vehicle);
   const Flown inverse{typename Flown::Guard(formula)};
   Tally tally;
-  const auto row = [&](const FlightRow& at) {
-    const auto inputs = sample_inputs<MotionInputs<float>>(at.sample);
-    const PlaceAndTime<double> place{at.vehicle.body.position_m, at.vehicle.time_s};
+  const auto row = [&](const auto& flies) {
+    const auto inputs = sample_inputs<MotionInputs<float>>(flies.recording().back());
+    const PlaceAndTime<double> place{flies.vehicle().body.position_m, flies.vehicle().time_s};
     Commands<float> commands{}, expected{};
     typename Flown::Report report;
     const Status status = inverse.predict(inputs, place, commands, report);

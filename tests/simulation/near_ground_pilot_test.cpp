@@ -12,7 +12,7 @@
 
 namespace {
 
-using Phase = pinnquad::detail::NearGroundPhase;
+using Phase = pinnquad::NearGroundPilot<std::mt19937_64>::Phase;
 using namespace pinnquad;
 using Pilot = NearGroundPilot<std::mt19937_64>;
 

@@ -281,20 +281,12 @@ TEST_CASE("a recorder is told the commands of each tick, and asked for a row aft
 namespace {
 
 /// Equation of the first rotor's speed controller: its thrust grows with the square of its speed.
-struct FirstRotor {
-  static constexpr const char* name = "n1";
-  static constexpr const char* unit = "rev/s";
+struct Columns : pinnquad::ExactRecorder {
+  std::vector<pinnquad::ColumnName> columns() const { return {{"n1", "rev/s"}, {"clock", "s"}}; }
   template <class Quadrotor>
-  double operator()(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state) const {
-    return 100 * std::sqrt(state.rotors[0]);
-  }
-};
-struct Clock {
-  static constexpr const char* name = "clock";
-  static constexpr const char* unit = "s";
-  template <class Quadrotor>
-  double operator()(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state) const {
-    return state.time_s < fails_s ? state.time_s : std::numeric_limits<double>::quiet_NaN();
+  void measure(const Quadrotor& /*quadrotor*/, const VehicleState<double>& state, double* values) const {
+    values[0] = 100 * std::sqrt(state.rotors[0]);
+    values[1] = state.time_s < fails_s ? state.time_s : std::numeric_limits<double>::quiet_NaN();
   }
   double fails_s = 100;
 };
@@ -302,9 +294,8 @@ struct Clock {
 }  // namespace
 
 TEST_CASE("a recorder of columns: the same rows, a value per row and column; one that is not finite ends the flight") {
-  using Columns = pinnquad::ColumnRecorder<pinnquad::ExactRecorder, FirstRotor, Clock>;
   Simulator<Vehicle, Pilot> plain(vehicle(), pilot(7));
-  Simulator<Vehicle, Pilot, Columns> simulator(vehicle(), pilot(7), {}, Columns({}, {}, Clock{2.0}));
+  Simulator<Vehicle, Pilot, Columns> simulator(vehicle(), pilot(7), {}, Columns{{}, 2.0});
   for (int row = 0; row < 20; ++row) {
     REQUIRE(plain.next_row());
     REQUIRE(simulator.next_row());

@@ -116,10 +116,11 @@ class ChosenFlight {
     if (!options_.record_sticks.empty()) pilot = written_down(pilot, sticks, options_.stick_interval_ms / 1000);
     programs::ReplayPage replay(title(), airframe_, paper_site<double>().ground_z_m);
     programs::ProgressLine progress("flying");
-    const RecordedFlight recorded = flown(options_.seed, pilot, [&](const FlightRow& row) {
-      progress.update(static_cast<double>(row.rows_done) / static_cast<double>(row.rows));
-      if (!options_.pictures.empty()) trace.push_back(programs::trace_row(vehicle_, without_, row.vehicle));
-      if (!options_.replay.empty()) replay.add(row.vehicle, row.sample.commands);
+    const RecordedFlight recorded = flown(options_.seed, pilot, [&](const auto& flies) {
+      const Flight& rows = flies.recording();
+      progress.update(static_cast<double>(rows.size()) / static_cast<double>(plan_.samples));
+      if (!options_.pictures.empty()) trace.push_back(programs::trace_row(vehicle_, without_, flies.vehicle()));
+      if (!options_.replay.empty()) replay.add(flies.vehicle(), rows.back().commands);
     });
     progress.clear();
     if (recorded.report.end != FlightEnd::completed) {
@@ -181,9 +182,9 @@ class ChosenFlight {
   /// `observer` sees each row; Ctrl-C ends the flight by an exception.
   template <class Observer>
   RecordedFlight flown(std::uint64_t seed, const programs::AnyPilot& pilot, const Observer& observer) const {
-    const auto watched = [&observer](const FlightRow& row) {
+    const auto watched = [&observer](const auto& simulator) {
       if (programs::interrupted()) throw Interrupted{};
-      observer(row);
+      observer(simulator);
     };
     if (exact()) return fly(vehicle_, pilot, plan_, watched);
     RecorderErrors errors;
@@ -207,7 +208,7 @@ class ChosenFlight {
   int run_statistics() {
     const auto one = [this](std::uint64_t seed, std::atomic<std::size_t>& rows_done) {
       const RecordedFlight recorded =
-          flown(seed, pilot_of(seed), [&rows_done](const FlightRow&) { rows_done.fetch_add(1); });
+          flown(seed, pilot_of(seed), [&rows_done](const auto&) { rows_done.fetch_add(1); });
       return programs::FlightFigures{seed, recorded.report, programs::axis_correlations(recorded.flight, airframe_)};
     };
     const std::vector<programs::FlightFigures> figures =

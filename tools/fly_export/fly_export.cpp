@@ -154,7 +154,8 @@ using Vehicle = std::conditional_t<knows_altitude, NearGround, Distant>;
 struct Altimeter {
   double ground_z_m = 0;
 
-  void operator()(const State<double>& state, std::uint64_t, Model::Inputs& present) const noexcept {
+  template <class Inputs>
+  void operator()(const State<double>& state, std::uint64_t, Inputs& present) const noexcept {
     set_altitude(present, ground_z_m - state.position_m[2]);
   }
 };
@@ -224,7 +225,7 @@ bool closed_loop(const Flown& model) {
   }
   const FigureEight<double> trajectory = trajectory_for(vehicle);
   const AnalyticInverse<Vehicle> analytic(vehicle);
-  [[maybe_unused]] const Altimeter altimeter{vehicle.site().ground_z_m};
+  const Altimeter altimeter{vehicle.site().ground_z_m};
   HoverTrim<double> trim;
   if (hover_trim(vehicle, trajectory.center_m, trim) != Status::ok) return false;
   std::printf(
@@ -239,21 +240,16 @@ bool closed_loop(const Flown& model) {
   using Guard = Extend<TrainingGuard, Fallback<AnalyticInverse<Vehicle>>>;
   using Guarded = InverseDynamics<Flown, Guard>;
   using Zeroed = InverseDynamics<ZeroedModel, Guard>;
-  using Measured = std::conditional_t<knows_altitude, Altimeter, MotionAlone>;
-  const auto measured = [&] {
-    if constexpr (knows_altitude) return altimeter;
-    if constexpr (!knows_altitude) return MotionAlone{};
-  }();
   const auto exported =
-      fly("export", vehicle, trajectory, NetworkInverse<Guarded, Measured>(Guarded(model, analytic), measured));
+      fly("export", vehicle, trajectory, NetworkInverse<Guarded, Altimeter>(Guarded(model, analytic), altimeter));
   fly("analytic inverse", vehicle, trajectory, analytic);
   if constexpr (knows_altitude) {
     fly("analytic, no ground effect", vehicle, trajectory,
         AnalyticInverse<Distant>(Distant(vehicle.airframe(), vehicle.site(), {}, {})));
   }
   fly("none (hover trim)", vehicle, trajectory, trim);
-  const auto zeroed =
-      fly("export, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed, Measured>(Zeroed(analytic), measured));
+  const auto zeroed = fly("export, weights zeroed", vehicle, trajectory,
+                          NetworkInverse<Zeroed, Altimeter>(Zeroed(analytic), altimeter));
   const double fallbacks = static_cast<double>(exported.fallback.fallbacks()) / exported.fallback.asked;
   if (fallbacks > fallback_limit) {
     std::printf("  the export declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,

@@ -61,10 +61,13 @@ inline const LogColumn& core_column(const LogTopic& topic, const std::string& na
 }  // namespace detail
 
 /// A Crazyflie's events (examples/crazyflie_app/src/core_log.h) say times in ms, under names of their own, and leave
-/// out what it does not know: that is as a record is made. Columns are added to the topic.
+/// out what it does not know: that is as a record is made, or 0 of its settings. Columns are added to the topic.
 template <class Record>
 void complete_core_topic(LogTopic& topic) {
-  const Record layout{};
+  Record layout{};
+  if constexpr (std::is_same_v<Record, pinnquad::autopilot::CoreSettings>) {  // a setting that is left out was none
+    Record::each_number(layout, [](const char*, const char*, auto& number) { number = {}; });
+  }
   const auto add = [&topic](const std::string& name, double value) {
     if (topic.column(name) != nullptr) return;
     const bool is_time = name.size() > 3 && name.compare(name.size() - 3, 3, "_us") == 0;

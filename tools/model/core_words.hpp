@@ -77,13 +77,14 @@ class CoreWords {
   std::string stale(const pinnquad::autopilot::StepReport& report, std::uint64_t now_us) const {
     std::string words;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      if ((report.stale_inputs() >> i & 1u) == 0) continue;
+      if ((report.stale_inputs >> i & 1u) == 0) continue;
       words += (words.empty() ? "" : "; ") + std::string(core_input_names[i]) + ": " + stale(i, now_us);
     }
     if (report.reaction != pinnquad::autopilot::Reaction::gives_up) return words;
-    const bool keeps = report.body_rates_stale || report.attitude_stale;
+    const bool keeps = report.stale(pinnquad::autopilot::body_rates_bit | pinnquad::autopilot::attitude_bit);
     if (keeps) words += in_words("; commands are kept for %.0f ms at most", 1e-3 * settings_.keep_us);
-    if (!keeps && report.local_stale) words += in_words("; it levels for %.0f ms at most", 1e-3 * settings_.level_us);
+    if (!keeps && report.stale(pinnquad::autopilot::local_bit))
+      words += in_words("; it levels for %.0f ms at most", 1e-3 * settings_.level_us);
     return words;
   }
 

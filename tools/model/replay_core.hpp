@@ -128,7 +128,7 @@ class CoreReplayOf : public CoreReplay {
       ++replayed.compared;
       compare(record, report, row, replayed);
     }
-    if (!report.set_point_stale) holding_unknown_ = false;
+    if (!report.stale(pinnquad::autopilot::set_point_bit)) holding_unknown_ = false;
     if (row.answerer == Answerer::model || row.answerer == Answerer::analytic_inverse) answer_unknown_ = false;
     // each tick is judged by itself: the next one starts from what this one logged
     controller_->resume(record);
@@ -140,7 +140,7 @@ class CoreReplayOf : public CoreReplay {
   static pinnquad::Vector3<float> vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
   void restart() {
-    controller_.emplace(vehicle_, pinnquad::autopilot::controller_settings(options_.settings));
+    controller_.emplace(vehicle_, options_.settings);
     flown_.reset();
     words_.forget();
     refused_base_ = 0;
@@ -156,8 +156,8 @@ class CoreReplayOf : public CoreReplay {
     restart();
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
-    window_known_us_ = record.timestamp + 2 * pinnquad::autopilot::FlownMotion::window_us;
-    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * pinnquad::autopilot::BiasAlarm::clear_s);
+    window_known_us_ = record.timestamp + 2 * Controller::residual_window_us;
+    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * Controller::alarm_clear_s);
     controller_->resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 15));
     for (int i = 0; i < 4; ++i) {  // what was refused hides the good one before it
@@ -168,9 +168,10 @@ class CoreReplayOf : public CoreReplay {
   }
 
   void take_jump(const Record& record) {
-    const pinnquad::autopilot::EstimateJump by{vector(record.jump_position_m), vector(record.jump_velocity_m_s),
-                                               record.jump_yaw_rad};
-    if (!by.position_m.isZero(0) || !by.velocity_m_s.isZero(0) || std::fabs(by.yaw_rad) > 0) controller_->jump(by);
+    const pinnquad::autopilot::LocalState by{vector(record.jump_position_m), vector(record.jump_velocity_m_s)};
+    if (!by.position_m.isZero(0) || !by.velocity_m_s.isZero(0) || std::fabs(record.jump_yaw_rad) > 0) {
+      controller_->jump(by, record.jump_yaw_rad);
+    }
   }
 
   void take_model(std::optional<std::size_t> model) {
@@ -315,8 +316,8 @@ class CoreReplayOf : public CoreReplay {
     if (cause != pinnquad::to_string(report.cause)) {
       say(std::string("the network came to ") + pinnquad::to_string(report.cause) + ", logged " + cause);
     }
-    if (record.stale_inputs != report.stale_inputs()) {
-      say("stale: " + input_names(report.stale_inputs()) + ", logged: " + input_names(record.stale_inputs));
+    if (record.stale_inputs != report.stale_inputs) {
+      say("stale: " + input_names(report.stale_inputs) + ", logged: " + input_names(record.stale_inputs));
     }
     const std::uint32_t refused = controller_->refused_samples();
     if (!refused_base_known_) {
@@ -368,7 +369,7 @@ class CoreReplayOf : public CoreReplay {
     const bool one_side = (report.cause == Status::outside_envelope) != (logged == Status::outside_envelope);
     const bool answered = report.reaction <= pinnquad::autopilot::Reaction::levels &&
                           record.reaction == static_cast<std::uint8_t>(report.reaction);
-    return one_side && answered && record.stale_inputs == report.stale_inputs() &&
+    return one_side && answered && record.stale_inputs == report.stale_inputs &&
            (report.cause == Status::outside_envelope ? report.worst_excess : record.envelope_excess) <= rounding;
   }
 

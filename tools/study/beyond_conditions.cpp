@@ -185,7 +185,7 @@ Flight fly_for_beyond(const programs::StudyFlight& id) {
     constexpr std::uint64_t noise_stream = 0x9e3779b97f4a7c15u;
     const pinnquad::NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(id.seed ^ noise_stream), errors);
     recorded = pinnquad::fly(
-        vehicle, PaperFlight::pilot(vehicle, engine), PaperFlight::plan(), [](const pinnquad::FlightRow&) {}, recorder);
+        vehicle, PaperFlight::pilot(vehicle, engine), PaperFlight::plan(), [](const auto&) {}, recorder);
   });
   require_completed(id, recorded.report);
   return std::move(recorded.flight);

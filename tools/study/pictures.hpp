@@ -32,7 +32,7 @@ inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
     std::vector<programs::TraceRow> trace;
     const RecordedFlight recorded =
         fly(vehicle, PaperFlight::pilot(vehicle, std::mt19937_64(seed)), PaperFlight::plan(),
-            [&](const FlightRow& row) { trace.push_back(programs::trace_row(vehicle, without, row.vehicle)); });
+            [&](const auto& flies) { trace.push_back(programs::trace_row(vehicle, without, flies.vehicle())); });
     const std::string into = folder + "/flights/" + PaperFlight::name;
     programs::make_folders(into);
     drawn = programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,

@@ -26,7 +26,7 @@ using FlownVehicle = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>;
 #include "trust.hpp"
 using FlownLimits = TrainedQuadModelTrust;
 #else
-using FlownLimits = pinnquad::autopilot::NoTrust;
+using FlownLimits = void;  // without limits of trust
 #endif
 
 namespace {
@@ -41,9 +41,10 @@ Control* made = nullptr;
 /// Made by the first call, which must have returned before another thread calls; the firmware may run no constructors.
 Control& controller(float most_command = 1.0f) noexcept {
   if (made == nullptr) {
-    pinnquad::autopilot::ControllerSettings settings;
-    auto& [lower, upper] = settings.outputs;
-    if (most_command < upper && most_command > lower) upper = most_command;
+    pinnquad::autopilot::CoreSettings settings;
+    if (most_command < settings.highest_command && most_command > settings.lowest_command) {
+      settings.highest_command = most_command;
+    }
     made = new (memory) Control(settings);
   }
   return *made;

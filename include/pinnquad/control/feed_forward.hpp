@@ -30,6 +30,8 @@ using NoexceptFeedForward = std::enable_if_t<noexcept(
 template <class Measured, class Scalar, class Present>
 using NoexceptMeasurement = std::enable_if_t<noexcept(std::declval<Measured&>()(
     std::declval<const State<Scalar>&>(), {std::declval<std::uint64_t>()}, std::declval<Present&>()))>;
+/// Nothing is measured: the motion says all.
+struct MotionAlone {};
 template <class Policy>
 using FallbackCountOf = decltype(std::declval<const Policy&>().count());
 }  // namespace detail
@@ -79,16 +81,12 @@ struct FallbackCount {
   static constexpr std::size_t index(Status status) noexcept { return static_cast<std::size_t>(status) % statuses; }
 };
 
-/// NetworkInverse is given the motion alone.
-struct MotionAlone {};
-
-/// The network's prediction for the motion wanted, or its guard's fallback, counted by Status. `InverseDynamics` has
-/// the interface of inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in
-/// its guard the policy declines where the network does. A model with a past gets a window of the motions asked for,
-/// and declines as `warming_up` first. A model that asks for more than MotionInputs (altitude, battery voltage) needs
-/// `Measured`, called before each prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs&
-/// present) noexcept` sets it.
-template <class InverseDynamics, class Measured = MotionAlone>
+/// The network's prediction for the motion wanted, or its guard's fallback, counted by Status. `InverseDynamics`: as in
+/// inference/inverse_dynamics.hpp; its scalar may be narrower than the loop's. Without a Fallback in its guard the
+/// policy declines where the network does. A model with a past gets a window of the motions asked for, and declines as
+/// `warming_up` first. A model that asks for more than MotionInputs (altitude, battery voltage) needs `Measured`, which
+/// sets it before each prediction: `void operator()(const State<Scalar>&, std::uint64_t time_us, Inputs&) noexcept`.
+template <class InverseDynamics, class Measured = detail::MotionAlone>
 class NetworkInverse {
  public:
   using NetworkScalar = typename InverseDynamics::Scalar;
@@ -99,7 +97,7 @@ class NetworkInverse {
                 "pinnquad: NetworkInverse fills MotionInputs; this model's feature set asks for other inputs "
                 "(features/features.hpp)");
   static_assert(
-      !std::is_same_v<Measured, MotionAlone> || std::is_same_v<MotionInputs<NetworkScalar>, Present>,
+      !std::is_same_v<Measured, detail::MotionAlone> || std::is_same_v<MotionInputs<NetworkScalar>, Present>,
       "pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument that measures it "
       "(control/feed_forward.hpp)");
 
@@ -111,7 +109,7 @@ class NetworkInverse {
                     Commands<Scalar>& commands) noexcept {
     Present present;
     static_cast<MotionInputs<NetworkScalar>&>(present) = narrowed(motion_inputs(state, desired));
-    if constexpr (!std::is_same_v<Measured, MotionAlone>) {
+    if constexpr (!std::is_same_v<Measured, detail::MotionAlone>) {
       static_assert(is_detected<detail::NoexceptMeasurement, Measured, Scalar, Present>,
                     "pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be "
                     "noexcept; time is a std::uint64_t of microseconds (control/feed_forward.hpp)");
@@ -130,8 +128,6 @@ class NetworkInverse {
   }
 
   const FallbackCount& count() const noexcept { return count_; }
-  /// The source of what the motion does not say.
-  Measured& measured() noexcept { return measured_; }
 
  private:
   template <class Scalar>

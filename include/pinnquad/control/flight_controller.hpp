@@ -126,14 +126,6 @@ struct SetPoint {
   Vector3<Scalar> stick_rad_s = Vector3<Scalar>::Zero();   ///< added to the body rates wanted, FRD
 };
 
-/// Reference and feedback, kept apart: a feed-forward policy answers the first, allocation the second.
-template <class Scalar>
-struct TrackingDemand {
-  Accelerations<Scalar> reference;                                                 ///< in the current attitude
-  Vector3<Scalar> feedback_acceleration_m_s2 = Vector3<Scalar>::Zero();            ///< body
-  Vector3<Scalar> feedback_angular_acceleration_rad_s2 = Vector3<Scalar>::Zero();  ///< body
-};
-
 template <class Scalar>
 class FlightController {
  public:
@@ -141,7 +133,6 @@ class FlightController {
                                       Scalar gravity_m_s2 = standard_gravity_m_s2<Scalar>) noexcept
       : gains_(gains), limits_(limits), gravity_m_s2_(gravity_m_s2) {}
 
-  constexpr const FlightGains<Scalar>& gains() const noexcept { return gains_; }
   constexpr const FlightLimits<Scalar>& limits() const noexcept { return limits_; }
   constexpr Scalar gravity_m_s2() const noexcept { return gravity_m_s2_; }
 
@@ -168,11 +159,12 @@ class FlightController {
   }
 
   /// Trajectory loop. Reference: the point's world acceleration in the current attitude, angular accelerations from
-  /// jerk and snap. Feedback: position, velocity, attitude and body rate errors. Yaw follows the trajectory. Speed
+  /// jerk and snap. Feedback, to be added to it: from position, velocity, attitude and body rate errors. They are kept
+  /// apart because a feed-forward policy answers the first, allocation the second. Yaw follows the trajectory. Speed
   /// within the limits, where there are any.
-  /// `not_finite`, `no_solution` (flatness.hpp), `output_not_finite`; `demand` is untouched unless the Status is ok.
-  Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point,
-                    TrackingDemand<Scalar>& demand) const noexcept {
+  /// `not_finite`, `no_solution` (flatness.hpp), `output_not_finite`; both are untouched unless the Status is ok.
+  Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, Accelerations<Scalar>& reference,
+                    Accelerations<Scalar>& feedback) const noexcept {
     using std::cos;
     using std::sin;
     if (!(all_finite(state) && all_finite(point.position_m) && all_finite(point.velocity_m_s))) {
@@ -188,17 +180,17 @@ class FlightController {
     status = attitude_error(state, acceleration, Heading<Scalar>{sin(point.yaw_rad), cos(point.yaw_rad)}, error);
     if (status != Status::ok) return status;
     // `error` also turns vectors from the axes of the attitude wanted into those of the body
-    TrackingDemand<Scalar> asked;
-    asked.reference.linear_m_s2 = body_derivative(state, point.acceleration_m_s2);
-    asked.reference.angular_rad_s2 = body_to_world(error, flat.angular_acceleration_rad_s2);
-    asked.feedback_acceleration_m_s2 = world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2);
-    asked.feedback_angular_acceleration_rad_s2 =
-        angular_feedback(state, error, body_to_world(error, flat.body_rates_rad_s));
-    if (!(all_finite(asked.reference.linear_m_s2) && all_finite(asked.reference.angular_rad_s2) &&
-          all_finite(asked.feedback_acceleration_m_s2) && all_finite(asked.feedback_angular_acceleration_rad_s2))) {
+    Accelerations<Scalar> moved, corrected;
+    moved.linear_m_s2 = body_derivative(state, point.acceleration_m_s2);
+    moved.angular_rad_s2 = body_to_world(error, flat.angular_acceleration_rad_s2);
+    corrected.linear_m_s2 = world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2);
+    corrected.angular_rad_s2 = angular_feedback(state, error, body_to_world(error, flat.body_rates_rad_s));
+    if (!(all_finite(moved.linear_m_s2) && all_finite(moved.angular_rad_s2) && all_finite(corrected.linear_m_s2) &&
+          all_finite(corrected.angular_rad_s2))) {
       return Status::output_not_finite;
     }
-    demand = asked;
+    reference = moved;
+    feedback = corrected;
     return Status::ok;
   }
 

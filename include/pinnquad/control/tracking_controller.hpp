@@ -38,22 +38,21 @@ class TrackingController {
   /// untouched.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
-    TrackingDemand<Scalar> demand;
-    const Status demanded = controller_(state, point, demand);
+    Accelerations<Scalar> motion, feedback;
+    const Status demanded = controller_(state, point, motion, feedback);
     if (demanded != Status::ok) return demanded;
     Commands<Scalar> reference{};
-    feed_forward_status_ = feed_forward_(state, demand.reference, time_us, reference);
+    feed_forward_status_ = feed_forward_(state, motion, time_us, reference);
     Status status = feed_forward_status_;
     ThrustFractions<Scalar> sum = rotors_.fractions(reference);
     if (!has_output(status)) {
       status = Status::fell_back;
-      sum = rotors_.fractions_for(required_wrench(airframe_, state, demand.reference, controller_.gravity_m_s2()),
-                                  rotor_scale_);
+      sum = rotors_.fractions_for(required_wrench(airframe_, state, motion, controller_.gravity_m_s2()), rotor_scale_);
     }
-    Wrench<Scalar> feedback;
-    feedback.force_N[2] = airframe_.mass_kg * demand.feedback_acceleration_m_s2[2];
-    feedback.torque_N_m = inertia_times(airframe_, demand.feedback_angular_acceleration_rad_s2);
-    const ThrustFractions<Scalar> correction = rotors_.fractions_for(feedback, rotor_scale_);
+    Wrench<Scalar> push;
+    push.force_N[2] = airframe_.mass_kg * feedback.linear_m_s2[2];
+    push.torque_N_m = inertia_times(airframe_, feedback.angular_rad_s2);
+    const ThrustFractions<Scalar> correction = rotors_.fractions_for(push, rotor_scale_);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += correction[i];
     if (!all_finite(sum)) return Status::output_not_finite;
     const Commands<Scalar> wanted = rotors_.commands_of(sum);

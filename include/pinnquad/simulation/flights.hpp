@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The paper's three flights (Sec. 5.2) as types: which effects act, who flies, for how long. The pilots' styles are
-// fitted to what a vehicle can do at a place, found through its own inverse: a heavy one is not asked to climb as a
-// racer does. Contract of a flight: `name`, `summary`, `Vehicle` and `SwitchableVehicle` (the same effects, and a
-// ground effect that a program may choose), `ground_effect` (of the flight as the paper has it), `plan()` and
-// `pilot(vehicle, engine, max_speed_m_s)`.
+// The paper's three flights (Sec. 5.2) as types: effects, pilot, duration. The pilots' styles are fitted to what a
+// vehicle can do at a place, found through its own inverse. Contract of a flight: `name`, `summary`, `Vehicle` and
+// `SwitchableVehicle` (the same effects, and a ground effect that a program may choose), `ground_effect` (the paper's),
+// `plan()` and `pilot(vehicle, engine, max_speed_m_s)`.
 #pragma once
 
 #include <limits>
@@ -45,10 +44,9 @@ double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) 
   });
 }
 
-/// The default style, fitted to what the vehicle can do at a place; found through its own inverse, drag included.
-/// No climb that takes more than 60 % of the thrust above hover, no descent with less than 35 % of the hover's or
-/// faster than 1.5 times the climb; turns, sticks and changes of velocity are calmed in proportion where hover leaves
-/// less than 35 % of the command.
+/// The default style, fitted to what the vehicle can do at a place, drag included. No climb takes more than 60 % of the
+/// thrust above hover, no descent less than 35 % of the hover's; none is faster than 1.5 times the climb. Turns, sticks
+/// and changes of velocity are calmed in proportion where hover leaves less than 35 % of the command.
 template <class... Effects>
 PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m,
                        double max_speed_m_s = PilotStyle{}.max_speed_m_s) {
@@ -111,15 +109,6 @@ NearGroundStyle near_ground_style(const Quadrotor<double, Effects...>& quadrotor
   return style;
 }
 
-/// The agile pilot, fitted to a vehicle at the place where a flight starts (pilot_style).
-template <class AnyVehicle, class Engine>
-RandomPilot<Engine> agile_pilot(const AnyVehicle& vehicle, const Engine& engine, const Vector3<double>& start_m,
-                                double max_speed_m_s) {
-  return with_quadrotor(vehicle, [&](const auto& quadrotor) {
-    return RandomPilot<Engine>(engine, pilot_style(quadrotor, start_m, max_speed_m_s), quadrotor.site().ground_z_m);
-  });
-}
-
 /// D1: agile manoeuvres up to 8 m/s in all directions, drag and the standard atmosphere; 15,000 rows at 0.05 s.
 struct AgileFlight {
   static constexpr const char* name = "d1";
@@ -130,10 +119,14 @@ struct AgileFlight {
 
   static FlightPlan plan() { return {}; }
 
+  /// Fitted to the vehicle at the place where the flight starts (pilot_style).
   template <class AnyVehicle, class Engine>
   static RandomPilot<Engine> pilot(const AnyVehicle& vehicle, const Engine& engine,
                                    double max_speed_m_s = PilotStyle{}.max_speed_m_s) {
-    return agile_pilot(vehicle, engine, plan().start_m, max_speed_m_s);
+    return with_quadrotor(vehicle, [&](const auto& quadrotor) {
+      return RandomPilot<Engine>(engine, pilot_style(quadrotor, plan().start_m, max_speed_m_s),
+                                 quadrotor.site().ground_z_m);
+    });
   }
 };
 
@@ -165,25 +158,18 @@ struct NearGroundFlight {
   }
 };
 
-/// D3: agile manoeuvres in a periodic wind, 2.5 sin(pi t / 5) + 2.5 m/s towards north, with drag; 5,000 rows at 0.05 s.
+/// D3: start, pilot and drag of D1 in a periodic wind, 2.5 sin(pi t / 5) + 2.5 m/s towards north; 5,000 rows at 0.05 s.
 /// Speeds are over ground.
-struct WindyFlight {
+struct WindyFlight : AgileFlight {
   static constexpr const char* name = "d3";
   static constexpr const char* summary = "agile, up to 8 m/s, with drag and periodic wind";
   using Vehicle = Quadrotor<double, StandardAtmosphere, PeriodicWind, QuadraticDrag>;
   using SwitchableVehicle = SwitchableQuadrotor<StandardAtmosphere, PeriodicWind, QuadraticDrag>;
-  static constexpr GroundEffectModel ground_effect = GroundEffectModel::none;
 
   static FlightPlan plan() {
-    FlightPlan plan;
+    FlightPlan plan = AgileFlight::plan();
     plan.samples = 5000;
     return plan;
-  }
-
-  template <class AnyVehicle, class Engine>
-  static RandomPilot<Engine> pilot(const AnyVehicle& vehicle, const Engine& engine,
-                                   double max_speed_m_s = PilotStyle{}.max_speed_m_s) {
-    return agile_pilot(vehicle, engine, plan().start_m, max_speed_m_s);
   }
 };
 

@@ -36,43 +36,27 @@ struct NearGroundStyle {
   double braking_m{3};    ///< room left to the border when a target velocity is chosen
 };
 
-namespace detail {
-
-/// Phase of a sortie.
-enum class NearGroundPhase { stay, take_off, hover, traverse, landing };
-
-}  // namespace detail
-
-/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. The
-/// height follows a profile from leg to leg, h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T (take-off,
-/// landing, and a traverse, which changes height on the way), and the climb asked for is h' + lead h'' + gain (h -
-/// height). Velocities north and east are targets followed with a lag, as are yaw rates; stick noise goes on all the
-/// time.
+/// Sorties without end: take-off, one to max_legs hovers and traverses, landing, a stay just above the ground. In
+/// take-off, traverse and landing the height follows h(x) = h0 + (h1 - h0) (10 x^3 - 15 x^4 + 6 x^5), x = t / T; the
+/// climb asked for is h' + lead h'' + gain (h - height). Velocities north and east and yaw rates are targets followed
+/// with a lag, under stick noise.
 template <class Engine>
 class NearGroundPilot {
  public:
-  using Phase = detail::NearGroundPhase;
+  enum class Phase { stay, take_off, hover, traverse, landing };
 
   /// `ground_z_m`: NED z of the ground (Site). The engine is the pilot's own from here on.
   explicit NearGroundPilot(const Engine& engine, const NearGroundStyle& style = {}, double ground_z_m = 0)
-      : engine_(engine), style_(style), ground_z_m_(ground_z_m), thumbs_(style.thumbs) {}
+      : engine_(engine), style_(style), ground_z_m_(ground_z_m), sticks_(style.thumbs) {}
 
   SetPoint<double> operator()(const State<double>& state, double time_s) {
-    const double elapsed_s = time_s - time_s_;
     time_s_ = time_s;
     const double height_m = ground_z_m_ - state.position_m[2];
     if (!started_) begin(height_m);
     if (time_s >= phase_end_s_) choose_next(state);
-
-    const double velocity_share = lag_share(elapsed_s, style_.velocity_lag_s);
-    const double yaw_share = lag_share(elapsed_s, style_.yaw_rate_lag_s);
-    for (int i = 0; i < 2; ++i) {
-      wanted_.velocity_m_s[i] += (target_velocity_m_s_[i] - wanted_.velocity_m_s[i]) * velocity_share;
-    }
-    wanted_.yaw_rate_rad_s += (target_yaw_rate_rad_s_ - wanted_.yaw_rate_rad_s) * yaw_share;
-    wanted_.velocity_m_s[2] = -climb(height_m);
-    thumbs_.move(engine_, time_s, wanted_.stick_rad_s);
-    return wanted_;
+    sticks_.follow(engine_, style_, time_s);
+    sticks_.wanted.velocity_m_s[2] = -climb(height_m);
+    return sticks_.wanted;
   }
 
   const NearGroundStyle& style() const noexcept { return style_; }
@@ -137,10 +121,11 @@ class NearGroundPilot {
     constexpr double overshoot = 0.95;  // asked for, so that what is flown stays near the limit
     drift(overshoot * style_.max_speed_m_s);
     for (int i = 0; i < 2; ++i) {  // not out of the box
-      const double there = state.position_m[i] + target_velocity_m_s_[i] * (phase_end_s_ - time_s_);
+      double& velocity_m_s = sticks_.target_velocity_m_s[i];
+      const double there = state.position_m[i] + velocity_m_s * (phase_end_s_ - time_s_);
       const double border = style_.farthest_m - style_.braking_m;
-      if (there > border) target_velocity_m_s_[i] = -std::abs(target_velocity_m_s_[i]);
-      if (there < -border) target_velocity_m_s_[i] = std::abs(target_velocity_m_s_[i]);
+      if (there > border) velocity_m_s = -std::abs(velocity_m_s);
+      if (there < -border) velocity_m_s = std::abs(velocity_m_s);
     }
   }
 
@@ -174,9 +159,9 @@ class NearGroundPilot {
     constexpr double two_pi = 6.283185307179586;
     const double course = uniform(engine_, 0, two_pi);
     const double speed = max_speed_m_s * std::sqrt(uniform_01(engine_));
-    target_velocity_m_s_[0] = speed * std::cos(course);
-    target_velocity_m_s_[1] = speed * std::sin(course);
-    target_yaw_rate_rad_s_ = uniform(engine_, -style_.max_yaw_rate_rad_s, style_.max_yaw_rate_rad_s);
+    sticks_.target_velocity_m_s[0] = speed * std::cos(course);
+    sticks_.target_velocity_m_s[1] = speed * std::sin(course);
+    sticks_.choose_yaw_rate(engine_, style_.max_yaw_rate_rad_s);
   }
 
   /// Climb asked for at a height, m/s up.
@@ -194,7 +179,7 @@ class NearGroundPilot {
   Engine engine_;
   NearGroundStyle style_;
   double ground_z_m_;
-  detail::Thumbs thumbs_;
+  detail::RandomSticks sticks_;
   bool started_{false};
   double time_s_{0};
   Phase phase_{Phase::stay};
@@ -203,9 +188,6 @@ class NearGroundPilot {
   double from_m_{0};  ///< heights of the profile
   double to_m_{0};
   int legs_left_{0};
-  Vector3<double> target_velocity_m_s_ = Vector3<double>::Zero();
-  double target_yaw_rate_rad_s_{0};
-  SetPoint<double> wanted_{};
 };
 
 }  // namespace pinnquad

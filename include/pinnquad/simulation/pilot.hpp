@@ -41,15 +41,8 @@ struct ThumbStyle {
   double yaw_spread_rad_s{0.062};
 };
 
-}  // namespace detail
-
-/// The share of its way to a target that a first-order lag goes in a time; all of it without lag.
-inline double lag_share(double elapsed_s, double lag_s) { return lag_s == 0 ? 1 : elapsed_s / (lag_s + elapsed_s); }
-
-namespace detail {
-
-/// Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between frames.
-/// Three draws per frame: roll, pitch, yaw.
+/// Stick noise. Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between
+/// frames. Three draws per frame: roll, pitch, yaw.
 class Thumbs {
  public:
   explicit Thumbs(const ThumbStyle& style)
@@ -76,6 +69,32 @@ class Thumbs {
   double drive_;
   Vector3<double> spread_rad_s_;
   double next_frame_s_{0};
+};
+
+/// The set point of a pilot who flies at random: velocity and yaw rate follow targets with a lag, the thumbs are busy.
+struct RandomSticks {
+  explicit RandomSticks(const ThumbStyle& style) : thumbs(style) {}
+
+  template <class Engine>
+  void choose_yaw_rate(Engine& engine, double most_rad_s) {
+    target_yaw_rate_rad_s = uniform(engine, -most_rad_s, most_rad_s);
+  }
+  /// To be called in time order. Without lag all of the way at once.
+  template <class Engine, class Style>
+  void follow(Engine& engine, const Style& style, double at_s) {
+    const double elapsed_s = at_s - time_s;
+    const auto share = [&](double lag_s) { return lag_s == 0 ? 1 : elapsed_s / (lag_s + elapsed_s); };
+    wanted.velocity_m_s += (target_velocity_m_s - wanted.velocity_m_s) * share(style.velocity_lag_s);
+    wanted.yaw_rate_rad_s += (target_yaw_rate_rad_s - wanted.yaw_rate_rad_s) * share(style.yaw_rate_lag_s);
+    thumbs.move(engine, at_s, wanted.stick_rad_s);
+    time_s = at_s;
+  }
+
+  Thumbs thumbs;
+  double time_s{0};  ///< of the last tick
+  Vector3<double> target_velocity_m_s = Vector3<double>::Zero();
+  double target_yaw_rate_rad_s{0};
+  SetPoint<double> wanted{};
 };
 
 }  // namespace detail

@@ -28,36 +28,30 @@ struct PilotStyle {
   double braking_m{6};  ///< room left to the border when a target velocity is chosen
 };
 
-/// Draws a target velocity (any direction; the greatest speed and the vertical more often), holds it for a random time,
-/// and asks for it with a lag. A component that would lead out of the box before its time is up is turned round. Yaw
-/// rate targets change with it; stick noise goes on all the time. A turn against the thrust limits can carry the
-/// vehicle past what was asked for: beyond easing_share the velocity is asked for less, by the ramp in `eased`.
+/// Draws a target velocity (any direction; the greatest speed and the vertical more often) and a yaw rate, holds them
+/// for a random time, and asks for them with a lag, under stick noise. A component that would lead out of the box
+/// before its time is up is turned round. A turn against the thrust limits can carry the vehicle past what was asked
+/// for: beyond easing_share less velocity is asked for.
 template <class Engine>
 class RandomPilot {
  public:
   /// `ground_z_m`: NED z of the ground (Site). The engine is the pilot's own from here on.
   explicit RandomPilot(const Engine& engine, const PilotStyle& style = {}, double ground_z_m = 0)
-      : engine_(engine), style_(style), ground_z_m_(ground_z_m), thumbs_(style.thumbs) {}
+      : engine_(engine), style_(style), ground_z_m_(ground_z_m), sticks_(style.thumbs) {}
 
   SetPoint<double> operator()(const State<double>& state, double time_s) {
-    const double elapsed_s = time_s - time_s_;
-    time_s_ = time_s;
     if (time_s >= next_target_s_) {
       next_target_s_ = time_s + uniform(engine_, style_.min_hold_s, style_.max_hold_s);
-      choose_target(state);
+      choose_target(state, next_target_s_ - time_s);
     }
-    const double velocity_share = lag_share(elapsed_s, style_.velocity_lag_s);
-    const double yaw_share = lag_share(elapsed_s, style_.yaw_rate_lag_s);
-    wanted_.velocity_m_s += (target_velocity_m_s_ - wanted_.velocity_m_s) * velocity_share;
-    wanted_.yaw_rate_rad_s += (target_yaw_rate_rad_s_ - wanted_.yaw_rate_rad_s) * yaw_share;
-    thumbs_.move(engine_, time_s, wanted_.stick_rad_s);
+    sticks_.follow(engine_, style_, time_s);
     return eased(state.velocity_m_s.norm());
   }
 
   const PilotStyle& style() const noexcept { return style_; }
 
  private:
-  void choose_target(const State<double>& state) {
+  void choose_target(const State<double>& state, double hold_s) {
     constexpr double two_pi = 6.283185307179586;
     constexpr double beyond = 1.25;     // draws past the limits are cut: the limits themselves are flown often
     constexpr double overshoot = 0.95;  // of the limit is asked for; the flown speed stays near it
@@ -67,7 +61,6 @@ class RandomPilot {
     const double speed = overshoot * style_.max_speed_m_s * within(beyond * std::sqrt(uniform_01(engine_)), 1);
     Vector3<double> velocity(speed * level * std::cos(course), speed * level * std::sin(course), speed * down);
 
-    const double hold_s = next_target_s_ - time_s_;
     const Vector3<double> lowest(-style_.farthest_m, -style_.farthest_m, ground_z_m_ - style_.highest_m);
     const Vector3<double> highest(style_.farthest_m, style_.farthest_m, ground_z_m_ - style_.lowest_m);
     for (int i = 0; i < 3; ++i) {
@@ -78,8 +71,8 @@ class RandomPilot {
     }
     if (velocity[2] < -style_.max_climb_m_s) velocity[2] = -style_.max_climb_m_s;
     if (velocity[2] > style_.max_descent_m_s) velocity[2] = style_.max_descent_m_s;
-    target_velocity_m_s_ = velocity;
-    target_yaw_rate_rad_s_ = uniform(engine_, -style_.max_yaw_rate_rad_s, style_.max_yaw_rate_rad_s);
+    sticks_.target_velocity_m_s = velocity;
+    sticks_.choose_yaw_rate(engine_, style_.max_yaw_rate_rad_s);
   }
 
   static double within(double value, double most) { return value > most ? most : (value < -most ? -most : value); }
@@ -88,7 +81,7 @@ class RandomPilot {
   /// easing_share, none at the greatest speed.
   SetPoint<double> eased(double speed_m_s) const {
     const double easing_m_s = style_.easing_share * style_.max_speed_m_s;
-    SetPoint<double> result = wanted_;
+    SetPoint<double> result = sticks_.wanted;
     if (speed_m_s > easing_m_s) {
       const double past = (speed_m_s - easing_m_s) / (style_.max_speed_m_s - easing_m_s);
       result.velocity_m_s *= past < 1 ? 1 - past : 0;
@@ -99,12 +92,8 @@ class RandomPilot {
   Engine engine_;
   PilotStyle style_;
   double ground_z_m_;
-  detail::Thumbs thumbs_;
-  double time_s_{0};
+  detail::RandomSticks sticks_;
   double next_target_s_{0};
-  Vector3<double> target_velocity_m_s_ = Vector3<double>::Zero();
-  double target_yaw_rate_rad_s_{0};
-  SetPoint<double> wanted_{};
 };
 
 }  // namespace pinnquad

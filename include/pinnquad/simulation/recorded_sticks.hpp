@@ -37,9 +37,8 @@ inline const std::vector<std::string>& stick_columns() {
   return columns;
 }
 
-/// Reads a stick recording. Columns are found by name, in any order; others are ignored.
-/// Throws InputError (all of `read_csv`; a negative time or one that does not increase), its text one line with file,
-/// line and column.
+/// Reads a stick recording. Columns are found by name, in any order; others are ignored. Throws InputError: as
+/// `read_csv` does; a negative time or one that does not increase.
 inline StickRecording read_sticks_csv(const std::string& path) {
   constexpr std::size_t minimum_rows = 2;
   StickRecording recording;
@@ -70,8 +69,8 @@ inline void write_sticks_csv(const std::string& path, const StickRecording& reco
 }
 
 /// Asks for what a recording says, linear between its rows; before the first row for what that one says, after the last
-/// for a hover. At the very time of a row its numbers come back bit for bit: a recording of every control tick flies
-/// the same flight again.
+/// for a hover. At the time of a row its numbers come back bit for bit: a recording of every control tick flies the
+/// same flight again.
 class RecordedSticks {
  public:
   explicit RecordedSticks(StickRecording recording) : recording_(std::move(recording)) {}

@@ -14,7 +14,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -56,12 +55,10 @@ Status recorder_status(const Recorder& recorder) noexcept {
 template <class Recorder>
 inline constexpr bool is_recorder = is_detected<detail::HoldOf, Recorder>&& is_detected<detail::RowOf, Recorder>;
 
-/// The vehicle's row at its present time, without error. Accelerations come from the dynamics (docs/paper.md, deviation
-/// 14) with the rotors as they turn now, behind their lag, not from differences. Commands are what was held up to this
-/// instant, clipped as the rotors clip it: the command, not the lag-filtered thrust, because that is what a flight log
-/// has and what the paper's network is to give. Behind a 5 ms lag the rotors differ from it by about 5 ms times its
-/// rate of change, some 1e-2 in agile flight: motion and command determine each other that well and no better. Altitude
-/// is above ground.
+/// The vehicle's row at its present time, without error. Accelerations are those of the dynamics with the rotors as
+/// they turn now, behind their lag (docs/paper.md, deviation 14). Commands are those held up to this instant, clipped:
+/// a flight log has commands, and the paper's network gives them. Behind a 5 ms lag the rotors differ from them by some
+/// 1e-2 in agile flight: motion and command determine each other no better. Altitude is above ground.
 struct ExactRecorder {
   void hold(const Commands<double>& /*commands*/, double /*time_s*/) const noexcept {}
 
@@ -86,36 +83,6 @@ struct ExactRecorder {
   }
 };
 
-/// Another recorder's rows, and extra columns beside them. A Column is what features/extra_columns.hpp says, with a
-/// `double operator()(const Quadrotor&, const VehicleState<double>&)`: what its sensor shows at the present instant.
-template <class Recorder, class... Column>
-class ColumnRecorder {
-  static_assert(!detail::has_columns<Recorder>,
-                "pinnquad: this recorder has columns of its own already: name all in one ColumnRecorder");
-
- public:
-  explicit ColumnRecorder(Recorder recorder = Recorder{}, Column... column)
-      : recorder_(std::move(recorder)), columns_(std::move(column)...) {}
-
-  void hold(const Commands<double>& commands, double time_s) { recorder_.hold(commands, time_s); }
-  template <class... Effects>
-  Sample operator()(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle,
-                    const Commands<double>& commands) {
-    return recorder_(quadrotor, vehicle, commands);
-  }
-  Status status() const noexcept { return detail::recorder_status(recorder_); }
-
-  std::vector<ColumnName> columns() const { return {ColumnName{Column::name, Column::unit}...}; }
-  template <class... Effects>
-  void measure(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle, double* values) {
-    std::apply([&](auto&... column) { ((*values++ = column(quadrotor, vehicle)), ...); }, columns_);
-  }
-
- private:
-  Recorder recorder_;
-  std::tuple<Column...> columns_;
-};
-
 /// The errors of a log. The defaults are none: NoisyRecorder then writes ExactRecorder's numbers.
 struct RecorderErrors {
   double gyro_noise_rad_s{0};           ///< standard deviation per axis and gyro sample, white
@@ -126,13 +93,12 @@ struct RecorderErrors {
   double attitude_noise_rad{0};         ///< standard deviation of a turn about each body axis, white
 };
 
-/// The paper's Fig. 2 states a correlation of 0.67 between roll acceleration and signed command sum; exact rows have
-/// 0.98. Two errors that bring the default random pilot's flights there; the paper's own cause is unknown. Measured
-/// over 15,000 rows, flight seeds 1, 2, 3 (docs/simulator.md has more settings):
+/// Two errors that bring the default random pilot's flights to the correlation of the paper's Fig. 2, 0.67 between roll
+/// acceleration and signed command sum; exact rows have 0.98. The paper's own cause is unknown. Over 15,000 rows, seeds
+/// 1, 2, 3 (docs/simulator.md has more settings):
 ///   noisy_gyro_errors      roll 0.67 0.68 0.64   pitch 0.67 0.67 0.67   yaw 0.12 0.11 0.11
 ///   late_command_errors    roll 0.68 0.69 0.67   pitch 0.68 0.68 0.68   yaw 0.83 0.83 0.84
-/// The first drowns yaw, whose accelerations are eight times smaller; the paper calls yaw strongly correlated too,
-/// which speaks for the second.
+/// The paper calls yaw strongly correlated too, which speaks for the second.
 constexpr RecorderErrors noisy_gyro_errors() noexcept {
   RecorderErrors errors;
   errors.gyro_noise_rad_s = 0.05;  // over 10 ms: 7.1 rad/s^2 in the acceleration, whose own spread is 6.6 in roll
@@ -149,11 +115,10 @@ constexpr RecorderErrors late_command_errors() noexcept {
 /// h = derivative_interval_s apart, the later one at the row:
 ///   body rates             w + s n_1
 ///   angular acceleration   w_dot + s (n_1 - n_0) / h      white, deviation sqrt(2) s / h
-/// so that rates and accelerations share the later sample's noise, as in a log that differentiates its gyro. What such
-/// a difference loses of w_dot itself (its mean over h instead of its value) is left out.
-/// Commands are those in force at t - command_latency_s - U(0, command_jitter_s), clipped; before the first tick's
-/// there are the first tick's. Position, and so altitude and linear acceleration, are without error.
-/// Every row draws the same number of values, whatever the errors: one of them changed leaves the others' noise alone.
+/// so that both share the later sample's noise, as in a log that differentiates its gyro; that a difference is a mean
+/// over h is left out. Commands are those in force at t - command_latency_s - U(0, command_jitter_s), clipped; before
+/// the first tick they are the first tick's. Altitude and linear acceleration are without error. Every row draws the
+/// same number of values: an error that is changed leaves the others' noise alone.
 template <class Engine>
 class NoisyRecorder {
  public:

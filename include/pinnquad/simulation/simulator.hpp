@@ -53,13 +53,12 @@ using GroundEffectSwitchOf = decltype(std::declval<Vehicle&>().set_ground_effect
 }  // namespace detail
 
 /// Flies `Vehicle` (a Quadrotor<double, Effects...> or a SwitchableQuadrotor) as `Pilot` asks and records it by
-/// `Recorder`; all are copies, and so is a copy of a simulator, which flies on like its original.
-/// A tick: the pilot's set point, the controller's demand, the inverse's commands, desaturated, and physics
-/// steps under these commands. After every `controls_per_sample` ticks a row is recorded, at exact multiples of
-/// the sample period. The flight ends by itself where a Status isn't ok (the airframe's and the hover trim's at the
-/// start, and a recorder's; `out_of_range` for clocks that do not run; not_finite, output_not_finite, also of a row,
-/// and no_solution on the way), or when a row finds the vehicle at the ground; vehicle() keeps time and state of that
-/// moment, and what was recorded stays.
+/// `Recorder`; all are copies, and so is a copy of a simulator, which flies on like its original. A tick: the pilot's
+/// set point, the controller's demand, the inverse's commands, desaturated, and physics steps under them. After every
+/// `controls_per_sample` ticks a row is recorded, at exact multiples of the sample period. The flight ends by itself
+/// when a row finds the vehicle at the ground, or where a Status isn't ok: at the start the airframe's, the hover
+/// trim's, a recorder's, `out_of_range` for clocks that do not run; on the way `not_finite`, `no_solution` and
+/// `output_not_finite`, also of a row. vehicle() and the recording stay as they were then.
 template <class Vehicle, class Pilot, class Recorder = ExactRecorder>
 class Simulator {
   static_assert(is_pilot<Pilot>, "pinnquad: this type is no pilot (simulation/pilot.hpp)");
@@ -255,7 +254,7 @@ class Simulator {
   Status status_{Status::ok};
 };
 
-/// A flight in figures. Ranges are those of the true motion, not of what a recorder made of it, at the recorded rows.
+/// A flight in figures. Ranges are those of the true motion at the recorded rows.
 struct FlightReport {
   FlightEnd end{FlightEnd::completed};
   Status status{Status::ok};
@@ -273,22 +272,15 @@ struct RecordedFlight {
   FlightReport report;
 };
 
-/// The argument of an observer after each row: how far the flight is, the true state, and the row as recorded.
-struct FlightRow {
-  std::size_t rows_done;
-  std::size_t rows;  ///< of the plan
-  const VehicleState<double>& vehicle;
-  const Sample& sample;
-};
-
 /// Angle between the body's down axis and the world's, 0..pi.
 inline double tilt_rad(const Quaternion<double>& attitude) noexcept {
   const double upright = body_down_axis(attitude)[2];
   return std::acos(upright < -1 ? -1 : upright);  // upside down, rounding goes beyond
 }
 
-/// Flies and records. `observer(const FlightRow&)` is called after each row. A Status that isn't ok, or the ground,
-/// ends the flight (simulation/simulator.hpp); the rows up to there are kept and the report says where.
+/// Flies and records. `observer(const Simulator<Vehicle, Pilot, Recorder>&)` is called after each row: it sees the true
+/// state, and the row as the last of the recording. A Status that isn't ok, or the ground, ends the flight; the rows up
+/// to there are kept and the report says where.
 template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder>
 RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan, Observer observer,
                    const Recorder& recorder = Recorder{}) {
@@ -308,7 +300,7 @@ RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPla
     if (report.rows == 0 || altitude_m > report.max_altitude_m) report.max_altitude_m = altitude_m;
     if (saturated(simulator.commands())) ++saturated_rows;
     ++report.rows;
-    observer(FlightRow{report.rows, plan.samples, simulator.vehicle(), simulator.recording().back()});
+    observer(std::as_const(simulator));
   }
   report.end = simulator.end();
   report.status = simulator.status();
@@ -320,7 +312,7 @@ RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPla
 
 template <class Vehicle, class Pilot>
 RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan = {}) {
-  return fly(quadrotor, pilot, plan, [](const FlightRow&) {});
+  return fly(quadrotor, pilot, plan, [](const auto&) {});
 }
 
 }  // namespace pinnquad

@@ -16,10 +16,9 @@ namespace pinnquad {
 
 enum class GroundEffectModel { none, cheeseman_bennett, conyers };
 
-/// One of three Quadrotors, with `Effects...` and behind them no ground effect, Cheeseman and Bennett's, or Conyers'.
-/// A variant of whole vehicles and not an effect that holds a variant: so each choice is the compile-time vehicle to
-/// the last bit and at its speed. An effect would ask its variant in each of a step's four evaluations, and because it
-/// may use the rotors' wrench (a property of the type), the inverse would solve the coupled equation also for `none`.
+/// One of three Quadrotors, with `Effects...` and behind them no ground effect, Cheeseman and Bennett's, or Conyers'. A
+/// variant of whole vehicles: each choice is the compile-time vehicle to the last bit and at its speed. An effect that
+/// held a variant would ask it in each evaluation, and the inverse would solve the coupled equation for `none` too.
 template <class... Effects>
 class SwitchableQuadrotor {
  public:

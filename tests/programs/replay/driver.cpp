@@ -31,15 +31,15 @@ int run(const std::string& html, const std::string& csv, std::size_t samples, co
   plan.samples = samples;
   const RandomPilot<std::mt19937_64> pilot(std::mt19937_64(7), pilot_style(quadrotor, plan.start_m),
                                            quadrotor.site().ground_z_m);
-  const FlightReport report = fly(quadrotor, pilot, plan, [&](const FlightRow& row) {
-                                page.add(row.vehicle, row.sample.commands);
-                                const State<double>& body = row.vehicle.body;
-                                rows << row.vehicle.time_s;
+  const FlightReport report = fly(quadrotor, pilot, plan, [&](const auto& flies) {
+                                page.add(flies.vehicle(), flies.recording().back().commands);
+                                const State<double>& body = flies.vehicle().body;
+                                rows << flies.vehicle().time_s;
                                 for (int i = 0; i < 3; ++i) rows << ',' << body.position_m[i];
                                 for (int i = 0; i < 3; ++i) rows << ',' << body.velocity_m_s[i];
                                 rows << ',' << body.attitude.w << ',' << body.attitude.x << ',' << body.attitude.y
                                      << ',' << body.attitude.z;
-                                for (const double command : row.sample.commands) rows << ',' << command;
+                                for (const double command : flies.recording().back().commands) rows << ',' << command;
                                 rows << '\n';
                               }).report;
   rows.close();

@@ -7,7 +7,7 @@
 
 #include "pinnquad/control/bias_estimate.hpp"
 
-namespace pinnquad::autopilot {
+namespace pinnquad::autopilot::detail {
 
 /// Only the bias along the thrust is the model's fault: across it rotors make no force, and drag and wind stay whoever
 /// answers. Raised once the bias has stood at its bound for `raise_s` with half of the bound or more along the thrust;
@@ -41,4 +41,4 @@ class BiasAlarm {
   bool raised_ = false;
 };
 
-}  // namespace pinnquad::autopilot
+}  // namespace pinnquad::autopilot::detail

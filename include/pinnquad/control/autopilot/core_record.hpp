@@ -6,12 +6,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+
+#include "pinnquad/control/bias_estimate.hpp"
+#include "pinnquad/control/flight_controller.hpp"
 
 namespace pinnquad::autopilot {
-
-/// An input's bit in `came` and `stale_inputs`.
-inline constexpr std::uint8_t body_rates_bit = 1, attitude_bit = 2, local_bit = 4, set_point_bit = 8;
 
 /// One tick. Inputs are those that came last, refused ones too; of one input one sample per tick at most.
 struct CoreRecord {
@@ -100,40 +99,43 @@ struct CoreRecord {
   }
 };
 
-/// The settings of a controller, logged once when it starts.
+/// The settings of a controller, logged once when it starts. The controller writes the effects and the limits of trust
+/// itself.
 struct CoreSettings {
   static constexpr const char* topic = "pinnquad_settings";
+  /// An effect in `effects`: four bits each, the first effect in the lowest, 0 at the end.
+  static constexpr std::uint32_t quadratic_drag = 1, linear_damping = 2, another_effect = 15;
 
   std::uint64_t timestamp{0};
-  // AgeLimits
-  std::uint32_t body_rates_us{0};
-  std::uint32_t attitude_us{0};
-  std::uint32_t local_us{0};
-  std::uint32_t set_point_us{0};
-  std::uint32_t keep_us{0};
-  std::uint32_t level_us{0};
-  // OutputLimits
-  float lowest_command{0};
-  float highest_command{0};
+  // the greatest age of each input, counted from its time stamp
+  std::uint32_t body_rates_us{10'000};  ///< older: keeps its commands
+  std::uint32_t attitude_us{20'000};    ///< older: keeps its commands
+  std::uint32_t local_us{100'000};      ///< position and velocity; older: levels
+  std::uint32_t set_point_us{500'000};  ///< older: holds its place
+  std::uint32_t keep_us{40'000};        ///< commands are kept this long; then it gives up
+  std::uint32_t level_us{1'000'000};    ///< it levels this long without a position; then it gives up
+  // range of the motor commands, thrust over greatest thrust
+  float lowest_command{0.02f};  ///< rotors keep turning
+  float highest_command{1};
   // FlightGains
-  float position_1_s{0};
-  float velocity_1_s{0};
-  float tilt_1_s{0};
-  float yaw_1_s{0};
-  float roll_pitch_rate_1_s{0};
-  float yaw_rate_1_s{0};
-  // SpeedLimits
-  float horizontal_speed_m_s{0};
-  float climb_m_s{0};
-  float descent_m_s{0};
-  float take_off_s{0};
+  float position_1_s{FlightGains<float>{}.position_1_s};
+  float velocity_1_s{FlightGains<float>{}.velocity_1_s};
+  float tilt_1_s{FlightGains<float>{}.tilt_1_s};
+  float yaw_1_s{FlightGains<float>{}.yaw_1_s};
+  float roll_pitch_rate_1_s{FlightGains<float>{}.roll_pitch_rate_1_s};
+  float yaw_rate_1_s{FlightGains<float>{}.yaw_rate_1_s};
+  // greatest speeds towards a set point
+  float horizontal_speed_m_s{12};
+  float climb_m_s{5};
+  float descent_m_s{3};
+  float take_off_s{1};  ///< time that thrust takes to come at take-off
   // BiasSettings
-  float bias_bandwidth_1_s{0};
-  float most_bias_m_s2{0};
-  // FlownEffects of the analytic inverse's vehicle
+  float bias_bandwidth_1_s{BiasSettings<float>{}.bandwidth_1_s};
+  float most_bias_m_s2{BiasSettings<float>{}.max_bias_m_s2};
+  // effects of the analytic inverse's vehicle
   std::uint32_t effects{0};
-  float drag_n_s_m{0};
-  float rate_damping_n_m_s{0};
+  float drag_n_s_m{0};          ///< of LinearDamping
+  float rate_damping_n_m_s{0};  ///< of LinearDamping
   // limits of trust; 0: none
   float distance_limit{0};    ///< of the squared distance
   float innovation_limit{0};  ///< of the command residual

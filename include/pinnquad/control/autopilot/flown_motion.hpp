@@ -12,10 +12,7 @@
 #include "pinnquad/inference/joint_distance.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
-namespace pinnquad::autopilot {
-
-/// No limits of trust: neither distance nor command residual is measured.
-struct NoTrust {};
+namespace pinnquad::autopilot::detail {
 
 /// Means over windows of length T. An acceleration is the slope of velocity or body rates by least squares, which
 /// weighs the acceleration at time t by t (T - t). State and commands have the same weights, so that all are of one
@@ -146,7 +143,7 @@ class FlownMotion {
   Commands<float> flown_{};
 };
 
-/// The command residual of the model that flies. `Trust`: the struct of trust.hpp, or NoTrust.
+/// The command residual of the model that flies. `Trust`: the struct of trust.hpp; void: nothing is measured.
 template <class Trust>
 class FlownTrust {
  public:
@@ -204,7 +201,7 @@ const std::uint64_t* training_data() noexcept {
 }
 
 template <>
-class FlownTrust<NoTrust> {
+class FlownTrust<void> {
  public:
   static constexpr bool known = false;
   explicit FlownTrust(float /*rotor_lag_s*/) noexcept {}
@@ -212,4 +209,4 @@ class FlownTrust<NoTrust> {
   static constexpr float command_residual() noexcept { return 0; }
 };
 
-}  // namespace pinnquad::autopilot
+}  // namespace pinnquad::autopilot::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The inputs of the controller: a flight stack's samples with their age limits, and its situation. A bad sample counts
-// as one that did not come: the last good one stays and ages, so that silence and NaN meet the same limits.
+// The inputs of the controller, a flight stack's samples and its situation, and the report of a step. A bad sample
+// counts as one that did not come: the last good one stays and ages, so that silence and NaN meet the same limits.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,8 @@
 
 namespace pinnquad::autopilot {
 
-/// The greatest age of each input, counted from its time stamp, and the Reaction beyond it.
-struct AgeLimits {
-  std::uint64_t body_rates_us = 10'000;  ///< older: keeps its commands
-  std::uint64_t attitude_us = 20'000;    ///< older: keeps its commands
-  std::uint64_t local_us = 100'000;      ///< position and velocity; older: levels
-  std::uint64_t set_point_us = 500'000;  ///< older: holds its place
-  std::uint64_t keep_us = 40'000;        ///< commands are kept this long; then it gives up
-  std::uint64_t level_us = 1'000'000;    ///< it levels this long without a position; then it gives up
-};
+/// An input's bit, in reports and records.
+inline constexpr std::uint8_t body_rates_bit = 1, attitude_bit = 2, local_bit = 4, set_point_bit = 8;
 
 /// A tick's reaction, from good to bad.
 enum class Reaction : std::uint8_t {
@@ -42,18 +35,17 @@ constexpr const char* to_string(Reaction reaction) noexcept {
   return "unknown reaction";
 }
 
-/// Range of the motor commands, thrust over greatest thrust.
-struct OutputLimits {
-  float lower = 0.02f;  ///< rotors keep turning
-  float upper = 1.0f;
-};
+/// A step's reaction, and the reasons.
+struct StepReport {
+  Reaction reaction{Reaction::gives_up};
+  std::uint8_t stale_inputs{0};  ///< as bits
+  Status status{Status::ok};     ///< of outer loop and inverse; ok where none was asked
+  Status cause{Status::ok};      ///< the network's own
+  float worst_excess{0};         ///< of a feature beyond its envelope, in half-widths; 0 inside
+  int worst_feature{-1};         ///< that feature, -1 if none
+  float squared_distance{0};     ///< from the training rows (JointDistance); 0: none was measured
 
-/// Greatest speeds towards a set point, and the time that thrust takes to come at take-off.
-struct SpeedLimits {
-  float horizontal_m_s = 12;
-  float climb_m_s = 5;
-  float descent_m_s = 3;
-  float take_off_s = 1;
+  constexpr bool stale(std::uint8_t bits) const noexcept { return (stale_inputs & bits) != 0; }
 };
 
 /// The stack's own state.
@@ -65,13 +57,6 @@ struct Situation {
   bool in_flight() const noexcept { return drives_motors && !landed; }
 };
 
-/// A reset of the estimator: the step of its estimate, NED.
-struct EstimateJump {
-  Vector3<float> position_m = Vector3<float>::Zero();
-  Vector3<float> velocity_m_s = Vector3<float>::Zero();
-  float yaw_rad{0};
-};
-
 /// Position and velocity, NED.
 struct LocalState {
   Vector3<float> position_m = Vector3<float>::Zero();
@@ -80,6 +65,8 @@ struct LocalState {
 
 /// A sample beyond it is refused: later sums would overflow.
 inline constexpr float most_plausible = 1e6f;
+
+namespace detail {
 
 /// `not_finite`, or `out_of_range` beyond most_plausible.
 inline Status check_sample(const Vector3<float>& v) noexcept {
@@ -151,5 +138,7 @@ class Input {
   std::uint32_t refused_ = 0;
   bool came_ = false;
 };
+
+}  // namespace detail
 
 }  // namespace pinnquad::autopilot

@@ -11,7 +11,6 @@
 #include "pinnquad/control/autopilot/flown_motion.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/control/autopilot/model_slots.hpp"
-#include "pinnquad/control/autopilot/step_report.hpp"
 #include "pinnquad/control/autopilot/take_off.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
@@ -21,50 +20,67 @@
 
 namespace pinnquad::autopilot {
 
+namespace detail {
+/// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.
+struct AbsurdCommands {
+  static constexpr double lower = -0.5;
+  static constexpr double upper = 1.5;
+};
+}  // namespace detail
+
 /// `Shape`: an exported header, whose blocks it flies. `View` opens a block; on the ground its network may be known at
 /// run time alone (tools/model/replay_core.hpp). `VehicleType`: a Quadrotor, airframe and effects of the analytic
-/// inverse. `Trust`: the struct of trust.hpp beside the model (docs/trust.md); beyond its limits the analytic inverse
-/// flies.
+/// inverse. `Trust`: the struct of trust.hpp beside the model (docs/trust.md), beyond whose limits the analytic inverse
+/// flies; void: neither distance nor command residual is measured.
 template <class Shape, class View = ModelView<Shape>, class VehicleType = Quadrotor<float, QuadraticDrag>,
-          class Trust = NoTrust>
+          class Trust = void>
 class NeuralController {
-  static constexpr bool trusts = FlownTrust<Trust>::known;
+  using FlownTrust = detail::FlownTrust<Trust>;
+  static constexpr bool trusts = FlownTrust::known;
 
  public:
   using Vehicle = VehicleType;
   using Analytic = AnalyticInverse<Vehicle>;
   /// Without Fallback: step() asks the analytic inverse itself, below which the network's stack is free again.
   using NetworkGuard =
-      std::conditional_t<trusts, Extend<TrainingGuard, JointDistance<Trust>, RefuseCommands<AbsurdCommands>>,
-                         Extend<TrainingGuard, RefuseCommands<AbsurdCommands>>>;
+      std::conditional_t<trusts, Extend<TrainingGuard, JointDistance<Trust>, RefuseCommands<detail::AbsurdCommands>>,
+                         Extend<TrainingGuard, RefuseCommands<detail::AbsurdCommands>>>;
   using Inverse = InverseDynamics<View, NetworkGuard>;
+  /// The past that answers depend on: the command residual is of windows of this length, and a raised alarm of the bias
+  /// is cleared no faster.
+  static constexpr std::uint64_t residual_window_us = detail::FlownMotion::window_us;
+  static constexpr float alarm_clear_s = detail::BiasAlarm::clear_s;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
   static_assert(
       std::is_same_v<typename Shape::Features::template Inputs<float>, MotionInputs<float>>,
       "this controller is given no altitude above ground and no extra column: it flies models that ask for the "
       "motion alone (pinnquad train --altitude no)");
 
-  explicit NeuralController(const ControllerSettings& settings = {}) noexcept
+  explicit NeuralController(const CoreSettings& settings = {}) noexcept
       : NeuralController(Vehicle(airframe_value<typename Shape::Vehicle, float>()), settings) {}
   /// For an airframe that is known at run time alone, or effects with values of their own.
-  explicit NeuralController(const Vehicle& vehicle, const ControllerSettings& settings = {}) noexcept
-      : ages_(settings.ages),
-        outputs_(settings.outputs),
+  explicit NeuralController(const Vehicle& vehicle, const CoreSettings& settings = {}) noexcept
+      : settings_(detail::with_effects(settings, vehicle)),
         vehicle_(vehicle),
         analytic_(vehicle_),
-        outer_loop_(settings.gains, flown_limits(vehicle_.airframe(), settings.gains, settings.speeds),
-                    vehicle_.site().gravity_m_s2),
+        outer_loop_(detail::outer_loop(settings, vehicle_.airframe(), vehicle_.site().gravity_m_s2)),
         models_(NetworkGuard{}),
-        bias_(settings.bias),
-        take_off_(settings.speeds.take_off_s),
-        trust_(vehicle_.airframe().rise_time_constant_s(0)) {}
+        bias_({settings.bias_bandwidth_1_s, settings.most_bias_m_s2}),
+        take_off_(settings.take_off_s),
+        trust_(vehicle_.airframe().rise_time_constant_s(0)) {
+    settings_.distance_limit = settings_.innovation_limit = 0;
+    if constexpr (trusts) {
+      settings_.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
+      settings_.innovation_limit = static_cast<float>(CommandResidualMonitor<Trust>::Limits::command_residual_limit);
+    }
+  }
   NeuralController(const NeuralController&) = delete;  // slots are pointed to
   NeuralController& operator=(const NeuralController&) = delete;
 
   /// ModelSlots::offer(), at boot, and in flight from another thread. A model of other training data than that of the
   /// limits of trust is `block_incompatible`.
   Status offer_model(const void* block, std::size_t length) noexcept {
-    const Status status = models_.offer(block, length, training_data<Trust>());
+    const Status status = models_.offer(block, length, detail::training_data<Trust>());
     if (status == Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
     return status;
   }
@@ -74,7 +90,7 @@ class NeuralController {
 
   /// Inputs, each `not_finite`, `out_of_range` or `not_unit_quaternion` for a sample that is refused. rad/s, FRD.
   Status body_rates(std::uint64_t time_us, const Vector3<float>& rates_rad_s) noexcept {
-    const Status status = rates_.accept(time_us, rates_rad_s, check_sample(rates_rad_s));
+    const Status status = rates_.accept(time_us, rates_rad_s, detail::check_sample(rates_rad_s));
     if constexpr (trusts) {
       if (status == Status::ok) trust_.motion().body_rates(time_us, rates_rad_s);
     }
@@ -88,9 +104,9 @@ class NeuralController {
     return attitude_.accept(time_us, normalized(q), Status::ok);
   }
   Status local(std::uint64_t time_us, const LocalState& state) noexcept {
-    const Status position = check_sample(state.position_m);
-    const Status status =
-        local_.accept(time_us, state, position == Status::ok ? check_sample(state.velocity_m_s) : position);
+    Status checked = detail::check_sample(state.position_m);
+    if (checked == Status::ok) checked = detail::check_sample(state.velocity_m_s);
+    const Status status = local_.accept(time_us, state, checked);
     if constexpr (trusts) {
       if (status == Status::ok) trust_.motion().velocity(time_us, state.velocity_m_s);
     }
@@ -98,7 +114,7 @@ class NeuralController {
   }
   /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
   Status set_point(std::uint64_t time_us, const TrajectoryPoint<float>& wanted) noexcept {
-    return set_point_.accept(time_us, wanted, check_set_point(wanted));
+    return set_point_.accept(time_us, wanted, detail::check_set_point(wanted));
   }
 
   /// Given before each step, by a stack that knows. Until then the commands drive nothing and the vehicle is in the
@@ -109,14 +125,14 @@ class NeuralController {
   }
   const Situation& situation() const noexcept { return situation_; }
 
-  /// A reset of the estimator: the held place and the set point move with it.
-  void jump(const EstimateJump& by) noexcept {
+  /// A reset of the estimator, the step of its estimate: the held place and the set point move with it.
+  void jump(const LocalState& by, float yaw_rad) noexcept {
     TrajectoryPoint<float> wanted = set_point_.value();
     wanted.position_m += by.position_m;
-    wanted.yaw_rad += by.yaw_rad;
+    wanted.yaw_rad += yaw_rad;
     set_point_.replace(wanted);
-    held_.position_m += by.position_m;
-    held_.yaw_rad += by.yaw_rad;
+    held_position_m_ += by.position_m;
+    held_yaw_rad_ += yaw_rad;
     bias_.resume(bias_.acceleration_m_s2(), bias_.predicted_velocity_m_s() + by.velocity_m_s);
     if constexpr (trusts) trust_.motion().interrupt();
   }
@@ -157,19 +173,20 @@ class NeuralController {
       Commands<float> answer{};
       report.status = ask(*inverse, reaction, answer, report);
       if (has_output(report.status)) {
-        last_commands_ = desaturate(vehicle_.rotors(), answer, {outputs_.lower, outputs_.upper});
+        last_commands_ = desaturate(vehicle_.rotors(), answer, range());
         const float lift = take_off_.lift();
         if (lift < 1.0f) {
-          for (float& u : last_commands_) u = outputs_.lower + lift * (u - outputs_.lower);
+          const float idle = settings_.lowest_command;
+          for (float& u : last_commands_) u = idle + lift * (u - idle);
         }
-        expected_us_ = lift < 1.0f || saturated(last_commands_, {outputs_.lower, outputs_.upper}) ? 0 : now_us;
+        expected_us_ = lift < 1.0f || saturated(last_commands_, range()) ? 0 : now_us;
         answered_us_ = now_us;
         answered_ = true;
       } else {
         reaction = Reaction::keeps_commands;
       }
     }
-    if (reaction == Reaction::keeps_commands && !(answered_ && now_us - answered_us_ <= ages_.keep_us)) {
+    if (reaction == Reaction::keeps_commands && !(answered_ && now_us - answered_us_ <= settings_.keep_us)) {
       reaction = Reaction::gives_up;
     }
     if (reaction != Reaction::gives_up) commands = last_commands_;
@@ -184,22 +201,8 @@ class NeuralController {
     if constexpr (trusts) trust_.motion().interrupt();
   }
 
-  /// The settings that it was made with.
-  CoreSettings settings() const noexcept {
-    const FlightLimits<float>& limits = outer_loop_.limits();
-    CoreSettings all = core_settings(
-        {ages_,
-         outputs_,
-         outer_loop_.gains(),
-         {limits.max_horizontal_speed_m_s, limits.max_climb_m_s, limits.max_descent_m_s, take_off_.duration_s()},
-         bias_.settings()},
-        flown_effects(vehicle_));
-    if constexpr (trusts) {
-      all.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
-      all.innovation_limit = static_cast<float>(CommandResidualMonitor<Trust>::Limits::command_residual_limit);
-    }
-    return all;
-  }
+  /// The settings that it was made with, its vehicle's effects and the limits of trust.
+  const CoreSettings& settings() const noexcept { return settings_; }
 
   /// Checksum of the block whose model the last step asked; 0: none.
   std::uint32_t model_checksum() const noexcept { return checksum_; }
@@ -221,11 +224,13 @@ class NeuralController {
     message.reaction = static_cast<std::uint8_t>(report.reaction);
     message.status = static_cast<std::uint8_t>(report.status);
     message.cause = static_cast<std::uint8_t>(report.cause);
-    message.stale_inputs = report.stale_inputs();
+    message.stale_inputs = report.stale_inputs;
   }
   const Vehicle& vehicle() const noexcept { return vehicle_; }
 
  private:
+  CommandRange<float> range() const noexcept { return {settings_.lowest_command, settings_.highest_command}; }
+
   void take_checksum(std::uint32_t checksum) noexcept {
     if (checksum_ != 0 && checksum != checksum_) {
       bias_alarm_.reset();
@@ -235,16 +240,19 @@ class NeuralController {
   }
 
   Reaction judge_ages(std::uint64_t now_us, StepReport& report) noexcept {
-    report.body_rates_stale = !rates_.fresh(now_us, ages_.body_rates_us);
-    report.attitude_stale = !attitude_.fresh(now_us, ages_.attitude_us);
-    report.local_stale = !local_.fresh(now_us, ages_.local_us);
-    report.set_point_stale = !set_point_.fresh(now_us, ages_.set_point_us);
-    if (!report.set_point_stale) holding_ = false;
-    if (report.body_rates_stale || report.attitude_stale) return Reaction::keeps_commands;
-    if (report.local_stale) {
-      return local_.fresh(now_us, ages_.local_us + ages_.level_us) ? Reaction::levels : Reaction::gives_up;
+    const auto bit_if = [](bool stale, std::uint8_t bit) noexcept { return stale ? bit : std::uint8_t{0}; };
+    report.stale_inputs =
+        static_cast<std::uint8_t>(bit_if(!rates_.fresh(now_us, settings_.body_rates_us), body_rates_bit) |
+                                  bit_if(!attitude_.fresh(now_us, settings_.attitude_us), attitude_bit) |
+                                  bit_if(!local_.fresh(now_us, settings_.local_us), local_bit) |
+                                  bit_if(!set_point_.fresh(now_us, settings_.set_point_us), set_point_bit));
+    if (!report.stale(set_point_bit)) holding_ = false;
+    if (report.stale(body_rates_bit | attitude_bit)) return Reaction::keeps_commands;
+    if (report.stale(local_bit)) {
+      const std::uint64_t levels_us = std::uint64_t{settings_.local_us} + settings_.level_us;
+      return local_.fresh(now_us, levels_us) ? Reaction::levels : Reaction::gives_up;
     }
-    return report.set_point_stale ? Reaction::holds_position : Reaction::flies;
+    return report.stale(set_point_bit) ? Reaction::holds_position : Reaction::flies;
   }
 
   State<float> state() const noexcept {
@@ -273,16 +281,16 @@ class NeuralController {
   }
 
   /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
-  VerticalMotion vertical_motion(Reaction reaction) const noexcept {
+  detail::VerticalMotion vertical_motion(Reaction reaction) const noexcept {
     constexpr float noise = 0.1f;
-    VerticalMotion motion;
+    detail::VerticalMotion motion;
     motion.sink_m_s = local_.value().velocity_m_s[2];
     motion.expected_fall_m_s2 = expected_m_s2_[2];
     if (reaction != Reaction::flies) return motion;
     const TrajectoryPoint<float>& wanted = set_point_.value();
     const float below_m = wanted.position_m[2] - local_.value().position_m[2], sink_m_s = wanted.velocity_m_s[2];
     motion.asks_to_climb = below_m < -noise || sink_m_s < -noise || wanted.acceleration_m_s2[2] < -noise;
-    if (is_finite(below_m)) motion.asked_sink_m_s = outer_loop_.gains().position_1_s * below_m;
+    if (is_finite(below_m)) motion.asked_sink_m_s = settings_.position_1_s * below_m;
     if (is_finite(sink_m_s)) motion.asked_sink_m_s += sink_m_s;
     return motion;
   }
@@ -299,13 +307,15 @@ class NeuralController {
     }
     if (reaction == Reaction::holds_position) {
       if (!holding_) {
-        held_.position_m = now.position_m;
-        held_.yaw_rad = point.yaw_rad;
+        held_position_m_ = now.position_m;
+        held_yaw_rad_ = point.yaw_rad;
         holding_ = true;
       }
-      return held_;
+      point.position_m = held_position_m_;
+      point.yaw_rad = held_yaw_rad_;
+      return point;
     }
-    return completed(set_point_.value(), now, point.yaw_rad);
+    return detail::completed(set_point_.value(), now, point.yaw_rad);
   }
 
   /// Outer loop, then the inverse. The network answers the whole demand, feed-forward and feedback together.
@@ -338,7 +348,7 @@ class NeuralController {
   /// inverse, where the stack is deepest.
   PINNQUAD_NOINLINE Status want(Reaction reaction, MotionInputs<float>& motion) noexcept {
     const State<float> now = state();
-    TrackingDemand<float> demand;
+    Accelerations<float> wanted, feedback;
     TrajectoryPoint<float> point = target(reaction, now);
     const Vector3<float>& bias = bias_.acceleration_m_s2();
     if (reaction == Reaction::levels) {
@@ -347,11 +357,10 @@ class NeuralController {
       point.acceleration_m_s2 -= bias;
     }
     point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
-    const Status outer = outer_loop_(now, point, demand);
+    const Status outer = outer_loop_(now, point, wanted, feedback);
     if (outer != Status::ok) return outer;
-    Accelerations<float> wanted;
-    wanted.linear_m_s2 = demand.reference.linear_m_s2 + demand.feedback_acceleration_m_s2;
-    wanted.angular_rad_s2 = demand.reference.angular_rad_s2 + demand.feedback_angular_acceleration_rad_s2;
+    wanted.linear_m_s2 += feedback.linear_m_s2;
+    wanted.angular_rad_s2 += feedback.angular_rad_s2;
     // rotors make no lateral force: the network has seen what gravity and rotation leave of it
     const float gravity = vehicle_.site().gravity_m_s2;
     const Vector3<float> at_rest = body_derivative<float>(now, {0.0f, 0.0f, gravity});
@@ -362,31 +371,31 @@ class NeuralController {
     return Status::ok;
   }
 
-  AgeLimits ages_;
-  OutputLimits outputs_;
+  CoreSettings settings_;
   Vehicle vehicle_;
   Analytic analytic_;
   FlightController<float> outer_loop_;
   ModelSlots<Inverse> models_;
-  Input<Vector3<float>> rates_;
-  Input<Quaternion<float>> attitude_;
-  Input<LocalState> local_;
-  Input<TrajectoryPoint<float>> set_point_;
-  TrajectoryPoint<float> held_;
+  detail::Input<Vector3<float>> rates_;
+  detail::Input<Quaternion<float>> attitude_;
+  detail::Input<LocalState> local_;
+  detail::Input<TrajectoryPoint<float>> set_point_;
+  Vector3<float> held_position_m_ = Vector3<float>::Zero();
+  float held_yaw_rad_ = 0;
   bool holding_ = false;
   Commands<float> last_commands_{};
   BiasEstimate<float> bias_;
-  BiasAlarm bias_alarm_;
+  detail::BiasAlarm bias_alarm_;
   Vector3<float> expected_m_s2_ = Vector3<float>::Zero();  ///< of the last answer, NED
   std::uint64_t expected_us_ = 0;                          ///< 0: nothing to compare with
   Situation situation_{};
-  TakeOff take_off_;
+  detail::TakeOff take_off_;
   std::uint64_t answered_us_ = 0;
   bool answered_ = false;
   bool ready_ = false;
   std::uint32_t checksum_ = 0;
   FallbackCount count_{};
-  FlownTrust<Trust> trust_;
+  FlownTrust trust_;
 };
 
 }  // namespace pinnquad::autopilot

@@ -3,6 +3,8 @@
 // own: a module that logs nothing pays nothing.
 #pragma once
 
+#include <limits>
+
 #include "pinnquad/control/autopilot/core_record.hpp"
 #include "pinnquad/control/autopilot/neural_controller.hpp"
 
@@ -48,14 +50,14 @@ class Recorded : public Controller {
     return Controller::set_point(time_us, wanted);
   }
 
-  void jump(const EstimateJump& by) noexcept {
+  void jump(const LocalState& by, float yaw_rad) noexcept {
     begin();
-    Controller::jump(by);
+    Controller::jump(by, yaw_rad);
     for (int i = 0; i < 3; ++i) {
       record_.jump_position_m[i] += by.position_m[i];
       record_.jump_velocity_m_s[i] += by.velocity_m_s[i];
     }
-    record_.jump_yaw_rad += by.yaw_rad;
+    record_.jump_yaw_rad += yaw_rad;
   }
 
   Reaction step(std::uint64_t now_us, Commands<float>& commands, StepReport& report) noexcept {
@@ -107,7 +109,7 @@ class Recorded : public Controller {
     record_.reaction = static_cast<std::uint8_t>(report.reaction);
     record_.status = static_cast<std::uint8_t>(report.status);
     record_.cause = static_cast<std::uint8_t>(report.cause);
-    record_.stale_inputs = report.stale_inputs();
+    record_.stale_inputs = report.stale_inputs;
     record_.envelope_feature = static_cast<std::int8_t>(report.worst_feature);
     record_.envelope_excess = report.worst_excess;
     record_.squared_distance = report.squared_distance;

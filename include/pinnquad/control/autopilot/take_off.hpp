@@ -6,7 +6,7 @@
 
 #include "pinnquad/control/autopilot/inputs.hpp"
 
-namespace pinnquad::autopilot {
+namespace pinnquad::autopilot::detail {
 
 /// A tick's demand along the vertical, and the vehicle's motion.
 struct VerticalMotion {
@@ -25,7 +25,6 @@ class TakeOff {
 
   explicit TakeOff(float duration_s) noexcept : duration_s_(duration_s) {}
 
-  float duration_s() const noexcept { return duration_s_; }
   /// 0 to 1.
   float lift() const noexcept { return lift_; }
   /// Goes on from a logged lift: 0 on the ground, more on the way up.
@@ -101,4 +100,4 @@ class TakeOff {
   std::uint64_t rests_since_us_ = 0;  ///< 0: it does not rest
 };
 
-}  // namespace pinnquad::autopilot
+}  // namespace pinnquad::autopilot::detail
