@@ -14,7 +14,7 @@
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/training/context_airframe.hpp"
 
 namespace pinnquad {

@@ -10,7 +10,7 @@
 
 #include "pinnquad/features/windowed.hpp"
 #include "pinnquad/model/masked.hpp"
-#include "pinnquad/model/saturated.hpp"
+#include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
 
@@ -19,13 +19,16 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// `First...`: place of the angular acceleration of each tap, that of the present first. Parameters: slopes tap by tap,
 /// axis by axis; weights of the other features row by row; intercepts.
 template <class ScalarType, int FeatureCount, int... First>
-struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
-                                   3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {
+struct AxisAligned
+    : detail::PredictorBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
+                            3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {
   using Threes = detail::Triples<FeatureCount, First...>;
   static_assert(Threes::fit() && Threes::count > 0 && Threes::others > 0,
                 "pinnquad: the angular accelerations of AxisAligned are features in threes, ascending, and not all");
   using Scalar = ScalarType;
   using AxisAligned::PredictorBase::forward;
+  static constexpr detail::TemplateText<Scalar, detail::Number<FeatureCount>, detail::Number<First>...> description{
+      "pinnquad::AxisAligned"};
   static constexpr int taps = Threes::count;
   static constexpr int slopes = 0;  ///< places among the parameters
   static constexpr int weights = 3 * taps;
@@ -62,16 +65,6 @@ struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First..
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-template <class Scalar, int FeatureCount, int... First>
-struct Description<AxisAligned<Scalar, FeatureCount, First...>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    sink.add(std::string_view("pinnquad::AxisAligned<"));
-    Description<Scalar>::add(sink);
-    detail::describe_numbers(sink, FeatureCount, First...);
-  }
-};
 
 namespace detail {
 

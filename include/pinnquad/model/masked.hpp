@@ -65,8 +65,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// `Inner` is shown all features but the threes from `First...` on. Parameters: those of `Inner`.
 template <class Inner, int FeatureCount, int... First>
-struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename Inner::Scalar, FeatureCount,
-                              Inner::outputs, Inner::parameter_count> {
+struct Masked : detail::PredictorBase<Masked<Inner, FeatureCount, First...>, typename Inner::Scalar, FeatureCount,
+                                      Inner::outputs, Inner::parameter_count> {
   using Threes = detail::Triples<FeatureCount, First...>;
   static_assert(is_predictor<Inner>, "pinnquad: Masked is around a predictor (model/predictor.hpp)");
   static_assert(Threes::fit(), "pinnquad: Masked features are in threes, ascending, and do not overlap");
@@ -74,6 +74,8 @@ struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename In
                 "pinnquad: a predictor inside Masked takes all features that are not masked");
   using Scalar = typename Inner::Scalar;
   using Masked::PredictorBase::forward;
+  static constexpr detail::TemplateText<Inner, detail::Number<FeatureCount>, detail::Number<First>...> description{
+      "pinnquad::Withheld"};
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     if constexpr (is_network<Inner>) {
@@ -96,25 +98,5 @@ struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename In
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-namespace detail {
-
-/// The end of a description with numbers in a list: ", number, number, ...>".
-template <class Sink, class... Number>
-constexpr void describe_numbers(Sink& sink, Number... number) {
-  ((sink.add(std::string_view(", ")), sink.add(number)), ...);
-  sink.add(std::string_view(">"));
-}
-}  // namespace detail
-
-template <class Inner, int FeatureCount, int... First>
-struct Description<Masked<Inner, FeatureCount, First...>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    sink.add(std::string_view("pinnquad::Withheld<"));
-    Description<Inner>::add(sink);
-    detail::describe_numbers(sink, FeatureCount, First...);
-  }
-};
 
 }  // namespace pinnquad
