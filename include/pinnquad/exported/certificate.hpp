@@ -140,8 +140,8 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
   const Scales<Scalar>& scales = from.scales;
   const auto farthest = [&](int feature) {
     const double mean = static_cast<double>(scales.input_mean[feature]);
-    const double below = magnitude(static_cast<double>(scales.envelope_lower[feature]) - mean);
-    const double above = magnitude(static_cast<double>(scales.envelope_upper[feature]) - mean);
+    const double below = magnitude(static_cast<double>(scales.lower[feature]) - mean);
+    const double above = magnitude(static_cast<double>(scales.upper[feature]) - mean);
     return larger(below, above) / static_cast<double>(scales.input_spread[feature]);
   };
   double sums[4]{};
@@ -177,8 +177,7 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
   }
   for (int axis = 0; axis < 3; ++axis) {
     const int place = from.places[0] + axis;
-    const double width =
-        static_cast<double>(scales.envelope_upper[place]) - static_cast<double>(scales.envelope_lower[place]);
+    const double width = static_cast<double>(scales.upper[place]) - static_cast<double>(scales.lower[place]);
     const double slope = certificate.held_slope[axis];
     certificate.sure_step[axis] = slope > 0 ? rounded_up(2 * all / slope) : std::numeric_limits<double>::infinity();
     certificate.monotone = certificate.monotone && certificate.sure_step[axis] <= width;

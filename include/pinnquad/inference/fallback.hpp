@@ -51,8 +51,8 @@ PINNQUAD_NOINLINE bool answer_beyond_envelope(const Inverse& inverse, const type
   using Scalar = typename Inverse::Scalar;
   using Features = typename Inverse::Features;
   const Scales<Scalar> scales = scales_of(inverse.model());
-  const Scalar* lower = scales.envelope_lower + Features::angular_acceleration;
-  const Scalar* upper = scales.envelope_upper + Features::angular_acceleration;
+  const Scalar* lower = scales.lower + Features::angular_acceleration;
+  const Scalar* upper = scales.upper + Features::angular_acceleration;
   typename Inverse::Inputs asked = inputs;
   Vector3<Scalar> rest;
   for (int i = 0; i < 3; ++i) {

@@ -167,8 +167,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   PINNQUAD_ALWAYS_INLINE bool inside_envelope(const Scalar* x) const noexcept {
     const detail::Scales<Scalar> scales = detail::scales_of(model());
     bool inside = all_finite(x, Features::size);
-    for (int i = 0; i < Features::size; ++i)
-      inside &= x[i] >= scales.envelope_lower[i] && x[i] <= scales.envelope_upper[i];
+    for (int i = 0; i < Features::size; ++i) inside &= x[i] >= scales.lower[i] && x[i] <= scales.upper[i];
     return inside;
   }
 
@@ -287,9 +286,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   PINNQUAD_ALWAYS_INLINE bool clamp(const Scalar* x, Scalar* nearest) const noexcept {
     const detail::Scales<Scalar> scales = detail::scales_of(model());
     for (int i = 0; i < Features::size; ++i)
-      nearest[i] = x[i] < scales.envelope_lower[i]
-                       ? scales.envelope_lower[i]
-                       : (scales.envelope_upper[i] < x[i] ? scales.envelope_upper[i] : x[i]);
+      nearest[i] = x[i] < scales.lower[i] ? scales.lower[i] : (scales.upper[i] < x[i] ? scales.upper[i] : x[i]);
     return !inside_envelope(x);
   }
 
@@ -350,10 +347,9 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     const detail::Scales<Scalar> scales = detail::scales_of(model());
     Scalar worst(0);
     for (int i = 0; i < Features::size; ++i) {
-      const Scalar beyond = x[i] < scales.envelope_lower[i] ? scales.envelope_lower[i] - x[i]
-                                                            : x[i] - scales.envelope_upper[i];  // NaN stays NaN
-      Scalar excess = beyond / ((scales.envelope_upper[i] - scales.envelope_lower[i]) / Scalar(2));
-      if (is_finite(x[i]) && x[i] >= scales.envelope_lower[i] && x[i] <= scales.envelope_upper[i]) excess = Scalar(0);
+      const Scalar beyond = x[i] < scales.lower[i] ? scales.lower[i] - x[i] : x[i] - scales.upper[i];  // NaN stays NaN
+      Scalar excess = beyond / ((scales.upper[i] - scales.lower[i]) / Scalar(2));
+      if (is_finite(x[i]) && x[i] >= scales.lower[i] && x[i] <= scales.upper[i]) excess = Scalar(0);
       report.excess[static_cast<std::size_t>(i)] = excess;
       // what is not finite outdoes every number, the first of them all
       if (is_finite(worst) && (!is_finite(excess) || excess > worst)) {

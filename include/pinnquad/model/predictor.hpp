@@ -56,8 +56,8 @@ struct Scales {
   const Scalar* input_spread;
   const Scalar* output_mean;
   const Scalar* output_spread;
-  const Scalar* envelope_lower;
-  const Scalar* envelope_upper;
+  const Scalar* lower;  ///< of the envelope
+  const Scalar* upper;
 };
 
 /// Of an exported header.
