@@ -27,7 +27,7 @@
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"

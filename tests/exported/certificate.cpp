@@ -11,7 +11,7 @@
 
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "support/monotone_shapes.hpp"
 
 using namespace pinnquad;

@@ -301,7 +301,7 @@ TEST_CASE("a report that is used again says what the last answer came to alone, 
   Report used;
   REQUIRE(clock.predict(far, place, commands, used) == Status::fell_back);
   REQUIRE(used.worst_feature >= 0);
-  REQUIRE(clock.without_network(Status::distrusted, near, place, commands, used) == Status::fell_back);
+  REQUIRE(clock.without_network(Status::distrusted, near, commands, used, place) == Status::fell_back);
   CHECK(used.cause == Status::distrusted);
   CHECK(used.worst_feature == -1);
   CHECK(used.excess == Report{}.excess);

@@ -117,7 +117,7 @@ TEST_CASE("a schema rotor by rotor knows which rotor it is asked about, in a pre
   using Pipeline = pinnquad::detail::Pipeline<pinnquad::PaperFeatures, RotorSpeedOutputs, CurvedQuadrotor>;
   constexpr int lanes = 3;
   const double mean[16] = {}, ones[16] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-  const pinnquad::detail::Scales<double> scales{mean, ones, mean, ones};
+  const pinnquad::detail::Scales<double> scales{mean, ones, mean, ones, mean, ones};
   const auto airframe = CurvedQuadrotor::value<double>();
   const double x[16 * lanes] = {};
   double answers[4 * lanes], outputs[4], commands[4];

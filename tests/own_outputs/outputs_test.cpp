@@ -20,7 +20,7 @@
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "pinnquad/inference/self_test.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 #include "support/block_bytes.hpp"
 #include "support/jacobian_differences.hpp"
@@ -300,7 +300,7 @@ struct Written {
 template <class T>
 std::string written() {
   Written sink;
-  Description<T>::add(sink);
+  detail::describe<T>(sink);
   return sink.text;
 }
 

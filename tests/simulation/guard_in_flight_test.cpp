@@ -155,6 +155,6 @@ struct Strict {
 }  // namespace
 
 TEST_CASE("a pure roll demand in level hover: inside the envelope, far from the data, found by agreement") {
-  for (const float roll_rad_s2 : {-60.0F, -50.0F, 50.0F, 60.0F}) check_roll_demand<AgreedCommands>(roll_rad_s2);
+  for (const float roll_rad_s2 : {-60.0F, -50.0F, 50.0F, 60.0F}) check_roll_demand<detail::AgreedCommands>(roll_rad_s2);
   for (const float roll_rad_s2 : {-40.0F, 40.0F}) check_roll_demand<Strict>(roll_rad_s2);
 }

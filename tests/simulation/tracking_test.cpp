@@ -42,7 +42,7 @@ struct FakeInverseDynamics {
   using Scalar = float;
   using Features = PaperFeatures;
   using Inputs = MotionInputs<float>;
-  using Report = GuardReport<float, PaperFeatures::size>;
+  using Report = InverseDynamics<test::SmallModel>::Report;
 
   float gain = 1;
   float max_speed_m_s = 100;

@@ -87,7 +87,7 @@ struct MonotoneModel {
 
   /// For another vehicle than the shape's.
   Certificate certificate(const Airframe<Scalar>& airframe) const {
-    return certificate_of<Shape>(certified_vehicle<Outputs>(airframe), parameters.data(),
+    return certificate_of<Shape>(detail::certified_vehicle<Outputs>(airframe), parameters.data(),
                                  {input.mean.data(), input.standard_deviation.data(), output.mean.data(),
                                   output.standard_deviation.data(), envelope_lower.data(), envelope_upper.data()});
   }

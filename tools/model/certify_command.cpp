@@ -26,7 +26,7 @@
 #include "model/response.hpp"
 #include "model/searched_model.hpp"
 #include "model/structure_certificate.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/certificate_words.hpp"
 
 namespace {
@@ -121,7 +121,7 @@ Findings findings_of(const CertifyOptions& options, const programs::Block& block
     const std::vector<double>& anywhere = searched.starts.front();
     findings.slope = model->derivatives(anywhere, false);
     findings.held_slope = model->derivatives(anywhere, true);
-    const auto vehicle = certified_vehicle<AxisCommandOutputs>(identity.airframe.value);
+    const auto vehicle = pinnquad::detail::certified_vehicle<AxisCommandOutputs>(identity.airframe.value);
     bool above = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double floor = std::max(vehicle.least_slope[axis], 0.0);

@@ -18,7 +18,7 @@ namespace detail {
 
 /// Of a network that is shown the angular acceleration: by tap and axis.
 template <class Scalar>
-std::vector<pinnquad::PathBound<4>> path_bounds(const NetworkSpec& network, const Scalar* parameters,
+std::vector<pinnquad::detail::PathBound<4>> path_bounds(const NetworkSpec& network, const Scalar* parameters,
                                                 const std::vector<int>& taps) {
   std::vector<int> widths;
   for (const LayerSpec& layer : network.layers) {
@@ -26,10 +26,10 @@ std::vector<pinnquad::PathBound<4>> path_bounds(const NetworkSpec& network, cons
   }
   const int widest = *std::max_element(widths.begin(), widths.end());
   std::vector<double> work(4 * static_cast<std::size_t>(widest));
-  std::vector<pinnquad::PathBound<4>> all;
+  std::vector<pinnquad::detail::PathBound<4>> all;
   for (const int place : taps) {
     for (int axis = 0; axis < 3; ++axis) {
-      pinnquad::PathBound<4>& bound = all.emplace_back();
+      pinnquad::detail::PathBound<4>& bound = all.emplace_back();
       pinnquad::path_bound(parameters, network.inputs, widths.data(), static_cast<int>(widths.size()), place + axis,
                            work.data(), widest, static_cast<double*>(bound.lower), static_cast<double*>(bound.upper));
     }
@@ -53,11 +53,11 @@ inline std::pair<std::vector<int>, int> thrust_places(const std::vector<std::str
 
 /// The airframe, and the formula that a block's outputs add to, as a certificate reads them.
 template <class Scalar>
-pinnquad::CertifiedVehicle<Scalar> certified_vehicle_of(const Block& block, const Identity& identity) {
+pinnquad::detail::CertifiedVehicle<Scalar> certified_vehicle_of(const Block& block, const Identity& identity) {
   using namespace pinnquad;
   const Airframe<Scalar> airframe = airframe_in<Scalar>(identity.airframe.value);
-  return block.base.empty() ? certified_vehicle<AxisCommandOutputs>(airframe)
-                            : certified_vehicle<SignedSumsOn<RigidBodyBase>>(airframe);
+  return block.base.empty() ? pinnquad::detail::certified_vehicle<AxisCommandOutputs>(airframe)
+                            : pinnquad::detail::certified_vehicle<SignedSumsOn<RigidBodyBase>>(airframe);
 }
 
 namespace detail {
@@ -79,7 +79,7 @@ std::optional<pinnquad::Certificate> certificate_in(const Block& block, const Id
   const std::vector<Scalar> scales[] = {in_scalar(block.input_mean),     in_scalar(block.input_deviation),
                                         in_scalar(block.output_mean),    in_scalar(block.output_deviation),
                                         in_scalar(block.envelope_lower), in_scalar(block.envelope_upper)};
-  std::vector<pinnquad::PathBound<4>> paths;
+  std::vector<pinnquad::detail::PathBound<4>> paths;
   if (parts.size() == 2) {
     const bool withheld = parts[1].threes == taps;
     if (!parts[1].bounded || parts[1].axis_aligned || !(withheld || parts[1].path_bounded)) return {};
@@ -88,7 +88,7 @@ std::optional<pinnquad::Certificate> certificate_in(const Block& block, const Id
     }
   }
   const auto [thrusts, present] = thrust_places(model.names);
-  return pinnquad::certificate_of(pinnquad::CertifiedNumbers<Scalar>{
+  return pinnquad::certificate_of(pinnquad::detail::CertifiedNumbers<Scalar>{
       block.inputs,
       static_cast<int>(taps.size()),
       taps.data(),

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pinnquad/exported/certificate.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {

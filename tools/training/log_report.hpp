@@ -15,7 +15,7 @@
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/file_error.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/version.hpp"
 #include "training/log_figures.hpp"
 #include "training/log_verdict.hpp"

@@ -28,7 +28,7 @@
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/deploy/export_model.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/certificate_words.hpp"
 #include "training/export_choice.hpp"
 #include "training/judge_all.hpp"

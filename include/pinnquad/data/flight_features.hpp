@@ -62,9 +62,9 @@ class FlightInputs {
 
 /// Inputs with extra columns, found by name. Throws std::invalid_argument for one that is absent or in another unit.
 template <class Base, class Scalar, class... Column>
-class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
+class FlightInputs<detail::InputsWithColumns<Base, Scalar, Column...>> {
  public:
-  using Inputs = InputsWithColumns<Base, Scalar, Column...>;
+  using Inputs = detail::InputsWithColumns<Base, Scalar, Column...>;
 
   explicit FlightInputs(const FlightRows& rows) : base_(rows), columns_{values_of<Column>(*rows.flight)...} {}
 
@@ -94,9 +94,9 @@ class FlightInputs<InputsWithColumns<Base, Scalar, Column...>> {
 /// Windows about a row, which is their present instant; the taps are interpolated as in flight
 /// (features/input_history.hpp). False where a tap lies beyond these rows or behind a gap: no window crosses a border.
 template <class Tap, class Scalar, class Window>
-class FlightInputs<WindowInputs<Tap, Scalar, Window>> {
+class FlightInputs<detail::WindowInputs<Tap, Scalar, Window>> {
  public:
-  using Inputs = WindowInputs<Tap, Scalar, Window>;
+  using Inputs = detail::WindowInputs<Tap, Scalar, Window>;
 
   explicit FlightInputs(const FlightRows& rows) : rows_(rows), taps_(rows) {}
 

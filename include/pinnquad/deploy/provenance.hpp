@@ -66,7 +66,7 @@ struct DescriptionText {
 template <class T>
 std::string description_text() {
   DescriptionText sink;
-  Description<T>::add(sink);
+  describe<T>(sink);
   return sink.text;
 }
 

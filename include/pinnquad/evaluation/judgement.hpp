@@ -15,7 +15,7 @@
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/loss/context.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 
 namespace pinnquad {
 

@@ -138,11 +138,11 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
     for (double& step : certificate.sure_step) step = std::numeric_limits<double>::infinity();
     return;
   }
-  const CertifiedScales<Scalar>& scales = from.scales;
+  const Scales<Scalar>& scales = from.scales;
   const auto farthest = [&](int feature) {
     const double mean = static_cast<double>(scales.input_mean[feature]);
-    const double below = magnitude(static_cast<double>(scales.envelope_lower[feature]) - mean);
-    const double above = magnitude(static_cast<double>(scales.envelope_upper[feature]) - mean);
+    const double below = magnitude(static_cast<double>(scales.lower[feature]) - mean);
+    const double above = magnitude(static_cast<double>(scales.upper[feature]) - mean);
     return larger(below, above) / static_cast<double>(scales.input_spread[feature]);
   };
   double sums[4]{};
@@ -178,8 +178,7 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
   }
   for (int axis = 0; axis < 3; ++axis) {
     const int place = from.places[0] + axis;
-    const double width =
-        static_cast<double>(scales.envelope_upper[place]) - static_cast<double>(scales.envelope_lower[place]);
+    const double width = static_cast<double>(scales.upper[place]) - static_cast<double>(scales.lower[place]);
     const double slope = certificate.held_slope[axis];
     certificate.sure_step[axis] = slope > 0 ? rounded_up(2 * all / slope) : std::numeric_limits<double>::infinity();
     certificate.monotone = certificate.monotone && certificate.sure_step[axis] <= width;
@@ -194,7 +193,7 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// Of the structure u = A [base + residual], wherever it is known from: base and residual as AxisAligned and
 /// Saturated<Masked>.
 template <class Scalar>
-constexpr Certificate certificate_of(const CertifiedNumbers<Scalar>& from) noexcept {
+constexpr Certificate certificate_of(const detail::CertifiedNumbers<Scalar>& from) noexcept {
   Certificate certificate;
   certificate.monotone = detail::exact_mix(from.vehicle.mix) && from.taps <= 16;
   if (from.has_paths) certificate.monotone = certificate.monotone && detail::even_mix(from.vehicle.mix);
@@ -227,9 +226,9 @@ constexpr Certificate certificate_of(const CertifiedNumbers<Scalar>& from) noexc
 
 /// Of a model type with has_certificate. Proves nothing of another one.
 template <class Shape>
-constexpr Certificate certificate_of(const CertifiedVehicle<typename Shape::Scalar>& vehicle,
+constexpr Certificate certificate_of(const detail::CertifiedVehicle<typename Shape::Scalar>& vehicle,
                                      const typename Shape::Scalar* parameters,
-                                     const CertifiedScales<typename Shape::Scalar>& scales) noexcept {
+                                     const detail::Scales<typename Shape::Scalar>& scales) noexcept {
   if constexpr (has_certificate<Shape>) {
     using Features = typename Shape::Features;
     using Structure = detail::ProvenStructure<typename Shape::Network, Features>;
@@ -237,13 +236,13 @@ constexpr Certificate certificate_of(const CertifiedVehicle<typename Shape::Scal
     int places[Base::taps]{};
     Base::Threes::each([&](int place, int tap) { places[tap] = place; });
     constexpr auto thrusts = detail::thrust_places<Features>();
-    PathBound<4> paths[Structure::has_paths ? 3 * Base::taps : 1]{};
+    detail::PathBound<4> paths[Structure::has_paths ? 3 * Base::taps : 1]{};
     if constexpr (Structure::has_paths) {
       for (int i = 0; i < 3 * Base::taps; ++i) {
         paths[i] = Structure::Seeing::bound(parameters + Base::parameter_count + 8, places[i / 3] + i % 3);
       }
     }
-    return certificate_of(CertifiedNumbers<typename Shape::Scalar>{
+    return certificate_of(detail::CertifiedNumbers<typename Shape::Scalar>{
         Features::size, Base::taps, places, thrusts.count, thrusts.present, thrusts.place, parameters,
         Structure::has_residual, paths, Structure::has_paths, scales, vehicle});
   } else {
@@ -255,7 +254,7 @@ constexpr Certificate certificate_of(const CertifiedVehicle<typename Shape::Scal
 template <class Model>
 Certificate certificate_of_trained(const Model& model) noexcept {
   return certificate_of<Model>(
-      certified_vehicle<typename Model::Outputs>(model.template airframe<typename Model::Scalar>()),
+      detail::certified_vehicle<typename Model::Outputs>(model.template airframe<typename Model::Scalar>()),
       model.network.parameters.data(),
       {model.input.mean.data(), model.input.standard_deviation.data(), model.output.mean.data(),
        model.output.standard_deviation.data(), model.envelope_lower.data(), model.envelope_upper.data()});
@@ -264,12 +263,9 @@ Certificate certificate_of_trained(const Model& model) noexcept {
 /// Of an exported header.
 template <class Model>
 constexpr Certificate certificate_of() noexcept {
-  constexpr auto vehicle =
-      certified_vehicle<typename Model::Outputs>(airframe_value<typename Model::Vehicle, typename Model::Scalar>());
-  return certificate_of<Model>(
-      vehicle, Model::parameters.data(),
-      {Model::input.mean.data(), Model::input.standard_deviation.data(), Model::output.mean.data(),
-       Model::output.standard_deviation.data(), Model::envelope_lower.data(), Model::envelope_upper.data()});
+  constexpr auto vehicle = detail::certified_vehicle<typename Model::Outputs>(
+      airframe_value<typename Model::Vehicle, typename Model::Scalar>());
+  return certificate_of<Model>(vehicle, Model::parameters.data(), detail::scales_in_header<Model>());
 }
 
 /// Refuses, at compile time and by rule, a model whose monotony is not proven. The headers of such models ask for it.

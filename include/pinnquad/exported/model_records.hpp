@@ -97,13 +97,13 @@ struct DescriptionLength {
 template <class T>
 constexpr std::size_t description_length() noexcept {
   DescriptionLength length;
-  Description<T>::add(length);
+  describe<T>(length);
   return length.letters;
 }
 template <class T>
 constexpr auto description_letters() noexcept {
   DescriptionLetters<description_length<T>()> letters;
-  Description<T>::add(letters);
+  describe<T>(letters);
   return letters;
 }
 

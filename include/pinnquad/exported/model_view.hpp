@@ -180,7 +180,7 @@ class ModelView : public detail::ModelScales<ShapeType> {
     }
     if constexpr (has_certificate<ShapeType>) {
       constexpr auto vehicle =
-          certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
+          detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
       const Certificate certificate = certificate_of<ShapeType>(
           vehicle, scalars + Layout::parameters(golden),
           {scalars + Layout::input_mean, scalars + Layout::input_spread, scalars + Layout::output_mean,

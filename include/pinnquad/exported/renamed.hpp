@@ -6,8 +6,7 @@
 #include <type_traits>
 
 #include "pinnquad/core/detected.hpp"
-#include "pinnquad/model/masked.hpp"
-#include "pinnquad/model/saturated.hpp"
+#include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/nn/layer.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"

@@ -25,15 +25,6 @@ namespace detail {
 template <class T>
 using ColumnMembers = std::enable_if_t<std::is_convertible_v<decltype(T::name), const char*> &&
                                        std::is_convertible_v<decltype(T::unit), const char*>>;
-/// Place of a type in a list; the list's length if it isn't there.
-template <class Wanted, class... Types>
-constexpr std::size_t place_of() noexcept {
-  constexpr bool same[] = {std::is_same_v<Wanted, Types>..., true};
-  std::size_t place = 0;
-  while (!same[place]) ++place;
-  return place;
-}
-
 template <class T>
 using MeasuredColumnsOf = std::void_t<decltype(T::column_names), decltype(T::column_units)>;
 template <class Features>
@@ -47,16 +38,13 @@ constexpr auto extra_columns_of([[maybe_unused]] bool units) noexcept {
 
 }  // namespace detail
 
-/// True for a type that is a column: it has `name` and `unit`.
-template <class T>
-inline constexpr bool is_column = is_detected<detail::ColumnMembers, T>;
-
 /// Names and units of the columns that a feature set asks for: none unless it is WithColumns, or has one inside.
 template <class Features>
 inline constexpr auto extra_column_names = detail::extra_columns_of<Features>(false);
 template <class Features>
 inline constexpr auto extra_column_units = detail::extra_columns_of<Features>(true);
 
+namespace detail {
 /// The inputs of another feature set and the columns' values. A value that was never set is NaN, which check() refuses.
 template <class Base, class Scalar, class... Column>
 struct InputsWithColumns : Base {
@@ -76,11 +64,14 @@ struct InputsWithColumns : Base {
  private:
   template <class Wanted>
   static constexpr std::size_t place() noexcept {
-    constexpr std::size_t found = detail::place_of<Wanted, Column...>();
-    static_assert(found < sizeof...(Column), "pinnquad: these inputs have no such column");
-    return found;
+    static_assert((std::is_same_v<Wanted, Column> || ...), "pinnquad: these inputs have no such column");
+    constexpr bool same[] = {std::is_same_v<Wanted, Column>..., true};
+    std::size_t at = 0;
+    while (!same[at]) ++at;
+    return at;
   }
 };
+}  // namespace detail
 
 /// A feature set with columns: X of `FeatureSet`, then each column as it was measured. A guard's fallback sees the
 /// inputs of `FeatureSet`.
@@ -92,35 +83,32 @@ struct WithColumns {
       !is_windowed<FeatureSet>,
       "pinnquad: columns belong inside a window, whose history then takes them too: Windowed<WithColumns<...>, ...>");
   static_assert(sizeof...(Column) > 0, "pinnquad: WithColumns needs a column");
-  static_assert((is_column<Column> && ...),
+  static_assert((is_detected<detail::ColumnMembers, Column> && ...),
                 "pinnquad: a column of WithColumns has no name or no unit (features/extra_columns.hpp)");
 
   template <class Scalar>
-  using Inputs = InputsWithColumns<typename FeatureSet::template Inputs<Scalar>, Scalar, Column...>;
+  using Inputs = detail::InputsWithColumns<typename FeatureSet::template Inputs<Scalar>, Scalar, Column...>;
 
   static constexpr int size = FeatureSet::size + int(sizeof...(Column));
+  using Texts = std::array<const char*, sizeof...(Column)>;
   static constexpr int angular_acceleration = FeatureSet::angular_acceleration;
-  static constexpr auto names =
-      detail::joined_texts(FeatureSet::names, std::array<const char*, sizeof...(Column)>{Column::name...});
-  static constexpr auto units =
-      detail::joined_texts(FeatureSet::units, std::array<const char*, sizeof...(Column)>{Column::unit...});
+  static constexpr auto names = detail::joined_texts(FeatureSet::names, Texts{Column::name...});
+  static constexpr auto units = detail::joined_texts(FeatureSet::units, Texts{Column::unit...});
   static_assert(detail::all_differ(names), "pinnquad: a column of WithColumns has a name that is taken");
 
   /// Columns that flights must have measured, those of `FeatureSet` first.
-  static constexpr auto column_names =
-      detail::joined_texts(extra_column_names<FeatureSet>, std::array<const char*, sizeof...(Column)>{Column::name...});
-  static constexpr auto column_units =
-      detail::joined_texts(extra_column_units<FeatureSet>, std::array<const char*, sizeof...(Column)>{Column::unit...});
+  static constexpr auto column_names = detail::joined_texts(extra_column_names<FeatureSet>, Texts{Column::name...});
+  static constexpr auto column_units = detail::joined_texts(extra_column_units<FeatureSet>, Texts{Column::unit...});
 
   /// As `FeatureSet`; `not_finite` for a column too.
   template <class Scalar, class Base>
-  static Status check(const InputsWithColumns<Base, Scalar, Column...>& in) noexcept {
+  static Status check(const detail::InputsWithColumns<Base, Scalar, Column...>& in) noexcept {
     return all_finite(in.columns) ? FeatureSet::check(static_cast<const Base&>(in)) : Status::not_finite;
   }
 
   /// Fills x[0..size). The inputs must have passed check().
   template <class Scalar, class Base>
-  static void extract(const InputsWithColumns<Base, Scalar, Column...>& in, Scalar* x) noexcept {
+  static void extract(const detail::InputsWithColumns<Base, Scalar, Column...>& in, Scalar* x) noexcept {
     FeatureSet::extract(static_cast<const Base&>(in), x);
     for (std::size_t i = 0; i < sizeof...(Column); ++i) x[FeatureSet::size + int(i)] = in.columns[i];
   }

@@ -19,13 +19,15 @@
 namespace pinnquad {
 
 namespace detail {
-/// Two lists of texts, one after the other.
-template <std::size_t First, std::size_t Second>
-constexpr std::array<const char*, First + Second> joined_texts(const std::array<const char*, First>& first,
-                                                               const std::array<const char*, Second>& second) noexcept {
-  std::array<const char*, First + Second> result{};
-  for (std::size_t i = 0; i < First; ++i) result[i] = first[i];
-  for (std::size_t i = 0; i < Second; ++i) result[First + i] = second[i];
+/// Lists of texts, one after the other.
+template <std::size_t... Size>
+constexpr std::array<const char*, (Size + ...)> joined_texts(const std::array<const char*, Size>&... lists) noexcept {
+  std::array<const char*, (Size + ...)> result{};
+  std::size_t at = 0;
+  const auto append = [&](const auto& list) {
+    for (std::size_t i = 0; i < list.size(); ++i) result[at++] = list[i];
+  };
+  (append(lists), ...);
   return result;
 }
 
@@ -113,17 +115,9 @@ struct MotionInputsWithAltitude : MotionInputs<Scalar> {
 namespace detail {
 template <class T, class Inputs = typename T::template Inputs<double>>
 using FeatureSetMembers =
-    std::void_t<decltype(T::size), decltype(T::names), decltype(T::units), decltype(T::angular_acceleration),
-                decltype(Status(T::check(std::declval<const Inputs&>()))),
+    std::void_t<std::enable_if_t<T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size)>,
+                decltype(T::angular_acceleration), decltype(Status(T::check(std::declval<const Inputs&>()))),
                 decltype(T::extract(std::declval<const Inputs&>(), static_cast<double*>(nullptr)))>;
-template <class T>
-constexpr bool fulfils_feature_set() noexcept {
-  if constexpr (is_detected<FeatureSetMembers, T>) {
-    return T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size);
-  } else {
-    return false;
-  }
-}
 /// Detected of a feature set with a past (features/windowed.hpp).
 template <class T>
 using WindowInside = typename T::Window;
@@ -134,12 +128,13 @@ inline constexpr bool is_noexcept_feature_set = noexcept(T::check(std::declval<c
 
 /// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_feature_set = detail::fulfils_feature_set<T>();
+inline constexpr bool is_feature_set = is_detected<detail::FeatureSetMembers, T>;
 
 /// True for a feature set that asks for a window.
 template <class Features>
 inline constexpr bool is_windowed = is_detected<detail::WindowInside, Features>;
 
+namespace detail {
 /// A feature set of the motion alone, with the altitude as its last entry: a vehicle near the ground (Discussion 5).
 template <class FeatureSet>
 struct WithAltitude {
@@ -153,30 +148,26 @@ struct WithAltitude {
 
   static constexpr int size = FeatureSet::size + 1;
   static constexpr int angular_acceleration = FeatureSet::angular_acceleration;
-  static constexpr auto names = detail::joined_texts(FeatureSet::names, std::array{"altitude"});
-  static constexpr auto units = detail::joined_texts(FeatureSet::units, std::array{"m"});
+  static constexpr auto names = joined_texts(FeatureSet::names, std::array{"altitude"});
+  static constexpr auto units = joined_texts(FeatureSet::units, std::array{"m"});
 
   /// As FeatureSet; `not_finite` for the altitude too.
   template <class Scalar>
   static Status check(const MotionInputsWithAltitude<Scalar>& in) noexcept {
-    return all_finite(&in.altitude_m, 1) ? FeatureSet::check(motion(in)) : Status::not_finite;
+    return all_finite(&in.altitude_m, 1) ? FeatureSet::check(static_cast<const MotionInputs<Scalar>&>(in))
+                                         : Status::not_finite;
   }
 
   /// Fills x[0..size). The inputs must have passed check().
   template <class Scalar>
   static void extract(const MotionInputsWithAltitude<Scalar>& in, Scalar* x) noexcept {
-    FeatureSet::extract(motion(in), x);
+    FeatureSet::extract(static_cast<const MotionInputs<Scalar>&>(in), x);
     x[FeatureSet::size] = in.altitude_m;
   }
-
- private:
-  template <class Scalar>
-  static const MotionInputs<Scalar>& motion(const MotionInputsWithAltitude<Scalar>& in) noexcept {
-    return in;
-  }
 };
+}  // namespace detail
 
 /// X of Sec. 4.1 and the altitude, 17 entries: the paper's networks near the ground.
-struct PaperFeaturesWithAltitude : WithAltitude<PaperFeatures> {};
+struct PaperFeaturesWithAltitude : detail::WithAltitude<PaperFeatures> {};
 
 }  // namespace pinnquad

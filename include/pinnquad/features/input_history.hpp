@@ -43,6 +43,8 @@ MotionInputsWithAltitude<Scalar> interpolated(const MotionInputsWithAltitude<Sca
   return result;
 }
 
+namespace detail {
+
 template <class Base, class Scalar, class... Column>
 InputsWithColumns<Base, Scalar, Column...> interpolated(const InputsWithColumns<Base, Scalar, Column...>& a,
                                                         const InputsWithColumns<Base, Scalar, Column...>& b,
@@ -54,8 +56,6 @@ InputsWithColumns<Base, Scalar, Column...> interpolated(const InputsWithColumns<
   }
   return result;
 }
-
-namespace detail {
 
 /// Inputs at an instant among samples `first` to `last`, whose times rise; the search begins at `near`. A sample within
 /// the window's tolerance is taken as it is. False before the first and behind the last sample.

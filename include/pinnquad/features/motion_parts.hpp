@@ -11,7 +11,7 @@ namespace pinnquad {
 
 namespace detail {
 
-/// A part of three features: all but `names`, `units` and `extract(inputs, x)`, which fills x[0..3) number by number: a
+/// A part of three features: all but `names`, `units` and `of(inputs)`, the three, or an extract() of its own where a
 /// vector in between would lie on the stack beside the network's numbers.
 template <class Part>
 struct MotionPart {
@@ -25,13 +25,12 @@ struct MotionPart {
   static Status check(const MotionInputs<Scalar>& in) noexcept {
     return PaperFeatures::check<Scalar>(in);
   }
+  template <class Scalar>
+  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    const Vector3<Scalar>& values = Part::template of<Scalar>(in);
+    for (int i = 0; i < 3; ++i) x[i] = values[i];
+  }
 };
-
-/// x[0..3) = v.
-template <class Scalar>
-void write_vector(const Vector3<Scalar>& v, Scalar* x) noexcept {
-  for (int i = 0; i < 3; ++i) x[i] = v[i];
-}
 
 template <class Part>
 inline constexpr bool is_motion_part = std::is_base_of_v<MotionPart<Part>, Part>;
@@ -50,10 +49,6 @@ struct SpecificForce : detail::MotionPart<SpecificForce> {
     const Vector3<Scalar> down = world_down_axis(in.attitude);
     return in.linear_acceleration_m_s2 + turning - standard_gravity_m_s2<Scalar> * down;
   }
-  template <class Scalar>
-  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
-    detail::write_vector<Scalar>(of<Scalar>(in), x);
-  }
 };
 
 struct AngularAcceleration : detail::MotionPart<AngularAcceleration> {
@@ -62,8 +57,8 @@ struct AngularAcceleration : detail::MotionPart<AngularAcceleration> {
   static constexpr std::array<const char*, 3> units = {"rad/s^2", "rad/s^2", "rad/s^2"};
 
   template <class Scalar>
-  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
-    detail::write_vector(in.angular_acceleration_rad_s2, x);
+  static const Vector3<Scalar>& of(const MotionInputs<Scalar>& in) noexcept {
+    return in.angular_acceleration_rad_s2;
   }
 };
 
@@ -72,8 +67,8 @@ struct BodyRates : detail::MotionPart<BodyRates> {
   static constexpr std::array<const char*, 3> units = {"rad/s", "rad/s", "rad/s"};
 
   template <class Scalar>
-  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
-    detail::write_vector(in.body_rates_rad_s, x);
+  static const Vector3<Scalar>& of(const MotionInputs<Scalar>& in) noexcept {
+    return in.body_rates_rad_s;
   }
 };
 
@@ -99,8 +94,8 @@ struct BodyVelocity : detail::MotionPart<BodyVelocity> {
   static constexpr std::array<const char*, 3> units = {"m/s", "m/s", "m/s"};
 
   template <class Scalar>
-  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
-    detail::write_vector(in.velocity_m_s, x);
+  static const Vector3<Scalar>& of(const MotionInputs<Scalar>& in) noexcept {
+    return in.velocity_m_s;
   }
 };
 
@@ -125,8 +120,8 @@ struct DownVector : detail::MotionPart<DownVector> {
   static constexpr std::array<const char*, 3> units = {"1", "1", "1"};
 
   template <class Scalar>
-  static void extract(const MotionInputs<Scalar>& in, Scalar* x) noexcept {
-    detail::write_vector<Scalar>(world_down_axis(in.attitude), x);
+  static Vector3<Scalar> of(const MotionInputs<Scalar>& in) noexcept {
+    return world_down_axis(in.attitude);
   }
 };
 
@@ -170,37 +165,25 @@ struct Joined {
     }
     return -1;
   }();
-  static constexpr auto names = [] {
-    if constexpr (sizeof...(More) == 0) {
-      return First::names;
-    } else {
-      return detail::joined_texts(First::names, Joined<More...>::names);
-    }
-  }();
-  static constexpr auto units = [] {
-    if constexpr (sizeof...(More) == 0) {
-      return First::units;
-    } else {
-      return detail::joined_texts(First::units, Joined<More...>::units);
-    }
-  }();
+  static constexpr auto names = detail::joined_texts(First::names, More::names...);
+  static constexpr auto units = detail::joined_texts(First::units, More::units...);
   static_assert(detail::all_differ(names), "pinnquad: feature sets that are Joined have a feature in common");
 
   /// The first Status that is not ok.
   template <class AnyInputs>
   static Status check(const AnyInputs& in) noexcept {
-    if constexpr (sizeof...(More) == 0 || (detail::is_motion_part<First> && ... && detail::is_motion_part<More>)) {
-      return First::check(in);  // parts of a motion check all of it
-    } else {
-      const Status first = First::check(in);
-      return first == Status::ok ? Joined<More...>::check(in) : first;
-    }
+    Status status = First::check(in);
+    if constexpr (!(detail::is_motion_part<First> && ... && detail::is_motion_part<More>)) {
+      ((status = status == Status::ok ? More::check(in) : status), ...);
+    }  // else each part has checked all of the motion
+    return status;
   }
   /// Fills x[0..size). The inputs must have passed check().
   template <class Scalar, class AnyInputs>
   static void extract(const AnyInputs& in, Scalar* x) noexcept {
     First::extract(in, x);
-    if constexpr (sizeof...(More) > 0) Joined<More...>::extract(in, x + First::size);
+    int at = First::size;
+    ((More::extract(in, x + at), at += More::size), ...);
   }
 };
 
@@ -222,6 +205,6 @@ struct InverseFeatures
 };
 
 /// And the altitude: for a vehicle near the ground.
-struct InverseFeaturesWithAltitude : WithAltitude<InverseFeatures> {};
+struct InverseFeaturesWithAltitude : detail::WithAltitude<InverseFeatures> {};
 
 }  // namespace pinnquad

@@ -39,14 +39,14 @@ struct Centred {
   }
 };
 
+namespace detail {
+
 /// The inputs of the present instant, and of the window's other taps. A guard's fallback sees the present alone.
 template <class Tap, class Scalar, class Window>
 struct WindowInputs : Tap {
   std::array<Tap, static_cast<std::size_t>(Window::taps - 1)> others{};  ///< in the order of Window::offset_s
   bool complete{false};  ///< all taps are set: else check() says `warming_up`
 };
-
-namespace detail {
 
 /// The instants of a window.
 template <int Taps, class Period, class Reach>

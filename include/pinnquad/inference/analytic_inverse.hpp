@@ -37,16 +37,16 @@ class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
   Status operator()(const MotionInputs<Number>& inputs, Commands<Number>& commands) const noexcept {
     static_assert(varies_with == VariesWith::motion,
                   "pinnquad: an effect of this vehicle depends on height, place or time, which these inputs don't say: "
-                  "call predict(inputs, place, commands) (inference/place_and_time.hpp)");
-    return solve(inputs, Vector3<Scalar>::Zero(), Scalar(0), commands);
+                  "call predict(inputs, place, commands) (inference/guard.hpp)");
+    return (*this)(inputs, PlaceAndTime<Scalar>{}, commands);
   }
   /// The altitude is that above the ground of the vehicle's site.
   template <class Number>
   Status operator()(const MotionInputsWithAltitude<Number>& inputs, Commands<Number>& commands) const noexcept {
     static_assert(varies_with != VariesWith::place_and_time,
                   "pinnquad: an effect of this vehicle depends on place or time, which these inputs don't say: call "
-                  "predict(inputs, place, commands) (inference/place_and_time.hpp)");
-    return solve(inputs, at_altitude(Vector3<Scalar>::Zero(), inputs.altitude_m), Scalar(0), commands);
+                  "predict(inputs, place, commands) (inference/guard.hpp)");
+    return (*this)(inputs, PlaceAndTime<Scalar>{}, commands);
   }
   template <class Number, class Real>
   Status operator()(const MotionInputs<Number>& inputs, const PlaceAndTime<Real>& place,
@@ -57,16 +57,12 @@ class AnalyticInverse<Quadrotor<Scalar, Effects...>> {
   template <class Number, class Real>
   Status operator()(const MotionInputsWithAltitude<Number>& inputs, const PlaceAndTime<Real>& place,
                     Commands<Number>& commands) const noexcept {
-    const Vector3<Scalar> position = at_altitude(place.position_m.template cast<Scalar>(), inputs.altitude_m);
+    Vector3<Scalar> position = place.position_m.template cast<Scalar>();
+    position[2] = quadrotor_.site().ground_z_m - Scalar(inputs.altitude_m);
     return solve(inputs, position, Scalar(place.time_s), commands);
   }
 
  private:
-  template <class Number>
-  Vector3<Scalar> at_altitude(const Vector3<Scalar>& position_m, Number altitude_m) const noexcept {
-    return Vector3<Scalar>(position_m[0], position_m[1], quadrotor_.site().ground_z_m - Scalar(altitude_m));
-  }
-
   template <class Number>
   Status solve(const MotionInputs<Number>& inputs, const Vector3<Scalar>& position_m, Scalar time_s,
                Commands<Number>& commands) const noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An exported model asked for many motions at once, as rollouts (MPPI) and evaluation do: each with a Status of its own.
+// An exported model asked for many motions at once, as rollouts (MPPI) and evaluation do: a Status for each.
 #pragma once
 
 #include "pinnquad/inference/inverse_dynamics.hpp"
@@ -29,10 +29,10 @@ struct BatchedAnswer<Answer, false> {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// For each sample s what InverseDynamics::predict_features() gives, to rounding: x[k * samples + s] is its feature k in
-/// physical units, commands[i * samples + s] its command i, statuses[s] its Status. Commands of a sample are written only if
-/// has_output(statuses[s]). Of the guard, all but its fallback applies. Any model that shows its weights: a header's, a
-/// ModelView, a LoadedModel. No heap; stack for 2 packs of samples.
+/// For each sample s InverseDynamics::predict_features(), to rounding: x[k * samples + s] is its feature k in physical
+/// units, commands[i * samples + s] its command i, statuses[s] its Status. Commands of a sample are written only if
+/// has_output(statuses[s]). Of the guard, all but its fallback applies. Any model that shows its weights: a header's,
+/// a ModelView, a LoadedModel. No heap; stack for 2 packs of samples.
 template <class Model, class GuardType>
 void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
@@ -42,14 +42,11 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
                 "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Batched = detail::BatchedAnswer<typename Model::Network>;
-  using Numbers = detail::ModelNumbers<Model>;
   using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;
   constexpr int size = Model::Features::size;
   constexpr int lanes = Batched::lanes;
   const Scalar* weights = detail::row_major_weights(inverse.model());
-  const detail::Scales<Scalar> scales = Numbers::scales(inverse.model());
-  const Scalar* lower = Numbers::lower(inverse.model());
-  const Scalar* upper = Numbers::upper(inverse.model());
+  const detail::Scales<Scalar> scales = detail::scales_of(inverse.model());
 
   if (weights == nullptr) {  // a view of no block: its envelope is empty
     for (int s = 0; s < samples; ++s) statuses[s] = Status::outside_envelope;
@@ -62,7 +59,7 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
     for (int k = 0; k < size; ++k) {
       const Scalar* feature = x + k * samples + first;
       for (int s = 0; s < count; ++s) {
-        const bool inside = is_finite(feature[s]) & (feature[s] >= lower[k]) & (feature[s] <= upper[k]);
+        const bool inside = is_finite(feature[s]) & (feature[s] >= scales.lower[k]) & (feature[s] <= scales.upper[k]);
         outside[s] |= inside ? 0 : 1;
       }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Takes the object that runs on this processor among those compiled for several (inference/compiled_prediction.hpp). Once, when
-// the program starts; compile the caller for the oldest machine. Not part of flight code.
+// Takes the object that runs on this processor among those compiled for several (inference/compiled_prediction.hpp).
+// Once, when the program starts; compile the caller for the oldest machine. Not part of flight code.
 #pragma once
 
 #include <cstddef>

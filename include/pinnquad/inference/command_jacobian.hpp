@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Commands and how they change with each feature, in one pass: for incremental control (u + du/dw' dw') and as the linear
-// model of an MPC step.
+// Commands and how they change with each feature, in one pass: for incremental control (u + du/dw' dw') and as the
+// linear model of an MPC step.
 #pragma once
 
 #include "pinnquad/inference/inverse_dynamics.hpp"
@@ -11,10 +11,10 @@ namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// commands = u(x) and jacobian[i * Features::size + k] = du_i / dx_k, 4 x Features::size, row-major, in physical units
-/// (for the angular accelerations: per rad/s^2). Exact derivatives of network and output schema.
-/// Of the guard, the envelope, the distance and the checks of the commands apply; a fallback has no derivatives here and is not asked. Where
-/// the commands are clipped (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a
-/// header's, a ModelView, a LoadedModel. Both outputs are untouched unless has_output(status).
+/// (for the angular accelerations: per rad/s^2). Exact derivatives of network and output schema. Of the guard, the
+/// envelope, the distance and the checks of the commands apply; a fallback is not asked. Where the commands are clipped
+/// (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a header's, a ModelView,
+/// a LoadedModel. Both outputs are untouched unless has_output(status).
 template <class Model, class GuardType>
 Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                              typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
@@ -30,17 +30,15 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
   Scalar squared_distance(0);
   if (!inverse.inside_distribution(x, squared_distance)) return Status::outside_distribution;
 
-  const detail::Scales<Scalar> scales = detail::ModelNumbers<Model>::scales(inverse.model());
+  const detail::Scales<Scalar> scales = detail::scales_of(inverse.model());
   Scalar outputs[Network::outputs] = {}, slopes[Network::outputs * size];
   Scalar result[rotor_count], by_features[rotor_count * size];
   const Scalar* weights = detail::row_major_weights(inverse.model());
   Pipeline::run(scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
-    if constexpr (!is_network<Network>) {
-      Network::jacobian(weights, standardised, made, slopes);
-    } else if constexpr (detail::is_packed<Model>) {
+    if constexpr (detail::is_packed<Model>) {
       JacobianPass<Network>::run(detail::packed_weights(inverse.model()), weights, standardised, made, slopes);
     } else {
-      JacobianPass<Network>::run(weights, standardised, made, slopes);
+      predictor_jacobian<Network>(weights, standardised, made, slopes);
     }
   });
   Pipeline::chain(scales, x, outputs, slopes, by_features);

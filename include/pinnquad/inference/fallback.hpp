@@ -6,7 +6,7 @@
 
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/inference/guard.hpp"
-#include "pinnquad/inference/model_numbers.hpp"
+#include "pinnquad/inference/pipeline.hpp"
 
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
@@ -40,7 +40,7 @@ inline constexpr bool answers_beyond_envelope =
     std::is_base_of_v<MotionInputs<typename Inverse::Scalar>, typename Inverse::Inputs>;
 
 /// The network at the angular acceleration clamped to the envelope, and what the fallback adds for the rest of it; true
-/// if that was written. False where other features lie outside too, where JointDistance refuses or the fallback declines.
+/// if that was written. False where other features lie outside too, JointDistance refuses or the fallback declines.
 ///   commands(w) = network(c) + fallback(w - c) - fallback(0),  c = w clamped
 /// The fallback is not asked for c: its part depends on the rest alone, and each part rises by itself. Out of line: the
 /// network's way is the hot one.
@@ -50,9 +50,9 @@ PINNQUAD_NOINLINE bool answer_beyond_envelope(const Inverse& inverse, const type
                                               const Place&... place) noexcept {
   using Scalar = typename Inverse::Scalar;
   using Features = typename Inverse::Features;
-  using Numbers = ModelNumbers<typename Inverse::Model>;
-  const Scalar* lower = Numbers::lower(inverse.model()) + Features::angular_acceleration;
-  const Scalar* upper = Numbers::upper(inverse.model()) + Features::angular_acceleration;
+  const Scales<Scalar> scales = scales_of(inverse.model());
+  const Scalar* lower = scales.lower + Features::angular_acceleration;
+  const Scalar* upper = scales.upper + Features::angular_acceleration;
   typename Inverse::Inputs asked = inputs;
   Vector3<Scalar> rest;
   for (int i = 0; i < 3; ++i) {

@@ -5,7 +5,7 @@
 // another inverse. Where one of them refuses, the fallback is asked.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <type_traits>
 
 #include "pinnquad/core/finite.hpp"
@@ -14,7 +14,6 @@
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
 #include "pinnquad/inference/joint_distance.hpp"
-#include "pinnquad/inference/place_and_time.hpp"
 
 namespace pinnquad {
 
@@ -34,6 +33,17 @@ struct ClampToEnvelope {};
 
 /// The commands are finite: else `output_not_finite`. Every guard has it.
 struct FiniteOutputs {};
+
+/// A flight stack's clock in seconds. After 30 days doubles are 5e-10 s apart, floats 0.25 s.
+constexpr double seconds_of(std::uint64_t time_us) noexcept { return 1e-6 * static_cast<double>(time_us); }
+
+/// For a fallback with effects of place or time (ground effect, density, wind). Effects read the time in their
+/// vehicle's scalar: in float it must count from the flight's start.
+template <class Real>
+struct PlaceAndTime {
+  Vector3<Real> position_m = Vector3<Real>::Zero();  ///< NED, of the vehicle's site
+  Real time_s{0};
+};
 
 /// The range of a rotor's command.
 struct UnitCommands {
@@ -61,80 +71,38 @@ struct ClipCommands {};
 template <class Inverse>
 struct Fallback {};
 
+namespace detail {
 /// The default limit of Agreement.
 struct AgreedCommands {
   static constexpr double largest_difference = 0.07;
 };
+}  // namespace detail
 
 /// Each of the network's commands, clipped if the guard clips, differs from another inverse's by at most
 /// `Limit::largest_difference`: else `disagreement`. The other inverse is the Fallback, whose commands are then written
 /// (`fell_back`), or the Reference. It is asked each time; where it declines, the Status is `disagreement` too.
 /// Needs the inputs: predict(), not features alone.
-template <class Limit = AgreedCommands>
+template <class Limit = detail::AgreedCommands>
 struct Agreement {};
 
 /// The inverse that Agreement compares with in a guard without Fallback: never flown. Contract: as a Fallback's.
 template <class Inverse>
 struct Reference {};
 
-inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// Why a prediction came out as it did.
-template <class Scalar, int Size>
-struct GuardReport {
-  Status cause{Status::ok};     ///< the network's own: `ok`, `limited`, or why it declined
-  Status fallback{Status::ok};  ///< the fallback's or reference's, if it was asked
-  bool fallback_asked{false};
-  bool features_clamped{false};
-  bool commands_clipped{false};  ///< the network's or the fallback's
-  Scalar squared_distance{0};    ///< that JointDistance measured; 0 if none was
-  Scalar disagreement{0};  ///< largest |network's - other's command| that Agreement found; 0 if nothing was compared
-  /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that
-  /// isn't. All zero if the inputs were refused before there were features.
-  std::array<Scalar, static_cast<std::size_t>(Size)> excess{};
-  int worst_feature{-1};  ///< the one furthest outside, -1 if none is
-};
-
-}  // namespace PINNQUAD_INSTRUCTION_SET
-
 namespace detail {
 
 /// Stands for a fallback where there is none.
 struct NoFallback {};
-
-template <class Policy>
-inline constexpr bool is_policy = false;
-template <>
-inline constexpr bool is_policy<FiniteInputs> = true;
-template <>
-inline constexpr bool is_policy<TrainingEnvelope> = true;
-template <>
-inline constexpr bool is_policy<ClampToEnvelope> = true;
-template <>
-inline constexpr bool is_policy<FiniteOutputs> = true;
-template <class Limits>
-inline constexpr bool is_policy<RefuseCommands<Limits>> = true;
-template <class Limits>
-inline constexpr bool is_policy<ClipCommands<Limits>> = true;
-template <class Inverse>
-inline constexpr bool is_policy<Fallback<Inverse>> = true;
-template <class Limit>
-inline constexpr bool is_policy<Agreement<Limit>> = true;
-template <class Inverse>
-inline constexpr bool is_policy<Reference<Inverse>> = true;
-template <class Distribution>
-inline constexpr bool is_policy<JointDistance<Distribution>> = true;
 
 /// Stands for a distribution where the guard measures no distance.
 struct NoDistribution {
   static constexpr double squared_distance_limit = 1;
 };
 
-/// Both limits are numbers; what is compared with NaN or infinity is neither clipped nor refused.
-template <class Limits>
-constexpr bool finite_limits() noexcept {
-  return is_finite_constant(double(Limits::lower)) && is_finite_constant(double(Limits::upper));
-}
+/// Both limits are numbers of `Scalar`; what is compared with NaN or infinity is neither clipped nor refused.
+template <class Limits, class Scalar = double>
+inline constexpr bool finite_limits = is_finite_constant(Scalar(Limits::lower)) &&
+                                      is_finite_constant(Scalar(Limits::upper));
 
 /// The argument of the one `Template<...>` among the policies, else `Default`; and how many there are.
 template <template <class> class Template, class Default, class... Policies>
@@ -152,30 +120,27 @@ struct ArgumentOf<Template, Default, Template<Argument>, Rest...> {
 
 /// The value that a guard holds: the fallback, else the reference.
 template <class... Policies>
-struct OtherInverse {
-  using Fallen = ArgumentOf<Fallback, NoFallback, Policies...>;
-  using type =
-      typename std::conditional_t<(Fallen::count > 0), Fallen, ArgumentOf<Reference, NoFallback, Policies...>>::type;
-};
+using OtherInverse =
+    typename ArgumentOf<Fallback, typename ArgumentOf<Reference, NoFallback, Policies...>::type, Policies...>::type;
 }  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// A list of policies. A value: it holds the fallback, and is empty without one.
 template <class... Policies>
-class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::type> {
+class Guard : private detail::Held<detail::OtherInverse<Policies...>> {
   template <class Policy>
   static constexpr int count = (int(std::is_same_v<Policy, Policies>) + ... + 0);
   using Refused = detail::ArgumentOf<RefuseCommands, UnitCommands, Policies...>;
   using Clipped = detail::ArgumentOf<ClipCommands, UnitCommands, Policies...>;
   using FallenBack = detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>;
   using Referred = detail::ArgumentOf<Reference, detail::NoFallback, Policies...>;
-  using Agreed = detail::ArgumentOf<Agreement, AgreedCommands, Policies...>;
+  using Agreed = detail::ArgumentOf<Agreement, detail::AgreedCommands, Policies...>;
   using Distributed = detail::ArgumentOf<JointDistance, detail::NoDistribution, Policies...>;
 
  public:
   /// The fallback's type, or the reference's.
-  using FallbackInverse = typename detail::OtherInverse<Policies...>::type;
+  using FallbackInverse = detail::OtherInverse<Policies...>;
   /// JointDistance's, by the names of today.
   using Distribution = detail::DistanceTrust<typename Distributed::type>;
 
@@ -188,7 +153,10 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   static constexpr bool compares = Agreed::count > 0;
   static constexpr bool measures_distance = Distributed::count > 0;
 
-  static_assert((detail::is_policy<Policies> && ...),
+  static_assert(count<FiniteInputs> + count<TrainingEnvelope> + count<ClampToEnvelope> + count<FiniteOutputs> +
+                        Refused::count + Clipped::count + FallenBack::count + Referred::count + Agreed::count +
+                        Distributed::count ==
+                    int(sizeof...(Policies)),
                 "pinnquad: this type is not a policy of a Guard (inference/guard.hpp)");
   static_assert(count<FiniteOutputs> > 0,
                 "pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor");
@@ -203,7 +171,7 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   static_assert(((count<Policies> == 1) && ...) && Refused::count <= 1 && Clipped::count <= 1 &&
                     FallenBack::count <= 1 && Referred::count <= 1 && Agreed::count <= 1 && Distributed::count <= 1,
                 "pinnquad: a policy of a Guard is named twice");
-  static_assert(detail::finite_limits<typename Refused::type>() && detail::finite_limits<typename Clipped::type>(),
+  static_assert(detail::finite_limits<typename Refused::type> && detail::finite_limits<typename Clipped::type>,
                 "pinnquad: a Guard's command limits must be numbers: NaN or infinity would let every command pass");
   static_assert(Refused::type::lower <= Refused::type::upper && Clipped::type::lower <= Clipped::type::upper,
                 "pinnquad: a Guard's lower command limit lies above the upper one");
@@ -240,21 +208,18 @@ class Guard : private detail::Held<typename detail::OtherInverse<Policies...>::t
   /// refusal.
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE Status check_commands(Scalar* commands) noexcept {
+    static_assert(
+        detail::finite_limits<typename Refused::type, Scalar> && detail::finite_limits<typename Clipped::type, Scalar>,
+        "pinnquad: a Guard's command limits must be numbers of the model's Scalar, to which these overflow");
     if (!all_finite(commands, rotor_count)) return Status::output_not_finite;
     if constexpr (refuses_commands) {
       constexpr Scalar lower = Scalar(Refused::type::lower), upper = Scalar(Refused::type::upper);
-      static_assert(
-          is_finite_constant(lower) && is_finite_constant(upper),
-          "pinnquad: a Guard's command limits must be numbers of the model's Scalar, to which these overflow");
       bool inside = true;
       for (int i = 0; i < rotor_count; ++i) inside &= commands[i] >= lower && commands[i] <= upper;
       if (!inside) return Status::outside_limits;
     }
     if constexpr (clips_commands) {
       constexpr Scalar lower = Scalar(Clipped::type::lower), upper = Scalar(Clipped::type::upper);
-      static_assert(
-          is_finite_constant(lower) && is_finite_constant(upper),
-          "pinnquad: a Guard's command limits must be numbers of the model's Scalar, to which these overflow");
       bool inside = true;
       for (int i = 0; i < rotor_count; ++i) {
         const Scalar v = commands[i];

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What the control loop calls: predict() = check -> features -> envelope -> scale -> forward -> check, as its Guard says.
-// No heap, bounded time; weights stay where the exported header put them, and the object is empty then.
+// The prediction that a control loop calls: check -> features -> envelope -> scale -> forward -> check, as its Guard
+// says. No heap, bounded time; weights stay where the exported header put them, and the object is empty then.
 #pragma once
+
+#include <array>
 
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/inference/fallback.hpp"
 #include "pinnquad/inference/guard.hpp"
-#include "pinnquad/inference/model_numbers.hpp"
 #include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 
@@ -32,7 +33,23 @@ PINNQUAD_ALWAYS_INLINE const PackedNetwork<typename Model::Network>& packed_weig
   }
 }
 
-/// What is written to where nobody asked why.
+/// InverseDynamics::Report: why a prediction came out as it did. One type for all guards of a model.
+template <class Scalar, int Size>
+struct GuardReport {
+  Status cause{Status::ok};     ///< the network's own: `ok`, `limited`, or why it declined
+  Status fallback{Status::ok};  ///< the fallback's or reference's, if it was asked
+  bool fallback_asked{false};
+  bool features_clamped{false};
+  bool commands_clipped{false};  ///< the network's or the fallback's
+  Scalar squared_distance{0};    ///< that JointDistance measured; 0 if none was
+  Scalar disagreement{0};  ///< largest |network's - other's command| that Agreement found; 0 if nothing was compared
+  /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that
+  /// isn't. All zero if the inputs were refused before there were features.
+  std::array<Scalar, static_cast<std::size_t>(Size)> excess{};
+  int worst_feature{-1};  ///< the one furthest outside, -1 if none is
+};
+
+/// Stands for a Report where nobody asked why.
 struct NoReport {};
 
 /// The distribution of a guard's JointDistance is that of the model.
@@ -65,9 +82,9 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   using Features = typename Model::Features;
   using Inputs = typename Features::template Inputs<Scalar>;
   using Network = typename Model::Network;
-  using Report = GuardReport<Scalar, Features::size>;
+  using Report = detail::GuardReport<Scalar, Features::size>;
 
-  /// Of an exported model: it and the guard are types alone. A model or a fallback with values of its own must be given.
+  /// Of an exported model: it and the guard are types alone. A model or fallback with values of its own must be given.
   InverseDynamics() = default;
   explicit InverseDynamics(const Model& model) noexcept : detail::Held<Model>(model) {}
   explicit InverseDynamics(const Guard& guard) noexcept : detail::Held<Guard>(guard) {}
@@ -78,10 +95,10 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   const Guard& guard() const noexcept { return detail::Held<Guard>::held(); }
 
   /// Commands that make the motion asked for; not clipped to 0..1 unless the guard does (the rotor clips).
-  /// `ok`, `limited`: the network's. `fell_back`: the fallback's (Fallback). `not_finite`, `not_unit_quaternion`: a bad input.
-  /// `outside_envelope`: a feature beyond the training data. `outside_distribution`: all of them together too far from it
-  /// (JointDistance). `outside_limits`: the guard refuses the commands.
-  /// `output_not_finite`: the network's weights are broken. `disagreement`: too far from another inverse's (Agreement).
+  /// `ok`, `limited`: the network's. `fell_back`: the fallback's. `not_finite`, `not_unit_quaternion`: a bad input.
+  /// `outside_envelope`: a feature beyond the training data. `outside_distribution`: all together too far from it
+  /// (JointDistance). `outside_limits`: the guard refuses the commands. `output_not_finite`: the network's weights are
+  /// broken. `disagreement`: too far from another inverse's (Agreement).
   Status predict(const Inputs& inputs, Commands<Scalar>& commands) const noexcept {
     detail::NoReport none;
     return guarded(inputs, commands, none);
@@ -104,25 +121,18 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     return guarded(inputs, commands, report, place);
   }
 
-  /// What predict() comes to where the network must not be asked, for a reason that the caller knows: the fallback's commands
-  /// (`fell_back`), or `cause`. `cause` is a Status without output.
-  Status without_network(Status cause, const Inputs& inputs, Commands<Scalar>& commands,
-                         Report& report) const noexcept {
+  /// predict() where the network must not be asked, for a reason that the caller knows: the fallback's commands
+  /// (`fell_back`), or `cause`, a Status without output. `place`: nothing, or a PlaceAndTime.
+  template <class... Place>
+  Status without_network(Status cause, const Inputs& inputs, Commands<Scalar>& commands, Report& report,
+                         const Place&... place) const noexcept {
     report = {};
     report.cause = cause;
-    return declined(cause, inputs, commands, report);
-  }
-  /// The same for a fallback that needs to know where and when.
-  template <class Real>
-  Status without_network(Status cause, const Inputs& inputs, const PlaceAndTime<Real>& place,
-                         Commands<Scalar>& commands, Report& report) const noexcept {
-    report = {};
-    report.cause = cause;
-    return declined(cause, inputs, commands, report, place);
+    return declined(cause, inputs, commands, report, place...);
   }
 
-  /// The network's answer to a feature vector X, physical units, under all of the guard but its fallback, which needs the
-  /// inputs. `not_finite` for NaN or infinity that no envelope refuses.
+  /// The network's answer to a feature vector X, physical units, under all of the guard but its fallback, which needs
+  /// the inputs. `not_finite` for NaN or infinity that no envelope refuses.
   Status predict_features(const Scalar* x, Commands<Scalar>& commands) const noexcept {
     return predict_features(x, commands.data());
   }
@@ -142,23 +152,22 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// The network alone, without any check: features X -> commands. For self_test(), not for motors.
   PINNQUAD_ALWAYS_INLINE void evaluate(const Scalar* x, Scalar* commands) const noexcept {
     Scalar outputs[Network::outputs] = {};
-    Pipeline::run(Numbers::scales(model()), x, outputs, commands,
+    Pipeline::run(detail::scales_of(model()), x, outputs, commands,
                   [this](const Scalar* standardised, Scalar* made)
                       PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }
   /// The same, and x is overwritten: less of the stack.
   PINNQUAD_ALWAYS_INLINE void evaluate_over(Scalar* x, Scalar* commands) const noexcept {
-    Pipeline::run_over(Numbers::scales(model()), x, commands,
+    Pipeline::run_over(detail::scales_of(model()), x, commands,
                        [this](const Scalar* standardised, Scalar* made)
                            PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }
 
-  /// True if every feature lies in what the model was trained on, margin included; false for NaN, under -ffast-math too.
+  /// True if every feature lies in the training rows' range, margin included; false for NaN, under -ffast-math too.
   PINNQUAD_ALWAYS_INLINE bool inside_envelope(const Scalar* x) const noexcept {
-    const Scalar* lower = Numbers::lower(model());
-    const Scalar* upper = Numbers::upper(model());
+    const detail::Scales<Scalar> scales = detail::scales_of(model());
     bool inside = all_finite(x, Features::size);
-    for (int i = 0; i < Features::size; ++i) inside &= x[i] >= lower[i] && x[i] <= upper[i];
+    for (int i = 0; i < Features::size; ++i) inside &= x[i] >= scales.lower[i] && x[i] <= scales.upper[i];
     return inside;
   }
 
@@ -173,8 +182,8 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     }
   }
 
-  /// The bare network, standardised in and out: the model's own forward() if it has one; else the vector unit's kernel where
-  /// there is one, else the portable one. Out of line: all ways to the network share its code.
+  /// The bare network, standardised in and out: the model's own forward() if it has one; else the vector unit's kernel
+  /// where there is one, else the portable one. Out of line: all ways to the network share its code.
   PINNQUAD_NOINLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
     if constexpr (model_kind<Model> != ModelKind::header) {
       model().forward(standardised, outputs);
@@ -187,7 +196,6 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   }
 
  private:
-  using Numbers = detail::ModelNumbers<Model>;
   using Pipeline = detail::Pipeline<Features, typename Model::Outputs, typename Model::Vehicle>;
   template <class ReportType>
   static constexpr bool reports = !std::is_same_v<ReportType, detail::NoReport>;
@@ -276,10 +284,9 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
 
   /// x moved into the envelope; true if anything had to move. x is finite.
   PINNQUAD_ALWAYS_INLINE bool clamp(const Scalar* x, Scalar* nearest) const noexcept {
-    const Scalar* lower = Numbers::lower(model());
-    const Scalar* upper = Numbers::upper(model());
+    const detail::Scales<Scalar> scales = detail::scales_of(model());
     for (int i = 0; i < Features::size; ++i)
-      nearest[i] = x[i] < lower[i] ? lower[i] : (upper[i] < x[i] ? upper[i] : x[i]);
+      nearest[i] = x[i] < scales.lower[i] ? scales.lower[i] : (scales.upper[i] < x[i] ? scales.upper[i] : x[i]);
     return !inside_envelope(x);
   }
 
@@ -295,7 +302,8 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     return true;
   }
 
-  /// The network's commands where the other inverse agrees, else the fallback's or none. Asked whatever the network came to.
+  /// The network's commands where the other inverse agrees, else the fallback's or none. The other inverse is asked
+  /// whatever the network came to.
   template <class ReportType, class... Place>
   PINNQUAD_NOINLINE Status compare(const Inputs& inputs, const Scalar* asked, Status status, Commands<Scalar>& commands,
                                    ReportType& report, const Place&... place) const noexcept {
@@ -322,7 +330,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     return Status::fell_back;
   }
 
-  /// What the other inverse comes to under the guard's checks of commands.
+  /// The other inverse's commands under the guard's checks of commands.
   template <class ReportType, class... Place>
   Status ask_and_check(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
                        const Place&... place) const noexcept {
@@ -336,13 +344,12 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   }
 
   void measure(const Scalar* x, Report& report) const noexcept {
-    const Scalar* lower = Numbers::lower(model());
-    const Scalar* upper = Numbers::upper(model());
+    const detail::Scales<Scalar> scales = detail::scales_of(model());
     Scalar worst(0);
     for (int i = 0; i < Features::size; ++i) {
-      const Scalar beyond = x[i] < lower[i] ? lower[i] - x[i] : x[i] - upper[i];  // NaN stays NaN
-      Scalar excess = beyond / ((upper[i] - lower[i]) / Scalar(2));
-      if (is_finite(x[i]) && x[i] >= lower[i] && x[i] <= upper[i]) excess = Scalar(0);
+      const Scalar beyond = x[i] < scales.lower[i] ? scales.lower[i] - x[i] : x[i] - scales.upper[i];  // NaN stays NaN
+      Scalar excess = beyond / ((scales.upper[i] - scales.lower[i]) / Scalar(2));
+      if (is_finite(x[i]) && x[i] >= scales.lower[i] && x[i] <= scales.upper[i]) excess = Scalar(0);
       report.excess[static_cast<std::size_t>(i)] = excess;
       // what is not finite outdoes every number, the first of them all
       if (is_finite(worst) && (!is_finite(excess) || excess > worst)) {

@@ -12,8 +12,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// `Inverse`: an InverseDynamics. `Trust`: CommandResidualMonitor's. The monitor goes on while the fallback flies: a
 /// model that is right again flies again.
-/// Threads: the const calls may run at once, if the fallback's may. observe(), observe_features() and reset() write the
-/// monitor: while one of them runs, no other call on the same object may.
+/// Threads: the const calls may run at once, if the fallback's may. observe() and reset() write the monitor: while one
+/// of them runs, no other call on the same object may.
 template <class Inverse, class Trust>
 class MonitoredInverse : private detail::Held<Inverse> {
  public:
@@ -38,13 +38,9 @@ class MonitoredInverse : private detail::Held<Inverse> {
     if (checked != Status::ok) return checked;
     Scalar x[Features::size];
     Features::extract(measured, x);
-    return observe_features(x, flown);
-  }
-  /// The same of features in physical units.
-  Status observe_features(const Scalar* x, const Commands<Scalar>& flown) noexcept {
     if (!all_finite(x, Features::size)) return Status::not_finite;
     Commands<Scalar> predicted{};
-    inverse().evaluate(x, predicted.data());
+    inverse().evaluate(static_cast<const Scalar*>(x), predicted.data());
     if (!all_finite(predicted)) return Status::output_not_finite;
     return monitor_.update(predicted, flown);
   }
@@ -56,21 +52,21 @@ class MonitoredInverse : private detail::Held<Inverse> {
   }
   Status predict(const Inputs& inputs, Commands<Scalar>& commands) const noexcept {
     if (trusted()) return inverse().predict(inputs, commands);
-    Report report;
-    return inverse().without_network(Status::distrusted, inputs, commands, report);
+    Report unread;
+    return inverse().without_network(Status::distrusted, inputs, commands, unread);
   }
   /// The same for a fallback that depends on place and time.
   template <class Real>
   Status predict(const Inputs& inputs, const PlaceAndTime<Real>& place, Commands<Scalar>& commands,
                  Report& report) const noexcept {
     return trusted() ? inverse().predict(inputs, place, commands, report)
-                     : inverse().without_network(Status::distrusted, inputs, place, commands, report);
+                     : inverse().without_network(Status::distrusted, inputs, commands, report, place);
   }
   template <class Real>
   Status predict(const Inputs& inputs, const PlaceAndTime<Real>& place, Commands<Scalar>& commands) const noexcept {
     if (trusted()) return inverse().predict(inputs, place, commands);
-    Report report;
-    return inverse().without_network(Status::distrusted, inputs, place, commands, report);
+    Report unread;
+    return inverse().without_network(Status::distrusted, inputs, commands, unread, place);
   }
 
  private:

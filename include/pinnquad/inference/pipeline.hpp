@@ -1,27 +1,50 @@
 // SPDX-License-Identifier: MIT
-// From features to commands, written once for whoever asks: a prediction, a batch, the Jacobian, the trainer's model.
+// From features to commands, written once: for a prediction, a batch, the Jacobian, the trainer's judgement.
 //   features x -> (x - mean) / spread -> network -> y = spread z + mean -> the schema's g(x, y) = commands
 // Physical units outside, standardised ones around the network. Of several samples, entry k of sample s stands at
 // [k * stride + s]; the network takes `Lanes` of them side by side.
 #pragma once
 
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/exported/model.hpp"
+#include "pinnquad/model/predictor.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Where the scalers' numbers are.
-template <class Scalar>
-struct Scales {
-  const Scalar* input_mean;
-  const Scalar* input_spread;
-  const Scalar* output_mean;
-  const Scalar* output_spread;
-};
+/// The weights as the network lays them out: in flash, in a block or in the instance. Null for a view of no block.
+template <class Model>
+PINNQUAD_ALWAYS_INLINE const typename Model::Scalar* row_major_weights(const Model& model) noexcept {
+  static_assert(model_kind<Model> != ModelKind::function,
+                "pinnquad: this model shows no weights; its kind is ModelKind::function (exported/model.hpp)");
+  if constexpr (model_kind<Model> >= ModelKind::view) {
+    return model.parameters();
+  } else if constexpr (model_kind<Model> == ModelKind::header) {
+    constexpr const typename Model::Scalar* first = Model::parameters.data();
+    return first;
+  } else {
+    return first_of<typename Model::Scalar>(model.parameters);
+  }
+}
 
-/// `count` samples, 1 to `Lanes`; padding repeats the last one. Its loop starts at 0: of one from a constant `count` g++ 12
-/// warns that its index overflows.
+/// Scalers and envelope. A header's are constants of the compiler, at -O0 too; others are read through the instance.
+template <class Model>
+PINNQUAD_ALWAYS_INLINE Scales<typename Model::Scalar> scales_of([[maybe_unused]] const Model& model) noexcept {
+  using Scalar = typename Model::Scalar;
+  if constexpr (model_kind<Model> == ModelKind::header) {
+    constexpr Scales<Scalar> constants = scales_in_header<Model>();
+    return constants;
+  } else {
+    return {first_of<Scalar>(model.input.mean),     first_of<Scalar>(model.input.standard_deviation),
+            first_of<Scalar>(model.output.mean),    first_of<Scalar>(model.output.standard_deviation),
+            first_of<Scalar>(model.envelope_lower), first_of<Scalar>(model.envelope_upper)};
+  }
+}
+
+/// `count` samples, 1 to `Lanes`; padding repeats the last one. Its loop starts at 0: of one from a constant `count`
+/// g++ 12 warns that its index overflows.
 template <int Size, int Lanes, class Scalar>
 PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread, const Scalar* values, int stride,
                                         int count, Scalar* standardised) noexcept {
@@ -34,21 +57,27 @@ PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread
   }
 }
 
-/// The line above for models with these features, outputs and airframe. `forward(standardised, outputs)` is the network.
+/// That line for models with these features, outputs and airframe. `forward(standardised, outputs)` is the network.
 template <class Features, class Outputs, class Vehicle>
 struct Pipeline {
   using Map = OutputMap<Outputs>;
+  /// The schema's argument `setting`, where the compiler knows the airframe; static: no copy on the stack.
+  template <class Scalar>
+  static constexpr auto own_setting = Map::setting(airframe_value<Vehicle, Scalar>());
+  template <class Scalar>
+  using Setting = decltype(Map::setting(std::declval<const Airframe<Scalar>&>()));
 
   /// Of one sample: outputs in physical units, and the commands that they mean.
   template <class Scalar, class Forward>
   static PINNQUAD_ALWAYS_INLINE void run(const Scales<Scalar>& scales, const Scalar* x, Scalar* outputs,
-                                         Scalar* commands, const Forward& forward) noexcept {
+                                         Scalar* commands, const Forward& forward,
+                                         const Setting<Scalar>& setting = own_setting<Scalar>) noexcept {
     ask<1>(scales, x, 1, 1, outputs, forward);
-    command(scales, x, 1, static_cast<const Scalar*>(outputs), 1, outputs, commands);
+    command(scales, x, 1, static_cast<const Scalar*>(outputs), 1, outputs, commands, setting);
   }
 
-  /// The commands of features that the caller has done with: standardised where they stand, if the schema does not want them too.
-  /// The network answers where the commands will be. Less of the stack.
+  /// The commands of features that the caller has done with: they are standardised where they stand, unless the schema
+  /// reads them too. The network answers where the commands will be. Takes less of the stack.
   template <class Scalar, class Forward>
   static PINNQUAD_ALWAYS_INLINE void run_over(const Scales<Scalar>& scales, Scalar* x, Scalar* commands,
                                               const Forward& forward) noexcept {
@@ -77,12 +106,11 @@ struct Pipeline {
     forward(static_cast<const Scalar*>(standardised), answers);
   }
 
-  /// The schema's share, of one sample: its outputs in physical units, which may overwrite its answers, and its commands.
+  /// The schema's share, of one sample: its outputs in physical units, which may overwrite its answers, and commands.
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void command(const Scales<Scalar>& scales, const Scalar* x, int x_stride,
-                                             const Scalar* answers, int stride, Scalar* outputs,
-                                             Scalar* commands) noexcept {
-    static constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());  // static: no copy on the stack
+                                             const Scalar* answers, int stride, Scalar* outputs, Scalar* commands,
+                                             const Setting<Scalar>& setting = own_setting<Scalar>) noexcept {
     if constexpr (Map::rotor_by_rotor) {  // one loop for both is less code in flash
       for (int i = 0; i < rotor_count; ++i) {
         outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
@@ -100,13 +128,13 @@ struct Pipeline {
     }
   }
 
-  /// jacobian = du/dx in physical units from `slopes`, the network's derivatives between standardised values (Map::size x
-  /// Features::size), at features and outputs in physical units.
+  /// jacobian = du/dx in physical units from `slopes`, the network's derivatives between standardised values
+  /// (Map::size x Features::size), at features and outputs in physical units.
   template <class Scalar>
   static PINNQUAD_ALWAYS_INLINE void chain(const Scales<Scalar>& scales, const Scalar* x, const Scalar* outputs,
                                            const Scalar* slopes, Scalar* jacobian) noexcept {
     constexpr int size = Features::size;
-    static constexpr auto setting = Map::setting(airframe_value<Vehicle, Scalar>());  // static: no copy on the stack
+    constexpr const Setting<Scalar>& setting = own_setting<Scalar>;
     Scalar by_outputs[Map::slope_count];
     Map::slopes(x, outputs, setting, by_outputs);
     for (int i = 0; i < rotor_count * size; ++i) jacobian[i] = Scalar(0);

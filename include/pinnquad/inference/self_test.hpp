@@ -66,11 +66,9 @@ int first_broken_weight(const Model& model) noexcept {
 /// True if no scaler, no border of the envelope and no weight as the vector unit reads it is NaN or infinite.
 template <class Model>
 bool numbers_finite(const Model& model) noexcept {
-  using Numbers = ModelNumbers<Model>;
   constexpr int size = Model::Features::size;
-  bool finite = all_finite(Numbers::lower(model), size);
-  finite &= all_finite(Numbers::upper(model), size);
-  const Scales<typename Model::Scalar> scales = Numbers::scales(model);
+  const Scales<typename Model::Scalar> scales = scales_of(model);
+  bool finite = all_finite(scales.lower, size) && all_finite(scales.upper, size);
   finite &= all_finite(scales.input_mean, size) && all_finite(scales.input_spread, size);
   finite &= all_finite(scales.output_mean, Model::Network::outputs);
   finite &= all_finite(scales.output_spread, Model::Network::outputs);
@@ -83,11 +81,11 @@ bool numbers_finite(const Model& model) noexcept {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Ok if the network by itself, whatever the guard, reproduces every golden command within golden_tolerance, and every golden
-/// vector lies in the envelope, and every weight, scaler and border of the envelope is a number. Else `self_test_failed`: a
-/// wrong kernel, compiler flag or bit in flash, or no golden vector. Every NaN and infinity is found, under -ffast-math too,
-/// where a prediction may lose it on its way to the commands. A wrong bit of a weight is found if it moves a golden command by
-/// more than the tolerance: a bit that matters less than rounding is for a checksum to find.
+/// Ok if the network by itself, whatever the guard, reproduces every golden command within golden_tolerance, every
+/// golden vector lies in the envelope, and every weight, scaler and border of the envelope is a number. Else
+/// `self_test_failed`: a wrong kernel, compiler flag or bit in flash, or no golden vector. Every NaN and infinity is
+/// found, under -ffast-math too, where a prediction may lose it. A wrong bit of a weight is found if it moves a golden
+/// command by more than the tolerance; smaller ones are for a checksum to find.
 template <class Model, class Guard>
 Status self_test(const InverseDynamics<Model, Guard>& inverse,
                  SelfTestReport<typename Model::Scalar>& report) noexcept {

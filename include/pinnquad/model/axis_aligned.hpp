@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The affine part of a monotone model. Outputs are axis commands (outputs/axis_command_outputs.hpp). The command about
-// an axis depends on the angular acceleration about that axis and on no other one; the collective depends on none. With
-// slopes above 0 each axis command rises with the acceleration that is asked about its axis.
+// A monotone model: an affine part, and a residual that is not shown the angular accelerations, three features in a row
+// per tap, on which its outputs then cannot depend. Outputs are axis commands (outputs/axis_command_outputs.hpp). The
+// affine command about an axis depends on the angular acceleration about that axis and on no other one; the collective
+// depends on none. With slopes above 0 each axis command rises with the acceleration that is asked about its axis.
 //   y_0 = b_0 + w_0 r,  y_axis = b_axis + w_axis r + sum over taps of slope_(tap,axis) wdot_(tap,axis)
 // r: all features but the angular accelerations.
 #pragma once
@@ -9,23 +10,113 @@
 #include <utility>
 
 #include "pinnquad/features/windowed.hpp"
-#include "pinnquad/model/masked.hpp"
-#include "pinnquad/model/saturated.hpp"
+#include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
 
+namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// Features split in two: three in a row from each of the places `First...`, ascending, and the others.
+template <int FeatureCount, int... First>
+struct Triples {
+  static constexpr int count = int(sizeof...(First));
+  static constexpr int others = FeatureCount - 3 * count;
+
+  /// True where no three overlap and all are features.
+  static constexpr bool fit() noexcept {
+    int end = 0;
+    bool fits = true;
+    ((fits = fits && First >= end, end = First + 3), ...);
+    return fits && end <= FeatureCount;
+  }
+  /// Calls `visit(feature, n)` for the n-th of the others.
+  template <class Visit>
+  static PINNQUAD_ALWAYS_INLINE constexpr void each_other(const Visit& visit) noexcept {
+    int feature = 0, n = 0;
+    const auto until = [&](int end) PINNQUAD_INLINE_LAMBDA {
+      for (; feature < end; ++feature) visit(feature, n++);
+      feature += 3;
+    };
+    (until(First), ...);
+    until(FeatureCount);
+  }
+  /// Copies the others of `x`.
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void copy_others(const Scalar* x, Scalar* others_of_x) noexcept {
+    each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA { others_of_x[n] = x[feature]; });
+  }
+  /// Place in X of the n-th of the others.
+  static PINNQUAD_ALWAYS_INLINE constexpr int other(int n) noexcept {
+    ((n += n >= First ? 3 : 0), ...);
+    return n;
+  }
+  /// The others of `x`, read where they stand.
+  template <class Scalar>
+  struct InPlace {
+    const Scalar* x;
+    PINNQUAD_ALWAYS_INLINE Scalar operator[](int n) const noexcept { return x[other(n)]; }
+  };
+  /// Calls `visit(place, n)` for the n-th three.
+  template <class Visit>
+  static PINNQUAD_ALWAYS_INLINE constexpr void each(const Visit& visit) noexcept {
+    int n = 0;
+    ((visit(First, n), ++n), ...);
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// `Inner` is shown all features but the threes from `First...` on. Parameters: those of `Inner`.
+template <class Inner, int FeatureCount, int... First>
+struct Masked : detail::PredictorBase<Masked<Inner, FeatureCount, First...>, typename Inner::Scalar, FeatureCount,
+                                      Inner::outputs, Inner::parameter_count> {
+  using Threes = detail::Triples<FeatureCount, First...>;
+  static_assert(is_predictor<Inner>, "pinnquad: Masked is around a predictor (model/predictor.hpp)");
+  static_assert(Threes::fit(), "pinnquad: Masked features are in threes, ascending, and do not overlap");
+  static_assert(Inner::inputs == Threes::others,
+                "pinnquad: a predictor inside Masked takes all features that are not masked");
+  using Scalar = typename Inner::Scalar;
+  using Masked::PredictorBase::forward;
+  static constexpr detail::TemplateText<Inner, detail::Number<FeatureCount>, detail::Number<First>...> description{
+      "pinnquad::Withheld"};
+
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    if constexpr (is_network<Inner>) {
+      PortablePass<Inner>::forward_of(parameters, typename Threes::template InPlace<Scalar>{x}, y);
+    } else {
+      Scalar seen[Threes::others];
+      Threes::copy_others(x, static_cast<Scalar*>(seen));
+      Inner::forward(parameters, static_cast<const Scalar*>(seen), y);
+    }
+  }
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    Scalar seen[Threes::others], by_seen[Inner::outputs * Threes::others];
+    Threes::copy_others(x, static_cast<Scalar*>(seen));
+    predictor_jacobian<Inner>(parameters, static_cast<const Scalar*>(seen), y, static_cast<Scalar*>(by_seen));
+    for (int i = 0; i < Inner::outputs * FeatureCount; ++i) by_x[i] = Scalar(0);
+    Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA {
+      for (int i = 0; i < Inner::outputs; ++i) by_x[i * FeatureCount + feature] = by_seen[i * Threes::others + n];
+    });
+  }
+};
 
 /// `First...`: place of the angular acceleration of each tap, that of the present first. Parameters: slopes tap by tap,
 /// axis by axis; weights of the other features row by row; intercepts.
 template <class ScalarType, int FeatureCount, int... First>
-struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
-                                   3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {
+struct AxisAligned
+    : detail::PredictorBase<AxisAligned<ScalarType, FeatureCount, First...>, ScalarType, FeatureCount, 4,
+                            3 * int(sizeof...(First)) + 4 * (FeatureCount - 3 * int(sizeof...(First))) + 4> {
   using Threes = detail::Triples<FeatureCount, First...>;
   static_assert(Threes::fit() && Threes::count > 0 && Threes::others > 0,
                 "pinnquad: the angular accelerations of AxisAligned are features in threes, ascending, and not all");
   using Scalar = ScalarType;
   using AxisAligned::PredictorBase::forward;
+  static constexpr detail::TemplateText<Scalar, detail::Number<FeatureCount>, detail::Number<First>...> description{
+      "pinnquad::AxisAligned"};
   static constexpr int taps = Threes::count;
   static constexpr int slopes = 0;  ///< places among the parameters
   static constexpr int weights = 3 * taps;
@@ -62,16 +153,6 @@ struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First..
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-template <class Scalar, int FeatureCount, int... First>
-struct Description<AxisAligned<Scalar, FeatureCount, First...>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    sink.add(std::string_view("pinnquad::AxisAligned<"));
-    Description<Scalar>::add(sink);
-    detail::describe_numbers(sink, FeatureCount, First...);
-  }
-};
 
 namespace detail {
 

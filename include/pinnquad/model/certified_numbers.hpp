@@ -27,12 +27,7 @@ constexpr bool covers_angular_acceleration() noexcept {
   if constexpr (Features::angular_acceleration < 0) {
     return false;
   } else {
-    constexpr int places[] = {First...};
-    if (int(sizeof...(First)) != angular_acceleration_taps<Features>()) return false;
-    for (int tap = 0; tap < int(sizeof...(First)); ++tap) {
-      if (places[tap] != angular_acceleration_at<Features>(tap)) return false;
-    }
-    return true;
+    return std::is_same_v<MonotoneBase<Features>, AxisAligned<float, Features::size, First...>>;
   }
 }
 
@@ -145,21 +140,10 @@ constexpr double rounded_up(double value) noexcept {
 }
 constexpr double rounded_down(double value) noexcept { return -rounded_up(-value); }
 
-}  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-
-inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// True for a model type (Network, Features, Outputs) whose certificate can be worked out.
-template <class Shape>
-inline constexpr bool has_certificate =
-    is_signed_sums<typename Shape::Outputs>&& base_reads<typename Shape::Features, typename Shape::Outputs>() &&
-    !std::is_void_v<typename detail::ProvenStructure<typename Shape::Network, typename Shape::Features>::Base>;
-
 /// Numbers of a vehicle, and of the base of its outputs, that a certificate reads.
 template <class Scalar>
 struct CertifiedVehicle {
-  detail::SignedMix<Scalar> mix{};
+  SignedMix<Scalar> mix{};
   double least_slope[3]{};  ///< floors of the slopes, s^2/rad
   bool on_base = false;
   double base_thrust_slope = 0;  ///< least that the base adds to the thrust slope, s^2/m
@@ -168,8 +152,8 @@ struct CertifiedVehicle {
 template <class Outputs, class Scalar>
 constexpr CertifiedVehicle<Scalar> certified_vehicle(const Airframe<Scalar>& airframe) noexcept {
   CertifiedVehicle<Scalar> vehicle;
-  vehicle.mix = detail::signed_mix(airframe);
-  const auto map = detail::acceleration_map(airframe, Scalar(0));
+  vehicle.mix = signed_mix(airframe);
+  const auto map = acceleration_map(airframe, Scalar(0));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
       const Scalar most_thrust_slope = Scalar(1) + map.curve[rotor];  // of its curve, at command 1
@@ -177,22 +161,11 @@ constexpr CertifiedVehicle<Scalar> certified_vehicle(const Airframe<Scalar>& air
       vehicle.least_slope[axis] += least_slope_share * static_cast<double>(share);
     }
   }
-  using Base = typename detail::BaseOf<Outputs>::type;
-  vehicle.on_base = !std::is_same_v<Base, detail::NoBase>;
-  vehicle.base_thrust_slope = detail::base_thrust_slope<Base>(airframe);
+  using Base = typename BaseOf<Outputs>::type;
+  vehicle.on_base = !std::is_same_v<Base, NoBase>;
+  vehicle.base_thrust_slope = base_thrust_slope<Base>(airframe);
   return vehicle;
 }
-
-/// Scalers and envelope of a model.
-template <class Scalar>
-struct CertifiedScales {
-  const Scalar* input_mean;
-  const Scalar* input_spread;
-  const Scalar* output_mean;
-  const Scalar* output_spread;
-  const Scalar* envelope_lower;
-  const Scalar* envelope_upper;
-};
 
 /// The stored numbers that a certificate reads. No pointer is null: to compare a pointer into an array with null is no
 /// constant expression under g++ -fsanitize=undefined.
@@ -208,7 +181,7 @@ struct CertifiedNumbers {
   bool has_residual;          ///< its bounds follow the affine part's parameters
   const PathBound<4>* paths;  ///< of a residual that is shown the angular acceleration, tap by tap, axis by axis
   bool has_paths;
-  CertifiedScales<Scalar> scales;
+  Scales<Scalar> scales;
   CertifiedVehicle<Scalar> vehicle;
 
   constexpr int others() const noexcept { return inputs - 3 * taps; }
@@ -218,5 +191,12 @@ struct CertifiedNumbers {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
+/// True for a model type (Network, Features, Outputs) whose certificate can be worked out.
+template <class Shape>
+inline constexpr bool has_certificate =
+    is_signed_sums<typename Shape::Outputs>&& base_reads<typename Shape::Features, typename Shape::Outputs>() &&
+    !std::is_void_v<typename detail::ProvenStructure<typename Shape::Network, typename Shape::Features>::Base>;
 
 }  // namespace pinnquad

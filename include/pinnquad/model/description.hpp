@@ -1,52 +1,73 @@
 // SPDX-License-Identifier: MIT
-// What a model is made of, written down: the identity of its weights on flash. No compiler's word: a layer names itself
-// (`static constexpr const char* description`), the library's templates are described here. One that does neither is
-// called what the compiler calls it (core/type_text.hpp), which must then be the same from every compiler that is used.
+// The text that names a model's parts: the identity of its weights on flash. A layer, a base or a predictor names
+// itself by a static constexpr member `description`: a text, or detail::TemplateText. A type without one has its name
+// from the compiler (core/type_text.hpp), which must then be the same from every compiler that is used.
 #pragma once
 
 #include <string_view>
+#include <type_traits>
 
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/core/type_text.hpp"
 #include "pinnquad/nn/network.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
-/// `add(sink)` gives the sink the description's pieces: `sink.add(std::string_view)`, `sink.add(int)`. Specialise it
-/// for a template of your own.
-template <class T, class = void>
-struct Description {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    sink.add(detail::type_text<T>());
-  }
+/// "name<first, second, ...>": the description of a class template. Arguments are types, numbers among them as Number.
+template <class... Argument>
+struct TemplateText {
+  std::string_view name;
 };
+template <int Value>
+struct Number {};
+
 template <class T>
-struct Description<T, std::void_t<decltype(std::string_view(T::description))>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    sink.add(std::string_view(T::description));
+using OwnDescription = std::enable_if_t<std::is_object_v<decltype(T::description)>>;
+template <class T>
+constexpr auto described() noexcept {
+  if constexpr (is_detected<OwnDescription, T>) {
+    return T::description;
+  } else {
+    return type_text<T>();
   }
-};
+}
 
-namespace detail {
+/// Of a type: a text, a number, or a TemplateText.
+template <class T>
+inline constexpr auto description_of = described<T>();
+template <int Value>
+inline constexpr int description_of<Number<Value>> = Value;
+/// By its name of formats 1 and 2: weights on flash keep their identity.
+template <int Size>
+inline constexpr TemplateText<Number<Size>> description_of<InputSize<Size>>{"pinnquad::Inputs"};
+template <int Size>
+inline constexpr TemplateText<Number<Size>> description_of<Dense<Size>>{"pinnquad::Dense"};
+template <int Size>
+inline constexpr TemplateText<Number<Size>> description_of<DenseWithoutBias<Size>>{"pinnquad::DenseWithoutBias"};
+template <class Scalar, class InputSize, class... Specs>
+inline constexpr TemplateText<Scalar, InputSize, Specs...> description_of<Network<Scalar, InputSize, Specs...>>{
+    "pinnquad::Network"};
 
-/// "name<number>".
 template <class Sink>
-constexpr void describe_sized(Sink& sink, std::string_view name, int size) {
-  sink.add(name);
-  sink.add(std::string_view("<"));
-  sink.add(size);
+constexpr void add_description(Sink& sink, std::string_view text) {
+  sink.add(text);
+}
+template <class Sink>
+constexpr void add_description(Sink& sink, int number) {
+  sink.add(number);
+}
+template <class Sink, class... Argument>
+constexpr void add_description(Sink& sink, const TemplateText<Argument...>& text) {
+  sink.add(text.name);
+  std::string_view before = "<";
+  ((sink.add(before), add_description(sink, description_of<Argument>), before = ", "), ...);
   sink.add(std::string_view(">"));
 }
-/// "name<first, second, ...>".
-template <class First, class... More, class Sink>
-constexpr void describe_list(Sink& sink, std::string_view name) {
-  sink.add(name);
-  sink.add(std::string_view("<"));
-  Description<First>::add(sink);
-  ((sink.add(std::string_view(", ")), Description<More>::add(sink)), ...);
-  sink.add(std::string_view(">"));
+/// Gives the sink the pieces of T's description: `sink.add(std::string_view)`, `sink.add(int)`.
+template <class T, class Sink>
+constexpr void describe(Sink& sink) {
+  add_description(sink, description_of<T>);
 }
 
 /// A sink of letters one by one, digits among them and spaces left out: `Taker` has `take(char)`.
@@ -74,54 +95,8 @@ struct DescriptionHash : LetterSink<DescriptionHash> {
 template <class T>
 constexpr void absorb_description(Fnv1a& fnv) noexcept {
   DescriptionHash sink{fnv};
-  Description<T>::add(sink);
+  describe<T>(sink);
   fnv.absorb(0);
 }
 
-}  // namespace detail
-
-template <>
-struct Description<float> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    sink.add(std::string_view("float"));
-  }
-};
-template <>
-struct Description<double> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    sink.add(std::string_view("double"));
-  }
-};
-/// By its name of formats 1 and 2: weights on flash keep their identity.
-template <int Size>
-struct Description<InputSize<Size>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    detail::describe_sized(sink, "pinnquad::Inputs", Size);
-  }
-};
-template <int Size>
-struct Description<Dense<Size>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    detail::describe_sized(sink, "pinnquad::Dense", Size);
-  }
-};
-template <int Size>
-struct Description<DenseWithoutBias<Size>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    detail::describe_sized(sink, "pinnquad::DenseWithoutBias", Size);
-  }
-};
-template <class Scalar, class InputSize, class... Specs>
-struct Description<Network<Scalar, InputSize, Specs...>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    detail::describe_list<Scalar, InputSize, Specs...>(sink, "pinnquad::Network");
-  }
-};
-
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

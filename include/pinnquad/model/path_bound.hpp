@@ -27,6 +27,13 @@ inline constexpr bool slopes_from_0_to_1<SoftplusLayer<Scalar, Size>> = true;
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
+/// Lower and upper bounds of d(output)/d(input). The interval holds 0, the slope of an output that is clipped.
+template <int Outputs>
+struct PathBound {
+  double lower[Outputs]{};
+  double upper[Outputs]{};
+};
+
 /// The intervals of `outputs` weighted sums of `inputs` intervals, weights row by row. Intervals that hold 0 add up
 /// numbers of one sign at each end: rounding errs by less than (inputs + 1) 2^-53 of it.
 template <class Scalar>
@@ -62,13 +69,6 @@ struct PathLayers<NetworkType, std::index_sequence<Index...>> {
 }  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// Lower and upper bounds of d(output)/d(input). The interval holds 0, the slope of an output that is clipped.
-template <int Outputs>
-struct PathBound {
-  double lower[Outputs]{};
-  double upper[Outputs]{};
-};
 
 /// From the first layer's outputs to the network's. `widths`: outputs of each of the `layers` dense layers; parameters
 /// in the order of a Network. `work`: 4 x `widest` numbers; the intervals of the first layer's outputs, each holding 0,
@@ -135,8 +135,8 @@ constexpr void path_bound_along(const Scalar* parameters, int inputs, const int*
 /// of all units, and with each layer more it is further above what the network does, until nothing is left of what it
 /// is shown. A float network: a product of a few of its weights is no subnormal double.
 template <class NetworkType>
-struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
-                                   NetworkType::outputs, NetworkType::parameter_count> {
+struct PathBounded : detail::PredictorBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
+                                           NetworkType::outputs, NetworkType::parameter_count> {
   using Inner = NetworkType;
   using Layers = detail::PathLayers<NetworkType>;
   static_assert(std::is_same_v<typename NetworkType::Scalar, float>, "pinnquad: a PathBounded network is of floats");
@@ -147,6 +147,7 @@ struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkTyp
                 "says nothing (docs/certificate.md)");
   using Scalar = typename NetworkType::Scalar;
   using PathBounded::PredictorBase::forward;
+  static constexpr detail::TemplateText<NetworkType> description{"pinnquad::PathBounded"};
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     NetworkType::forward(parameters, x, y);
@@ -155,12 +156,12 @@ struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkTyp
     predictor_jacobian<NetworkType>(parameters, x, y, by_x);
   }
   /// Bounds of all outputs by one input, both standardised.
-  static constexpr PathBound<NetworkType::outputs> bound(const Scalar* parameters, int input) noexcept {
+  static constexpr detail::PathBound<NetworkType::outputs> bound(const Scalar* parameters, int input) noexcept {
     int widths[Layers::dense_layers]{};
     for (int i = 0; i < Layers::dense_layers; ++i) widths[i] = NetworkType::Sizes::outputs[std::size_t(2 * i)];
     constexpr int widest = NetworkType::widest;
     double work[4 * widest]{};
-    PathBound<NetworkType::outputs> found;
+    detail::PathBound<NetworkType::outputs> found;
     path_bound(parameters, NetworkType::inputs, widths, Layers::dense_layers, input, work, widest, found.lower,
                found.upper);
     return found;
@@ -168,14 +169,6 @@ struct PathBounded : PredictorBase<PathBounded<NetworkType>, typename NetworkTyp
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-template <class NetworkType>
-struct Description<PathBounded<NetworkType>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    detail::describe_list<NetworkType>(sink, "pinnquad::PathBounded");
-  }
-};
 
 /// The affine part and a network that is shown all features. Where its path bound is below the slopes, each axis
 /// command rises with the angular acceleration about its axis.

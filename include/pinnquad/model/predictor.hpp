@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The part of a model between its scalers: a Network, or anything else that makes outputs of features.
 // Contract of a predictor: `Scalar`, `inputs`, `outputs`, `parameter_count`, `Parameters` (one flat array), a member
-// `parameters`, a Description (model/description.hpp), and
+// `parameters`, a `description` (model/description.hpp), and
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept
 //   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept
 // by_x: outputs x inputs, row-major. A Network's Jacobian is JacobianPass (nn/jacobian.hpp). A Network runs on the
@@ -18,19 +18,58 @@
 namespace pinnquad {
 
 namespace detail {
-template <class T, class = void>
-struct IsPredictor : std::false_type {};
-template <class T>
-struct IsPredictor<T, std::void_t<typename T::Scalar, typename T::Parameters, decltype(T::inputs), decltype(T::outputs),
-                                  decltype(T::parameter_count), decltype(std::declval<T&>().parameters)>>
-    : std::bool_constant<noexcept(T::forward(static_cast<const typename T::Scalar*>(nullptr),
-                                             static_cast<const typename T::Scalar*>(nullptr),
-                                             static_cast<typename T::Scalar*>(nullptr)))> {};
+template <class T, class Scalar = typename T::Scalar>
+using PredictorMembers =
+    std::void_t<typename T::Parameters, decltype(T::inputs), decltype(T::outputs), decltype(T::parameter_count),
+                decltype(std::declval<T&>().parameters),
+                std::enable_if_t<noexcept(T::forward(std::declval<const Scalar*>(), std::declval<const Scalar*>(),
+                                                     std::declval<Scalar*>()))>>;
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file, but for its Jacobian.
 template <class T>
-inline constexpr bool is_predictor = detail::IsPredictor<T>::value;
+inline constexpr bool is_predictor = is_detected<detail::PredictorMembers, T>;
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// Sizes and parameters of a predictor that is no Network: its class derives from this one.
+template <class Derived, class ScalarType, int InputCount, int OutputCount, int ParameterCount>
+struct PredictorBase {
+  using Scalar = ScalarType;
+  static constexpr int inputs = InputCount;
+  static constexpr int outputs = OutputCount;
+  static constexpr int parameter_count = ParameterCount;
+  using Parameters = std::array<Scalar, static_cast<std::size_t>(ParameterCount)>;
+
+  Parameters parameters{};
+
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    Derived::forward(first_of<Scalar>(parameters), x, y);
+  }
+};
+
+/// Where the numbers around a predictor are: its scalers, and the envelope of its training rows.
+template <class Scalar>
+struct Scales {
+  const Scalar* input_mean;
+  const Scalar* input_spread;
+  const Scalar* output_mean;
+  const Scalar* output_spread;
+  const Scalar* lower;  ///< of the envelope
+  const Scalar* upper;
+};
+
+/// Of an exported header.
+template <class Model>
+constexpr Scales<typename Model::Scalar> scales_in_header() noexcept {
+  return {Model::input.mean.data(),     Model::input.standard_deviation.data(),
+          Model::output.mean.data(),    Model::output.standard_deviation.data(),
+          Model::envelope_lower.data(), Model::envelope_upper.data()};
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
@@ -46,26 +85,10 @@ PINNQUAD_ALWAYS_INLINE void predictor_jacobian(const typename Predictor::Scalar*
   }
 }
 
-/// Sizes and parameters of a predictor that is no Network: its class derives from this one.
-template <class Derived, class ScalarType, int InputCount, int OutputCount, int ParameterCount>
-struct PredictorBase {
-  using Scalar = ScalarType;
-  static constexpr int inputs = InputCount;
-  static constexpr int outputs = OutputCount;
-  static constexpr int parameter_count = ParameterCount;
-  using Parameters = std::array<Scalar, static_cast<std::size_t>(ParameterCount)>;
-
-  Parameters parameters{};
-
-  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
-    Derived::forward(detail::first_of<Scalar>(parameters), x, y);
-  }
-};
-
 /// The sum of two predictors: an affine base and a residual network. Parameters of the first, then of the second.
 template <class First, class Second>
-struct Sum : PredictorBase<Sum<First, Second>, typename First::Scalar, First::inputs, First::outputs,
-                           First::parameter_count + Second::parameter_count> {
+struct Sum : detail::PredictorBase<Sum<First, Second>, typename First::Scalar, First::inputs, First::outputs,
+                                   First::parameter_count + Second::parameter_count> {
   static_assert(is_predictor<First> && is_predictor<Second>,
                 "pinnquad: a Sum is of two predictors (model/predictor.hpp)");
   static_assert(First::inputs == Second::inputs && First::outputs == Second::outputs &&
@@ -73,6 +96,7 @@ struct Sum : PredictorBase<Sum<First, Second>, typename First::Scalar, First::in
                 "pinnquad: the two predictors of a Sum differ in inputs, outputs or Scalar");
   using Scalar = typename First::Scalar;
   using Sum::PredictorBase::forward;
+  static constexpr detail::TemplateText<First, Second> description{"pinnquad::Sum"};
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     Second::forward(parameters + First::parameter_count, x, y);
@@ -96,14 +120,42 @@ struct Sum : PredictorBase<Sum<First, Second>, typename First::Scalar, First::in
   }
 };
 
-}  // namespace PINNQUAD_INSTRUCTION_SET
+/// y = clip(Inner(x)), output by output: for every input a residual stays between the bounds that it had in training.
+/// Parameters: lower bounds, upper bounds, then those of `Inner`. NaN stays NaN.
+template <class Inner>
+struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scalar, Inner::inputs, Inner::outputs,
+                                         2 * Inner::outputs + Inner::parameter_count> {
+  static_assert(is_predictor<Inner>, "pinnquad: Saturated is around a predictor (model/predictor.hpp)");
+  using Scalar = typename Inner::Scalar;
+  using Saturated::PredictorBase::forward;
+  static constexpr detail::TemplateText<Inner> description{"pinnquad::Bounded"};
+  static constexpr int lower = 0;  ///< places among the parameters
+  static constexpr int upper = Inner::outputs;
+  static constexpr int own = 2 * Inner::outputs;
 
-template <class First, class Second>
-struct Description<Sum<First, Second>> {
-  template <class Sink>
-  static constexpr void add(Sink& sink) {
-    detail::describe_list<First, Second>(sink, "pinnquad::Sum");
+  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+    Inner::forward(parameters + own, x, y);
+    clip(parameters, y);
+  }
+  /// The derivative of an output that is clipped, or on its bound, is 0.
+  static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
+    predictor_jacobian<Inner>(parameters + own, x, y, by_x);
+    for (int i = 0; i < Inner::outputs; ++i) {
+      if (y[i] > parameters[lower + i] && y[i] < parameters[upper + i]) continue;
+      for (int k = 0; k < Inner::inputs; ++k) by_x[i * Inner::inputs + k] = Scalar(0);
+    }
+    clip(parameters, y);
+  }
+
+ private:
+  static PINNQUAD_ALWAYS_INLINE void clip(const Scalar* parameters, Scalar* y) noexcept {
+    for (int i = 0; i < Inner::outputs; ++i) {
+      const Scalar least = parameters[lower + i], most = parameters[upper + i];
+      y[i] = y[i] < least ? least : (y[i] > most ? most : y[i]);
+    }
   }
 };
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 
 }  // namespace pinnquad

@@ -126,15 +126,10 @@ struct SignedSumsOn {
   }
 };
 
-namespace detail {
-template <class T>
-struct IsSignedSums : std::is_same<T, AxisCommandOutputs> {};
-template <class Base>
-struct IsSignedSums<SignedSumsOn<Base>> : std::true_type {};
-}  // namespace detail
-
 /// True for axis commands, on a base or not.
 template <class Outputs>
-inline constexpr bool is_signed_sums = detail::IsSignedSums<Outputs>::value;
+inline constexpr bool is_signed_sums = std::is_same_v<Outputs, AxisCommandOutputs>;
+template <class Base>
+inline constexpr bool is_signed_sums<SignedSumsOn<Base>> = true;
 
 }  // namespace pinnquad

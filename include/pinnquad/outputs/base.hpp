@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A base: an analytic inverse that a model's outputs are added to, so that the network learns what it leaves.
 // Contract, all static and noexcept, Scalar deduced, x: features in physical units:
-//   reads                                constexpr array of ReadFeature; the compiler refuses a feature set without them
+//   reads                                constexpr array of ReadFeature; a feature set without them does not compile
 //   prepare(airframe)                    constexpr: all that needs the airframe alone
 //   commands(x, prepared, u)             the commands of the rotors
 //   slopes<FeatureCount>(x, prepared, by_x)  du/dx, rotor_count x FeatureCount, row-major, into zeros

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The meaning of a model's outputs, as a type: how they become commands of the rotors (docs/paper.md, deviation 20).
-// Contract, all static and noexcept, Scalar deduced; x: features, y: `size` outputs, both in physical units, u: commands:
+// Contract, all static and noexcept, Scalar deduced; x: features, y: `size` outputs, physical units; u: commands:
 //   size, names, units                   count, and of each output its name and unit
 //   commands(x, y, setting, u)           u = g(x, y). `setting`: the airframe, or the result of `prepare(airframe)`
 //   from_commands(x, u, setting, y)      outputs with g(x, y) = u: the targets of a training
@@ -75,26 +75,20 @@ template <class T, class... Index>
 struct RotorCalls {
   using Body = const Airframe<double>&;
   template <class S>
-  using All = std::void_t<decltype(S::names), decltype(S::unit),
+  using All = std::void_t<std::enable_if_t<S::names.size() == std::size_t(rotor_count)>, decltype(S::unit),
                           decltype(S::from_command(0.0, std::declval<Body>(), Index{}...)),
                           decltype(S::command(0.0, std::declval<Body>(), Index{}...)),
                           decltype(S::command_slope(0.0, std::declval<Body>(), Index{}...))>;
-  static constexpr bool exist() noexcept {
-    if constexpr (is_detected<All, T>) {
-      return T::names.size() == std::size_t(rotor_count);
-    } else {
-      return false;
-    }
-  }
+  static constexpr bool exist = is_detected<All, T>;
   static constexpr bool are_noexcept() noexcept {
     return noexcept(T::from_command(0.0, std::declval<Body>(), Index{}...))&& noexcept(T::command(
         0.0, std::declval<Body>(), Index{}...))&& noexcept(T::command_slope(0.0, std::declval<Body>(), Index{}...));
   }
 };
 template <class T>
-inline constexpr bool maps_rotor_by_index = RotorCalls<T, std::size_t>::exist();
+inline constexpr bool maps_rotor_by_index = RotorCalls<T, std::size_t>::exist;
 template <class T>
-inline constexpr bool maps_each_rotor = maps_rotor_by_index<T> || RotorCalls<T>::exist();
+inline constexpr bool maps_each_rotor = maps_rotor_by_index<T> || RotorCalls<T>::exist;
 
 template <class T>
 using PrepareOf = decltype(T::prepare(std::declval<const Airframe<double>&>()));
@@ -116,7 +110,8 @@ struct VectorCalls {
   using Out = double*;
   using Setting = const decltype(output_setting<T>(std::declval<const Airframe<double>&>()))&;
   template <class S>
-  using Both = std::void_t<std::enable_if_t<(S::size > 0)>, decltype(S::names), decltype(S::units),
+  using Both = std::void_t<std::enable_if_t<(S::size > 0) && S::names.size() == std::size_t(S::size) &&
+                                            S::units.size() == std::size_t(S::size)>,
                            decltype(S::commands(In{}, In{}, std::declval<Setting>(), Out{})),
                            decltype(S::from_commands(In{}, In{}, std::declval<Setting>(), Out{}))>;
   template <class S>
@@ -128,14 +123,7 @@ struct VectorCalls {
   static constexpr bool has_slopes = is_detected<Slopes, T>;
   static constexpr bool has_feature_slopes = is_detected<FeatureSlopes, T>;
 
-  static constexpr bool exist() noexcept {
-    if constexpr (is_detected<Both, T>) {
-      return T::names.size() == std::size_t(T::size) && T::units.size() == std::size_t(T::size) &&
-             (is_detected<Linear, T> || has_slopes);
-    } else {
-      return false;
-    }
-  }
+  static constexpr bool exist = is_detected<Both, T> && (is_detected<Linear, T> || has_slopes);
   static constexpr bool are_noexcept() noexcept {
     bool all = noexcept(T::commands(In{}, In{}, std::declval<Setting>(), Out{}))&& noexcept(
         T::from_commands(In{}, In{}, std::declval<Setting>(), Out{}));
@@ -149,7 +137,7 @@ struct VectorCalls {
 
 template <class T>
 constexpr bool output_schema_is_noexcept() noexcept {
-  if constexpr (VectorCalls<T>::exist()) {
+  if constexpr (VectorCalls<T>::exist) {
     return VectorCalls<T>::are_noexcept();
   } else if constexpr (maps_rotor_by_index<T>) {
     return RotorCalls<T, std::size_t>::are_noexcept();
@@ -161,12 +149,7 @@ template <class T>
 inline constexpr bool is_noexcept_output_schema = output_schema_is_noexcept<T>();
 
 template <class T>
-using TakesFeaturesOf = decltype(T::takes_features);
-/// False for a schema that says so.
-template <class T, bool = is_detected<TakesFeaturesOf, T>>
-inline constexpr bool reads_features = true;
-template <class T>
-inline constexpr bool reads_features<T, true> = T::takes_features;
+using IgnoresFeatures = std::enable_if_t<!T::takes_features>;
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
@@ -200,14 +183,9 @@ struct EachRotor {
 };
 
 /// A schema in its full form.
-template <class Schema, bool = maps_each_rotor<Schema>>
-struct FullForm {
-  using type = Schema;
-};
 template <class Schema>
-struct FullForm<Schema, true> {
-  using type = std::conditional_t<maps_rotor_by_index<Schema>, EachRotor<Schema, std::size_t>, EachRotor<Schema>>;
-};
+using FullForm = std::conditional_t<maps_rotor_by_index<Schema>, EachRotor<Schema, std::size_t>,
+                                    std::conditional_t<maps_each_rotor<Schema>, EachRotor<Schema>, Schema>>;
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 
@@ -215,19 +193,19 @@ struct FullForm<Schema, true> {
 
 /// True for a type that fulfils the contract at the head of this file, in one of its two forms.
 template <class T>
-inline constexpr bool is_output_schema = detail::maps_each_rotor<T> != detail::VectorCalls<T>::exist();
+inline constexpr bool is_output_schema = detail::maps_each_rotor<T> != detail::VectorCalls<T>::exist;
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// An output schema as the library calls it, whichever form it is written in.
+/// An output schema as the library calls it: its full form, whichever form it is written in, and what follows from it.
+/// `command(output, airframe, rotor)`, of one rotor, is there only where rotor_by_rotor.
 template <class Schema>
-struct OutputMap {
-  using Form = typename detail::FullForm<Schema>::type;
-  static constexpr int size = Form::size;
-  static constexpr const auto& names = Form::names;
-  static constexpr const auto& units = Form::units;
+struct OutputMap : detail::FullForm<Schema> {
+  using Form = detail::FullForm<Schema>;
+  using Form::size;
   static constexpr bool rotor_by_rotor = !std::is_same_v<Form, Schema>;
-  static constexpr bool takes_features = detail::reads_features<Form>;  ///< x may be null where it is false
+  static constexpr bool takes_features =
+      !is_detected<detail::IgnoresFeatures, Form>;  ///< x may be null where it is false
   static constexpr bool has_feature_slopes = detail::VectorCalls<Form>::has_feature_slopes;
   static constexpr int slope_count = rotor_by_rotor ? size : rotor_count * size;  ///< numbers that slopes() writes
 
@@ -243,16 +221,6 @@ struct OutputMap {
   static constexpr auto setting(const Airframe<Scalar>& airframe) noexcept {
     return detail::output_setting<Form>(airframe);
   }
-  /// Of one rotor; only where rotor_by_rotor.
-  template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe, int rotor) noexcept {
-    return Form::command(output, airframe, rotor);
-  }
-  template <class Scalar, class Setting>
-  static PINNQUAD_ALWAYS_INLINE void commands(const Scalar* x, const Scalar* outputs, const Setting& setting,
-                                              Scalar* commands) noexcept {
-    Form::commands(x, outputs, setting, commands);
-  }
   /// Of a linear schema without slopes(): g(x, e_k) - g(x, 0).
   template <class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar* x, const Scalar* outputs, const Setting& setting,
@@ -262,23 +230,14 @@ struct OutputMap {
     } else {
       Scalar unit[size] = {};
       Scalar origin[rotor_count], moved[rotor_count];
-      Form::commands(x, static_cast<const Scalar*>(unit), setting, origin);
+      Form::commands(x, static_cast<const Scalar*>(unit), setting, static_cast<Scalar*>(origin));
       for (int k = 0; k < size; ++k) {
         unit[k] = Scalar(1);
-        Form::commands(x, static_cast<const Scalar*>(unit), setting, moved);
+        Form::commands(x, static_cast<const Scalar*>(unit), setting, static_cast<Scalar*>(moved));
         unit[k] = Scalar(0);
         for (int i = 0; i < rotor_count; ++i) slopes[slope_index(i, k)] = moved[i] - origin[i];
       }
     }
-  }
-  template <int FeatureCount, class Scalar, class Setting>
-  static PINNQUAD_ALWAYS_INLINE void feature_slopes(const Scalar* x, const Scalar* outputs, const Setting& setting,
-                                                    Scalar* by_features) noexcept {
-    Form::template feature_slopes<FeatureCount>(x, outputs, setting, by_features);
-  }
-  template <class Scalar, class Setting>
-  static void from_commands(const Scalar* x, const Scalar* commands, const Setting& setting, Scalar* outputs) noexcept {
-    Form::from_commands(x, commands, setting, outputs);
   }
 };
 

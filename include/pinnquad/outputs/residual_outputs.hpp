@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Outputs that are added to the commands of a base, and the base of Eq. (3).
+// Outputs that are added to the commands of a base, the base of Eq. (3), and that base's slopes in hover, with which a
+// model's are compared, or to which they are pinned.
 #pragma once
 
+#include <array>
+
+#include "pinnquad/core/first_of.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
@@ -66,5 +70,42 @@ struct ResidualOutputs {
     Base::template slopes<FeatureCount>(x, setting, by_x);
   }
 };
+
+/// d(signed sum)/d(angular acceleration) about roll, pitch, yaw, s^2/rad.
+using AxisSlopes = std::array<double, 3>;
+
+namespace detail {
+
+/// d(command)/d(feature) of Eq. (3) in hover, rotor by rotor: of the first six of PaperFeatures.
+inline std::array<std::array<double, 6>, rotor_count> hover_map(const Airframe<double>& airframe) noexcept {
+  std::array<std::array<double, 6>, rotor_count> by_x{};
+  const double hovering[6] = {};
+  LinearizedBase::slopes<6>(static_cast<const double*>(hovering), LinearizedBase::prepare(airframe),
+                            first_of<double>(by_x));
+  return by_x;
+}
+
+}  // namespace detail
+
+/// The airframe's own in hover, by Eq. (3).
+inline AxisSlopes hover_slopes(const Airframe<double>& airframe) noexcept {
+  const auto map = detail::hover_map(airframe);
+  AxisSlopes slopes{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto signs = allocation_signs(airframe, static_cast<int>(axis));
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      slopes[axis] += signs[rotor] * map[rotor][3 + axis];
+    }
+  }
+  return slopes;
+}
+
+/// d(sum of the commands)/d(specific force asked along the thrust axis) in hover, s^2/m.
+inline double hover_thrust_slope(const Airframe<double>& airframe) noexcept {
+  const auto map = detail::hover_map(airframe);
+  double slope = 0;
+  for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) slope -= map[rotor][2];
+  return slope;
+}
 
 }  // namespace pinnquad

@@ -36,14 +36,13 @@ struct TrainedModel : detail::ContextAirframe<typename ContextType::Vehicle> {
   Commands<Scalar> predict(const FeatureVector& x) const noexcept {
     Scalar outputs[Network::outputs] = {};
     Commands<Scalar> commands{};
-    const detail::Scales<Scalar> scales{input.mean.data(), input.standard_deviation.data(), output.mean.data(),
-                                        output.standard_deviation.data()};
-    detail::Pipeline<Features, Outputs, Vehicle>::template ask<1>(
-        scales, x.data(), 1, 1, outputs,
-        [this](const Scalar* standardised, Scalar* made) { network.forward(standardised, made); });
-    output.restore(outputs, outputs);
-    OutputMap<Outputs>::commands(x.data(), static_cast<const Scalar*>(outputs),
-                                 this->template output_setting<Outputs, Scalar>(), commands.data());
+    const detail::Scales<Scalar> scales{input.mean.data(),     input.standard_deviation.data(),
+                                        output.mean.data(),    output.standard_deviation.data(),
+                                        envelope_lower.data(), envelope_upper.data()};
+    detail::Pipeline<Features, Outputs, Vehicle>::run(
+        scales, x.data(), static_cast<Scalar*>(outputs), commands.data(),
+        [this](const Scalar* standardised, Scalar* made) { network.forward(standardised, made); },
+        this->template output_setting<Outputs, Scalar>());
     return commands;
   }
   Commands<Scalar> predict(const Sample& sample) const noexcept {

@@ -15,7 +15,7 @@
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
-#include "pinnquad/outputs/hover_slopes.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/regression/ridge.hpp"
 #include "pinnquad/training/trained_model.hpp"
 

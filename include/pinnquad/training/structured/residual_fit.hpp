@@ -248,7 +248,7 @@ class PathProjection {
   }
 
  private:
-  double danger(const PathBound<4>& bound, int axis) const noexcept {
+  double danger(const detail::PathBound<4>& bound, int axis) const noexcept {
     double sum = 0;
     for (int k = 0; k < 4; ++k) {
       const double below = -bound.lower[k], worst = std::max(below, bound.upper[k]);
