@@ -160,9 +160,9 @@ inline std::vector<JudgedColumn> judged_columns(const pinnquad::Flight& flight) 
 }  // namespace detail
 
 /// Rows with a value of a measured column that none of its neighbours comes near: further from the median of seven rows
-/// than `deviations` robust deviations of such distances (and of half of what plausibility.hpp calls the smallest scale),
-/// with both neighbours not half as far. Time and commands, which may jump, are not judged.
-/// Limits: two wrong rows in succession are taken for motion.
+/// than `deviations` robust deviations of such distances (and of half of what plausibility.hpp calls the smallest
+/// scale), with both neighbours not half as far. Time and commands, which may jump, are not judged. Limits: two wrong
+/// rows in succession are taken for motion.
 inline RowMask outlier_rows(const pinnquad::Flight& flight, double deviations = 12) {
   constexpr std::size_t around = 3;
   constexpr double normal = 1.4826;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a block whose shape is known says twice, compared as ModelView::open() does (exported/model_agreement.hpp), and its
-// golden vectors replayed as the self test does.
+// The facts that a block of known shape says twice, compared as ModelView::open() does (exported/model_agreement.hpp),
+// and its golden vectors replayed as the self test does.
 #pragma once
 
 #include <cstddef>
@@ -85,8 +85,8 @@ void require_agreement(const Block& block, const Identity& identity) {
   if (!same) detail::refuse(block, "a range of the residual as its parameters bound it", "another");
 }
 
-/// The same of its weights: throws InputError where they don't give the golden commands, and where nothing is proven of a
-/// model that says proven signs, or, of one that is to fly, has the structure.
+/// The same of its weights: throws InputError where they don't give the golden commands, and where nothing is proven of
+/// a model that says proven signs, or, of one that is to fly, has the structure.
 inline void require_self_test(const Block& block, const Identity& identity, const AskedModel& model, bool is_to_fly) {
   if (!(golden_difference(block, model) <= pinnquad::golden_tolerance)) {
     detail::refuse(block, "golden commands that its weights give", "others");

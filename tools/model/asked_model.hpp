@@ -19,7 +19,7 @@
 
 namespace programs {
 
-/// What a model says of a row.
+/// The answer of a model to a row.
 struct AnsweredRow {
   pinnquad::Commands<double> commands{};  ///< in the model's own scalar
   AxisDerivatives derivatives{};          ///< in double; of a window by an acceleration that is held
@@ -50,8 +50,8 @@ class AskedModel {
                       const std::function<void(std::size_t, const AnsweredRow&)>& take) const = 0;
 };
 
-/// Of a block that was identified. Throws InputError where it contradicts itself (model/agreement.hpp). `is_to_fly`: also where
-/// nothing is proven of a model that could be.
+/// Of a block that was identified. Throws InputError where it contradicts itself (model/agreement.hpp). `is_to_fly`:
+/// also where nothing is proven of a model that could be.
 std::unique_ptr<const AskedModel> asked_model(const Block& block, const Identity& identity, bool is_to_fly = false);
 
 /// The largest difference of its golden commands from those that its weights give.

@@ -75,8 +75,8 @@ class BlockBytes {
   std::string bytes_;
 };
 
-/// The records between header and scalars, each as open() wants it (exported/block_records.hpp). Gives the bytes that they
-/// take.
+/// The records between header and scalars, each as open() wants it (exported/block_records.hpp). Gives the bytes that
+/// they take.
 inline std::size_t read_block_records(const BlockBytes& bytes, std::size_t end, Block& block) {
   using pinnquad::BlockRecord;
   using Header = pinnquad::ModelBlockHeader;
@@ -179,7 +179,8 @@ inline void require_sound(const BlockBytes& bytes, const Block& block) {
   }
   const double *lower = block.envelope_lower.data(), *upper = block.envelope_upper.data();
   if (!is_envelope(block.input_mean.data(), block.input_deviation.data(), lower, upper, inputs)) {
-    bytes.refuse("an envelope about the features' mean, as far as their standard deviation lets a training reach", "another");
+    bytes.refuse("an envelope about the features' mean, as far as their standard deviation lets a training reach",
+                 "another");
   }
   for (std::size_t row = 0; row < block.golden_count; ++row) {
     if (inside_envelope(lower, block.golden_features.data() + row * inputs, upper, inputs)) continue;
@@ -206,7 +207,8 @@ inline void require_sound(const BlockBytes& bytes, const Block& block) {
 
 }  // namespace detail
 
-/// Checks the bytes of a block and takes them apart; `path` is for messages. Throws InputError: no block, cut short, changed or of a newer version.
+/// Checks the bytes of a block and takes them apart; `path` is for messages. Throws InputError: no block, cut short,
+/// changed or of a newer version.
 inline Block read_block(const std::string& path, const std::string& content) {
   using Header = pinnquad::ModelBlockHeader;
   Block block;

@@ -44,7 +44,7 @@ struct CertifyOptions {
   bool json = false;
 };
 
-/// What is known of a model in the end.
+/// All that is known of a model in the end.
 struct Findings {
   const char* argument = "";  ///< of a proof; empty: none
   std::array<double, 3> slope{}, held_slope{};

@@ -35,7 +35,7 @@ struct Counterexample {
   double sum = 0, sum_of_more = 0;  ///< signed sums of both: the second is less
 };
 
-/// What the search asks of a model.
+/// A model, as the search asks it.
 struct SearchedModel {
   std::vector<double> lower, upper;  ///< the envelope
   std::vector<AskedMore> ways;
@@ -46,7 +46,7 @@ struct SearchedModel {
   std::vector<std::vector<double>> starts;  ///< motions to begin with, beside random ones
 };
 
-/// What the search found, and how far it went.
+/// The find of the search, and how far it went.
 struct Search {
   std::optional<Counterexample> found;
   std::vector<double> least;  ///< of each way the least derivative that was seen

@@ -37,7 +37,7 @@ struct EvaluateOptions {
   bool json = false;
 };
 
-/// What was found.
+/// A model on the rows of a flight.
 struct EvaluatedModel {
   std::size_t without_features = 0;  ///< rows without a whole window
   std::size_t outside_envelope = 0;

@@ -13,8 +13,8 @@
 
 namespace programs {
 
-/// `flight_stack`: as control/autopilot: absurd commands are refused too, and the analytic inverse answers where the network
-/// declines. `training`: TrainingGuard alone, as an InverseDynamics that names no guard.
+/// `flight_stack`: as control/autopilot: absurd commands are refused too, and the analytic inverse answers where the
+/// network declines. `training`: TrainingGuard alone, as an InverseDynamics that names no guard.
 enum class ReplayGuard { flight_stack, training };
 
 class FlightModel {
@@ -26,8 +26,8 @@ class FlightModel {
 
   /// pinnquad::self_test(): its weights give its golden commands.
   virtual bool tests_itself() const = 0;
-  /// Adds a row per row of the flight, the one of that number; calls `on_row()` after each. Throws std::invalid_argument for a
-  /// flight without a column that the model asks for.
+  /// Adds a row per row of the flight, the one of that number; calls `on_row()` after each. Throws
+  /// std::invalid_argument for a flight without a column that the model asks for.
   virtual void run(const pinnquad::Flight& flight, std::size_t number, std::vector<ReplayedRow>& rows,
                    const std::function<void()>& on_row) const = 0;
 };

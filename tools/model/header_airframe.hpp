@@ -19,7 +19,8 @@
 
 namespace programs {
 
-/// The struct as it stands in the header, empty where its vehicle is one of the library. Throws InputError where it is neither.
+/// The struct as it stands in the header, empty where its vehicle is one of the library. Throws InputError where it is
+/// neither.
 inline std::string airframe_struct(const HeaderFile& header) {
   const std::string& type = header.text("Vehicle");
   if (type.compare(0, 10, "pinnquad::") == 0) return "";
@@ -76,8 +77,8 @@ inline std::map<std::string, std::vector<double*>> airframe_members(pinnquad::Ai
 
 }  // namespace detail
 
-/// None where the header's vehicle is one of the library. Throws InputError for a struct that write_airframe() has not written,
-/// and for an airframe that can't fly.
+/// None where the header's vehicle is one of the library. Throws InputError for a struct that write_airframe() has not
+/// written, and for an airframe that can't fly.
 inline std::optional<NamedAirframe> own_airframe(const HeaderFile& header) {
   const std::string text = airframe_struct(header);
   if (text.empty()) return {};

@@ -27,7 +27,7 @@ inline pinnquad::detail::TorqueSigns signs_of(const HeaderFile& header, const st
   return signs;
 }
 
-/// What a header of any format may say.
+/// Adds the records that a header of any format may have.
 inline void take_optional_records(const HeaderFile& header, pinnquad::detail::WrittenRecords& records) {
   if (header.has("worse_than_mean") && header.has("beats_linear_regression")) {
     records.judged =

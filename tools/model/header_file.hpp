@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An exported header (deploy/header_writer.hpp) read as text: its constants by name, as its writer wrote them. No C++ compiler; a
-// header that was edited by hand may be refused.
+// An exported header (deploy/header_writer.hpp) read as text: its constants by name, as its writer wrote them. No C++
+// compiler; a header that was edited by hand may be refused.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,8 @@ class HeaderFile {
     }
     take_all(text, model);
   }
-  /// Of the struct that stands beside a model's: `first` is the name of its first constant, `expected` what the file is.
+  /// Of the struct that stands beside a model's: `first` is the name of its first constant, `expected` what the file
+  /// is.
   HeaderFile(const std::string& path, const std::string& first, const std::string& expected) : path_(path) {
     const std::string text = header_text(path);
     const std::size_t name = text.find(" " + first + " = ");
@@ -222,7 +223,7 @@ class HeaderFile {
     }
   }
 
-  /// What stands between two semicolons, comments before it included.
+  /// Takes the text between two semicolons, comments before it included.
   void take(std::string statement, std::size_t line) {
     for (std::size_t comment = statement.find_first_not_of(" \n");
          comment != std::string::npos && statement.compare(comment, 2, "//") == 0;

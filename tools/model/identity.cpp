@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which model a block is, of all kinds that `train` exports.
+// Finds out what model a block is, of all kinds that `train` exports.
 #include "model/identity.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which model a block is: a block names its answer, features, outputs and vehicle by a hash, so those that the program knows are
-// tried until one has it.
+// Finds out what model a block is: a block names its answer, features, outputs and vehicle by a hash, so those that the
+// program knows are tried until one has it.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,8 @@
 
 namespace programs {
 
-/// Feature sets and output schemas that a row of a flight is enough for; `function` is called with a value of each pair.
+/// Feature sets and output schemas that a row of a flight is enough for; `function` is called with a value of each
+/// pair.
 template <class Function>
 void each_schema(const Function& function) {
   using namespace pinnquad;
@@ -32,7 +33,7 @@ void each_schema(const Function& function) {
   function(InverseFeaturesWithAltitude{}, AxisCommandOutputs{});
 }
 
-/// What a user and an exported header say of a model, to narrow what is tried; empty: all that is known.
+/// Statements of a user and of an exported header about a model, which narrow what is tried. Empty: all is tried.
 struct ModelHints {
   std::string airframe;              ///< a name or a file
   std::string answer;                ///< the network as a header states it
@@ -41,7 +42,7 @@ struct ModelHints {
 
 using RunTimeAirframe = pinnquad::GivenAirframe;
 
-/// What was found.
+/// The model that a block is.
 struct Identity {
   std::string answer;                 ///< description of the network
   std::vector<NetworkSpec> networks;  ///< of a sum more than one
@@ -148,8 +149,8 @@ inline std::vector<NamedAirframe> candidate_airframes(const ModelHints& hints) {
 
 }  // namespace detail
 
-/// Finds out which model a block is; nothing where none has the block's hash. `each(function)` calls it with every pair of
-/// feature set and output schema to try, as each_schema() does.
+/// Finds out which model a block is; nothing where none has the block's hash. `each(function)` calls it with every pair
+/// of feature set and output schema to try, as each_schema() does.
 template <class Each>
 std::optional<Identity> find_identity(const Block& block, const ModelHints& hints, const Each& each) {
   const std::vector<NamedAirframe> airframes = detail::candidate_airframes(hints);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The feature sets of models that `train` fits to logged flights (training/log_features.hpp), with the output schemas that
-// they have; and those of monotone models on a formula.
+// The feature sets of models that `train` fits to logged flights (training/log_features.hpp), with the output schemas
+// that they have; and those of monotone models on a base.
 #pragma once
 
 #include "pinnquad/outputs/axis_command_outputs.hpp"

@@ -13,12 +13,13 @@
 
 namespace programs {
 
-/// Throws InputError where the header says other names than its Features and its Outputs have, as far as they are of the kinds
-/// that find_identity() tries.
+/// Throws InputError where the header says other names than its Features and its Outputs have, as far as they are of
+/// the kinds that find_identity() tries.
 void require_names(const HeaderFile& header);
 
-/// An exported header as a block. The hints become what the header states where they were empty. Throws InputError for one
-/// that was edited since its export, and for one that says another frame, vehicle or motor order than its airframe's.
+/// An exported header as a block. The hints become what the header states where they were empty. Throws InputError for
+/// one that was edited since its export, and for one that says another frame, vehicle or motor order than its
+/// airframe's.
 inline std::vector<unsigned char> header_block(const HeaderFile& header, ModelHints& hints) {
   if (hints.answer.empty()) hints.answer = answer_of(header);
   hints.own = own_airframe(header);
@@ -32,8 +33,8 @@ inline std::vector<unsigned char> header_block(const HeaderFile& header, ModelHi
   return block_of(header);
 }
 
-/// The bytes of a block, whichever the file is: a block, or an exported header as one. The hints become what the header states
-/// where they were empty.
+/// The bytes of a block, whichever the file is: a block, or an exported header as one. The hints become what the header
+/// states where they were empty.
 inline std::string block_bytes(const std::string& path, ModelHints& hints) {
   if (std::filesystem::path(path).extension() != ".hpp") return pinnquad::file_text(path);
   const HeaderFile header(path);

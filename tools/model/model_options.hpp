@@ -19,7 +19,8 @@ inline void add_model(CLI::App& line, std::string& model) {
       ->required();
 }
 
-/// --airframe and --answer. What the model's header brings with it is not asked for: block_bytes() adds it to the hints.
+/// --airframe and --answer. What the model's header brings with it is not asked for: block_bytes() adds it to the
+/// hints.
 inline void add_model_hints(CLI::App& line, ModelHints& hints) {
   add_path(line, "--airframe", hints.airframe, "NAME|FILE.toml",
            "what flew: a file, or one of: " + airframe_names() + " (default: the one that the model was trained for)");

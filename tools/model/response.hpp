@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How the sums of a structured model's commands respond to what moves several features at once: to more thrust, and to an
-// angular acceleration that is held, with the body rates that it makes. Of the base exactly, of a residual between
+// How the sums of a structured model's commands respond to what moves several features at once: to more thrust, and to
+// an angular acceleration that is held, with the body rates that it makes. Of the base exactly, of a residual between
 // bounds that hold at every input (docs/certificate.md).
 #pragma once
 
@@ -45,8 +45,9 @@ struct SeenInstants {
 };
 
 /// An angular acceleration larger by 1 rad/s^2 from the window's first instant on: by then the body rates of a tap that
-/// is t behind the first have grown by t, and products of body rates by t times the other rate, which is anywhere in the
-/// envelope. Attitude, velocity and specific force stand as they are. Nothing where a product's other rate is no feature.
+/// is t behind the first have grown by t, and products of body rates by t times the other rate, which is anywhere in
+/// the envelope. Attitude, velocity and specific force stand as they are. Nothing where a product's other rate is no
+/// feature.
 inline std::optional<Direction> held_with_rates(const std::vector<std::string>& names, std::size_t axis,
                                                 const SeenInstants& seen, const std::vector<double>& envelope_lower,
                                                 const std::vector<double>& envelope_upper) {

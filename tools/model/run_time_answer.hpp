@@ -11,8 +11,8 @@
 
 namespace programs {
 
-/// The networks of a description: one, or those of "pinnquad::Sum<First, Second>", sums of sums among them. Nothing for any
-/// other text, and for networks that do not fit together.
+/// The networks of a description: one, or those of "pinnquad::Sum<First, Second>", sums of sums among them. Nothing for
+/// any other text, and for networks that do not fit together.
 inline std::optional<std::vector<NetworkSpec>> parse_answer(const std::string& description) {
   const std::string head = "pinnquad::Sum<";
   const std::size_t begin = description.find_first_not_of(' ');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model that is known at run time alone, where flying code wants a compiled one: InverseDynamics<RunTimeView<...>, Guard> and
-// the flight stacks' controller run it with the checks, guards and reports that fly.
+// A model that is known at run time alone, where flying code wants a compiled one: InverseDynamics<RunTimeView<...>,
+// Guard> and the flight stacks' controller run it with the checks, guards and reports that fly.
 #pragma once
 
 #include <array>
@@ -41,8 +41,8 @@ struct AnswerShape {
   static void forward(const Scalar* /*parameters*/, const Scalar* /*x*/, Scalar* /*y*/) noexcept {}
 };
 
-/// Its outputs are commands, whatever the model's schema makes them of. The vehicle stands for the model's, which no type has:
-/// a CommandOutputs model asks its airframe nothing.
+/// Its outputs are commands, whatever the model's schema makes them of. The vehicle stands for the model's, which no
+/// type has: a CommandOutputs model asks its airframe nothing.
 template <class FeatureSet, class ScalarType>
 struct RunTimeShape {
   using Scalar = ScalarType;

@@ -189,7 +189,8 @@ inline std::string ellipses_figure(const std::vector<int>& models, const std::ve
   return ellipses_drawing(rows, "model");
 }
 
-/// Fig. 2: angular acceleration and signed sum of the flown commands over some seconds, each over its standard deviation.
+/// Fig. 2: angular acceleration and signed sum of the flown commands over some seconds, each over its standard
+/// deviation.
 inline std::string correlation_figure(const StudySeries& series) {
   constexpr double height = 118, gap = 34, left = 70, right = 1030, top = 26;
   constexpr std::size_t shown = 240;

@@ -291,8 +291,9 @@ inline std::string log_page(const LogPageInput& in) {
     page["closed_loop"] = {{"period", shown::number(flown["period_s"], 1)},
                            {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)},
                            {"flown", nlohmann::json::array()}};
-    const std::pair<const char*, const char*> policies[] = {
-        {"model", "the exported model"}, {"formula", "the vehicle's analytic inverse"}, {"hover_trim", "none, hover trim"}};
+    const std::pair<const char*, const char*> policies[] = {{"model", "the exported model"},
+                                                            {"formula", "the vehicle's analytic inverse"},
+                                                            {"hover_trim", "none, hover trim"}};
     for (const auto& [key, name] : policies) {
       page["closed_loop"]["flown"].push_back(
           {{"name", name},

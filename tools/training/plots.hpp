@@ -17,8 +17,8 @@
 
 namespace programs {
 
-/// Fig. 8: signed command sum over angular acceleration, standardised by the target's standard deviation; dots target, plus signs
-/// prediction, 3-sigma ellipses with their major axis. One row of panels per model.
+/// Fig. 8: signed command sum over angular acceleration, standardised by the target's standard deviation; dots target,
+/// plus signs prediction, 3-sigma ellipses with their major axis. One row of panels per model.
 inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>& models,
                           const std::vector<std::array<AxisSeries, 3>>& series, const std::vector<Judgement>& judged) {
   std::ostringstream out;
@@ -53,7 +53,8 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
       std::snprintf(title, sizeof title, "%s, %s\\nangle difference %.2f deg, slope error %.1f %%",
                     models[model].c_str(), axis_names[axis], c.angle_difference_deg, 100 * c.slope_error);
       const char* rate = axis == 0 ? "dp/dt" : (axis == 1 ? "dq/dt" : "dr/dt");
-      out << "set title \"" << title << "\" noenhanced font ',12'\nset xlabel '" << rate << " (in standard deviations of the target)'\n"
+      out << "set title \"" << title << "\" noenhanced font ',12'\nset xlabel '" << rate
+          << " (in standard deviations of the target)'\n"
           << "set ylabel 'signed command sum'\n"
           << (model == 0 && axis == 0 ? "set key top left font ',10' samplen 1.5 spacing 0.9\n" : "unset key\n")
           << "set xrange [-5:5]\nset yrange [-5:5]\n"
@@ -66,13 +67,13 @@ inline bool plot_ellipses(const std::string& svg, const std::vector<std::string>
     }
   }
   out << "unset multiplot\n";
-  return draw_svg(
-      svg,
-      {1200, 60 + 370 * rows, "Signed command sum over angular acceleration, by model and axis",
-       "A row of panels per model (" + listed(models) +
-           "): roll, pitch and yaw, in standard deviations of the target. Dots: target; plus signs: prediction; each with "
-           "its 3-sigma ellipse and major axis. The closer the two ellipses, the better."},
-      out.str());
+  return draw_svg(svg,
+                  {1200, 60 + 370 * rows, "Signed command sum over angular acceleration, by model and axis",
+                   "A row of panels per model (" + listed(models) +
+                       "): roll, pitch and yaw, in standard deviations of the target. Dots: target; plus signs: "
+                       "prediction; each with "
+                       "its 3-sigma ellipse and major axis. The closer the two ellipses, the better."},
+                  out.str());
 }
 
 /// Fig. 7: mean absolute error of each model, mean and deviation over seeds. Where one model's bar would flatten the

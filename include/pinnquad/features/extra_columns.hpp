@@ -13,8 +13,8 @@
 
 namespace pinnquad {
 
-/// Of the pack, under load: a column of your own is written the same way, in a file that flight code includes before the
-/// exported header, which names it.
+/// Of the pack, under load: a column of your own is written the same way, in a file that flight code includes before
+/// the exported header, which names it.
 struct BatteryVoltage {
   static constexpr const char* name = "battery_voltage";
   static constexpr const char* unit = "V";

@@ -14,8 +14,8 @@
 namespace pinnquad {
 
 /// A proven slope is above this share of the airframe's own at full command. Training leaves a hundredth at least
-/// (fit_monotone_base()); a network that is shown the angular acceleration may take nine tenths of it, rounding and rotors'
-/// curves half of the rest.
+/// (fit_monotone_base()); a network that is shown the angular acceleration may take nine tenths of it, rounding and
+/// rotors' curves half of the rest.
 inline constexpr double least_slope_share = 0.0005;
 
 namespace detail {

@@ -131,9 +131,9 @@ constexpr void path_bound_along(const Scalar* parameters, int inputs, const int*
 }
 
 /// A network that is shown the angular acceleration: a predictor like `NetworkType`, of which a certificate asks the
-/// path bound; fit_path_bounded() keeps its weights small in training. At most 3 dense layers: the bound adds up the worst
-/// of all units, and with each layer more it is further above what the network does, until nothing is left of what it
-/// is shown. A float network: a product of a few of its weights is no subnormal double.
+/// path bound; fit_path_bounded() keeps its weights small in training. At most 3 dense layers: the bound adds up the
+/// worst of all units, and with each layer more it is further above what the network does, until nothing is left of
+/// what it is shown. A float network: a product of a few of its weights is no subnormal double.
 template <class NetworkType>
 struct PathBounded : detail::PredictorBase<PathBounded<NetworkType>, typename NetworkType::Scalar, NetworkType::inputs,
                                            NetworkType::outputs, NetworkType::parameter_count> {

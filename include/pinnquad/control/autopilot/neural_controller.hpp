@@ -23,8 +23,7 @@ namespace pinnquad::autopilot {
 namespace detail {
 /// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.
 struct AbsurdCommands {
-  static constexpr double lower = -0.5;
-  static constexpr double upper = 1.5;
+  static constexpr double lower = -0.5, upper = 1.5;
 };
 }  // namespace detail
 
