@@ -21,10 +21,10 @@ using pinnquad::Vector3;
 using pinnquad::test::SmallModel;
 
 template <class Scalar>
-using Everything =
-    pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
-                        pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::CheesemanBennettRotorGroundEffect,
-                        pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
+using Everything = pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind,
+                                       pinnquad::PeriodicWind, pinnquad::QuadraticDrag, pinnquad::RotorDrag,
+                                       pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>,
+                                       pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
 
 /// Commands that no rotor can do, but a network may ask for.
 struct WideCommands {
