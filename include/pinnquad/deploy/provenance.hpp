@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pinnquad/dynamics/command_meaning.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/exported/model.hpp"
 

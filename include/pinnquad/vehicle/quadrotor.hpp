@@ -213,7 +213,7 @@ class Quadrotor {
           detail::equal(offset_s, Scalar(0)) ? start : (offset_s < step_s ? middle : end);
       return rate_of_change<plain>(body, now, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
     };
-    const State<Scalar> next = rk4_step(state.body, step_s, rate);
+    const State<Scalar> next = detail::rk4_step(state.body, step_s, rate);
     if (air != Status::ok) return air;
     if (!(all_finite(next) && is_unit(next.attitude))) return Status::output_not_finite;
     if (!can_follow(next, step_s)) return Status::out_of_range;
@@ -332,14 +332,14 @@ class Quadrotor {
   /// The same motion as evaluate()'s, in world axes as the integrator wants it. v_dot = R f / m + g directly: Eq. (1)'s
   /// omega x v_B would be subtracted only to be added again.
   template <bool plain>
-  PINNQUAD_ALWAYS_INLINE StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
-                                                                const ThrustFractions<Scalar>& thrusts, Scalar time_s,
-                                                                Status& air) const noexcept {
+  PINNQUAD_ALWAYS_INLINE detail::StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
+                                                                        const ThrustFractions<Scalar>& thrusts,
+                                                                        Scalar time_s, Status& air) const noexcept {
     const Evaluation e = loads<plain>(state, thrusts, time_s);
     if (e.surroundings.status != Status::ok) air = e.surroundings.status;
     if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery can't reverse thrust
     const Wrench<Scalar> wrench = total(e);
-    StateDerivative<Scalar> d;
+    detail::StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
     d.acceleration_m_s2 = Axes(state.attitude)
                               .to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
