@@ -16,8 +16,8 @@
 
 namespace pinnquad {
 
-/// Number of rotors. With four, thrust and three torques have one set of commands. With more they have many, and an
-/// inverse learnt from flights would mix these: another number is another problem, not a template parameter.
+/// Number of rotors. With four, one set of commands makes a thrust and three torques. With more many do, and an inverse
+/// learnt from flights would mix them: another number is another problem, not a template parameter.
 inline constexpr int rotor_count = 4;
 static_assert(
     rotor_count == 4,

@@ -109,8 +109,7 @@ constexpr Commands<Scalar> clipped(const Commands<Scalar>& commands) noexcept {
   return {clip_command(commands[0]), clip_command(commands[1]), clip_command(commands[2]), clip_command(commands[3])};
 }
 
-/// a = exp(-dt / tau) of s <- a s + (1 - a) s_wanted, one for all rotors or one for each. A time constant of zero means no
-/// lag.
+/// a = exp(-dt / tau) of s <- a s + (1 - a) s_wanted, for all rotors or for each. A time constant of 0 means no lag.
 template <class Scalar>
 Scalar lag_factor(Scalar time_constant_s, Scalar step_s) noexcept {
   using std::exp;

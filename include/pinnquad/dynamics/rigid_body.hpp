@@ -10,7 +10,7 @@
 
 namespace pinnquad {
 
-/// J w: angular momentum of body rates, torque of an angular acceleration.
+/// J w, FRD: angular momentum of body rates, N m s, or torque of an angular acceleration, N m.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_times(const Airframe<Scalar>& airframe,
                                                      const Vector3<Scalar>& w) noexcept {
@@ -40,7 +40,7 @@ PINNQUAD_NOINLINE Vector3<Scalar> full_inertia_solved(const Airframe<Scalar>& ai
 }
 }  // namespace detail
 
-/// J^-1 t: the angular acceleration of a torque.
+/// J^-1 t, FRD: the angular acceleration of a torque, rad/s^2.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_solved(const Airframe<Scalar>& airframe,
                                                       const Vector3<Scalar>& t) noexcept {

@@ -122,7 +122,7 @@ Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const
 
 /// Commands (not clipped) that make the motion in this state at this time.
 /// The wrench of Eq. (1) less the aerodynamic one, through the inverted Eq. (2); where an effect depends on the rotors
-/// (ground effect), both are solved together (commands_for_wrench()). Lateral force can't be made by the rotors; what the
+/// (ground effect), both are solved together (commands_for_wrench()). The rotors can't make lateral force: what the
 /// motion demands of it is ignored. Where two solutions exist, the one with the greater thrust; `no_solution` where
 /// none. `not_finite` for NaN or Inf in state or motion, `not_unit_quaternion`, `out_of_range` where the air has no
 /// answer (Surroundings), and what Quadrotor::status() says; the commands are untouched unless the Status is ok.

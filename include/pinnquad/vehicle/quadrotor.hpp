@@ -20,7 +20,7 @@ namespace pinnquad {
 template <class Scalar>
 struct Site {
   Scalar elevation_m{0};  ///< of the NED origin above sea level
-  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre when the rotors' height above ground counts as zero
+  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre where the rotors' height above ground counts as zero
   Scalar gravity_m_s2{standard_gravity_m_s2<Scalar>};
 };
 
@@ -33,7 +33,7 @@ constexpr Site<Scalar> paper_site() noexcept {
   return site;
 }
 
-/// Everything that evolves in time.
+/// Everything that step() advances.
 template <class Scalar>
 struct VehicleState {
   State<Scalar> body{};
@@ -57,7 +57,7 @@ constexpr Status default_status() noexcept {
 }
 }  // namespace detail
 
-/// Eqs. (1) and (2) with effects.
+/// Eqs. (1) and (2) with effects, in their order (aero/effect.hpp). World NED, body FRD, SI units.
 template <class Scalar, class... Effects>
 class Quadrotor {
   static_assert(
@@ -118,7 +118,7 @@ class Quadrotor {
   const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
   const Site<Scalar>& site() const noexcept { return site_; }
   const Rotors<Scalar>& rotors() const noexcept { return rotors_; }
-  /// In their order, bound to the airframe.
+  /// In the order of `Effects`, bound to the airframe.
   const std::tuple<detail::BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
 
   /// Unless ok, step() and the inverse refuse with it: `invalid_airframe`, `no_solution` for an allocation that can't
@@ -158,8 +158,8 @@ class Quadrotor {
     });
   }
 
-  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid where
-  /// status() and the surroundings' status are ok.
+  /// Wrenches and accelerations of settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid
+  /// where status() and the surroundings' status are ok.
   Evaluation evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
                       Scalar time_s) const noexcept {
     Evaluation result = loads(state, rotors_.fractions(rotor_commands), time_s);
@@ -352,11 +352,7 @@ class Quadrotor {
 
   template <class Function>
   PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function) const noexcept {
-    each_effect(function, std::index_sequence_for<Effects...>{});
-  }
-  template <class Function, std::size_t... Index>
-  PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function, std::index_sequence<Index...>) const noexcept {
-    (function(std::get<Index>(effects_)), ...);
+    std::apply([&function](const auto&... effect) PINNQUAD_INLINE_LAMBDA { (function(effect), ...); }, effects_);
   }
 
   Airframe<Scalar> airframe_;
