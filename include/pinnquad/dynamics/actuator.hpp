@@ -164,13 +164,16 @@ constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar
 
 /// The fractions at the start of a step: a rotor without lag has those of the end at once. One time constant for all
 /// rotors or one for each.
-template <class Scalar, class TimeConstant>
+template <class Scalar>
 constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
-                                           const TimeConstant& time_constant_s) noexcept {
+                                           Scalar time_constant_s) noexcept {
+  return time_constant_s > Scalar(0) ? before : end;
+}
+template <class Scalar>
+constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
+                                           const std::array<Scalar, rotor_count>& time_constants_s) noexcept {
   ThrustFractions<Scalar> result{};
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    result[i] = detail::of_rotor(time_constant_s, i) > Scalar(0) ? before[i] : end[i];
-  }
+  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = time_constants_s[i] > Scalar(0) ? before[i] : end[i];
   return result;
 }
 

@@ -33,52 +33,63 @@ inline constexpr Scalar settled = Scalar(5000) * std::numeric_limits<Scalar>::ep
 template <class Scalar>
 inline constexpr Scalar certainly_met = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
 
-/// Thrust fractions that solve the equation on one branch, and by how much they miss the true equation, each effect on
-/// the branch where it lies.
-template <class Scalar>
-struct SolutionOnBranch {
-  Status status{Status::no_solution};
-  ThrustFractions<Scalar> thrusts{};
-  Scalar mismatch{0};  ///< in thrust fractions
-  Scalar size{1};      ///< 1 + largest fraction, by which mismatch is to be judged
-};
-
+/// The wrench of rotors and effects from thrust fractions on one branch, and the fractions of a given wrench.
 template <class Scalar, class... Effects>
-SolutionOnBranch<Scalar> solve_on(ThrustBranch branch, const Quadrotor<Scalar, Effects...>& quadrotor,
-                                  const State<Scalar>& state, const Surroundings<Scalar>& air,
-                                  const std::array<Scalar, 4>& wanted) noexcept {
-  const Scalar scale = quadrotor.rotor_scale(air);
-  const auto total = [&](const ThrustFractions<Scalar>& s, const Wrench<Scalar>& effects) noexcept {
-    return commanded_part(quadrotor.rotors().wrench_of(s, scale) + effects);
-  };
-  const auto made = [&](const ThrustFractions<Scalar>& s) noexcept {
-    return total(s, quadrotor.aerodynamic_wrench_on(branch, state, air, s));
-  };
-  SolutionOnBranch<Scalar> solution;
-  AllocationMatrix<Scalar> matrix{}, inverse{};
-  const std::array<Scalar, 4> at_rest = made({});
-  for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
-    ThrustFractions<Scalar> unit{};
-    unit[rotor] = Scalar(1);
-    const std::array<Scalar, 4> column = made(unit);
-    for (std::size_t row = 0; row < 4; ++row) matrix[row][rotor] = column[row] - at_rest[row];
-  }
-  if (invert_allocation(matrix, inverse) != Status::ok) return solution;
+class RotorEquation {
+ public:
+  RotorEquation(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
+                const Surroundings<Scalar>& air) noexcept
+      : quadrotor_(quadrotor), state_(state), air_(air), scale_(quadrotor.rotor_scale(air)) {}
 
-  const auto missing = [&](const std::array<Scalar, 4>& m) noexcept {
-    return product(inverse, {wanted[0] - m[0], wanted[1] - m[1], wanted[2] - m[2], wanted[3] - m[3]});
+  /// A solution on one branch, and by how much it misses the true equation, each effect on the branch where it lies.
+  struct Solution {
+    Status status{Status::no_solution};
+    ThrustFractions<Scalar> thrusts{};
+    Scalar mismatch{0};  ///< in thrust fractions
+    Scalar size{1};      ///< 1 + largest fraction, by which mismatch is to be judged
   };
-  constexpr int rounds = 40;  // an affine equation takes one, the next one confirms it
-  ThrustFractions<Scalar>& s = solution.thrusts;
-  for (int round = 0; round < rounds && solution.status != Status::ok; ++round) {
-    const ThrustFractions<Scalar> change = missing(made(s));
-    for (std::size_t i = 0; i < rotor_count; ++i) s[i] += change[i];
-    solution.size = Scalar(1) + largest_magnitude(s);
-    if (largest_magnitude(change) <= settled<Scalar> * solution.size) solution.status = Status::ok;
+
+  Solution solve(ThrustBranch branch, const std::array<Scalar, 4>& wanted) const noexcept {
+    Solution solution;
+    const auto made = [&](const ThrustFractions<Scalar>& s) noexcept {
+      return total(s, quadrotor_.aerodynamic_wrench_on(branch, state_, air_, s));
+    };
+    AllocationMatrix<Scalar> matrix{}, inverse{};
+    const std::array<Scalar, 4> at_rest = made({});
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      ThrustFractions<Scalar> unit{};
+      unit[rotor] = Scalar(1);
+      const std::array<Scalar, 4> column = made(unit);
+      for (std::size_t row = 0; row < 4; ++row) matrix[row][rotor] = column[row] - at_rest[row];
+    }
+    if (invert_allocation(matrix, inverse) != Status::ok) return solution;
+
+    constexpr int rounds = 40;  // an affine equation takes one, the next one confirms it
+    ThrustFractions<Scalar>& s = solution.thrusts;
+    for (int round = 0; round < rounds && solution.status != Status::ok; ++round) {
+      const ThrustFractions<Scalar> change = product(inverse, difference(wanted, made(s)));
+      for (std::size_t i = 0; i < rotor_count; ++i) s[i] += change[i];
+      solution.size = Scalar(1) + largest_magnitude(s);
+      if (largest_magnitude(change) <= settled<Scalar> * solution.size) solution.status = Status::ok;
+    }
+    const std::array<Scalar, 4> truly = total(s, quadrotor_.aerodynamic_wrench(state_, air_, s));
+    solution.mismatch = largest_magnitude(product(inverse, difference(wanted, truly)));
+    return solution;
   }
-  solution.mismatch = largest_magnitude(missing(total(s, quadrotor.aerodynamic_wrench(state, air, s))));
-  return solution;
-}
+
+ private:
+  std::array<Scalar, 4> total(const ThrustFractions<Scalar>& s, const Wrench<Scalar>& effects) const noexcept {
+    return commanded_part(quadrotor_.rotors().wrench_of(s, scale_) + effects);
+  }
+  static std::array<Scalar, 4> difference(const std::array<Scalar, 4>& a, const std::array<Scalar, 4>& b) noexcept {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
+  }
+
+  const Quadrotor<Scalar, Effects...>& quadrotor_;
+  const State<Scalar>& state_;
+  const Surroundings<Scalar>& air_;
+  Scalar scale_;
+};
 
 }  // namespace detail
 
@@ -103,12 +114,13 @@ Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const
     commands = quadrotor.rotors().commands(required - effects, quadrotor.rotor_scale(air));
     return Status::ok;
   } else {
+    const detail::RotorEquation<Scalar, Effects...> equation(quadrotor, state, air);
     const std::array<Scalar, 4> wanted = detail::commanded_part(required);
-    auto best = detail::solve_on(ThrustBranch::upper, quadrotor, state, air, wanted);
+    auto best = equation.solve(ThrustBranch::upper, wanted);
     if constexpr ((has_thrust_branches<Effects> || ...)) {
       // where the branches meet, rounding may call both right: the better one is
       if (best.status != Status::ok || !(best.mismatch <= detail::certainly_met<Scalar> * best.size)) {
-        const auto lower = detail::solve_on(ThrustBranch::lower, quadrotor, state, air, wanted);
+        const auto lower = equation.solve(ThrustBranch::lower, wanted);
         const bool better = best.status != Status::ok || lower.mismatch < best.mismatch;
         if (lower.status == Status::ok && better) best = lower;
       }

@@ -352,7 +352,11 @@ class Quadrotor {
 
   template <class Function>
   PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function) const noexcept {
-    std::apply([&function](const auto&... effect) PINNQUAD_INLINE_LAMBDA { (function(effect), ...); }, effects_);
+    each_effect(function, std::index_sequence_for<Effects...>{});
+  }
+  template <class Function, std::size_t... Index>
+  PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function, std::index_sequence<Index...>) const noexcept {
+    (function(std::get<Index>(effects_)), ...);
   }
 
   Airframe<Scalar> airframe_;
