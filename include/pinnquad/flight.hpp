@@ -18,7 +18,6 @@
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
-#include "pinnquad/dynamics/motor_order.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/exported/model_view.hpp"

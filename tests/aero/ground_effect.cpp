@@ -182,7 +182,7 @@ TEST_CASE_TEMPLATE("Conyers: who is refused has a pole or an implausible ratio, 
 
 TEST_CASE_TEMPLATE("Conyers: ordinary frames, taken and refused", Scalar, float, double) {
   const auto status = [](double diagonal, double radius) {
-    return pinnquad::ConyersRotorGroundEffect{}.status(x_frame<Scalar>(diagonal, radius));
+    return pinnquad::RotorGroundEffect<pinnquad::Conyers>{}.status(x_frame<Scalar>(diagonal, radius));
   };
   CHECK(status(690.0, 114.3) == pinnquad::Status::ok);
   CHECK(status(250.0, 63.5) == pinnquad::Status::ok);

@@ -11,9 +11,10 @@
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"
 
-using pinnquad::CheesemanBennettRotorGroundEffect;
-using pinnquad::ConyersRotorGroundEffect;
+using pinnquad::CheesemanBennett;
+using pinnquad::Conyers;
 using pinnquad::RotorCondition;
+using pinnquad::RotorGroundEffect;
 using pinnquad::Vector3;
 using pinnquad::test::RandomStates;
 using pinnquad::test::rounding;
@@ -33,7 +34,7 @@ TEST_CASE_TEMPLATE("level and still: the force of the one-ratio model, no torque
   const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
   for (int i = 1; i < 40; ++i) {
     const auto c = hovering<Scalar>(Scalar(0.05 * i), Scalar(3.7));
-    const auto per_rotor = ConyersRotorGroundEffect{}.wrench(c, airframe);
+    const auto per_rotor = RotorGroundEffect<Conyers>{}.wrench(c, airframe);
     const auto whole = pinnquad::ConyersGroundEffect{}.wrench(c, airframe);
     CHECK(std::fabs(static_cast<double>(per_rotor.force_N[2] - whole.force_N[2])) <= rounding<Scalar>(50));
     CHECK(pinnquad::test::norm(per_rotor.torque_N_m) <= rounding<Scalar>(50));
@@ -47,9 +48,11 @@ TEST_CASE_TEMPLATE("tilted near the ground: the low side lifts more and turns th
     for (const double sign : {-1.0, 1.0}) {
       auto c = hovering<Scalar>(Scalar(0.2), Scalar(3.7));
       c.attitude = pinnquad::from_euler<Scalar>({Scalar(sign * tilt), Scalar(0), Scalar(1)});
-      CHECK(static_cast<double>(CheesemanBennettRotorGroundEffect{}.wrench(c, airframe).torque_N_m[0]) * sign < -1e-3);
+      CHECK(static_cast<double>(RotorGroundEffect<CheesemanBennett>{}.wrench(c, airframe).torque_N_m[0]) * sign <
+            -1e-3);
       c.attitude = pinnquad::from_euler<Scalar>({Scalar(0), Scalar(sign * tilt), Scalar(1)});
-      CHECK(static_cast<double>(CheesemanBennettRotorGroundEffect{}.wrench(c, airframe).torque_N_m[1]) * sign < -1e-3);
+      CHECK(static_cast<double>(RotorGroundEffect<CheesemanBennett>{}.wrench(c, airframe).torque_N_m[1]) * sign <
+            -1e-3);
     }
   }
 }
@@ -73,7 +76,7 @@ TEST_CASE_TEMPLATE("each rotor's height is its hub's, by rotating the hub into t
       roll -= static_cast<double>(hub.y_m) * lift;
       pitch += static_cast<double>(hub.x_m) * lift;
     }
-    const auto w = CheesemanBennettRotorGroundEffect{}.wrench(c, airframe);
+    const auto w = RotorGroundEffect<CheesemanBennett>{}.wrench(c, airframe);
     const double tolerance = rounding<Scalar>(1000);  // the ratio is steep where a hub is low
     CHECK(std::fabs(static_cast<double>(w.force_N[2]) - force) <= tolerance);
     CHECK(std::fabs(static_cast<double>(w.torque_N_m[0]) - roll) <= tolerance);
@@ -104,7 +107,7 @@ TEST_CASE_TEMPLATE("a rotor above or below the centre of gravity, and one that i
       force += pull;
       torque += pinnquad::cross<double>(arm.template cast<double>(), pull);
     }
-    const auto w = CheesemanBennettRotorGroundEffect{}.wrench(c, airframe);
+    const auto w = RotorGroundEffect<CheesemanBennett>{}.wrench(c, airframe);
     const double tolerance = rounding<Scalar>(1000);  // the ratio is steep where a hub is low
     CHECK(pinnquad::test::distance(w.force_N, force) <= tolerance);
     CHECK(pinnquad::test::distance(w.torque_N_m, torque) <= tolerance);
@@ -114,11 +117,11 @@ TEST_CASE_TEMPLATE("a rotor above or below the centre of gravity, and one that i
 
 TEST_CASE("bound to an airframe it gives the same wrench, bit by bit, and tells the inverse that it uses the rotors") {
   const auto airframe = pinnquad::PaperQuadrotor::value<double>();
-  const auto bound = pinnquad::detail::bound_effect(ConyersRotorGroundEffect{}, airframe);
+  const auto bound = pinnquad::detail::bound_effect(RotorGroundEffect<Conyers>{}, airframe);
   const auto c = hovering<double>(0.3, 4.0);
-  CHECK(bound.wrench(c, airframe).force_N == ConyersRotorGroundEffect{}.wrench(c, airframe).force_N);
+  CHECK(bound.wrench(c, airframe).force_N == RotorGroundEffect<Conyers>{}.wrench(c, airframe).force_N);
   static_assert(pinnquad::uses_rotor_wrench<std::decay_t<decltype(bound)>>);
-  static_assert(!pinnquad::has_thrust_branches<ConyersRotorGroundEffect>);
+  static_assert(!pinnquad::has_thrust_branches<RotorGroundEffect<Conyers>>);
   static_assert(pinnquad::has_thrust_branches<pinnquad::ConyersGroundEffect>);
 }
 
@@ -131,13 +134,13 @@ TEST_CASE_TEMPLATE("tilted on the ground: hubs at, next to and under it make at 
     for (int i = -200; i <= 400; ++i) {
       auto c = hovering<Scalar>(Scalar(i * 1e-3 + 0.25 * radius_m), Scalar(3.7));
       c.attitude = pinnquad::from_euler<Scalar>({Scalar(tilt * 0.0174533), Scalar(0), Scalar(0)});
-      const auto lift = CheesemanBennettRotorGroundEffect{}.wrench(c, airframe);
+      const auto lift = RotorGroundEffect<CheesemanBennett>{}.wrench(c, airframe);
       const bool finite = pinnquad::all_finite(lift.force_N) && pinnquad::all_finite(lift.torque_N_m);
       const double force_N = static_cast<double>(-lift.force_N[2]);
       if (!finite || force_N < 0 || force_N > most_N) FAIL_CHECK("tilt " << tilt << " height " << i << " mm");
     }
   }
   const auto under = hovering<Scalar>(Scalar(0.24 * radius_m), Scalar(3.7));
-  const Scalar lift = -CheesemanBennettRotorGroundEffect{}.wrench(under, airframe).force_N[2];
+  const Scalar lift = -RotorGroundEffect<CheesemanBennett>{}.wrench(under, airframe).force_N[2];
   CHECK(static_cast<double>(lift) == doctest::Approx(4 * 3.7 / 3).epsilon(1e-5));
 }

@@ -42,7 +42,7 @@ TEST_CASE_TEMPLATE("is_finite agrees with std::isfinite on random bits", Scalar,
 TEST_CASE_TEMPLATE("all_finite finds the one bad entry wherever it stands", Scalar, float, double) {
   using Limits = std::numeric_limits<Scalar>;
   std::array<Scalar, 7> values{};
-  pinnquad::Vector<Scalar, 7> vector = pinnquad::Vector<Scalar, 7>::Zero();
+  pinnquad::Matrix<Scalar, 7> vector = pinnquad::Matrix<Scalar, 7>::Zero();
   CHECK(pinnquad::all_finite(values));
   CHECK(pinnquad::all_finite(vector));
   for (std::size_t place = 0; place < values.size(); ++place) {

@@ -12,7 +12,7 @@ namespace {
 /// Matrices have no alignment demands and no padding.
 template <class Scalar>
 constexpr bool lie_dense() {
-  return alignof(pinnquad::Vector<Scalar, 4>) == alignof(Scalar) &&
+  return alignof(pinnquad::Matrix<Scalar, 4>) == alignof(Scalar) &&
          alignof(pinnquad::Matrix<Scalar, 4, 4>) == alignof(Scalar) &&
          sizeof(pinnquad::Vector3<Scalar>) == 3 * sizeof(Scalar) &&
          sizeof(pinnquad::State<Scalar>) == 13 * sizeof(Scalar) && pinnquad::Matrix<Scalar, 1, 4>::IsRowMajor &&

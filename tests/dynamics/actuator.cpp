@@ -94,7 +94,7 @@ TEST_CASE_TEMPLATE("an axis written out is an upright rotor, to the rounding", S
 TEST_CASE_TEMPLATE("commands invert wrench for uneven rotors, at any scale", Scalar, float, double) {
   const Airframe<Scalar> a = pinnquad::test::uneven_airframe<Scalar>();
   REQUIRE(check_airframe(a) == Status::ok);
-  REQUIRE(pinnquad::build_of(a) == pinnquad::Build::any);
+  REQUIRE(!pinnquad::is_plain(a));
   const Rotors<Scalar> rotors(a);
   REQUIRE(rotors.status() == Status::ok);
   RandomStates random(71);

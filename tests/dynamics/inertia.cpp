@@ -8,6 +8,7 @@
 
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
+#include "support/linearized.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"
@@ -77,11 +78,11 @@ TEST_CASE("torque-free motion keeps angular momentum (world) and energy over man
     const double e0 = energy(state);
     const auto rate = [&a](const State<double>& s, double) {
       const auto motion = pinnquad::accelerations(a, s, pinnquad::Wrench<double>{}, 0.0);
-      return pinnquad::StateDerivative<double>{s.velocity_m_s, pinnquad::world_acceleration(s, motion.linear_m_s2),
-                                               pinnquad::attitude_rate(s.attitude, s.body_rates_rad_s),
-                                               motion.angular_rad_s2};
+      return pinnquad::detail::StateDerivative<double>{
+          s.velocity_m_s, pinnquad::world_acceleration(s, motion.linear_m_s2),
+          pinnquad::attitude_rate(s.attitude, s.body_rates_rad_s), motion.angular_rad_s2};
     };
-    for (int i = 0; i < 4000; ++i) state = pinnquad::rk4_step(state, 0.0005, rate);
+    for (int i = 0; i < 4000; ++i) state = pinnquad::detail::rk4_step(state, 0.0005, rate);
     const double fourth_order = 1e-8;  // (6 rad/s x 0.5 ms)^5 x 4000 steps, with room
     CHECK(pinnquad::test::distance(momentum(state), l0) <= fourth_order * l0.norm());
     CHECK(std::fabs(energy(state) - e0) <= fourth_order * e0);
@@ -111,7 +112,7 @@ TEST_CASE_TEMPLATE("products that are next to nothing change next to nothing", S
     CHECK(pinnquad::test::distance(pinnquad::angular_acceleration(full, w, torque),
                                    pinnquad::angular_acceleration(diagonal, w, torque)) <=
           200.0 * pinnquad::test::evaluation_tolerance<Scalar>);
-    CHECK(pinnquad::angular_acceleration<pinnquad::Build::plain>(diagonal, w, torque) ==
+    CHECK(pinnquad::angular_acceleration<true>(diagonal, w, torque) ==
           pinnquad::angular_acceleration(diagonal, w, torque));
   }
 }
@@ -152,7 +153,7 @@ TEST_CASE("Eq. (3) with uneven rotors: the slope of the nonlinear model at hover
       return pinnquad::accelerations(a, State<double>{}, rotors.wrench(u, 1.0), g);
     };
     const auto linear = [&](const pinnquad::Commands<double>& u) {
-      return pinnquad::linearized_accelerations(a, 0.0, 0.0, rotors.wrench(u, 1.0), g);
+      return pinnquad::test::linearized_accelerations(a, 0.0, 0.0, rotors.wrench(u, 1.0), g);
     };
     const Vector3<double> d1 = full(more).linear_m_s2 - full(less).linear_m_s2,
                           d2 = linear(more).linear_m_s2 - linear(less).linear_m_s2;
@@ -164,6 +165,6 @@ TEST_CASE("Eq. (3) with uneven rotors: the slope of the nonlinear model at hover
   const pinnquad::Commands<double> u{0.4, 0.5, 0.6, 0.7};
   CHECK(pinnquad::test::distance(
             pinnquad::linearized_commands(
-                a, rotors, pinnquad::linearized_accelerations(a, 0.1, -0.1, rotors.wrench(u, 0.9), g), g, 0.9),
+                a, rotors, pinnquad::test::linearized_accelerations(a, 0.1, -0.1, rotors.wrench(u, 0.9), g), g, 0.9),
             u) <= 1e-12);
 }

@@ -13,8 +13,8 @@
 using pinnquad::Airframe;
 using pinnquad::Quaternion;
 using pinnquad::State;
-using pinnquad::StateDerivative;
 using pinnquad::Vector3;
+using pinnquad::detail::StateDerivative;
 using pinnquad::test::distance;
 using pinnquad::test::RandomStates;
 
@@ -57,7 +57,7 @@ State<double> fly(State<double> state, double duration_s, int steps, Driven<doub
 }
 
 const auto rk4 = [](const State<double>& s, double h, const Driven<double>& body) {
-  return pinnquad::rk4_step(s, h, body);
+  return pinnquad::detail::rk4_step(s, h, body);
 };
 /// Each part's error ratio on halving the step, so that no part hides behind another.
 std::array<double, 4> halving_ratios(const State<double>& coarse, const State<double>& fine,
@@ -97,7 +97,7 @@ TEST_CASE("RK4 integrates a cubic in time without error") {
     return d;
   };
   const double h = 2.0, tolerance = pinnquad::test::rounding<double>(100);
-  const State<double> end = pinnquad::rk4_step(State<double>{}, h, cubic);
+  const State<double> end = pinnquad::detail::rk4_step(State<double>{}, h, cubic);
   CHECK(distance(end.position_m, Vector3<double>(h + h * h * h * h / 4, 0, 4.5 * h * h)) <= tolerance);
   CHECK(distance(end.velocity_m_s, Vector3<double>(h * h * h * h, h * h * h, 9 * h)) <= tolerance);
   CHECK(distance(end.body_rates_rad_s, Vector3<double>(h, h * h, 2 * h * h * h * h)) <= tolerance);
@@ -108,10 +108,10 @@ TEST_CASE_TEMPLATE("a step leaves a unit quaternion, and a step of zero changes 
   const Driven<Scalar> body;
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
     const State<Scalar> start = random.state<Scalar>();
-    const State<Scalar> a = pinnquad::rk4_step(start, Scalar(0.01), body);
+    const State<Scalar> a = pinnquad::detail::rk4_step(start, Scalar(0.01), body);
     CHECK(std::fabs(static_cast<double>(pinnquad::squared_norm(a.attitude)) - 1.0) <=
           pinnquad::test::rounding<Scalar>(4));
-    const State<Scalar> same = pinnquad::rk4_step(start, Scalar(0), body);
+    const State<Scalar> same = pinnquad::detail::rk4_step(start, Scalar(0), body);
     CHECK(same.position_m == start.position_m);
     CHECK(same.velocity_m_s == start.velocity_m_s);
     CHECK(same.body_rates_rad_s == start.body_rates_rad_s);
@@ -135,7 +135,7 @@ TEST_CASE_TEMPLATE("torque-free tumbling keeps angular momentum in the world and
     };
     const State<Scalar> start = random.state<Scalar>();
     State<Scalar> state = start;
-    for (int i = 0; i < 2000; ++i) state = pinnquad::rk4_step(state, Scalar(0.001), body);
+    for (int i = 0; i < 2000; ++i) state = pinnquad::detail::rk4_step(state, Scalar(0.001), body);
     CHECK(distance(state.body_rates_rad_s, start.body_rates_rad_s) > 0.1);  // it does tumble
     CHECK(pinnquad::test::relative_distance(momentum(state), momentum(start)) <= tolerance);
     CHECK(std::fabs(energy(state) / energy(start) - 1.0) <= tolerance);

@@ -9,6 +9,7 @@
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
+#include "support/linearized.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
@@ -47,7 +48,7 @@ Value full(const Airframe<double>& airframe, const Point& p) {
 
 Value linear(const Airframe<double>& airframe, const Point& p) {
   const pinnquad::Wrench<double> wrench = Rotors<double>(airframe).wrench({p[9], p[10], p[11], p[12]}, 1.0);
-  return pack(pinnquad::linearized_accelerations(airframe, p[0], p[1], wrench, gravity));
+  return pack(pinnquad::test::linearized_accelerations(airframe, p[0], p[1], wrench, gravity));
 }
 
 }  // namespace
@@ -85,8 +86,8 @@ TEST_CASE_TEMPLATE("Eq. (3) inverted gives the wrench and the commands back, not
     const Commands<Scalar> u = random.commands<Scalar>(-0.3, 1.3);
     const Scalar density_ratio = random.scalar<Scalar>(0.7, 1.1);
     const Scalar roll = random.scalar<Scalar>(-0.5, 0.5), pitch = random.scalar<Scalar>(-0.5, 0.5);
-    Accelerations<Scalar> motion =
-        pinnquad::linearized_accelerations(airframe, roll, pitch, rotors.wrench(u, density_ratio), Scalar(gravity));
+    Accelerations<Scalar> motion = pinnquad::test::linearized_accelerations(
+        airframe, roll, pitch, rotors.wrench(u, density_ratio), Scalar(gravity));
     const double tolerance = pinnquad::test::inverse_tolerance<Scalar>;
     CHECK(pinnquad::test::distance(
               pinnquad::linearized_commands(airframe, rotors, motion, Scalar(gravity), density_ratio), u) <= tolerance);
@@ -103,10 +104,10 @@ TEST_CASE("Eq. (3): nose up flies backwards, right side down flies right, less t
   const Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
   pinnquad::Wrench<double> weight;
   weight.force_N[2] = -airframe.mass_kg * gravity;
-  CHECK(pinnquad::linearized_accelerations(airframe, 0.0, 0.1, weight, gravity).linear_m_s2[0] ==
+  CHECK(pinnquad::test::linearized_accelerations(airframe, 0.0, 0.1, weight, gravity).linear_m_s2[0] ==
         doctest::Approx(-0.1 * gravity));
-  CHECK(pinnquad::linearized_accelerations(airframe, 0.1, 0.0, weight, gravity).linear_m_s2[1] ==
+  CHECK(pinnquad::test::linearized_accelerations(airframe, 0.1, 0.0, weight, gravity).linear_m_s2[1] ==
         doctest::Approx(0.1 * gravity));
-  CHECK(pinnquad::linearized_accelerations(airframe, 0.0, 0.0, pinnquad::Wrench<double>{}, gravity).linear_m_s2[2] ==
-        gravity);
+  CHECK(pinnquad::test::linearized_accelerations(airframe, 0.0, 0.0, pinnquad::Wrench<double>{}, gravity)
+            .linear_m_s2[2] == gravity);
 }

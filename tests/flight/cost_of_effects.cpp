@@ -9,10 +9,10 @@ using namespace pinnquad;
 
 #if defined(EQUATIONS_ALONE)
 /// Eqs. (1) and (2), written without the vehicle and its effects; the same result, so that the same is stored.
-Evaluation<double> evaluation_of(const Airframe<double>& airframe, const Rotors<double>& rotors,
-                                 const Site<double>& site, const State<double>& state,
-                                 const Commands<double>& commands) {
-  Evaluation<double> result;
+Quadrotor<double>::Evaluation evaluation_of(const Airframe<double>& airframe, const Rotors<double>& rotors,
+                                            const Site<double>& site, const State<double>& state,
+                                            const Commands<double>& commands) {
+  Quadrotor<double>::Evaluation result;
   result.surroundings.position_m = state.position_m;
   result.surroundings.altitude_m = site.elevation_m - state.position_m[2];
   result.rotors = rotors.wrench(clipped(commands), 1.0);
@@ -27,7 +27,8 @@ using Vehicle = Quadrotor<double, QuadraticDrag>;
 #elif defined(WITH_DRAG_AND_DENSITY)
 using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
 #endif
-Evaluation<double> evaluation_of(const Vehicle& vehicle, const State<double>& state, const Commands<double>& commands) {
+Vehicle::Evaluation evaluation_of(const Vehicle& vehicle, const State<double>& state,
+                                  const Commands<double>& commands) {
   return vehicle.evaluate(state, commands, 0.0);
 }
 #endif

@@ -21,10 +21,10 @@ using pinnquad::Vector3;
 using pinnquad::test::SmallModel;
 
 template <class Scalar>
-using Everything =
-    pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
-                        pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::CheesemanBennettRotorGroundEffect,
-                        pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
+using Everything = pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind,
+                                       pinnquad::PeriodicWind, pinnquad::QuadraticDrag, pinnquad::RotorDrag,
+                                       pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>,
+                                       pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
 
 /// Commands that no rotor can do, but a network may ask for.
 struct WideCommands {
@@ -310,9 +310,7 @@ void pinnquad_flight_linearized(const float* wanted, float density_ratio, float*
   const Commands<float> commands = pinnquad::linearized_commands(airframe, rotors, motion(wanted),
                                                                  pinnquad::standard_gravity_m_s2<float>, density_ratio);
   for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i];
-  const auto made =
-      pinnquad::linearized_accelerations(airframe, wanted[0], wanted[1], rotors.wrench(commands, density_ratio), 9.8F);
-  u[0] += made.linear_m_s2[2];
+  u[0] += rotors.wrench(commands, density_ratio).force_N[2];
 }
 
 void pinnquad_flight_frames(float* v) {

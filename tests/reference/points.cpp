@@ -175,7 +175,7 @@ TEST_CASE("the library in float agrees with the simulator to float's digits") {
 namespace {
 
 /// Commands recovered from the simulator's accelerations, where no rotor was clipped. A row may be left out only where
-/// the thrust equation has two solutions (rotor_equation.hpp) and the simulator flew the other one.
+/// the thrust equation has two solutions (vehicle/inverse.hpp) and the simulator flew the other one.
 template <class... Ground>
 void recover(const ReferenceTable& table, const char* file, std::size_t fewest_rows) {
   const auto airframe = airframe_of_simulator();

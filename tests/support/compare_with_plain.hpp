@@ -48,10 +48,10 @@ template <class Scalar, class... Ground>
 plain::Result evaluate_with(const Airframe<Scalar>& airframe, const plain::Point& p) {
   const auto vehicle = reference_vehicle<Scalar, Ground...>(airframe, p);
   const State<Scalar> state = state_of<Scalar>(p);
-  const Evaluation<Scalar> e = vehicle.evaluate(state, commands_of<Scalar>(p), Scalar(0));
+  const auto e = vehicle.evaluate(state, commands_of<Scalar>(p), Scalar(0));
   // drag alone: the same vehicle without ground effect
   const Wrench<Scalar> drag =
-      reference_vehicle<Scalar>(airframe, p).aerodynamic_wrench(state, e.surroundings, Commands<Scalar>{});
+      reference_vehicle<Scalar>(airframe, p).aerodynamic_wrench(state, e.surroundings, ThrustFractions<Scalar>{});
   plain::Result out{};
   out.rho = static_cast<double>(e.surroundings.air_density_kg_m3);
   assign<Scalar>(out.rotor_force, body_to_world<Scalar>(state.attitude, e.rotors.force_N));

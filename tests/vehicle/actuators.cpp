@@ -48,7 +48,7 @@ TEST_CASE("inverse(forward(u)) = u with tilted uneven rotors, products of inerti
   const Airframe<double> a = uneven_airframe<double>();
   const Quadrotor<double, StandardAtmosphere, Sag, QuadraticDrag> plain(a);
   const Quadrotor<double, StandardAtmosphere, Sag, QuadraticDrag, RotorDrag> dragged(a);
-  const Quadrotor<double, Sag, CheesemanBennettRotorGroundEffect, CheesemanBennettGroundEffect> low(a);
+  const Quadrotor<double, Sag, RotorGroundEffect<CheesemanBennett>, CheesemanBennettGroundEffect> low(a);
   REQUIRE(plain.status() == Status::ok);
   RandomStates random(91);
   for (int draw = 0; draw < draws; ++draw) {
@@ -69,7 +69,8 @@ TEST_CASE("a battery scales what rotors make, as thin air does, and nothing else
   RandomStates random(92);
   const State<double> state = random.state<double>();
   const Commands<double> u{0.5, 0.6, 0.7, 0.8};
-  const Evaluation<double> one = full.evaluate(state, u, 10.0), other = sagging.evaluate(state, u, 10.0);
+  const auto one = full.evaluate(state, u, 10.0);
+  const auto other = sagging.evaluate(state, u, 10.0);
   CHECK(pinnquad::test::distance(other.rotors.force_N, Vector3<double>(0.8 * one.rotors.force_N)) <= 1e-13);
   CHECK(pinnquad::test::distance(other.rotors.torque_N_m, Vector3<double>(0.8 * one.rotors.torque_N_m)) <= 1e-13);
   CHECK(other.aerodynamic.force_N == one.aerodynamic.force_N);
@@ -119,8 +120,8 @@ TEST_CASE_TEMPLATE("one airframe by both builds of the step: the general one giv
   Airframe<Scalar> general = plain;
   general.rotors[0].rise_time_constant_s =
       plain.rotor_time_constant_s * Scalar(1.0000002);  // not alike: the general build
-  REQUIRE(build_of(plain) == Build::plain);
-  REQUIRE(build_of(general) == Build::any);
+  REQUIRE(is_plain(plain));
+  REQUIRE(!is_plain(general));
   const Quadrotor<Scalar, QuadraticDrag, RotorDrag> a(plain), b(general);
   VehicleState<Scalar> at_a, at_b;
   at_a.body.body_rates_rad_s = at_b.body.body_rates_rad_s = Vector3<Scalar>(Scalar(1), Scalar(-2), Scalar(0.5));

@@ -236,7 +236,7 @@ TEST_CASE_TEMPLATE("almost without thrust in ground effect there still is a solu
 TEST_CASE_TEMPLATE("commands -> motion -> commands, rotor by rotor: ground effect with torque, rotor drag", Scalar,
                    float, double) {
   using Vehicle = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::RotorDrag,
-                            pinnquad::ConyersRotorGroundEffect>;
+                            pinnquad::RotorGroundEffect<pinnquad::Conyers>>;
   RandomStates random(107);
   const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {}, {});
   for (int draw = 0; draw < draws; ++draw) {

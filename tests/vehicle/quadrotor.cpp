@@ -19,7 +19,6 @@
 
 using pinnquad::Airframe;
 using pinnquad::Commands;
-using pinnquad::Evaluation;
 using pinnquad::Quadrotor;
 using pinnquad::Quaternion;
 using pinnquad::Site;
@@ -76,7 +75,7 @@ TEST_CASE_TEMPLATE("hover balances weight: level, any heading, any place", Scala
     state.position_m = random.vector<Scalar>(100.0);
     state.attitude = pinnquad::from_euler<Scalar>({Scalar(0), Scalar(0), random.scalar<Scalar>(-3.1, 3.1)});
     const Scalar ratio = vehicle.rotor_scale(vehicle.surroundings(state, Scalar(0)));
-    const Evaluation<Scalar> result = vehicle.evaluate(state, hover_commands(airframe, ratio), Scalar(0));
+    const auto result = vehicle.evaluate(state, hover_commands(airframe, ratio), Scalar(0));
     CHECK(pinnquad::test::norm(result.motion.linear_m_s2) <= 10.0 * evaluation_tolerance<Scalar>);
     CHECK(pinnquad::test::norm(result.motion.angular_rad_s2) <= largest_acceleration * evaluation_tolerance<Scalar>);
   }
@@ -107,9 +106,8 @@ TEST_CASE_TEMPLATE("mirror symmetry: left becomes right", Scalar, float, double)
     mirrored.body_rates_rad_s[2] = -state.body_rates_rad_s[2];
     const Commands<Scalar> swapped{u[2], u[3], u[0], u[1]};  // right with left, front and rear as they are
 
-    const Evaluation<Scalar> a = full_vehicle<Scalar>(wind).evaluate(state, u, Scalar(0));
-    const Evaluation<Scalar> b =
-        full_vehicle<Scalar>({wind[0], -wind[1], wind[2]}).evaluate(mirrored, swapped, Scalar(0));
+    const auto a = full_vehicle<Scalar>(wind).evaluate(state, u, Scalar(0));
+    const auto b = full_vehicle<Scalar>({wind[0], -wind[1], wind[2]}).evaluate(mirrored, swapped, Scalar(0));
     const Vector3<Scalar> linear(b.motion.linear_m_s2[0], -b.motion.linear_m_s2[1], b.motion.linear_m_s2[2]);
     const Vector3<Scalar> angular(-b.motion.angular_rad_s2[0], b.motion.angular_rad_s2[1], -b.motion.angular_rad_s2[2]);
     CHECK(distance(a.motion.linear_m_s2, linear) <= largest_acceleration * evaluation_tolerance<Scalar>);
@@ -134,8 +132,8 @@ TEST_CASE_TEMPLATE("yaw invariance: north is no special direction", Scalar, floa
     turned.position_m = pinnquad::body_to_world(turn_s, state.position_m);
     turned.position_m[2] = state.position_m[2];
 
-    const Evaluation<Scalar> a = full_vehicle<Scalar>({wind[0], wind[1], wind[2]}).evaluate(state, u, Scalar(0));
-    const Evaluation<Scalar> b =
+    const auto a = full_vehicle<Scalar>({wind[0], wind[1], wind[2]}).evaluate(state, u, Scalar(0));
+    const auto b =
         full_vehicle<Scalar>({turned_wind[0], turned_wind[1], turned_wind[2]}).evaluate(turned, u, Scalar(0));
     CHECK(distance(a.motion.linear_m_s2, b.motion.linear_m_s2) <= largest_acceleration * evaluation_tolerance<Scalar>);
     CHECK(distance(a.motion.angular_rad_s2, b.motion.angular_rad_s2) <=
@@ -151,8 +149,8 @@ TEST_CASE_TEMPLATE("Galileo: flying with the wind is standing still in still air
     const std::array<double, 3> wind{4.0, -3.0, 1.0};
     State<Scalar> carried = still;
     carried.velocity_m_s += Vector3<Scalar>(4, -3, 1);
-    const Evaluation<Scalar> a = full_vehicle<Scalar>({0, 0, 0}).evaluate(still, u, Scalar(0));
-    const Evaluation<Scalar> b = full_vehicle<Scalar>(wind).evaluate(carried, u, Scalar(0));
+    const auto a = full_vehicle<Scalar>({0, 0, 0}).evaluate(still, u, Scalar(0));
+    const auto b = full_vehicle<Scalar>(wind).evaluate(carried, u, Scalar(0));
     CHECK(distance(pinnquad::world_acceleration(still, a.motion.linear_m_s2),
                    pinnquad::world_acceleration(carried, b.motion.linear_m_s2)) <=
           largest_acceleration * evaluation_tolerance<Scalar>);
@@ -164,7 +162,7 @@ TEST_CASE_TEMPLATE("the parts of an evaluation add up to its motion", Scalar, fl
   const Full<Scalar> vehicle = full_vehicle<Scalar>({2.0, -1.0, 0.5});
   for (int draw = 0; draw < draws; ++draw) {
     const State<Scalar> state = low_state<Scalar>(random);
-    const Evaluation<Scalar> result = vehicle.evaluate(state, random.commands<Scalar>(-0.3, 1.3), Scalar(0));
+    const auto result = vehicle.evaluate(state, random.commands<Scalar>(-0.3, 1.3), Scalar(0));
     const pinnquad::Accelerations<Scalar> motion = pinnquad::accelerations(
         vehicle.airframe(), state, result.rotors + result.aerodynamic, vehicle.site().gravity_m_s2);
     CHECK(motion.linear_m_s2 == result.motion.linear_m_s2);
@@ -178,8 +176,8 @@ TEST_CASE_TEMPLATE("the parts of an evaluation add up to its motion", Scalar, fl
 
 TEST_CASE("evaluate clips the rotors and has no lag") {
   const Bare<double> vehicle(pinnquad::PaperQuadrotor::value<double>());
-  const Evaluation<double> outside = vehicle.evaluate({}, {1.7, -0.4, 0.5, 1.0}, 0.0);
-  const Evaluation<double> limits = vehicle.evaluate({}, {1.0, 0.0, 0.5, 1.0}, 0.0);
+  const auto outside = vehicle.evaluate({}, {1.7, -0.4, 0.5, 1.0}, 0.0);
+  const auto limits = vehicle.evaluate({}, {1.0, 0.0, 0.5, 1.0}, 0.0);
   CHECK(outside.rotors.force_N == limits.rotors.force_N);
   CHECK(outside.rotors.torque_N_m == limits.rotors.torque_N_m);
   CHECK(-limits.rotors.force_N[2] ==
@@ -252,7 +250,7 @@ TEST_CASE("what an effect is given") {
       ShowsCondition{&seen});
   RandomStates random(95);
   State<double> state = random.state<double>();
-  const Evaluation<double> result = vehicle.evaluate(state, {0.4, 0.5, 0.6, 0.7}, 12.5);
+  const auto result = vehicle.evaluate(state, {0.4, 0.5, 0.6, 0.7}, 12.5);
   const Vector3<double> relative = state.velocity_m_s - Vector3<double>(1, 2, 3);
   CHECK(distance(seen.air_relative_velocity_m_s, pinnquad::world_to_body<double>(state.attitude, relative)) <=
         evaluation_tolerance<double>);
@@ -277,8 +275,8 @@ TEST_CASE_TEMPLATE("thrust and torque scale with the density over that of sea le
   State<Scalar> high;
   high.position_m[2] = Scalar(-3000);
   const Commands<Scalar> u{Scalar(0.4), Scalar(0.5), Scalar(0.6), Scalar(0.8)};
-  const Evaluation<Scalar> low = Bare<Scalar>(airframe).evaluate({}, u, Scalar(0)),
-                           up = thin.evaluate(high, u, Scalar(0));
+  const auto low = Bare<Scalar>(airframe).evaluate({}, u, Scalar(0));
+  const auto up = thin.evaluate(high, u, Scalar(0));
   const double ratio = 0.90925 / 1.2250;  // the table's densities
   CHECK(static_cast<double>(up.rotors.force_N[2] / low.rotors.force_N[2]) == doctest::Approx(ratio).epsilon(1e-4));
   for (int axis = 0; axis < 3; ++axis) {

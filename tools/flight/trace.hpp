@@ -34,11 +34,12 @@ TraceRow trace_row(const Vehicle& vehicle, const Without& without, const pinnqua
   using namespace pinnquad;
   const State<double>& body = state.body;
   const auto forces = [&](const auto& quadrotor) {
-    const Evaluation<double> e = quadrotor.evaluate(body, state.rotors, state.time_s);
+    const auto e = quadrotor.evaluate(body, state.rotors, state.time_s);
     Surroundings<double> still = e.surroundings;
     still.wind_m_s = Vector3<double>::Zero();
-    return detail::TraceForces{e.rotors.force_N, e.aerodynamic.force_N,
-                               quadrotor.aerodynamic_wrench(body, still, clipped(state.rotors)).force_N};
+    return detail::TraceForces{
+        e.rotors.force_N, e.aerodynamic.force_N,
+        quadrotor.aerodynamic_wrench(body, still, quadrotor.rotors().fractions(clipped(state.rotors))).force_N};
   };
   const auto with = with_quadrotor(vehicle, forces);
   const auto out_of = with_quadrotor(without, forces);

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "logs/motor_order.hpp"
 #include "logs/quantities.hpp"
-#include "pinnquad/dynamics/motor_order.hpp"
 
 namespace programs {
 
@@ -57,7 +57,7 @@ struct Source {
   Axes axes = Axes::body;  ///< of accelerations and velocities
 
   MotorNumbers numbers = MotorNumbers::thrust;
-  std::array<pinnquad::Corner, pinnquad::rotor_count> corners = pinnquad::px4_motor_order.corners;
+  std::array<MotorOrder::Corner, pinnquad::rotor_count> corners = px4_motor_order.corners;
   double least = 0, most = 1;          ///< of a motor's number: stopped or idle, and full
   double thrust_curve = 0;             ///< of a signal: thrust = s ((1 - k) + k s)
   std::string thrust_curve_parameter;  ///< that the log has it by

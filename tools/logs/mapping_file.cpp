@@ -65,14 +65,14 @@ NamedColumn named(TomlTable& table, const char* key) {
   return {table.as_text(node, a_name), place_of(node)};
 }
 
-std::array<pinnquad::Corner, pinnquad::rotor_count> motor_order_of(TomlTable& table) {
+std::array<MotorOrder::Corner, pinnquad::rotor_count> motor_order_of(TomlTable& table) {
   constexpr std::array<const char*, 4> corners = {"front_right", "rear_left", "front_left", "rear_right"};
   const std::string expected =
       "\"px4\", \"betaflight\", \"crazyflie\", or the four corners of an X quadrotor, \"front_right\" ...";
   const toml::node& node = table.required("order", expected);
-  pinnquad::MotorOrder order;
+  MotorOrder order;
   if (const auto* name = node.as_string()) {
-    if (pinnquad::motor_order_named(name->get(), order) != pinnquad::Status::ok) {
+    if (motor_order_named(name->get(), order) != pinnquad::Status::ok) {
       table.refuse(node, expected, described(node));
     }
     return order.corners;
@@ -84,9 +84,9 @@ std::array<pinnquad::Corner, pinnquad::rotor_count> motor_order_of(TomlTable& ta
     std::size_t corner = 0;
     while (corner < corners.size() && name != corners[corner]) ++corner;
     if (corner == corners.size()) table.refuse((*list)[i], expected, described((*list)[i]));
-    order.corners[i] = static_cast<pinnquad::Corner>(corner);
+    order.corners[i] = static_cast<MotorOrder::Corner>(corner);
   }
-  if (!pinnquad::is_motor_order(order.corners)) table.refuse(node, "each corner once", "one of them twice");
+  if (!is_motor_order(order.corners)) table.refuse(node, "each corner once", "one of them twice");
   return order.corners;
 }
 

@@ -21,7 +21,7 @@ namespace detail {
 /// Index of the motor of a source's order that stands at the Sample's place.
 inline std::size_t motor_at(const Source& source, std::size_t place) {
   for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
-    if (source.corners[i] == pinnquad::px4_motor_order.corners[place]) return i;
+    if (source.corners[i] == px4_motor_order.corners[place]) return i;
   }
   return place;
 }

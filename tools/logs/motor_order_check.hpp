@@ -14,7 +14,7 @@
 
 #include "logs/finding.hpp"
 #include "logs/lagged_motion.hpp"
-#include "pinnquad/dynamics/motor_order.hpp"
+#include "logs/motor_order.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace programs {
@@ -149,9 +149,9 @@ inline MotorOrderCheck check_motor_order(const std::vector<pinnquad::Flight>& la
   }
   if (check.explained > stands * most) return check;
   check.permutation = best;
-  pinnquad::MotorOrder airframe_order;
-  if (pinnquad::motor_order_of(airframe, airframe_order) == pinnquad::Status::ok) {
-    for (const pinnquad::MotorOrder& known : pinnquad::motor_orders) {
+  MotorOrder airframe_order;
+  if (motor_order_of(airframe, airframe_order) == pinnquad::Status::ok) {
+    for (const MotorOrder& known : motor_orders) {
       bool same = true;
       for (std::size_t i = 0; i < pinnquad::rotor_count; ++i)
         same = same && known.corners[best[i]] == airframe_order.corners[i];

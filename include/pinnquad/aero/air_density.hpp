@@ -10,15 +10,16 @@
 namespace pinnquad {
 
 namespace detail {
-/// Reference altitude of the series below, m.
-inline constexpr double troposphere_m = 11000.0;
+/// The range of the standard's troposphere, m above sea level: from the first row of its tables to the tropopause,
+/// which is the reference altitude of the series below.
+inline constexpr double lowest_m = -5000.0, tropopause_m = 11000.0;
 
 /// Taylor coefficients in x = h / 11 km of (1 + b h)^n (1 + e h)^-n, from its differential equation
 /// f' (1 + b h) (1 + e h) = n (b - e) f. Sixteen terms are exact to 1e-14 for |x| <= 1.
 constexpr std::array<double, 16> standard_atmosphere_series() noexcept {
   const double n = 5.255877 - 1.0;
-  const double e = troposphere_m / 6378137.0;
-  const double b = e - 6.5 / 288.15 * 1e-3 * troposphere_m;
+  const double e = tropopause_m / 6378137.0;
+  const double b = e - 6.5 / 288.15 * 1e-3 * tropopause_m;
   std::array<double, 16> c{1.0, n * (b - e)};
   for (std::size_t k = 1; k + 1 < c.size(); ++k) {
     const double m = double(k);
@@ -38,30 +39,26 @@ constexpr Scalar polynomial(const std::array<double, 16>& c, Scalar x) noexcept 
   return (four(0) + four(4) * x4) + (four(8) + four(12) * x4) * (x4 * x4);
 }
 
-/// standard_atmosphere_density_kg_m3() between the two altitudes below.
+/// False for NaN.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE constexpr bool in_troposphere(Scalar altitude_m) noexcept {
+  return altitude_m >= Scalar(lowest_m) && altitude_m <= Scalar(tropopause_m);
+}
+
+/// standard_atmosphere_density_kg_m3() there.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar troposphere_density_kg_m3(Scalar altitude_m) noexcept {
   constexpr std::array<double, 16> series = standard_atmosphere_series();
-  return standard_air_density_kg_m3<Scalar> * polynomial(series, altitude_m * Scalar(1.0 / troposphere_m));
+  return standard_air_density_kg_m3<Scalar> * polynomial(series, altitude_m * Scalar(1.0 / tropopause_m));
 }
 }  // namespace detail
-
-/// The range of the standard's troposphere, m above sea level: from the first row of its tables to the tropopause.
-inline constexpr double lowest_standard_altitude_m = -5000.0;
-inline constexpr double highest_standard_altitude_m = detail::troposphere_m;
-
-/// False for NaN.
-template <class Scalar>
-PINNQUAD_ALWAYS_INLINE constexpr bool in_standard_troposphere(Scalar altitude_m) noexcept {
-  return altitude_m >= Scalar(lowest_standard_altitude_m) && altitude_m <= Scalar(highest_standard_altitude_m);
-}
 
 /// Density at an altitude above sea level, kg/m^3, from -5 to 11 km; beyond, that of the nearer end; NaN for NaN. H =
 /// 6378.137 h / (6378.137 + h) km geopotential, T = 288.15 - 6.5 H, P = 101325 (288.15 / T)^-5.255877 Pa, rho = P /
 /// (287.053 T), by its power series in h. Source: US Standard Atmosphere 1976 as the paper's simulator evaluates it.
 template <class Scalar>
 Scalar standard_atmosphere_density_kg_m3(Scalar altitude_m) noexcept {
-  constexpr Scalar lowest(lowest_standard_altitude_m), highest(highest_standard_altitude_m);
+  constexpr Scalar lowest(detail::lowest_m), highest(detail::tropopause_m);
   constexpr Scalar most = detail::troposphere_density_kg_m3(lowest), least = detail::troposphere_density_kg_m3(highest);
   const Scalar density = detail::troposphere_density_kg_m3(altitude_m);
   return altitude_m < lowest ? most : (altitude_m > highest ? least : density);
@@ -74,7 +71,7 @@ struct StandardAtmosphere {
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
     air.air_density_kg_m3 = detail::troposphere_density_kg_m3(air.altitude_m);
-    if (!in_standard_troposphere(air.altitude_m)) {  // a branch, which no one waits for
+    if (!detail::in_troposphere(air.altitude_m)) {  // a branch, which no one waits for
       air.air_density_kg_m3 = standard_atmosphere_density_kg_m3(air.altitude_m);
       air.status = Status::out_of_range;
     }

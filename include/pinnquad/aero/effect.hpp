@@ -15,6 +15,7 @@
 //                                              vehicle whose effect is not ok neither steps nor inverts
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -83,7 +84,7 @@ enum class ThrustBranch : std::uint8_t {
   lower,  ///< more thrust makes less of it, until the force is zero and the upper branch begins
 };
 
-/// The inputs of an effect besides motion, attitude, airframe and the effects before it.
+/// The inputs of an effect besides motion, attitude, airframe and the effects before it; each value has those above.
 enum class VariesWith : std::uint8_t {
   motion,          ///< nothing else
   height,          ///< above ground or sea level
@@ -93,33 +94,32 @@ enum class VariesWith : std::uint8_t {
 namespace detail {
 template <class T>
 const T& some() noexcept;  // never defined
-template <class Effect>
-using SurroundingsOf = decltype(some<Effect>().surroundings(std::declval<Surroundings<double>&>()));
-template <class Effect, class Condition = RotorCondition<double>>
-using WrenchOf = std::enable_if_t<
-    std::is_same_v<decltype(some<Effect>().wrench(some<Condition>(), some<Airframe<double>>())), Wrench<double>>>;
-template <class Effect>
-using WrenchOnOf =
-    decltype(some<Effect>().wrench_on(ThrustBranch::upper, some<RotorCondition<double>>(), some<Airframe<double>>()));
-template <class Effect, class Scalar>
-using BoundOf = decltype(some<Effect>().bound(some<Airframe<Scalar>>()));
-template <class Effect, class Scalar>
-using StatusOf = std::enable_if_t<std::is_same_v<decltype(some<Effect>().status(some<Airframe<Scalar>>())), Status>>;
 
-/// The same calls, where they are noexcept.
+/// A call of the contract: whether it is noexcept; no type where it can't be made or returns something else.
 template <class Effect>
-using NoexceptSurroundings =
-    std::enable_if_t<noexcept(some<Effect>().surroundings(std::declval<Surroundings<double>&>()))>;
+using SurroundingsCall =
+    std::bool_constant<noexcept(some<Effect>().surroundings(std::declval<Surroundings<double>&>()))>;
+template <class Effect, class Condition = RotorCondition<double>>
+using WrenchCall = std::enable_if_t<
+    std::is_same_v<decltype(some<Effect>().wrench(some<Condition>(), some<Airframe<double>>())), Wrench<double>>,
+    std::bool_constant<noexcept(some<Effect>().wrench(some<Condition>(), some<Airframe<double>>()))>>;
 template <class Effect>
-using NoexceptWrench =
-    std::enable_if_t<noexcept(some<Effect>().wrench(some<RotorCondition<double>>(), some<Airframe<double>>()))>;
-template <class Effect>
-using NoexceptWrenchOn = std::enable_if_t<noexcept(
+using WrenchOnCall = std::bool_constant<noexcept(
     some<Effect>().wrench_on(ThrustBranch::upper, some<RotorCondition<double>>(), some<Airframe<double>>()))>;
 template <class Effect, class Scalar>
-using NoexceptBound = std::enable_if_t<noexcept(some<Effect>().bound(some<Airframe<Scalar>>()))>;
+using BoundCall = std::bool_constant<noexcept(some<Effect>().bound(some<Airframe<Scalar>>()))>;
 template <class Effect, class Scalar>
-using NoexceptStatus = std::enable_if_t<noexcept(some<Effect>().status(some<Airframe<Scalar>>()))>;
+using StatusCall = std::enable_if_t<std::is_same_v<decltype(some<Effect>().status(some<Airframe<Scalar>>())), Status>,
+                                    std::bool_constant<noexcept(some<Effect>().status(some<Airframe<Scalar>>()))>>;
+
+template <template <class...> class Call, class... Args>
+constexpr bool noexcept_or_absent() noexcept {
+  if constexpr (is_detected<Call, Args...>) {
+    return Call<Args...>::value;
+  } else {
+    return true;
+  }
+}
 
 /// Finds an effect's member by name, whatever its type: `&WithNames<Effect>::name` is ambiguous, and no type, where the
 /// effect has one.
@@ -142,13 +142,12 @@ template <class Effect>
 using NoBound = decltype(&WithNames<Effect>::bound);
 template <class Effect>
 using NoStatus = decltype(&WithNames<Effect>::status);
-
 }  // namespace detail
 
 template <class Effect>
-inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsOf, Effect>;
+inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsCall, Effect>;
 template <class Effect>
-inline constexpr bool makes_wrench = is_detected<detail::WrenchOf, Effect>;
+inline constexpr bool makes_wrench = is_detected<detail::WrenchCall, Effect>;
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
@@ -156,27 +155,24 @@ inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<E
 
 /// True for an effect with `wrench_on`.
 template <class Effect>
-inline constexpr bool has_thrust_branches = is_detected<detail::WrenchOnOf, Effect>;
-
-/// True for an effect, or a thrust ratio, with `bound`.
-template <class Effect, class Scalar>
-inline constexpr bool is_bindable = is_detected<detail::BoundOf, Effect, Scalar>;
+inline constexpr bool has_thrust_branches = is_detected<detail::WrenchOnCall, Effect>;
 
 /// True for an effect whose `wrench` takes a RotorCondition.
 template <class Effect>
 inline constexpr bool uses_rotor_wrench =
-    makes_wrench<Effect> && !is_detected<detail::WrenchOf, Effect, AeroCondition<double>>;
+    makes_wrench<Effect> && !is_detected<detail::WrenchCall, Effect, AeroCondition<double>>;
 
 /// False where the effect has a function of the contract's name that can't be called as the contract says, or returns
 /// something else: it would be passed over in silence. A `final` class is not looked into: C++ does not list its names.
 template <class Effect, class Scalar = double>
 constexpr bool is_whole_effect() noexcept {
+  using namespace detail;
   if constexpr (std::is_class_v<Effect> && !std::is_final_v<Effect>) {
-    return changes_surroundings<Effect> != is_detected<detail::NoSurroundings, Effect> &&
-           makes_wrench<Effect> != is_detected<detail::NoWrench, Effect> &&
-           has_thrust_branches<Effect> != is_detected<detail::NoWrenchOn, Effect> &&
-           is_bindable<Effect, Scalar> != is_detected<detail::NoBound, Effect> &&
-           is_detected<detail::StatusOf, Effect, Scalar> != is_detected<detail::NoStatus, Effect>;
+    return changes_surroundings<Effect> != is_detected<NoSurroundings, Effect> &&
+           makes_wrench<Effect> != is_detected<NoWrench, Effect> &&
+           has_thrust_branches<Effect> != is_detected<NoWrenchOn, Effect> &&
+           is_detected<BoundCall, Effect, Scalar> != is_detected<NoBound, Effect> &&
+           is_detected<StatusCall, Effect, Scalar> != is_detected<NoStatus, Effect>;
   } else {
     return true;
   }
@@ -186,22 +182,20 @@ constexpr bool is_whole_effect() noexcept {
 template <class Effect, class Scalar = double>
 constexpr bool is_noexcept_effect() noexcept {
   using namespace detail;
-  return (!is_detected<SurroundingsOf, Effect> || is_detected<NoexceptSurroundings, Effect>)&&(
-      !is_detected<WrenchOf, Effect> ||
-      is_detected<NoexceptWrench,
-                  Effect>)&&(!is_detected<WrenchOnOf, Effect> ||
-                             is_detected<NoexceptWrenchOn,
-                                         Effect>)&&(!is_detected<BoundOf, Effect, Scalar> ||
-                                                    is_detected<NoexceptBound, Effect,
-                                                                Scalar>)&&(!is_detected<StatusOf, Effect, Scalar> ||
-                                                                           is_detected<NoexceptStatus, Effect, Scalar>);
+  return noexcept_or_absent<SurroundingsCall, Effect>() && noexcept_or_absent<WrenchCall, Effect>() &&
+         noexcept_or_absent<WrenchOnCall, Effect>() && noexcept_or_absent<BoundCall, Effect, Scalar>() &&
+         noexcept_or_absent<StatusCall, Effect, Scalar>();
 }
 
 namespace detail {
+template <class Effect, class Scalar>
+inline constexpr bool flies =
+    is_effect<Effect>&& is_whole_effect<Effect, Scalar>() && is_noexcept_effect<Effect, Scalar>();
+
 /// The effect as a vehicle keeps it.
 template <class Effect, class Scalar>
 auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
-  if constexpr (is_bindable<Effect, Scalar>) {
+  if constexpr (is_detected<BoundCall, Effect, Scalar>) {
     return effect.bound(airframe);
   } else {
     return effect;
@@ -216,7 +210,7 @@ using BoundEffect = decltype(bound_effect(std::declval<const Effect&>(), std::de
 /// Status of an effect for an airframe; ok for an effect that has no `status`.
 template <class Effect, class Scalar>
 constexpr Status effect_status(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
-  if constexpr (is_detected<detail::StatusOf, Effect, Scalar>) {
+  if constexpr (is_detected<detail::StatusCall, Effect, Scalar>) {
     return effect.status(airframe);
   } else {
     static_cast<void>(effect);
@@ -233,10 +227,6 @@ inline constexpr VariesWith varies_with<Effect, std::void_t<decltype(Effect::var
 
 /// The most that any of these effects depends on.
 template <class... Effects>
-inline constexpr VariesWith widest_variation = ((varies_with<Effects> == VariesWith::place_and_time) || ...)
-                                                   ? VariesWith::place_and_time
-                                               : ((varies_with<Effects> == VariesWith::height) || ...)
-                                                   ? VariesWith::height
-                                                   : VariesWith::motion;
+inline constexpr VariesWith widest_variation = std::max({VariesWith::motion, varies_with<Effects>...});
 
 }  // namespace pinnquad

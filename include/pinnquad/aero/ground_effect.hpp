@@ -166,11 +166,7 @@ struct GroundEffect {
 
   template <class Scalar>
   auto bound(const Airframe<Scalar>& airframe) const noexcept {
-    if constexpr (is_bindable<ThrustRatio, Scalar>) {
-      return GroundEffect<decltype(ratio.bound(airframe))>{ratio.bound(airframe)};
-    } else {
-      return *this;
-    }
+    return GroundEffect<detail::BoundEffect<ThrustRatio, Scalar>>{detail::bound_effect(ratio, airframe)};
   }
 
   template <class Scalar>
@@ -235,11 +231,7 @@ struct RotorGroundEffect {
 
   template <class Scalar>
   auto bound(const Airframe<Scalar>& airframe) const noexcept {
-    if constexpr (is_bindable<ThrustRatio, Scalar>) {
-      return RotorGroundEffect<decltype(ratio.bound(airframe))>{ratio.bound(airframe)};
-    } else {
-      return *this;
-    }
+    return RotorGroundEffect<detail::BoundEffect<ThrustRatio, Scalar>>{detail::bound_effect(ratio, airframe)};
   }
 
   template <class Scalar>
@@ -265,7 +257,5 @@ struct RotorGroundEffect {
 
 using CheesemanBennettGroundEffect = GroundEffect<CheesemanBennett>;
 using ConyersGroundEffect = GroundEffect<Conyers>;
-using CheesemanBennettRotorGroundEffect = RotorGroundEffect<CheesemanBennett>;
-using ConyersRotorGroundEffect = RotorGroundEffect<Conyers>;
 
 }  // namespace pinnquad

@@ -10,7 +10,7 @@
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// All values of an empty type are one. Not a base itself: its member names would be ours.
+/// All values of an empty type are one. The type is no base of Held: its members would be found in ours.
 template <class T, bool Empty = std::is_empty_v<T>&& std::is_trivially_default_constructible_v<T>>
 class Held {
  public:

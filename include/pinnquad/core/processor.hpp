@@ -29,7 +29,7 @@ struct InstructionSetName {
 
 #if defined(__x86_64__) || defined(__i386__)
 
-/// The bit of an extension among what the processor tells of itself.
+/// The bit of an extension in the answers of the instruction cpuid.
 struct CpuidBit {
   enum Register : unsigned char { eax, ebx, ecx, edx };
   char letter;

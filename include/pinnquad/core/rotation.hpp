@@ -30,13 +30,6 @@ struct EulerAngles {
   Scalar yaw_rad{0};
 };
 
-/// Roll and pitch alone.
-template <class Scalar>
-struct Tilt {
-  Scalar roll_rad{0};
-  Scalar pitch_rad{0};
-};
-
 /// Sine and cosine of yaw; by algebra from the quaternion, without trigonometry.
 template <class Scalar>
 struct Heading {
@@ -132,24 +125,24 @@ PINNQUAD_ALWAYS_INLINE Heading<Scalar> heading(const Quaternion<Scalar>& q) noex
   return {sine / norm, cosine / norm};
 }
 
-/// Roll in [-pi, pi] and pitch in [-pi/2, pi/2].
+/// Roll in [-pi, pi] and pitch in [-pi/2, pi/2] alone; yaw is left at 0.
 template <class Scalar>
-PINNQUAD_ALWAYS_INLINE Tilt<Scalar> tilt(const Quaternion<Scalar>& q) noexcept {
+PINNQUAD_ALWAYS_INLINE EulerAngles<Scalar> tilt(const Quaternion<Scalar>& q) noexcept {
   using std::atan2;
   using std::sqrt;
   const Scalar across = Scalar(2) * (q.w * q.x + q.y * q.z);             // |q|^2 sin phi cos theta
   const Scalar upright = q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z;  // |q|^2 cos phi cos theta
   const Scalar along = Scalar(2) * (q.w * q.y - q.z * q.x);              // |q|^2 sin theta
-  return {atan2(across, upright), atan2(along, sqrt(across * across + upright * upright))};
+  return {atan2(across, upright), atan2(along, sqrt(across * across + upright * upright)), Scalar(0)};
 }
 
 /// Euler angles; yaw in [-pi, pi], see tilt() for the others.
 template <class Scalar>
 EulerAngles<Scalar> to_euler(const Quaternion<Scalar>& q) noexcept {
   using std::atan2;
-  const Tilt<Scalar> level = tilt(q);
-  return {level.roll_rad, level.pitch_rad,
-          atan2(Scalar(2) * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)};
+  EulerAngles<Scalar> angles = tilt(q);
+  angles.yaw_rad = atan2(Scalar(2) * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
+  return angles;
 }
 
 /// dq/dt = q (0, omega) / 2, omega in body axes, rad/s.

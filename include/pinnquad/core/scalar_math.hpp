@@ -54,7 +54,8 @@ PINNQUAD_ALWAYS_INLINE Scalar logistic(const Scalar& v) noexcept {
   return Scalar(1) / (Scalar(1) + exponential(-v));
 }
 
-/// As integers, floats from -0 to -infinity lie below this one, a NaN with a sign, and all other NaNs do not.
+/// The bits of a float as an integer lie below this one for -0 to -infinity, and for no NaN: it is the least NaN with a
+/// sign.
 inline constexpr int above_negatives = -0x007fffff;
 
 /// v < 0 ? 0 : v. NaN goes through.

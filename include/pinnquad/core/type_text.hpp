@@ -26,16 +26,14 @@ constexpr std::string_view printed_type() noexcept {
   return text.substr(before, text.size() - before - after);
 }
 
-template <std::size_t Capacity>
-struct Letters {
-  std::array<char, Capacity> letter{};
-  std::size_t size = 0;
-};
 template <class T>
 constexpr auto without_instruction_set() noexcept {
   constexpr std::string_view text = printed_type<T>();
   constexpr std::string_view set = instruction_set;  // stands between two "::"
-  Letters<text.size()> kept{};
+  struct Letters {
+    std::array<char, text.size()> letter{};
+    std::size_t size = 0;
+  } kept;
   for (std::size_t i = 0; i < text.size(); ++i) {
     kept.letter[kept.size++] = text[i];
     const bool behind_scope = i > 0 && text[i - 1] == ':' && text[i] == ':';

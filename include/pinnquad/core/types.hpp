@@ -16,8 +16,8 @@
 
 namespace pinnquad {
 
-/// Number of rotors. With four, thrust and three torques have one set of commands. With more they have many, and an
-/// inverse learnt from flights would mix these: another number is another problem, not a template parameter.
+/// Number of rotors. With four, one set of commands makes a thrust and three torques. With more many do, and an inverse
+/// learnt from flights would mix them: another number is another problem, not a template parameter.
 inline constexpr int rotor_count = 4;
 static_assert(
     rotor_count == 4,
@@ -30,11 +30,8 @@ using Matrix =
     Eigen::Matrix<Scalar, Rows, Columns,
                   (Rows == 1 && Columns != 1 ? int(Eigen::RowMajor) : int(Eigen::ColMajor)) | int(Eigen::DontAlign)>;
 
-template <class Scalar, int Size>
-using Vector = Matrix<Scalar, Size, 1>;
-
 template <class Scalar>
-using Vector3 = Vector<Scalar, 3>;
+using Vector3 = Matrix<Scalar, 3>;
 
 /// Motor commands u_1..u_4, dimensionless, 0..1; thrust is proportional to u (docs/paper.md, deviation 6: u = (n /
 /// n_max)^2) unless the airframe's rotors have a curve (dynamics/actuator.hpp).

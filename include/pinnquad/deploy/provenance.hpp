@@ -13,7 +13,7 @@
 
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
-#include "pinnquad/dynamics/command_meaning.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// One rotor with its motor: command <-> thrust and speed by its curve, clipped; thrust follows with a first-order lag,
-// exact for commands held over a step.
+// One rotor with its motor: the meaning of its command; command <-> thrust and speed by its curve, clipped; thrust
+// follows with a first-order lag, exact for commands held over a step.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/first_of.hpp"
@@ -68,7 +69,7 @@ PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airfram
   return airframe.max_rotor_speed_rev_s * detail::square_root(command);
 }
 
-/// The same of one rotor by its own curve: the command of a speed, which has the speed's sign ...
+/// The command of a speed of one rotor by its own curve; it has the speed's sign.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_from_speed(const Airframe<Scalar>& airframe, std::size_t rotor,
                                                  Scalar speed_rev_s) noexcept {
@@ -77,7 +78,7 @@ PINNQUAD_ALWAYS_INLINE Scalar command_from_speed(const Airframe<Scalar>& airfram
                              speed_rev_s < Scalar(0) ? -fraction : fraction);
 }
 
-/// ... its slope: du/dn = 2 r / (n_max sqrt((1 - k)^2 + 4 k r^2)) with r = |n| / n_max; 1 / n_max for k = 1 ...
+/// Its slope, s: du/dn = 2 r / (n_max sqrt((1 - k)^2 + 4 k r^2)) with r = |n| / n_max; 1 / n_max for k = 1.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_slope_of_speed(const Airframe<Scalar>& airframe, std::size_t rotor,
                                                      Scalar speed_rev_s) noexcept {
@@ -91,58 +92,64 @@ PINNQUAD_ALWAYS_INLINE Scalar command_slope_of_speed(const Airframe<Scalar>& air
   return detail::equal(bend, Scalar(0)) ? Scalar(1) / n_max : straight / bend;  // 0 / 0 at k = 1, n = 0; NaN stays NaN
 }
 
-/// ... and the speed of a command in 0..1, rev/s.
+/// The speed of a command in 0..1 of one rotor by its own curve, rev/s.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airframe, std::size_t rotor,
                                                  Scalar command) noexcept {
   return speed_from_command(airframe, thrust_fraction(detail::rotor_of(airframe, rotor).thrust_curve, command));
 }
 
-/// The command held between 0 and 1. NaN stays NaN.
+/// The command, or all four, held between 0 and 1. NaN stays NaN.
 template <class Scalar>
 constexpr Scalar clip_command(Scalar command) noexcept {
   return command < Scalar(0) ? Scalar(0) : (command > Scalar(1) ? Scalar(1) : command);
 }
-
-/// All four.
 template <class Scalar>
 constexpr Commands<Scalar> clipped(const Commands<Scalar>& commands) noexcept {
   return {clip_command(commands[0]), clip_command(commands[1]), clip_command(commands[2]), clip_command(commands[3])};
 }
 
-/// a = exp(-dt / tau) of u_f <- a u_f + (1 - a) u. A time constant of zero means no lag.
+/// a = exp(-dt / tau) of s <- a s + (1 - a) s_wanted, for all rotors or for each. A time constant of 0 means no lag.
 template <class Scalar>
 Scalar lag_factor(Scalar time_constant_s, Scalar step_s) noexcept {
   using std::exp;
   return time_constant_s > Scalar(0) ? Scalar(exp(-step_s / time_constant_s)) : Scalar(0);
 }
-
-/// Each rotor's thrust fraction on its way from `filtered` to the fraction wanted, which is clipped.
 template <class Scalar>
-constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered, const ThrustFractions<Scalar>& wanted,
-                                         Scalar factor) noexcept {
-  ThrustFractions<Scalar> result{};
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    const Scalar target = clip_command(wanted[i]);
-    result[i] = target + factor * (filtered[i] - target);
-  }
+std::array<Scalar, rotor_count> lag_factor(const std::array<Scalar, rotor_count>& time_constants_s,
+                                           Scalar step_s) noexcept {
+  std::array<Scalar, rotor_count> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = lag_factor(time_constants_s[i], step_s);
   return result;
 }
 
-/// The same with a factor for each rotor.
+namespace detail {
+/// The value of one rotor, of one for all or one for each.
 template <class Scalar>
+constexpr Scalar of_rotor(Scalar all, std::size_t /*rotor*/) noexcept {
+  return all;
+}
+template <class Scalar>
+constexpr Scalar of_rotor(const std::array<Scalar, rotor_count>& each, std::size_t rotor) noexcept {
+  return each[rotor];
+}
+}  // namespace detail
+
+/// Each rotor's thrust fraction on its way from `filtered` to the fraction wanted, which is clipped. `factor` of
+/// lag_factor(): one for all rotors or one for each.
+template <class Scalar, class Factor>
 constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered, const ThrustFractions<Scalar>& wanted,
-                                         const std::array<Scalar, rotor_count>& factors) noexcept {
+                                         const Factor& factor) noexcept {
   ThrustFractions<Scalar> result{};
   for (std::size_t i = 0; i < rotor_count; ++i) {
     const Scalar target = clip_command(wanted[i]);
-    result[i] = target + factors[i] * (filtered[i] - target);
+    result[i] = target + detail::of_rotor(factor, i) * (filtered[i] - target);
   }
   return result;
 }
 
 /// The time constant of each rotor's way from `before` to the fraction wanted: thrust approaches what is held from one
-/// side, a rotor rises or falls all the step long.
+/// side, so that a rotor rises or falls all the step long.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar>& airframe,
                                                            const ThrustFractions<Scalar>& before,
@@ -155,16 +162,8 @@ constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar
   return result;
 }
 
-/// lag_factor() of each.
-template <class Scalar>
-std::array<Scalar, rotor_count> lag_factor(const std::array<Scalar, rotor_count>& time_constants_s,
-                                           Scalar step_s) noexcept {
-  std::array<Scalar, rotor_count> result{};
-  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = lag_factor(time_constants_s[i], step_s);
-  return result;
-}
-
-/// The fractions at the start of a step: a rotor without lag has what it has at the end at once.
+/// The fractions at the start of a step: a rotor without lag has those of the end at once. One time constant for all
+/// rotors or one for each.
 template <class Scalar>
 constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
                                            Scalar time_constant_s) noexcept {
@@ -176,6 +175,38 @@ constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before
   ThrustFractions<Scalar> result{};
   for (std::size_t i = 0; i < rotor_count; ++i) result[i] = time_constants_s[i] > Scalar(0) ? before[i] : end[i];
   return result;
+}
+
+/// The meaning of a motor command. A model flies a vehicle only where both mean the same. The values are those of a
+/// model block (exported/model_block.hpp).
+enum class CommandMeaning : std::uint8_t {
+  thrust = 0,       ///< u = (n / n_max)^2, the thrust over that at full command
+  pulse_width = 1,  ///< the share of a speed controller's pulse range: thrust between a share and its square
+  speed = 2,        ///< u = n / n_max
+};
+
+/// Number of meanings; values from here on are none.
+inline constexpr unsigned command_meaning_count = 3;
+
+/// By an airframe's curves (thrust_fraction()): all straight, all squares, or between.
+template <class Scalar>
+constexpr CommandMeaning command_meaning_of(const Airframe<Scalar>& airframe) noexcept {
+  bool thrust = true, speed = true;
+  for (const RotorMount<Scalar>& rotor : airframe.rotors) {
+    thrust = thrust && detail::equal(rotor.thrust_curve, Scalar(0));
+    speed = speed && detail::equal(rotor.thrust_curve, Scalar(1));
+  }
+  return thrust ? CommandMeaning::thrust : (speed ? CommandMeaning::speed : CommandMeaning::pulse_width);
+}
+
+/// The enumerator as C++ text.
+constexpr const char* to_string(CommandMeaning meaning) noexcept {
+  switch (meaning) {
+    case CommandMeaning::thrust: return "thrust";
+    case CommandMeaning::pulse_width: return "pulse_width";
+    case CommandMeaning::speed: return "speed";
+  }
+  return "unknown";
 }
 
 }  // namespace pinnquad

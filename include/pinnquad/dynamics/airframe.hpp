@@ -124,21 +124,17 @@ constexpr bool has_diagonal_inertia(const Airframe<Scalar>& airframe) noexcept {
          detail::equal(products[2], Scalar(0));
 }
 
-/// How an airframe is built, for code that leaves out what a plain one can't need.
-enum class Build : bool {
-  plain,  ///< upright rotors whose commands are thrust fractions, with one lag, and a diagonal inertia
-  any,
-};
-
+/// True for upright rotors whose commands are thrust fractions, with one lag, and a diagonal inertia: code for such an
+/// airframe leaves out the rest (`template <bool plain>`).
 template <class Scalar>
-constexpr Build build_of(const Airframe<Scalar>& airframe) noexcept {
+constexpr bool is_plain(const Airframe<Scalar>& airframe) noexcept {
   bool plain = has_diagonal_inertia(airframe);
   for (std::size_t i = 0; i < rotor_count; ++i) {
     plain = plain && is_upright(airframe.rotors[i]) && detail::equal(airframe.rotors[i].thrust_curve, Scalar(0)) &&
             detail::equal(airframe.rise_time_constant_s(i), airframe.rise_time_constant_s(0)) &&
             detail::equal(airframe.fall_time_constant_s(i), airframe.rise_time_constant_s(0));
   }
-  return plain ? Build::plain : Build::any;
+  return plain;
 }
 
 namespace detail {

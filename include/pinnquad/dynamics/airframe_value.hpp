@@ -37,35 +37,43 @@ constexpr Airframe<Scalar> airframe_value() noexcept {
   return {};
 }
 
+/// The rotors of an X with motors numbered as PX4 does: front right, rear left, front left, rear right; the first two
+/// turn counter-clockwise. Upright, `forward_m` ahead of or behind the centre of gravity, `right_m` beside it.
+template <class Scalar>
+constexpr std::array<RotorMount<Scalar>, rotor_count> x_rotors(Scalar forward_m, Scalar right_m) noexcept {
+  return {{{forward_m, right_m, Spin::counter_clockwise},
+           {-forward_m, -right_m, Spin::counter_clockwise},
+           {forward_m, -right_m, Spin::clockwise},
+           {-forward_m, right_m, Spin::clockwise}}};
+}
+
 /// The same airframe, every number rounded to `To`: what a struct written by deploy/airframe_writer.hpp has.
 template <class To>
 constexpr Airframe<To> airframe_in(const Airframe<double>& from) noexcept {
-  const auto triple = [](const std::array<double, 3>& v) {
-    return std::array<To, 3>{static_cast<To>(v[0]), static_cast<To>(v[1]), static_cast<To>(v[2])};
+  const auto one = [](double v) { return static_cast<To>(v); };
+  const auto three = [one](const std::array<double, 3>& v) {
+    return std::array<To, 3>{one(v[0]), one(v[1]), one(v[2])};
   };
   Airframe<To> a{};
-  a.mass_kg = static_cast<To>(from.mass_kg);
-  a.inertia_kg_m2 = triple(from.inertia_kg_m2);
-  a.inertia_products_kg_m2 = triple(from.inertia_products_kg_m2);
+  a.mass_kg = one(from.mass_kg);
+  a.inertia_kg_m2 = three(from.inertia_kg_m2);
+  a.inertia_products_kg_m2 = three(from.inertia_products_kg_m2);
   for (std::size_t i = 0; i < rotor_count; ++i) {
     const RotorMount<double>& r = from.rotors[i];
-    a.rotors[i] = {static_cast<To>(r.x_m),
-                   static_cast<To>(r.y_m),
-                   r.spin,
-                   static_cast<To>(r.z_m),
-                   triple(r.axis),
-                   static_cast<To>(r.thrust_scale),
-                   static_cast<To>(r.thrust_curve),
-                   static_cast<To>(r.rise_time_constant_s),
-                   static_cast<To>(r.fall_time_constant_s)};
+    RotorMount<To>& to = a.rotors[i];
+    to = {one(r.x_m), one(r.y_m), r.spin, one(r.z_m), three(r.axis)};
+    to.thrust_scale = one(r.thrust_scale);
+    to.thrust_curve = one(r.thrust_curve);
+    to.rise_time_constant_s = one(r.rise_time_constant_s);
+    to.fall_time_constant_s = one(r.fall_time_constant_s);
   }
-  a.thrust_coefficient = static_cast<To>(from.thrust_coefficient);
-  a.power_coefficient = static_cast<To>(from.power_coefficient);
-  a.propeller_diameter_m = static_cast<To>(from.propeller_diameter_m);
-  a.max_rotor_speed_rev_s = static_cast<To>(from.max_rotor_speed_rev_s);
-  a.rotor_time_constant_s = static_cast<To>(from.rotor_time_constant_s);
-  a.drag_area_m2 = triple(from.drag_area_m2);
-  a.drag_deadband_m_s = static_cast<To>(from.drag_deadband_m_s);
+  a.thrust_coefficient = one(from.thrust_coefficient);
+  a.power_coefficient = one(from.power_coefficient);
+  a.propeller_diameter_m = one(from.propeller_diameter_m);
+  a.max_rotor_speed_rev_s = one(from.max_rotor_speed_rev_s);
+  a.rotor_time_constant_s = one(from.rotor_time_constant_s);
+  a.drag_area_m2 = three(from.drag_area_m2);
+  a.drag_deadband_m_s = one(from.drag_deadband_m_s);
   return a;
 }
 

@@ -10,7 +10,7 @@
 
 namespace pinnquad {
 
-/// J w: angular momentum of body rates, torque of an angular acceleration.
+/// J w, FRD: angular momentum of body rates, N m s, or torque of an angular acceleration, N m.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_times(const Airframe<Scalar>& airframe,
                                                      const Vector3<Scalar>& w) noexcept {
@@ -40,7 +40,7 @@ PINNQUAD_NOINLINE Vector3<Scalar> full_inertia_solved(const Airframe<Scalar>& ai
 }
 }  // namespace detail
 
-/// J^-1 t: the angular acceleration of a torque.
+/// J^-1 t, FRD: the angular acceleration of a torque, rad/s^2.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_solved(const Airframe<Scalar>& airframe,
                                                       const Vector3<Scalar>& t) noexcept {
@@ -50,13 +50,13 @@ PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_solved(const Airframe<Scalar>& ai
   return detail::full_inertia_solved(airframe, t);
 }
 
-/// Euler's equation: omega_dot = J^-1 (J omega x omega + tau).
-template <Build build = Build::any, class Scalar>
+/// Euler's equation: omega_dot = J^-1 (J omega x omega + tau). `plain`: for a diagonal J (is_plain()).
+template <bool plain = false, class Scalar>
 PINNQUAD_ALWAYS_INLINE Vector3<Scalar> angular_acceleration(const Airframe<Scalar>& airframe,
                                                             const Vector3<Scalar>& body_rates_rad_s,
                                                             const Vector3<Scalar>& torque_N_m) noexcept {
   const Vector3<Scalar>&w = body_rates_rad_s, &t = torque_N_m;
-  if constexpr (build == Build::plain) {  // in scalars: Eigen would split a vector of three into two and one
+  if constexpr (plain) {  // in scalars: Eigen would split a vector of three into two and one
     const auto& [jx, jy, jz] = airframe.inertia_kg_m2;
     const Scalar x = jx * w[0], y = jy * w[1], z = jz * w[2];
     return Vector3<Scalar>((y * w[2] - z * w[1] + t[0]) / jx, (z * w[0] - x * w[2] + t[1]) / jy,

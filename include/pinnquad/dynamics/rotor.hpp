@@ -35,16 +35,16 @@ class Rotors {
   constexpr Status status() const noexcept { return status_; }
 
   /// Thrust fractions of settled commands (not clipped), and back.
-  template <Build build = Build::any>
+  template <bool plain = false>
   PINNQUAD_ALWAYS_INLINE constexpr ThrustFractions<Scalar> fractions(const Commands<Scalar>& u) const noexcept {
-    if (build == Build::plain || straight_) return u;
+    if (plain || straight_) return u;
     ThrustFractions<Scalar> result{};
     for (std::size_t i = 0; i < rotor_count; ++i) result[i] = thrust_fraction(curve_[i], u[i]);
     return result;
   }
-  template <Build build = Build::any>
+  template <bool plain = false>
   PINNQUAD_ALWAYS_INLINE Commands<Scalar> commands_of(const ThrustFractions<Scalar>& fractions) const noexcept {
-    if (build == Build::plain || straight_) return fractions;
+    if (plain || straight_) return fractions;
     Commands<Scalar> result{};
     for (std::size_t i = 0; i < rotor_count; ++i) result[i] = command_of_fraction(curve_[i], fractions[i]);
     return result;
@@ -52,13 +52,13 @@ class Rotors {
 
   /// Body wrench of thrust fractions (not clipped): force (F_x, F_y, -T), with no lateral force from upright rotors
   /// (docs/paper.md, deviation 2).
-  template <Build build = Build::any>
+  template <bool plain = false>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench_of(const ThrustFractions<Scalar>& s, Scalar scale) const noexcept {
     const std::array<Scalar, 4> w = product(allocation_, s);
     Wrench<Scalar> result;
     result.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), -w[0] * scale);
     result.torque_N_m = Vector3<Scalar>(w[1] * scale, w[2] * scale, w[3] * scale);
-    if (build != Build::plain && !upright_) {
+    if (!plain && !upright_) {
       for (std::size_t i = 0; i < rotor_count; ++i) {
         result.force_N[0] += lateral_N_[0][i] * s[i] * scale;
         result.force_N[1] += lateral_N_[1][i] * s[i] * scale;

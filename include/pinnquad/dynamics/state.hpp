@@ -50,14 +50,14 @@ Vector3<Scalar> body_velocity(const State<Scalar>& state) noexcept {
   return world_to_body(state.attitude, state.velocity_m_s);
 }
 
-/// a_world (NED, gravity included) from v_dot_B: R (v_dot_B + omega x v_B).
+/// a_world (NED, m/s^2, gravity included) from v_dot_B: R (v_dot_B + omega x v_B).
 template <class Scalar>
 Vector3<Scalar> world_acceleration(const State<Scalar>& state, const Vector3<Scalar>& body_derivative_m_s2) noexcept {
   const Vector3<Scalar> transport = cross<Scalar>(state.body_rates_rad_s, body_velocity(state));
   return body_to_world<Scalar>(state.attitude, body_derivative_m_s2 + transport);
 }
 
-/// v_dot_B from a_world: R^T a_world - omega x v_B.
+/// v_dot_B (FRD, m/s^2) from a_world: R^T a_world - omega x v_B.
 template <class Scalar>
 Vector3<Scalar> body_derivative(const State<Scalar>& state, const Vector3<Scalar>& world_acceleration_m_s2) noexcept {
   return world_to_body(state.attitude, world_acceleration_m_s2) -

@@ -10,8 +10,8 @@
 
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
-#include "pinnquad/dynamics/command_meaning.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/model/description.hpp"

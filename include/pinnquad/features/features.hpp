@@ -96,7 +96,7 @@ struct PaperFeatures {
       x[6 + i] = in.velocity_m_s[i];
       x[9 + i] = in.body_rates_rad_s[i];
     }
-    const Tilt<Scalar> level = tilt(in.attitude);
+    const EulerAngles<Scalar> level = tilt(in.attitude);
     const Heading<Scalar> yaw = heading(in.attitude);
     x[12] = level.roll_rad;
     x[13] = level.pitch_rad;

@@ -20,7 +20,7 @@ namespace pinnquad {
 template <class Scalar>
 struct Site {
   Scalar elevation_m{0};  ///< of the NED origin above sea level
-  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre when the rotors' height above ground counts as zero
+  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre where the rotors' height above ground counts as zero
   Scalar gravity_m_s2{standard_gravity_m_s2<Scalar>};
 };
 
@@ -33,21 +33,12 @@ constexpr Site<Scalar> paper_site() noexcept {
   return site;
 }
 
-/// Everything that evolves in time.
+/// Everything that step() advances.
 template <class Scalar>
 struct VehicleState {
   State<Scalar> body{};
   Commands<Scalar> rotors{};  ///< behind the lag: the commands at which the present thrusts would be settled
   double time_s{0};           ///< double also for a float vehicle: in float a millisecond is lost after a few hours
-};
-
-/// One evaluation of the dynamics, taken apart.
-template <class Scalar>
-struct Evaluation {
-  Surroundings<Scalar> surroundings;
-  Wrench<Scalar> rotors;       ///< body
-  Wrench<Scalar> aerodynamic;  ///< body, all effects
-  Accelerations<Scalar> motion;
 };
 
 namespace detail {
@@ -66,7 +57,7 @@ constexpr Status default_status() noexcept {
 }
 }  // namespace detail
 
-/// Eqs. (1) and (2) with effects.
+/// Eqs. (1) and (2) with effects, in their order (aero/effect.hpp). World NED, body FRD, SI units.
 template <class Scalar, class... Effects>
 class Quadrotor {
   static_assert(
@@ -79,14 +70,19 @@ class Quadrotor {
                 "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on(), bound() and status() must be "
                 "noexcept (aero/effect.hpp)");
   static_assert(
-      ((is_effect<detail::BoundEffect<Effects, Scalar>> &&
-        is_whole_effect<detail::BoundEffect<Effects, Scalar>, Scalar>() &&
-        is_noexcept_effect<detail::BoundEffect<Effects, Scalar>, Scalar>()) &&
-       ...),
+      (detail::flies<detail::BoundEffect<Effects, Scalar>, Scalar> && ...),
       "pinnquad: what an effect's bound() returns flies in its place: it must be an effect whose functions are "
       "as the contract says and noexcept (aero/effect.hpp)");
 
  public:
+  /// One evaluation of the dynamics, taken apart.
+  struct Evaluation {
+    Surroundings<Scalar> surroundings;
+    Wrench<Scalar> rotors;       ///< body
+    Wrench<Scalar> aerodynamic;  ///< body, all effects
+    Accelerations<Scalar> motion;
+  };
+
   /// The vehicle of an airframe known when compiled, `Quadrotor<double, QuadraticDrag>::of<Crazyflie>(site)`: what
   /// airframe_value() refuses is a compile error. status() says whether the effects suit the airframe.
   template <class Vehicle>
@@ -116,13 +112,13 @@ class Quadrotor {
         site_(site),
         effects_(detail::bound_effect(effects, airframe)...),
         rotors_(airframe),
-        build_(build_of(airframe)),
+        plain_(is_plain(airframe)),
         status_(first_fault(effects...)) {}
 
   const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
   const Site<Scalar>& site() const noexcept { return site_; }
   const Rotors<Scalar>& rotors() const noexcept { return rotors_; }
-  /// In their order, bound to the airframe.
+  /// In the order of `Effects`, bound to the airframe.
   const std::tuple<detail::BoundEffect<Effects, Scalar>...>& effects() const noexcept { return effects_; }
 
   /// Unless ok, step() and the inverse refuse with it: `invalid_airframe`, `no_solution` for an allocation that can't
@@ -141,25 +137,18 @@ class Quadrotor {
     return air;
   }
 
-  /// Body wrench of all effects for given commands of the rotors (settled, not clipped).
+  /// Body wrench of all effects at thrust fractions of the rotors (not clipped), in which an effect should be affine.
+  template <bool plain = false>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench(const State<Scalar>& state, const Surroundings<Scalar>& air,
-                                                           const Commands<Scalar>& rotor_commands) const noexcept {
-    return aerodynamic_wrench_of(rotors_.fractions(rotor_commands), state, air);
-  }
-
-  /// The same for thrust fractions, in which an effect is affine.
-  template <Build build = Build::any>
-  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench_of(const ThrustFractions<Scalar>& thrusts,
-                                                              const State<Scalar>& state,
-                                                              const Surroundings<Scalar>& air) const noexcept {
-    return sum_of_effects<build>(state, air, thrusts,
+                                                           const ThrustFractions<Scalar>& thrusts) const noexcept {
+    return sum_of_effects<plain>(state, air, thrusts,
                                  [this](const auto& effect, const auto& condition)
                                      PINNQUAD_INLINE_LAMBDA { return effect.wrench(condition, airframe_); });
   }
 
   /// The same with every effect that has branches on this one, whether the condition lies on it or not.
-  Wrench<Scalar> aerodynamic_wrench_on(ThrustBranch branch, const ThrustFractions<Scalar>& thrusts,
-                                       const State<Scalar>& state, const Surroundings<Scalar>& air) const noexcept {
+  Wrench<Scalar> aerodynamic_wrench_on(ThrustBranch branch, const State<Scalar>& state, const Surroundings<Scalar>& air,
+                                       const ThrustFractions<Scalar>& thrusts) const noexcept {
     return sum_of_effects(state, air, thrusts, [this, branch](const auto& effect, const auto& condition) noexcept {
       if constexpr (has_thrust_branches<std::decay_t<decltype(effect)>>) {
         return effect.wrench_on(branch, condition, airframe_);
@@ -169,11 +158,11 @@ class Quadrotor {
     });
   }
 
-  /// Accelerations for settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid where
-  /// status() and the surroundings' status are ok.
-  Evaluation<Scalar> evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
-                              Scalar time_s) const noexcept {
-    Evaluation<Scalar> result = loads(state, rotors_.fractions(rotor_commands), time_s);
+  /// Wrenches and accelerations of settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid
+  /// where status() and the surroundings' status are ok.
+  Evaluation evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
+                      Scalar time_s) const noexcept {
+    Evaluation result = loads(state, rotors_.fractions(rotor_commands), time_s);
     result.motion = accelerations(airframe_, state, total(result), site_.gravity_m_s2);
     return result;
   }
@@ -186,8 +175,7 @@ class Quadrotor {
   Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
     const Status input = check_input(state, commands, step_s);
     if (input != Status::ok) return input;
-    return build_ == Build::plain ? advance<Build::plain>(state, commands, step_s)
-                                  : advance<Build::any>(state, commands, step_s);
+    return plain_ ? advance<true>(state, commands, step_s) : advance<false>(state, commands, step_s);
   }
 
   /// Thrust and torque of the rotors over those in the standard atmosphere with a full battery: rho / rho_0 times the
@@ -209,12 +197,12 @@ class Quadrotor {
   }
 
   /// A step whose input is good.
-  template <Build build>
+  template <bool plain>
   PINNQUAD_FLATTEN Status advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
                                   Scalar step_s) const noexcept {
-    const ThrustFractions<Scalar> before = rotors_.template fractions<build>(state.rotors);
-    const ThrustFractions<Scalar> wanted = rotors_.template fractions<build>(commands);
-    const auto time_constant_s = lag_of<build>(before, wanted);
+    const ThrustFractions<Scalar> before = rotors_.template fractions<plain>(state.rotors);
+    const ThrustFractions<Scalar> wanted = rotors_.template fractions<plain>(commands);
+    const auto time_constant_s = lag_of<plain>(before, wanted);
     const auto half_factor = lag_factor(time_constant_s, step_s / Scalar(2));
     const ThrustFractions<Scalar> middle = lagged(before, wanted, half_factor);
     const ThrustFractions<Scalar> end = lagged(middle, wanted, half_factor);
@@ -223,22 +211,22 @@ class Quadrotor {
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
       const ThrustFractions<Scalar>& now =
           detail::equal(offset_s, Scalar(0)) ? start : (offset_s < step_s ? middle : end);
-      return rate_of_change<build>(body, now, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
+      return rate_of_change<plain>(body, now, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
     };
-    const State<Scalar> next = rk4_step(state.body, step_s, rate);
+    const State<Scalar> next = detail::rk4_step(state.body, step_s, rate);
     if (air != Status::ok) return air;
     if (!(all_finite(next) && is_unit(next.attitude))) return Status::output_not_finite;
     if (!can_follow(next, step_s)) return Status::out_of_range;
     state.body = next;
-    state.rotors = rotors_.template commands_of<build>(end);
+    state.rotors = rotors_.template commands_of<plain>(end);
     state.time_s += static_cast<double>(step_s);
     return Status::ok;
   }
 
   /// One time constant for all, or each rotor's own.
-  template <Build build>
+  template <bool plain>
   auto lag_of(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted) const noexcept {
-    if constexpr (build == Build::plain) {
+    if constexpr (plain) {
       static_cast<void>(before), static_cast<void>(wanted);
       return airframe_.rise_time_constant_s(0);
     } else {
@@ -292,7 +280,7 @@ class Quadrotor {
   };
 
   /// Folds the effects in their order; `wrench_of(effect, condition)` evaluates one.
-  template <Build build = Build::any, class WrenchOf>
+  template <bool plain = false, class WrenchOf>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                        const ThrustFractions<Scalar>& thrusts,
                                                        const WrenchOf& wrench_of) const noexcept {
@@ -309,7 +297,7 @@ class Quadrotor {
     each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       using Effect = std::decay_t<decltype(effect)>;
       if constexpr (uses_rotor_wrench<Effect>) {
-        condition.rotors = rotors_.template wrench_of<build>(thrusts, rotor_scale(air));
+        condition.rotors = rotors_.template wrench_of<plain>(thrusts, rotor_scale(air));
         condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
       } else if constexpr (makes_wrench<Effect>) {
@@ -321,7 +309,7 @@ class Quadrotor {
   }
 
   /// Adding no effects is no addition: the compiler may not leave out x + 0.
-  static PINNQUAD_ALWAYS_INLINE Wrench<Scalar> total(const Evaluation<Scalar>& e) noexcept {
+  static PINNQUAD_ALWAYS_INLINE Wrench<Scalar> total(const Evaluation& e) noexcept {
     if constexpr ((makes_wrench<Effects> || ...)) {
       return e.rotors + e.aerodynamic;
     } else {
@@ -330,35 +318,35 @@ class Quadrotor {
   }
 
   /// An evaluation up to the wrenches.
-  template <Build build = Build::any>
-  PINNQUAD_ALWAYS_INLINE Evaluation<Scalar> loads(const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts,
-                                                  Scalar time_s) const noexcept {
-    Evaluation<Scalar> result;
+  template <bool plain = false>
+  PINNQUAD_ALWAYS_INLINE Evaluation loads(const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts,
+                                          Scalar time_s) const noexcept {
+    Evaluation result;
     result.surroundings = surroundings(state, time_s);
     const ThrustFractions<Scalar> turning = clipped(thrusts);
-    result.rotors = rotors_.template wrench_of<build>(turning, rotor_scale(result.surroundings));
-    result.aerodynamic = aerodynamic_wrench_of<build>(turning, state, result.surroundings);
+    result.rotors = rotors_.template wrench_of<plain>(turning, rotor_scale(result.surroundings));
+    result.aerodynamic = aerodynamic_wrench<plain>(state, result.surroundings, turning);
     return result;
   }
 
   /// The same motion as evaluate()'s, in world axes as the integrator wants it. v_dot = R f / m + g directly: Eq. (1)'s
   /// omega x v_B would be subtracted only to be added again.
-  template <Build build>
-  PINNQUAD_ALWAYS_INLINE StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
-                                                                const ThrustFractions<Scalar>& thrusts, Scalar time_s,
-                                                                Status& air) const noexcept {
-    const Evaluation<Scalar> e = loads<build>(state, thrusts, time_s);
+  template <bool plain>
+  PINNQUAD_ALWAYS_INLINE detail::StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
+                                                                        const ThrustFractions<Scalar>& thrusts,
+                                                                        Scalar time_s, Status& air) const noexcept {
+    const Evaluation e = loads<plain>(state, thrusts, time_s);
     if (e.surroundings.status != Status::ok) air = e.surroundings.status;
     if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery can't reverse thrust
     const Wrench<Scalar> wrench = total(e);
-    StateDerivative<Scalar> d;
+    detail::StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
     d.acceleration_m_s2 = Axes(state.attitude)
                               .to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
                                         wrench.force_N[2] * inverse_mass_);
     d.acceleration_m_s2[2] += site_.gravity_m_s2;
     d.attitude_rate = attitude_rate(state.attitude, state.body_rates_rad_s);
-    d.angular_acceleration_rad_s2 = angular_acceleration<build>(airframe_, state.body_rates_rad_s, wrench.torque_N_m);
+    d.angular_acceleration_rad_s2 = angular_acceleration<plain>(airframe_, state.body_rates_rad_s, wrench.torque_N_m);
     return d;
   }
 
@@ -376,7 +364,7 @@ class Quadrotor {
   Site<Scalar> site_;
   std::tuple<detail::BoundEffect<Effects, Scalar>...> effects_;
   Rotors<Scalar> rotors_;
-  Build build_;
+  bool plain_;
   Status status_;
 };
 

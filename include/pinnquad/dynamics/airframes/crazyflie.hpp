@@ -25,10 +25,7 @@ struct Crazyflie {
     a.mass_kg = Scalar(0.027);                                            // [B]
     a.inertia_kg_m2 = {Scalar(1.4e-5), Scalar(1.4e-5), Scalar(2.17e-5)};  // [L]
     constexpr Scalar arm = Scalar(0.046 / 1.4142135623730951);            // [B] 92 mm from motor to motor, diagonal
-    a.rotors[0] = {arm, arm, Spin::counter_clockwise};
-    a.rotors[1] = {-arm, -arm, Spin::counter_clockwise};
-    a.rotors[2] = {arm, -arm, Spin::clockwise};
-    a.rotors[3] = {-arm, arm, Spin::clockwise};
+    a.rotors = x_rotors(arm, arm);
     a.thrust_coefficient = Scalar(thrust_per_rev_s_squared / (rho * d * d * d * d));
     a.power_coefficient = Scalar(2 * pi * torque_per_rev_s_squared / (rho * d * d * d * d * d));
     a.propeller_diameter_m = Scalar(d);

@@ -22,10 +22,7 @@ struct Px4Sih {
     Airframe<Scalar> a{};
     a.mass_kg = Scalar(1.0);                                          // [P] SIH_MASS
     a.inertia_kg_m2 = {Scalar(0.025), Scalar(0.025), Scalar(0.030)};  // [P] SIH_IXX, SIH_IYY, SIH_IZZ
-    a.rotors[0] = {Scalar(arm_m), Scalar(arm_m), Spin::counter_clockwise};
-    a.rotors[1] = {Scalar(-arm_m), Scalar(-arm_m), Spin::counter_clockwise};
-    a.rotors[2] = {Scalar(arm_m), Scalar(-arm_m), Spin::clockwise};
-    a.rotors[3] = {Scalar(-arm_m), Scalar(arm_m), Spin::clockwise};
+    a.rotors = x_rotors(Scalar(arm_m), Scalar(arm_m));
     a.thrust_coefficient = Scalar(thrust_N / (rho * n * n * d * d * d * d));
     a.power_coefficient = Scalar(2 * pi * torque_N_m / (rho * n * n * d * d * d * d * d));
     a.propeller_diameter_m = Scalar(d);

@@ -22,10 +22,7 @@ struct Racer5Inch {
     a.mass_kg = Scalar(0.752);                                           // [A]
     a.inertia_kg_m2 = {Scalar(2.5e-3), Scalar(2.1e-3), Scalar(4.3e-3)};  // [A]
     constexpr Scalar forward = Scalar(0.075), right = Scalar(0.10);      // [A]
-    a.rotors[0] = {forward, right, Spin::counter_clockwise};
-    a.rotors[1] = {-forward, -right, Spin::counter_clockwise};
-    a.rotors[2] = {forward, -right, Spin::clockwise};
-    a.rotors[3] = {-forward, right, Spin::clockwise};
+    a.rotors = x_rotors(forward, right);
     a.thrust_coefficient = Scalar(thrust_per_rev_s_squared / (rho * d * d * d * d));
     a.power_coefficient = Scalar(2 * pi * torque_over_thrust_m * thrust_per_rev_s_squared / (rho * d * d * d * d * d));
     a.propeller_diameter_m = Scalar(d);

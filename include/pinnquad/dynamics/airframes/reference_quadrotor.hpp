@@ -12,10 +12,7 @@ template <class Scalar>
 constexpr Airframe<Scalar> reference_rotors_and_drag() {
   Airframe<Scalar> a{};
   constexpr Scalar arm = Scalar(0.24395184);
-  a.rotors[0] = {arm, arm, Spin::counter_clockwise};
-  a.rotors[1] = {-arm, -arm, Spin::counter_clockwise};
-  a.rotors[2] = {arm, -arm, Spin::clockwise};
-  a.rotors[3] = {-arm, arm, Spin::clockwise};
+  a.rotors = x_rotors(arm, arm);
   a.thrust_coefficient = Scalar(0.109918997);
   a.power_coefficient = Scalar(0.0401640013);
   a.propeller_diameter_m = Scalar(0.228599995);

@@ -84,7 +84,7 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
   std::size_t rows = 0;
   each_features<Features, double>(training, [&](const Flight&, std::size_t, const auto& x) {
     ++rows;
-    Vector<double, Features::size> z;
+    Matrix<double, Features::size> z;
     for (std::size_t i = 0; i < size; ++i) z[Eigen::Index(i)] = (x[i] - columns[i].mean) / columns[i].scale();
     correlation.selfadjointView<Eigen::Lower>().rankUpdate(z);
   });
