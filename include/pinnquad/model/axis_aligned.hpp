@@ -34,7 +34,8 @@ struct AxisAligned : PredictorBase<AxisAligned<ScalarType, FeatureCount, First..
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     if constexpr (Threes::others <= detail::held_inputs) {  // read once: no copy on the stack
       detail::multiply_held<4, Threes::others>(parameters + weights, Threes::others, parameters + intercepts,
-                                               typename Threes::template InPlace<Scalar>{x}, y, detail::Unchanged{});
+                                               typename Threes::template InPlace<Scalar>{x}, y,
+                                               detail::Activate<void>{});
     } else {
       Scalar seen[Threes::others];
       Threes::copy_others(x, static_cast<Scalar*>(seen));

@@ -77,7 +77,7 @@ struct Masked : PredictorBase<Masked<Inner, FeatureCount, First...>, typename In
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     if constexpr (is_network<Inner>) {
-      PortablePass<Inner>::forward_of(parameters, typename Threes::template InPlace<Scalar>{x}, y);
+      detail::PortablePass<Inner>::forward_of(parameters, typename Threes::template InPlace<Scalar>{x}, y);
     } else {
       Scalar seen[Threes::others];
       Threes::copy_others(x, static_cast<Scalar*>(seen));

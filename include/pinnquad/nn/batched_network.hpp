@@ -41,9 +41,8 @@ struct BatchedLayer {
 };
 
 /// Each row's sum begins with its bias, or with 0.
-template <class ScalarType, int In, int Out, bool HasBias, class Pack, int Lanes>
-struct BatchedDense {
-  using Scalar = ScalarType;
+template <class Scalar, int In, int Out, bool HasBias, class Pack, int Lanes>
+struct BatchedLayer<DenseLayer<Scalar, In, Out, HasBias>, Pack, Lanes> {
   static constexpr bool fuses_activation = true;
   template <class Activation>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y,
@@ -59,13 +58,6 @@ struct BatchedDense {
     });
   }
 };
-
-template <class Scalar, int In, int Out, class Pack, int Lanes>
-struct BatchedLayer<DenseLayer<Scalar, In, Out>, Pack, Lanes> : BatchedDense<Scalar, In, Out, true, Pack, Lanes> {};
-
-template <class Scalar, int In, int Out, class Pack, int Lanes>
-struct BatchedLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, Lanes>
-    : BatchedDense<Scalar, In, Out, false, Pack, Lanes> {};
 
 /// A layer and the activation behind it (void: none) over a block. Out of line, so that equal layers share their code.
 template <class Layer, class Activation, class Pack, int Lanes>

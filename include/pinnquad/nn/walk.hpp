@@ -7,7 +7,6 @@
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
-#include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {
@@ -128,17 +127,6 @@ struct StepByStep {
   template <class Step, class State>
   static constexpr int together = 1;
 };
-
-/// The activation of a step as a function of a scalar or a pack.
-template <class Layer>
-struct Activate {
-  template <class Value>
-  PINNQUAD_ALWAYS_INLINE Value operator()(const Value& v) const noexcept {
-    return Layer::activate(v);
-  }
-};
-template <>
-struct Activate<void> : Unchanged {};
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail

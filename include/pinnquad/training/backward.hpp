@@ -34,8 +34,8 @@ inline constexpr bool is_trainable = is_elementwise<Layer> ? has_slope<Layer> : 
 template <class Layer>
 inline constexpr bool is_noexcept_backward = detail::is_noexcept_where_given<detail::BackwardOf, Layer>();
 
-template <class Scalar, int In, int Out>
-struct BackwardRule<DenseWithoutBiasLayer<Scalar, In, Out>> {
+template <class Scalar, int In, int Out, bool HasBias>
+struct BackwardRule<DenseLayer<Scalar, In, Out, HasBias>> {
   static void backward(const Scalar* parameters, const Scalar* x, const Scalar*, const Scalar* dy, Scalar* dx,
                        Scalar* parameter_gradient) noexcept {
     for (int column = 0; column < In; ++column) dx[column] = Scalar(0);
@@ -45,15 +45,9 @@ struct BackwardRule<DenseWithoutBiasLayer<Scalar, In, Out>> {
         parameter_gradient[row * In + column] += dy[row] * x[column];
       }
     }
-  }
-};
-
-template <class Scalar, int In, int Out>
-struct BackwardRule<DenseLayer<Scalar, In, Out>> {
-  static void backward(const Scalar* parameters, const Scalar* x, const Scalar* y, const Scalar* dy, Scalar* dx,
-                       Scalar* parameter_gradient) noexcept {
-    BackwardRule<DenseWithoutBiasLayer<Scalar, In, Out>>::backward(parameters, x, y, dy, dx, parameter_gradient);
-    for (int row = 0; row < Out; ++row) parameter_gradient[Out * In + row] += dy[row];
+    if constexpr (HasBias) {
+      for (int row = 0; row < Out; ++row) parameter_gradient[Out * In + row] += dy[row];
+    }
   }
 };
 

@@ -17,7 +17,7 @@ inline constexpr double batch_norm_momentum = 0.1;
 /// One sample has no variance: it is normalised by the running statistics, which stay as they are, and the gradient is
 /// that of the affine map which remains. (PyTorch refuses such a batch.) The optimiser sees gamma and beta only.
 template <class Scalar, int Size, class Pack, int BatchSize>
-struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
+struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void> {
   static_assert(BatchSize > 1, "pinnquad: batch norm can't be trained in batches of one sample; they have no variance");
   static constexpr bool in_place = false;
   static constexpr bool needs_output = false;
@@ -186,6 +186,6 @@ struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void> {
 
 /// Batch norm has no rule for a single sample; the batch form above trains it.
 template <class Scalar, int Size>
-inline constexpr bool is_trainable<BatchNormLayer<Scalar, Size>> = true;
+inline constexpr bool is_trainable<BatchNorm::Bind<Scalar, Size>> = true;
 
 }  // namespace pinnquad

@@ -56,7 +56,7 @@ int copy_layer(Layer, const Scalar* from, Scalar* to) {
   return Layer::parameter_count;
 }
 template <class Scalar, int In, int Out>
-int copy_layer(DenseWithoutBiasLayer<Scalar, In, Out>, const Scalar* from, Scalar* to) {
+int copy_layer(DenseLayer<Scalar, In, Out, false>, const Scalar* from, Scalar* to) {
   for (int i = 0; i < Out * In; ++i) to[i] = from[i];
   for (int i = 0; i < Out; ++i) to[Out * In + i] = Scalar(0);
   return Out * In + Out;
@@ -64,7 +64,7 @@ int copy_layer(DenseWithoutBiasLayer<Scalar, In, Out>, const Scalar* from, Scala
 
 /// W'_i = s_i W_i, b'_i = s_i (b_i - mean_i) + beta_i with s_i = gamma_i / sqrt(variance_i + 1e-5); computed in double.
 template <class Scalar, int Size>
-void fold_into_dense(BatchNormLayer<Scalar, Size>, const Scalar* norm, Scalar* dense, int inputs) {
+void fold_into_dense(BatchNorm::Bind<Scalar, Size>, const Scalar* norm, Scalar* dense, int inputs) {
   for (int row = 0; row < Size; ++row) {
     const auto value = [&](int part) { return static_cast<double>(norm[part * Size + row]); };
     const double scale = value(0) / std::sqrt(value(3) + batch_norm_epsilon);
@@ -79,7 +79,7 @@ void fold_into_dense(BatchNormLayer<Scalar, Size>, const Scalar* norm, Scalar* d
 template <class Layer>
 struct IsBatchNorm : std::false_type {};
 template <class Scalar, int Size>
-struct IsBatchNorm<BatchNormLayer<Scalar, Size>> : std::true_type {};
+struct IsBatchNorm<BatchNorm::Bind<Scalar, Size>> : std::true_type {};
 
 template <class NetworkType>
 typename FoldNetwork<NetworkType>::type without_batch_norm(const NetworkType& network) {

@@ -14,19 +14,15 @@ namespace pinnquad {
 /// Xavier (Glorot and Bengio 2010), uniform: W in +-sqrt(6 / (inputs + outputs)), biases 0. Other layers with
 /// parameters start at 0 unless they have `initialise(parameters, engine)` themselves.
 struct XavierUniform {
-  template <class Scalar, int In, int Out, class Engine>
-  void initialise(DenseLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
-    initialise(DenseWithoutBiasLayer<Scalar, In, Out>{}, parameters, engine);
-    for (int i = 0; i < Out; ++i) parameters[Out * In + i] = Scalar(0);
-  }
-  template <class Scalar, int In, int Out, class Engine>
-  void initialise(DenseWithoutBiasLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) const {
+  template <class Scalar, int In, int Out, bool HasBias, class Engine>
+  void initialise(DenseLayer<Scalar, In, Out, HasBias> layer, Scalar* parameters, Engine& engine) const {
     const double limit = std::sqrt(6.0 / (In + Out));
     for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
+    for (int i = Out * In; i < layer.parameter_count; ++i) parameters[i] = Scalar(0);
   }
   /// gamma 1, beta 0, mean 0, variance 1: nearly the identity. Draws nothing.
   template <class Scalar, int Size, class Engine>
-  void initialise(BatchNormLayer<Scalar, Size>, Scalar* parameters, Engine&) const {
+  void initialise(BatchNorm::Bind<Scalar, Size>, Scalar* parameters, Engine&) const {
     for (int i = 0; i < Size; ++i) {
       parameters[i] = Scalar(1);
       parameters[Size + i] = Scalar(0);

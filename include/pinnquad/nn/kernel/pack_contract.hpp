@@ -27,6 +27,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 
@@ -71,12 +72,9 @@ template <class P> using StoreValuesOf =
     decltype(std::declval<const P&>().template store_values<1>(std::declval<typename P::Scalar*>()));
 // clang-format on
 
-}  // namespace detail
-
 /// Compiles if `Pack` fulfils the contract at the head of this file; else the message says what it lacks.
 template <class Pack>
 constexpr bool require_pack() noexcept {
-  using namespace detail;
   static_assert(is_detected<ArithmeticOf, Pack>, "pinnquad: a pack states unit, fused and width (pack_contract.hpp)");
   static_assert(is_detected<LoadOf, Pack>, "pinnquad: this pack lacks load(const Scalar*) (pack_contract.hpp)");
   static_assert(is_detected<StoreOf, Pack>, "pinnquad: this pack lacks store(Scalar*) (pack_contract.hpp)");
@@ -98,7 +96,6 @@ constexpr bool require_pack() noexcept {
 /// The same for the second contract.
 template <class Pack>
 constexpr bool require_register_layout() noexcept {
-  using namespace detail;
   static_assert(is_detected<ColumnsOf, Pack>, "pinnquad: this pack's columns are not 1 or 2 (pack_contract.hpp)");
   static_assert(is_detected<ValuesOf, Pack>,
                 "pinnquad: this pack's values are not blocks_per_register * width / columns (pack_contract.hpp)");
@@ -122,4 +119,28 @@ constexpr bool require_register_layout() noexcept {
   return true;
 }
 
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// + - * / of a pack that is one register, `value`: the compiler's own operators are the instructions.
+template <class Pack>
+using RegisterOf = std::enable_if_t<Pack::unit != VectorUnit::none, decltype(Pack::value)>;
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator+(Pack a, Pack b) noexcept {
+  return {a.value + b.value};
+}
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator-(Pack a, Pack b) noexcept {
+  return {a.value - b.value};
+}
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator*(Pack a, Pack b) noexcept {
+  return {a.value * b.value};
+}
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator/(Pack a, Pack b) noexcept {
+  return {a.value / b.value};
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 }  // namespace pinnquad

@@ -7,11 +7,11 @@
 
 #include <arm_neon.h>
 
-#include "pinnquad/core/attributes.hpp"
-#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/scalar_math.hpp"
+#include "pinnquad/nn/kernel/pack_contract.hpp"
 
 namespace pinnquad {
+namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 4 floats in one register.
@@ -31,18 +31,6 @@ struct PackNeon {
   /// a * b + c
   static PINNQUAD_ALWAYS_INLINE PackNeon multiply_add(PackNeon a, PackNeon b, PackNeon c) noexcept {
     return {vfmaq_f32(c.value, a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator+(PackNeon a, PackNeon b) noexcept {
-    return {vaddq_f32(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator-(PackNeon a, PackNeon b) noexcept {
-    return {vsubq_f32(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator*(PackNeon a, PackNeon b) noexcept {
-    return {vmulq_f32(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator/(PackNeon a, PackNeon b) noexcept {
-    return {vdivq_f32(a.value, b.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackNeon square_root(PackNeon a) noexcept { return {vsqrtq_f32(a.value)}; }
   /// v < 0 ? 0 : v. FMAX returns NaN when either is, whichever comes first.
@@ -98,6 +86,7 @@ struct PackNeon {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 }  // namespace pinnquad
 
 #endif
