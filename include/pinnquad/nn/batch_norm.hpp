@@ -36,18 +36,10 @@ struct BatchNorm {
   };
 };
 
-namespace detail {
-template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
-struct BatchNormMlp;
-template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
-struct BatchNormMlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
-    : Stack<Scalar, InputSize, Count, SpecList<DenseWithoutBias<Width>, BatchNorm, Activation>,
-            Dense<OutputSize::size>> {};
-}  // namespace detail
-
 /// The paper's network with batch norm between Dense and activation (docs/paper.md, deviation 15):
 /// `BatchNormMlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>`.
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
-using BatchNormMlp = typename detail::BatchNormMlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
+using BatchNormMlp =
+    typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, DenseWithoutBias, BatchNorm, Activation>::type;
 
 }  // namespace pinnquad

@@ -29,7 +29,8 @@ template <class Layer, class Pack, int Lanes>
 struct BatchedLayer {
   using Scalar = typename Layer::Scalar;
   static constexpr bool fuses_activation = false;
-  static void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y, int y_stride) noexcept {
+  static void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y, int y_stride,
+                      Activate<void>) noexcept {
     for (int lane = 0; lane < Lanes; ++lane) {
       Scalar in[static_cast<std::size_t>(Layer::inputs)];
       Scalar out[static_cast<std::size_t>(Layer::outputs)];
@@ -64,11 +65,7 @@ template <class Layer, class Activation, class Pack, int Lanes>
 PINNQUAD_NOINLINE void batched_layer(const typename Layer::Scalar* parameters, const typename Layer::Scalar* x,
                                      int x_stride, typename Layer::Scalar* y, int y_stride) noexcept {
   using Batched = BatchedLayer<Layer, Pack, Lanes>;
-  if constexpr (Batched::fuses_activation) {
-    Batched::forward(parameters, x, x_stride, y, y_stride, Activate<Activation>{});
-  } else {
-    Batched::forward(parameters, x, x_stride, y, y_stride);
-  }
+  Batched::forward(parameters, x, x_stride, y, y_stride, Activate<Activation>{});
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

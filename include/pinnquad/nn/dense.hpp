@@ -22,8 +22,8 @@ struct DenseLayer {
   }
 
   /// y = activate(W x + b), in one pass; `Activation` is an element-wise layer, or void.
-  template <class Activation>
-  static PINNQUAD_ALWAYS_INLINE void forward_fused(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+  template <class Activation, class X>
+  static PINNQUAD_ALWAYS_INLINE void forward_fused(const Scalar* parameters, const X& x, Scalar* y) noexcept {
     forward_some<Out>(parameters, 0, x, y, detail::Activate<Activation>{});
   }
 

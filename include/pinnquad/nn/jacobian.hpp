@@ -97,14 +97,15 @@ template <class Layer, class Activation, class Pack, int Rows, int Stride>
 PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const typename Layer::Scalar* x,
                                  const typename Layer::Scalar* y, const typename Layer::Scalar* seen,
                                  const typename Layer::Scalar* by_output, typename Layer::Scalar* by_input) noexcept {
-  PullBack<Layer>::template run<Pack, Rows, Stride>(
-      parameters, x, y, by_output, by_input, [=](int column, auto gradient) PINNQUAD_INLINE_LAMBDA {
-        if constexpr (std::is_void_v<Activation>) {
-          return gradient;
-        } else {
+  if constexpr (std::is_void_v<Activation>) {
+    PullBack<Layer>::template run<Pack, Rows, Stride>(
+        parameters, x, y, by_output, by_input, [](int, auto gradient) PINNQUAD_INLINE_LAMBDA { return gradient; });
+  } else {
+    PullBack<Layer>::template run<Pack, Rows, Stride>(
+        parameters, x, y, by_output, by_input, [seen](int column, auto gradient) PINNQUAD_INLINE_LAMBDA {
           return scaled_by_slope<Activation>(decltype(gradient)::load(seen + column), gradient);
-        }
-      });
+        });
+  }
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

@@ -43,20 +43,17 @@ struct Hidden {};
 namespace detail {
 template <class Spec, class Scalar, class Size>
 using BoundLayer = typename Spec::template Bind<Scalar, Size::value>;
-template <class Layer, class Scalar>
-using LayerMembersOf =
-    std::void_t<typename Layer::Scalar, decltype(Layer::inputs), decltype(Layer::outputs),
-                decltype(Layer::parameter_count),
-                decltype(Layer::forward(static_cast<const Scalar*>(nullptr), static_cast<const Scalar*>(nullptr),
-                                        static_cast<Scalar*>(nullptr)))>;
-template <class Spec, class Scalar, class Size>
-using LayerOf = LayerMembersOf<BoundLayer<Spec, Scalar, Size>, Scalar>;
-
 // each names std::bool_constant<is it noexcept>
 template <class Layer>
 using ForwardOf = std::bool_constant<noexcept(Layer::forward(static_cast<const typename Layer::Scalar*>(nullptr),
                                                              static_cast<const typename Layer::Scalar*>(nullptr),
                                                              static_cast<typename Layer::Scalar*>(nullptr)))>;
+template <class Layer, class Scalar>
+using LayerMembersOf =
+    std::void_t<std::enable_if_t<std::is_same_v<typename Layer::Scalar, Scalar>>, decltype(Layer::inputs),
+                decltype(Layer::outputs), decltype(Layer::parameter_count), ForwardOf<Layer>>;
+template <class Spec, class Scalar, class Size>
+using LayerOf = LayerMembersOf<BoundLayer<Spec, Scalar, Size>, Scalar>;
 template <class Layer>
 using ActivateOf = std::bool_constant<noexcept(Layer::activate(std::declval<typename Layer::Scalar>()))>;
 template <class Layer>
@@ -140,14 +137,20 @@ template <class Layer>
 struct Activate {
   template <class Value>
   PINNQUAD_ALWAYS_INLINE Value operator()(const Value& v) const noexcept {
-    if constexpr (std::is_void_v<Layer>) {
-      return v;
-    } else if constexpr (std::is_same_v<Value, typename Layer::Scalar> || is_detected<PackActivateOf, Layer, Value>) {
+    if constexpr (std::is_same_v<Value, typename Layer::Scalar> || is_detected<PackActivateOf, Layer, Value>) {
       return Layer::activate(v);
     } else {
       const Value own = v;  // copied first: gcc keeps more of a GenericPack in registers
       return each_lane(own, [](auto lane) PINNQUAD_INLINE_LAMBDA { return Layer::activate(lane); });
     }
+  }
+};
+
+template <>
+struct Activate<void> {
+  template <class Value>
+  PINNQUAD_ALWAYS_INLINE Value operator()(Value v) const noexcept {
+    return v;
   }
 };
 

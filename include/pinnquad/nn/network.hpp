@@ -44,20 +44,19 @@ struct Sizes<std::tuple<Layers...>> {
   static constexpr std::array<int, sizeof...(Layers)> parameters = {Layers::parameter_count...};
   static constexpr std::array<int, sizeof...(Layers)> outputs = {Layers::outputs...};
   /// Index of a layer's first parameter in the flat array.
-  static constexpr int offset(int layer) noexcept {
-    int sum = 0;
-    for (int i = 0; i < layer; ++i) sum += parameters[static_cast<std::size_t>(i)];
-    return sum;
-  }
+  static constexpr int offset(int layer) noexcept { return sum_before(layer, parameters); }
   /// Outputs of all layers before this one.
-  static constexpr int outputs_before(int layer) noexcept {
-    int sum = 0;
-    for (int i = 0; i < layer; ++i) sum += outputs[static_cast<std::size_t>(i)];
-    return sum;
-  }
+  static constexpr int outputs_before(int layer) noexcept { return sum_before(layer, outputs); }
   static constexpr int widest(int least) noexcept {
     for (int width : outputs) least = width > least ? width : least;
     return least;
+  }
+
+ private:
+  static constexpr int sum_before(int layer, const std::array<int, sizeof...(Layers)>& numbers) noexcept {
+    int sum = 0;
+    for (int i = 0; i < layer; ++i) sum += numbers[static_cast<std::size_t>(i)];
+    return sum;
   }
 };
 
@@ -224,9 +223,7 @@ class PortablePass {
 
   template <class Step, class X>
   static PINNQUAD_ALWAYS_INLINE void apply(const Scalar* own, const X& x, Scalar* y) noexcept {
-    if constexpr (!std::is_pointer_v<X>) {
-      Step::Layer::template forward_some<Step::Layer::outputs>(own, 0, x, y, Activate<typename Step::Activation>{});
-    } else if constexpr (Step::fused) {
+    if constexpr (Step::fused || !std::is_pointer_v<X>) {
       Step::Layer::template forward_fused<typename Step::Activation>(own, x, y);
     } else {
       Step::Layer::forward(own, x, y);
@@ -286,22 +283,23 @@ template <class Scalar, class InputSize, class... Hidden, class Last, class... S
 struct Stack<Scalar, InputSize, 0, SpecList<Hidden...>, Last, Specs...> {
   using type = Network<Scalar, InputSize, Specs..., Last>;
 };
-template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
+/// A hidden layer is `DenseOf<Width>` and what stands `Behind` it.
+template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, template <int> class DenseOf,
+          class... Behind>
 struct Mlp;
-template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
-struct Mlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
-    : Stack<Scalar, InputSize, Count, SpecList<Dense<Width>, Activation>, Dense<OutputSize::size>> {};
-template <class T>
-struct IsNetwork : std::false_type {};
-template <class Scalar, class InputSize, class... Specs>
-struct IsNetwork<Network<Scalar, InputSize, Specs...>> : std::true_type {};
+template <class Scalar, class InputSize, int Count, int Width, class OutputSize, template <int> class DenseOf,
+          class... Behind>
+struct Mlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, DenseOf, Behind...>
+    : Stack<Scalar, InputSize, Count, SpecList<DenseOf<Width>, Behind...>, Dense<OutputSize::size>> {};
 }  // namespace detail
 
 template <class T>
-inline constexpr bool is_network = detail::IsNetwork<T>::value;
+inline constexpr bool is_network = false;
+template <class Scalar, class InputSize, class... Specs>
+inline constexpr bool is_network<Network<Scalar, InputSize, Specs...>> = true;
 
 /// Eq. (4): `Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>`.
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
-using Mlp = typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
+using Mlp = typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, Dense, Activation>::type;
 
 }  // namespace pinnquad

@@ -9,8 +9,7 @@
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/nn/layer.hpp"
 
-namespace pinnquad {
-namespace detail {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// Direction of a walk: from the inputs to the outputs, or back.
@@ -129,5 +128,4 @@ struct StepByStep {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -7,8 +7,7 @@
 #include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
-namespace pinnquad {
-namespace detail {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// Scalars of a packed Rows x Columns matrix with bias.
@@ -71,5 +70,4 @@ PINNQUAD_ALWAYS_INLINE void multiply_packed(const typename Pack::Scalar* packed,
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -10,8 +10,7 @@
 #include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/kernel/pack_contract.hpp"
 
-namespace pinnquad {
-namespace detail {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 8 floats in one register.
@@ -112,7 +111,6 @@ struct PackAvx2 {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
 
 #endif

@@ -15,8 +15,7 @@
 #include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/nn/kernel/pack_contract.hpp"
 
-namespace pinnquad {
-namespace detail {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 4 floats in one register. Product and sum are rounded once where the processor has the instruction without AVX2.
@@ -108,7 +107,6 @@ struct PackSse2 {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
 
 #endif

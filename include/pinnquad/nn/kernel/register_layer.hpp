@@ -8,8 +8,7 @@
 #include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
-namespace pinnquad {
-namespace detail {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 template <class Pack>
@@ -224,5 +223,4 @@ struct RegisterLayer {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
