@@ -140,7 +140,7 @@ void check_pack() {
   for (std::size_t i = 0; i + Pack::width <= values.size(); ++i) {
     std::array<Scalar, Pack::width> y{}, seen{}, dy{}, dx{};
     const Pack v = Pack::load(values.data() + i);
-    const Pack activated = Layer::activate(v);
+    const Pack activated = detail::Activate<Layer>{}(v);
     activated.store(y.data());
     for (std::size_t k = 0; k < y.size(); ++k) {
       CHECK(same(y[k], Layer::activate(values[i + k])));

@@ -18,7 +18,7 @@ using namespace pinnquad;
 
 TEST_CASE_TEMPLATE("what is within 3.5 stays to the bit, what is beyond becomes the bound, NaN goes through", Scalar,
                    float, double) {
-  using Layer = ClipLayer<Scalar, 1>;
+  using Layer = Clip::Bind<Scalar, 1>;
   for (const Scalar v : {Scalar(0), Scalar(-0.1), Scalar(3.4999), Scalar(-3.5), Scalar(3.5)}) {
     CHECK(Layer::activate(v) == v);
   }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "pinnquad/nn/kernel/column_broadcast.hpp"
-#include "pinnquad/nn/kernel/each_lane.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
 #include "support/packs.hpp"
@@ -107,11 +106,12 @@ TEST_CASE_TEMPLATE("packed matrix-vector product: values, zero padding, nothing 
     CAPTURE(rows);
     CAPTURE(columns);
     const Problem<Scalar, rows, columns> problem(engine);
-    std::array<Scalar, pinnquad::packed_size<Pack, rows, columns>> packed{};
-    pinnquad::pack_columns<Pack, rows, columns>(problem.weight.data(), problem.bias.data(), packed.data());
+    std::array<Scalar, pinnquad::detail::packed_size<Pack, rows, columns>> packed{};
+    pinnquad::detail::pack_columns<Pack, rows, columns>(problem.weight.data(), problem.bias.data(), packed.data());
     std::array<Scalar, stride + 1> y{};
     y.fill(Scalar(canary));
-    pinnquad::multiply_packed<Pack, rows, columns>(packed.data(), problem.x.data(), y.data(), [](Pack v) { return v; });
+    pinnquad::detail::multiply_packed<Pack, rows, columns>(packed.data(), problem.x.data(), y.data(),
+                                                           [](Pack v) { return v; });
     for (int row = 0; row < stride; ++row) {
       const double value = static_cast<double>(y[static_cast<std::size_t>(row)]);
       if (row < rows) {
@@ -241,7 +241,8 @@ TEST_CASE_TEMPLATE("portable: each output has the bits of one plain chain, held 
     pinnquad::multiply_row_major<rows, columns>(weight, problem.bias.data(), problem.x.data(), y.data());
     pinnquad::multiply_row_major<rows, columns>(weight, problem.bias.data(), problem.x.data(), activated.data(),
                                                 [](Scalar v) { return v + Scalar(1); });
-    pinnquad::multiply_row_major<rows, columns>(weight, problem.x.data(), without_bias.data());
+    pinnquad::multiply_row_major<rows, columns>(weight, pinnquad::detail::NoBias<Scalar>{}, problem.x.data(),
+                                                without_bias.data());
     for (std::size_t row = 0; row < rows; ++row) {
       chain[row] = problem.bias[row];
       for (std::size_t column = 0; column < columns; ++column) {

@@ -140,7 +140,7 @@ TEST_CASE_TEMPLATE("a wide last hidden layer, made in parts, has the bits of eac
     for (Scalar& value : apart) value = static_cast<Scalar>(uniform(engine));
     for (int i = 0; i < Type::inputs; ++i) x[i] = apart[2 * i];
     network.forward(x, y);
-    pinnquad::PortablePass<Type>::forward_of(network.parameters.data(), EverySecond<Scalar>{apart}, of_apart);
+    pinnquad::detail::PortablePass<Type>::forward_of(network.parameters.data(), EverySecond<Scalar>{apart}, of_apart);
     layer_by_layer<Type>(network.parameters.data(), x, alone);
     for (int i = 0; i < Type::outputs; ++i) {
       CHECK(y[i] == alone[i]);

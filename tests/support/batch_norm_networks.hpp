@@ -18,7 +18,7 @@ void randomise_layer(Layer, Scalar* parameters, std::mt19937_64& engine) {
   for (int i = 0; i < Layer::parameter_count; ++i) parameters[i] = static_cast<Scalar>(uniform(engine, -limit, limit));
 }
 template <class Scalar, int Size>
-void randomise_layer(BatchNormLayer<Scalar, Size>, Scalar* parameters, std::mt19937_64& engine) {
+void randomise_layer(pinnquad::BatchNorm::Bind<Scalar, Size>, Scalar* parameters, std::mt19937_64& engine) {
   for (int i = 0; i < Size; ++i) {
     const double gamma = uniform(engine, 0.5, 2.0);
     parameters[i] = static_cast<Scalar>(i % 5 == 3 ? -gamma : gamma);

@@ -13,9 +13,10 @@
 
 /// A list for TEST_CASE_TEMPLATE, which takes no list type of its own here.
 #if defined(__AVX512F__)
-#define PINNQUAD_TEST_REGISTER_PACKS pinnquad::PackAvx512, pinnquad::PackAvx2, pinnquad::PackSse2
+#define PINNQUAD_TEST_REGISTER_PACKS \
+  pinnquad::detail::PackAvx512, pinnquad::detail::PackAvx2, pinnquad::detail::PackSse2
 #elif defined(__AVX2__) && defined(__FMA__)
-#define PINNQUAD_TEST_REGISTER_PACKS pinnquad::PackAvx2, pinnquad::PackSse2
+#define PINNQUAD_TEST_REGISTER_PACKS pinnquad::detail::PackAvx2, pinnquad::detail::PackSse2
 #else
 #define PINNQUAD_TEST_REGISTER_PACKS pinnquad::NativePack<float>
 #endif

@@ -41,7 +41,7 @@ struct SmallDoubleModel {
 
 /// Its envelope is empty: it declines always.
 struct NowhereTrained : SmallModel {
-  static constexpr std::array<float, 16> envelope_lower = Scaler<float, 16>::ones();
+  static constexpr std::array<float, 16> envelope_lower = pinnquad::detail::ones<float, 16>;
   static constexpr std::array<float, 16> envelope_upper{};
 };
 

@@ -86,7 +86,7 @@ struct Masked : detail::PredictorBase<Masked<Inner, FeatureCount, First...>, typ
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     if constexpr (is_network<Inner>) {
-      PortablePass<Inner>::forward_of(parameters, typename Threes::template InPlace<Scalar>{x}, y);
+      detail::PortablePass<Inner>::forward_of(parameters, typename Threes::template InPlace<Scalar>{x}, y);
     } else {
       Scalar seen[Threes::others];
       Threes::copy_others(x, static_cast<Scalar*>(seen));
@@ -125,7 +125,8 @@ struct AxisAligned
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     if constexpr (Threes::others <= detail::held_inputs) {  // read once: no copy on the stack
       detail::multiply_held<4, Threes::others>(parameters + weights, Threes::others, parameters + intercepts,
-                                               typename Threes::template InPlace<Scalar>{x}, y, detail::Unchanged{});
+                                               typename Threes::template InPlace<Scalar>{x}, y,
+                                               detail::Activate<void>{});
     } else {
       Scalar seen[Threes::others];
       Threes::copy_others(x, static_cast<Scalar*>(seen));

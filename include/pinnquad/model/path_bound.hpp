@@ -18,11 +18,11 @@ namespace pinnquad {
 template <class Layer>
 inline constexpr bool slopes_from_0_to_1 = false;
 template <class Scalar, int Size>
-inline constexpr bool slopes_from_0_to_1<ReluLayer<Scalar, Size>> = true;
+inline constexpr bool slopes_from_0_to_1<Relu::Bind<Scalar, Size>> = true;
 template <class Scalar, int Size>
-inline constexpr bool slopes_from_0_to_1<TanhLayer<Scalar, Size>> = true;
+inline constexpr bool slopes_from_0_to_1<Tanh::Bind<Scalar, Size>> = true;
 template <class Scalar, int Size>
-inline constexpr bool slopes_from_0_to_1<SoftplusLayer<Scalar, Size>> = true;
+inline constexpr bool slopes_from_0_to_1<Softplus::Bind<Scalar, Size>> = true;
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {

@@ -12,45 +12,34 @@ namespace pinnquad {
 inline constexpr double batch_norm_epsilon = 1e-5;
 
 /// y_i = gamma_i (x_i - mean_i) / sqrt(variance_i + 1e-5) + beta_i.
-/// Parameters: gamma, beta, running mean, running variance, `Size` each. Training moves gamma and beta down the
-/// gradient and lets the other two follow the batches.
-template <class ScalarType, int Size>
-struct BatchNormLayer {
-  using Scalar = ScalarType;
-  static constexpr int inputs = Size;
-  static constexpr int outputs = Size;
-  static constexpr int parameter_count = 4 * Size;
-
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    const Scalar* gamma = parameters;
-    const Scalar* beta = parameters + Size;
-    const Scalar* mean = parameters + 2 * Size;
-    const Scalar* variance = parameters + 3 * Size;
-    for (int i = 0; i < Size; ++i) {
-      y[i] = gamma[i] * ((x[i] - mean[i]) / detail::square_root(variance[i] + Scalar(batch_norm_epsilon))) + beta[i];
-    }
-  }
-};
-
+/// Parameters: gamma, beta, running mean, running variance, one of each per neuron. Training moves gamma and beta down
+/// the gradient and lets the other two follow the batches.
 struct BatchNorm {
   static constexpr const char* description = "pinnquad::BatchNorm";
 
-  template <class Scalar, int In>
-  using Bind = BatchNormLayer<Scalar, In>;
-};
+  template <class ScalarType, int Size>
+  struct Bind {
+    using Scalar = ScalarType;
+    static constexpr int inputs = Size;
+    static constexpr int outputs = Size;
+    static constexpr int parameter_count = 4 * Size;
 
-namespace detail {
-template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
-struct BatchNormMlp;
-template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
-struct BatchNormMlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
-    : Stack<Scalar, InputSize, Count, SpecList<DenseWithoutBias<Width>, BatchNorm, Activation>,
-            Dense<OutputSize::size>> {};
-}  // namespace detail
+    static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
+      const Scalar* gamma = parameters;
+      const Scalar* beta = parameters + Size;
+      const Scalar* mean = parameters + 2 * Size;
+      const Scalar* variance = parameters + 3 * Size;
+      for (int i = 0; i < Size; ++i) {
+        y[i] = gamma[i] * ((x[i] - mean[i]) / detail::square_root(variance[i] + Scalar(batch_norm_epsilon))) + beta[i];
+      }
+    }
+  };
+};
 
 /// The paper's network with batch norm between Dense and activation (docs/paper.md, deviation 15):
 /// `BatchNormMlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>`.
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
-using BatchNormMlp = typename detail::BatchNormMlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
+using BatchNormMlp =
+    typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, DenseWithoutBias, BatchNorm, Activation>::type;
 
 }  // namespace pinnquad

@@ -29,7 +29,8 @@ template <class Layer, class Pack, int Lanes>
 struct BatchedLayer {
   using Scalar = typename Layer::Scalar;
   static constexpr bool fuses_activation = false;
-  static void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y, int y_stride) noexcept {
+  static void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y, int y_stride,
+                      Activate<void>) noexcept {
     for (int lane = 0; lane < Lanes; ++lane) {
       Scalar in[static_cast<std::size_t>(Layer::inputs)];
       Scalar out[static_cast<std::size_t>(Layer::outputs)];
@@ -41,9 +42,8 @@ struct BatchedLayer {
 };
 
 /// Each row's sum begins with its bias, or with 0.
-template <class ScalarType, int In, int Out, bool HasBias, class Pack, int Lanes>
-struct BatchedDense {
-  using Scalar = ScalarType;
+template <class Scalar, int In, int Out, bool HasBias, class Pack, int Lanes>
+struct BatchedLayer<DenseLayer<Scalar, In, Out, HasBias>, Pack, Lanes> {
   static constexpr bool fuses_activation = true;
   template <class Activation>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y,
@@ -60,23 +60,12 @@ struct BatchedDense {
   }
 };
 
-template <class Scalar, int In, int Out, class Pack, int Lanes>
-struct BatchedLayer<DenseLayer<Scalar, In, Out>, Pack, Lanes> : BatchedDense<Scalar, In, Out, true, Pack, Lanes> {};
-
-template <class Scalar, int In, int Out, class Pack, int Lanes>
-struct BatchedLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, Lanes>
-    : BatchedDense<Scalar, In, Out, false, Pack, Lanes> {};
-
 /// A layer and the activation behind it (void: none) over a block. Out of line, so that equal layers share their code.
 template <class Layer, class Activation, class Pack, int Lanes>
 PINNQUAD_NOINLINE void batched_layer(const typename Layer::Scalar* parameters, const typename Layer::Scalar* x,
                                      int x_stride, typename Layer::Scalar* y, int y_stride) noexcept {
   using Batched = BatchedLayer<Layer, Pack, Lanes>;
-  if constexpr (Batched::fuses_activation) {
-    Batched::forward(parameters, x, x_stride, y, y_stride, Activate<Activation>{});
-  } else {
-    Batched::forward(parameters, x, x_stride, y, y_stride);
-  }
+  Batched::forward(parameters, x, x_stride, y, y_stride, Activate<Activation>{});
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

@@ -7,24 +7,20 @@
 
 namespace pinnquad {
 
-template <class ScalarType, int Size>
-struct ClipLayer : ElementwiseLayer<ClipLayer<ScalarType, Size>, ScalarType, Size> {
-  static constexpr ScalarType bound = ScalarType(3.5);
-
-  static PINNQUAD_ALWAYS_INLINE ScalarType activate(ScalarType v) noexcept {
-    return v < -bound ? -bound : (v > bound ? bound : v);
-  }
-  /// 1 inside, 0 outside and on the bounds.
-  static PINNQUAD_ALWAYS_INLINE ScalarType slope(ScalarType y) noexcept {
-    return y > -bound && y < bound ? ScalarType(1) : ScalarType(0);
-  }
-};
-
 struct Clip {
   static constexpr const char* description = "pinnquad::Clip";
 
   template <class Scalar, int In>
-  using Bind = ClipLayer<Scalar, In>;
+  struct Bind : ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
+    static constexpr Scalar bound = Scalar(3.5);
+    static PINNQUAD_ALWAYS_INLINE Scalar activate(Scalar v) noexcept {
+      return v < -bound ? -bound : (v > bound ? bound : v);
+    }
+    /// 1 inside, 0 outside and on the bounds.
+    static PINNQUAD_ALWAYS_INLINE Scalar slope(Scalar y) noexcept {
+      return y > -bound && y < bound ? Scalar(1) : Scalar(0);
+    }
+  };
 };
 
 }  // namespace pinnquad

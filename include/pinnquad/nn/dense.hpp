@@ -8,23 +8,23 @@
 
 namespace pinnquad {
 
-template <class ScalarType, int In, int Out>
+/// A Dense or DenseWithoutBias, bound.
+template <class ScalarType, int In, int Out, bool HasBias = true>
 struct DenseLayer {
   using Scalar = ScalarType;
   static constexpr int inputs = In;
   static constexpr int outputs = Out;
   static constexpr int weight_count = Out * In;
-  static constexpr int parameter_count = weight_count + Out;
+  static constexpr int parameter_count = weight_count + (HasBias ? Out : 0);
 
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    multiply_row_major<Out, In>(parameters, parameters + weight_count, x, y);
+    forward_fused<void>(parameters, x, y);
   }
 
-  /// y = activate(W x + b), in one pass; `Activation` is an element-wise layer.
-  template <class Activation>
-  static PINNQUAD_ALWAYS_INLINE void forward_fused(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    multiply_row_major<Out, In>(parameters, parameters + weight_count, x, y,
-                                [](Scalar v) PINNQUAD_INLINE_LAMBDA { return Activation::activate(v); });
+  /// y = activate(W x + b), in one pass; `Activation` is an element-wise layer, or void.
+  template <class Activation, class X>
+  static PINNQUAD_ALWAYS_INLINE void forward_fused(const Scalar* parameters, const X& x, Scalar* y) noexcept {
+    forward_some<Out>(parameters, 0, x, y, detail::Activate<Activation>{});
   }
 
   /// y[0, Count) = activate(W x + b) for the `Count` neurons from `first` on. Inputs that the kernel holds all at a
@@ -32,7 +32,11 @@ struct DenseLayer {
   template <int Count, class X, class Activate>
   static PINNQUAD_ALWAYS_INLINE void forward_some(const Scalar* parameters, int first, const X& x, Scalar* y,
                                                   Activate activate) noexcept {
-    multiply_row_major<Count, In>(parameters + first * In, parameters + weight_count + first, x, y, activate);
+    if constexpr (HasBias) {
+      multiply_row_major<Count, In>(parameters + first * In, parameters + weight_count + first, x, y, activate);
+    } else {
+      multiply_row_major<Count, In>(parameters + first * In, detail::NoBias<Scalar>{}, x, y, activate);
+    }
   }
   /// y += what the `Count` inputs from `first` on, x[0, Count), give to W x. The sums of forward() are b and then all
   /// inputs.
@@ -45,11 +49,9 @@ struct DenseLayer {
 
 namespace detail {
 template <class T>
-struct IsDense : std::false_type {};
+inline constexpr bool is_dense_with_bias = false;
 template <class Scalar, int In, int Out>
-struct IsDense<DenseLayer<Scalar, In, Out>> : std::true_type {};
-template <class T>
-inline constexpr bool is_dense = IsDense<T>::value;
+inline constexpr bool is_dense_with_bias<DenseLayer<Scalar, In, Out>> = true;
 }  // namespace detail
 
 /// `Out` neurons; the number of inputs is deduced.
@@ -59,23 +61,11 @@ struct Dense {
   using Bind = DenseLayer<Scalar, In, Out>;
 };
 
-template <class ScalarType, int In, int Out>
-struct DenseWithoutBiasLayer {
-  using Scalar = ScalarType;
-  static constexpr int inputs = In;
-  static constexpr int outputs = Out;
-  static constexpr int parameter_count = Out * In;
-
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    multiply_row_major<Out, In>(parameters, x, y);
-  }
-};
-
 /// `Out` neurons without bias: what stands before a BatchNorm.
 template <int Out>
 struct DenseWithoutBias {
   template <class Scalar, int In>
-  using Bind = DenseWithoutBiasLayer<Scalar, In, Out>;
+  using Bind = DenseLayer<Scalar, In, Out, false>;
 };
 
 }  // namespace pinnquad

@@ -4,8 +4,6 @@
 // row-major.
 #pragma once
 
-#include <utility>
-
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
 #include "pinnquad/nn/packed_network.hpp"
@@ -29,14 +27,6 @@ struct PullBack {
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// The gradient as it is: no activation stands before the layer.
-struct NoSlope {
-  template <class Pack>
-  PINNQUAD_ALWAYS_INLINE Pack operator()(int, Pack gradient) const noexcept {
-    return gradient;
-  }
-};
 
 /// by_input = by_output W for row-major W (Out x In), behind which `Behind` more scalars may be read.
 template <class Pack, int Rows, int Stride, int In, int Out, int Behind, class Scalar, class Finish>
@@ -65,28 +55,19 @@ PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
-template <class Scalar, int In, int Out>
-struct PullBack<DenseLayer<Scalar, In, Out>> {
+template <class Scalar, int In, int Out, bool HasBias>
+struct PullBack<DenseLayer<Scalar, In, Out, HasBias>> {
   template <class Pack, int Rows, int Stride, class Finish>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar*,
                                          const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {
-    detail::pull_back_product<Pack, Rows, Stride, In, Out, Out>(parameters, by_output, by_input,
-                                                                finish);  // the bias is behind
-  }
-};
-
-template <class Scalar, int In, int Out>
-struct PullBack<DenseWithoutBiasLayer<Scalar, In, Out>> {
-  template <class Pack, int Rows, int Stride, class Finish>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar*,
-                                         const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {
-    detail::pull_back_product<Pack, Rows, Stride, In, Out, 0>(parameters, by_output, by_input, finish);
+    constexpr int behind = HasBias ? Out : 0;
+    detail::pull_back_product<Pack, Rows, Stride, In, Out, behind>(parameters, by_output, by_input, finish);
   }
 };
 
 /// With the running statistics: a factor per neuron.
 template <class Scalar, int Size>
-struct PullBack<BatchNormLayer<Scalar, Size>> {
+struct PullBack<BatchNorm::Bind<Scalar, Size>> {
   template <class Pack, int Rows, int Stride, class Finish>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar*,
                                          const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {
@@ -117,7 +98,8 @@ PINNQUAD_NOINLINE void pull_back(const typename Layer::Scalar* parameters, const
                                  const typename Layer::Scalar* y, const typename Layer::Scalar* seen,
                                  const typename Layer::Scalar* by_output, typename Layer::Scalar* by_input) noexcept {
   if constexpr (std::is_void_v<Activation>) {
-    PullBack<Layer>::template run<Pack, Rows, Stride>(parameters, x, y, by_output, by_input, NoSlope{});
+    PullBack<Layer>::template run<Pack, Rows, Stride>(
+        parameters, x, y, by_output, by_input, [](int, auto gradient) PINNQUAD_INLINE_LAMBDA { return gradient; });
   } else {
     PullBack<Layer>::template run<Pack, Rows, Stride>(
         parameters, x, y, by_output, by_input, [seen](int column, auto gradient) PINNQUAD_INLINE_LAMBDA {
@@ -169,7 +151,7 @@ class JacobianPass {
   static void run(const PackedNetwork<NetworkType, Pack>& packed, const Scalar* parameters, const Scalar* x, Scalar* y,
                   Scalar* jacobian) noexcept {
     Scalar kept[static_cast<std::size_t>(all_kept)];
-    clear_fused(kept, std::make_integer_sequence<int, layer_count>{});
+    clear_fused(kept);
     packed.forward_keeping(x, y, kept + kept_inputs);
     back(parameters, x, kept, jacobian);
   }
@@ -182,16 +164,14 @@ class JacobianPass {
   }
   /// A layer whose activation is fused into it may leave its outputs unwritten; whole packs of the layer before reach
   /// into them.
-  template <int... Index>
-  static PINNQUAD_ALWAYS_INLINE void clear_fused(Scalar* kept, std::integer_sequence<int, Index...>) noexcept {
-    (clear_begin<Index>(kept), ...);
-  }
-  template <int Index>
-  static PINNQUAD_ALWAYS_INLINE void clear_begin(Scalar* kept) noexcept {
-    if constexpr (Index > 0 && !is_elementwise<Layer<Index>>) {
-      Scalar* const begin = outputs_of<Index>(kept);
-      for (int i = 0; i < Pack::width; ++i) begin[i] = Scalar(0);
-    }
+  static PINNQUAD_ALWAYS_INLINE void clear_fused(Scalar* kept) noexcept {
+    unroll<layer_count>([kept](auto index) PINNQUAD_INLINE_LAMBDA {
+      constexpr int layer = decltype(index)::value;
+      if constexpr (layer > 0 && !is_elementwise<Layer<layer>>) {
+        Scalar* const begin = outputs_of<layer>(kept);
+        for (int i = 0; i < Pack::width; ++i) begin[i] = Scalar(0);
+      }
+    });
   }
   template <int Index>
   static PINNQUAD_ALWAYS_INLINE const Scalar* inputs_of(const Scalar* x, const Scalar* kept) noexcept {

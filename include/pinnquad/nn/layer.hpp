@@ -22,6 +22,7 @@
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/detected.hpp"
+#include "pinnquad/core/instruction_set.hpp"
 
 namespace pinnquad {
 
@@ -44,20 +45,17 @@ struct Hidden {};
 namespace detail {
 template <class Spec, class Scalar, class Size>
 using BoundLayer = typename Spec::template Bind<Scalar, Size::value>;
-template <class Layer, class Scalar>
-using LayerMembersOf =
-    std::void_t<typename Layer::Scalar, decltype(Layer::inputs), decltype(Layer::outputs),
-                decltype(Layer::parameter_count),
-                decltype(Layer::forward(static_cast<const Scalar*>(nullptr), static_cast<const Scalar*>(nullptr),
-                                        static_cast<Scalar*>(nullptr)))>;
-template <class Spec, class Scalar, class Size>
-using LayerOf = LayerMembersOf<BoundLayer<Spec, Scalar, Size>, Scalar>;
-
 // each names std::bool_constant<is it noexcept>
 template <class Layer>
 using ForwardOf = std::bool_constant<noexcept(Layer::forward(static_cast<const typename Layer::Scalar*>(nullptr),
                                                              static_cast<const typename Layer::Scalar*>(nullptr),
                                                              static_cast<typename Layer::Scalar*>(nullptr)))>;
+template <class Layer, class Scalar>
+using LayerMembersOf =
+    std::void_t<std::enable_if_t<std::is_same_v<typename Layer::Scalar, Scalar>>, decltype(Layer::inputs),
+                decltype(Layer::outputs), decltype(Layer::parameter_count), ForwardOf<Layer>>;
+template <class Spec, class Scalar, class Size>
+using LayerOf = LayerMembersOf<BoundLayer<Spec, Scalar, Size>, Scalar>;
 template <class Layer>
 using ActivateOf = std::bool_constant<noexcept(Layer::activate(std::declval<typename Layer::Scalar>()))>;
 template <class Layer>
@@ -80,6 +78,8 @@ inline constexpr bool is_noexcept_layer =
 
 template <class Layer>
 using ElementwiseOf = std::enable_if_t<Layer::elementwise>;
+template <class Layer>
+using LaneByLaneOf = std::enable_if_t<Layer::lane_by_lane>;
 template <class Layer, class Pack>
 using PackActivateOf = std::enable_if_t<std::is_same_v<decltype(Layer::activate(std::declval<Pack>())), Pack>>;
 template <class Layer, class Pack>
@@ -96,9 +96,15 @@ inline constexpr bool is_layer = is_detected<detail::LayerOf, Spec, Scalar, std:
 template <class Layer>
 inline constexpr bool is_elementwise = is_detected<detail::ElementwiseOf, Layer>;
 
-/// An element-wise layer whose activate() also takes a whole pack: it is fused into the layer before it.
+/// An element-wise layer with `static constexpr bool lane_by_lane = true`: a pack goes through activate() and the slope
+/// lane by lane, as it must for functions of the C library.
+template <class Layer>
+inline constexpr bool is_lane_by_lane = is_detected<detail::LaneByLaneOf, Layer>;
+
+/// An element-wise layer whose activate() also takes a whole pack, or is_lane_by_lane: it is fused into the layer
+/// before it.
 template <class Layer, class Pack>
-inline constexpr bool activates_pack = is_detected<detail::PackActivateOf, Layer, Pack>;
+inline constexpr bool activates_pack = is_lane_by_lane<Layer> || is_detected<detail::PackActivateOf, Layer, Pack>;
 
 /// An element-wise layer with a derivative d activate / d v: `slope(y)` from its output, or `slope_from_input(v)`
 /// where two inputs have the same output or the output is costly to invert.
@@ -110,28 +116,70 @@ template <class Layer>
 inline constexpr bool slopes_from_input = is_detected<detail::SlopeFromInputOf, Layer>;
 
 /// One that also gives `scaled(Pack y, Pack dy)` = slope(y) dy, or `scaled_from_input(Pack v, Pack dy)`, for a whole
-/// pack.
+/// pack; or is_lane_by_lane.
 template <class Layer, class Pack>
-inline constexpr bool scales_pack = slopes_from_input<Layer> ? is_detected<detail::PackScaledFromInputOf, Layer, Pack>
-                                                             : is_detected<detail::PackScaledOf, Layer, Pack>;
+inline constexpr bool scales_pack = is_lane_by_lane<Layer> ||
+                                    (slopes_from_input<Layer> ? is_detected<detail::PackScaledFromInputOf, Layer, Pack>
+                                                              : is_detected<detail::PackScaledOf, Layer, Pack>);
 
 namespace detail {
-/// dy times the layer's slope, for a scalar or a pack. `seen` is the input of a layer that slopes_from_input, else the
-/// output.
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// function(lane) for every lane of `v`: the same numbers as scalar by scalar, on every instruction set.
+template <class Pack, class Function>
+PINNQUAD_ALWAYS_INLINE Pack each_lane(const Pack& v, const Function& function) noexcept {
+  alignas(64) typename Pack::Scalar lane[Pack::width];
+  v.store(lane);
+  for (auto& value : lane) value = function(value);
+  return Pack::load(lane);
+}
+
+/// The activation of a step as a function of a scalar or a pack; of `void`, the sums as they are.
+template <class Layer>
+struct Activate {
+  template <class Value>
+  PINNQUAD_ALWAYS_INLINE Value operator()(const Value& v) const noexcept {
+    if constexpr (std::is_same_v<Value, typename Layer::Scalar> || is_detected<PackActivateOf, Layer, Value>) {
+      return Layer::activate(v);
+    } else {
+      const Value own = v;  // copied first: gcc keeps more of a GenericPack in registers
+      return each_lane(own, [](auto lane) PINNQUAD_INLINE_LAMBDA { return Layer::activate(lane); });
+    }
+  }
+};
+
+template <>
+struct Activate<void> {
+  template <class Value>
+  PINNQUAD_ALWAYS_INLINE Value operator()(Value v) const noexcept {
+    return v;
+  }
+};
+
+/// d activate / d v. `seen` is the input of a layer that slopes_from_input, else the output.
+template <class Layer, class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar slope_at(Scalar seen) noexcept {
+  if constexpr (slopes_from_input<Layer>) {
+    return Layer::slope_from_input(seen);
+  } else {
+    return Layer::slope(seen);
+  }
+}
+/// dy times the slope, for a scalar or a pack.
 template <class Layer, class Value>
 PINNQUAD_ALWAYS_INLINE Value scaled_by_slope(const Value& seen, const Value& dy) noexcept {
   if constexpr (std::is_same_v<Value, typename Layer::Scalar>) {
-    if constexpr (slopes_from_input<Layer>) {
-      return dy * Layer::slope_from_input(seen);
-    } else {
-      return dy * Layer::slope(seen);
-    }
-  } else if constexpr (slopes_from_input<Layer>) {
+    return dy * slope_at<Layer>(seen);
+  } else if constexpr (is_detected<PackScaledFromInputOf, Layer, Value>) {
     return Layer::scaled_from_input(seen, dy);
-  } else {
+  } else if constexpr (is_detected<PackScaledOf, Layer, Value>) {
     return Layer::scaled(seen, dy);
+  } else {
+    const Value by_output = dy, own = seen;  // copied first, as above
+    return by_output * each_lane(own, [](auto lane) PINNQUAD_INLINE_LAMBDA { return slope_at<Layer>(lane); });
   }
 }
+}  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
 /// Base of element-wise layers: the sizes and a forward pass from `Derived::activate`.

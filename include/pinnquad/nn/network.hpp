@@ -44,20 +44,19 @@ struct Sizes<std::tuple<Layers...>> {
   static constexpr std::array<int, sizeof...(Layers)> parameters = {Layers::parameter_count...};
   static constexpr std::array<int, sizeof...(Layers)> outputs = {Layers::outputs...};
   /// Index of a layer's first parameter in the flat array.
-  static constexpr int offset(int layer) noexcept {
-    int sum = 0;
-    for (int i = 0; i < layer; ++i) sum += parameters[static_cast<std::size_t>(i)];
-    return sum;
-  }
+  static constexpr int offset(int layer) noexcept { return sum_before(layer, parameters); }
   /// Outputs of all layers before this one.
-  static constexpr int outputs_before(int layer) noexcept {
-    int sum = 0;
-    for (int i = 0; i < layer; ++i) sum += outputs[static_cast<std::size_t>(i)];
-    return sum;
-  }
+  static constexpr int outputs_before(int layer) noexcept { return sum_before(layer, outputs); }
   static constexpr int widest(int least) noexcept {
     for (int width : outputs) least = width > least ? width : least;
     return least;
+  }
+
+ private:
+  static constexpr int sum_before(int layer, const std::array<int, sizeof...(Layers)>& numbers) noexcept {
+    int sum = 0;
+    for (int i = 0; i < layer; ++i) sum += numbers[static_cast<std::size_t>(i)];
+    return sum;
   }
 };
 
@@ -69,8 +68,6 @@ using ForwardFusedOf = decltype(Layer::template forward_fused<Activation>(
 template <class Layer, class Activation>
 inline constexpr bool fuses_activation = is_detected<ForwardFusedOf, Layer, Activation>;
 
-}  // namespace detail
-
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// The forward pass of a Network, step by step (nn/walk.hpp). Code for flash: an activation is applied to the sums of
@@ -81,10 +78,10 @@ class PortablePass {
   using Scalar = typename NetworkType::Scalar;
   struct Kernel {
     template <class Layer, class Elementwise>
-    static constexpr bool fuses = detail::fuses_activation<Layer, Elementwise>;
+    static constexpr bool fuses = fuses_activation<Layer, Elementwise>;
   };
   template <int Index>
-  using StepAt = detail::Step<NetworkType, Kernel, Index>;
+  using StepAt = Step<NetworkType, Kernel, Index>;
 
   /// Parts of a layer that is made in parts. With four, a Cortex-M takes a twentieth less of instructions for 32
   /// neurons, and 16 B more of the stack.
@@ -94,9 +91,10 @@ class PortablePass {
   static constexpr int neurons_at_once() noexcept {
     if constexpr (!Step::last) {
       using Next = StepAt<Step::next>;
-      if constexpr (Next::last && detail::is_dense<typename Step::Layer> && detail::is_dense<typename Next::Layer>) {
+      if constexpr (Next::last && is_dense_with_bias<typename Step::Layer> &&
+                    is_dense_with_bias<typename Next::Layer>) {
         constexpr int neurons = Step::Layer::outputs;
-        return neurons > detail::held_inputs && neurons % parts == 0 ? neurons / parts : 0;
+        return neurons > held_inputs && neurons % parts == 0 ? neurons / parts : 0;
       }
     }
     return 0;
@@ -115,8 +113,7 @@ class PortablePass {
   static constexpr int even_size = entries<StepAt<0>>(true);
   static constexpr int odd_size = entries<StepAt<0>>(false);
   /// True where the first layer takes inputs from anywhere: it is a Dense, and the kernel holds them all.
-  static constexpr bool takes_any =
-      detail::is_dense<typename StepAt<0>::Layer> && NetworkType::inputs <= detail::held_inputs;
+  static constexpr bool takes_any = is_dense_with_bias<typename StepAt<0>::Layer> && NetworkType::inputs <= held_inputs;
 
  public:
   /// Stack that forward() needs for activations.
@@ -151,7 +148,7 @@ class PortablePass {
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const X& x, Scalar* y) noexcept {
     Scalar even[static_cast<std::size_t>(even_size)];
     Scalar odd[static_cast<std::size_t>(odd_size)];
-    detail::walk_forward<NetworkType, Kernel>(Visitor{y}, At<X>{parameters, x, even, odd});
+    walk_forward<NetworkType, Kernel>(Visitor{y}, At<X>{parameters, x, even, odd});
   }
 
   /// Behind a step that made the network's outputs together with the last one.
@@ -215,7 +212,7 @@ class PortablePass {
       for (int first = 0; first < Hidden::outputs; first += part) {
         // otherwise the compiler keeps the first of them on the stack from part to part
         if constexpr (std::is_pointer_v<X>) PINNQUAD_FORGET(x);
-        Hidden::template forward_some<part>(at.own, first, x, at.target, detail::Activate<typename Step::Activation>{});
+        Hidden::template forward_some<part>(at.own, first, x, at.target, Activate<typename Step::Activation>{});
         Outputs::template add_some<part>(weights, first, at.target, y);
       }
       if constexpr (Last::fused) {
@@ -226,10 +223,7 @@ class PortablePass {
 
   template <class Step, class X>
   static PINNQUAD_ALWAYS_INLINE void apply(const Scalar* own, const X& x, Scalar* y) noexcept {
-    if constexpr (!std::is_pointer_v<X>) {
-      Step::Layer::template forward_some<Step::Layer::outputs>(own, 0, x, y,
-                                                               detail::Activate<typename Step::Activation>{});
-    } else if constexpr (Step::fused) {
+    if constexpr (Step::fused || !std::is_pointer_v<X>) {
       Step::Layer::template forward_fused<typename Step::Activation>(own, x, y);
     } else {
       Step::Layer::forward(own, x, y);
@@ -238,6 +232,7 @@ class PortablePass {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 
 /// Layers in order behind `InputSize`; a value that owns its parameters.
 template <class ScalarType, class InputSize, class... Specs>
@@ -258,7 +253,7 @@ class Network {
   static constexpr int parameter_count = Sizes::parameter_count;
   static constexpr int widest = Sizes::widest(inputs);
   /// Stack that the portable forward pass needs for activations.
-  static constexpr std::size_t workspace_bytes = PortablePass<Network>::workspace_bytes;
+  static constexpr std::size_t workspace_bytes = detail::PortablePass<Network>::workspace_bytes;
   using Parameters = std::array<Scalar, static_cast<std::size_t>(parameter_count)>;
 
   Parameters parameters{};
@@ -270,7 +265,7 @@ class Network {
 
   /// The same for parameters that live elsewhere (flash).
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    PortablePass<Network>::forward(parameters, x, y);
+    detail::PortablePass<Network>::forward(parameters, x, y);
   }
 };
 
@@ -288,22 +283,23 @@ template <class Scalar, class InputSize, class... Hidden, class Last, class... S
 struct Stack<Scalar, InputSize, 0, SpecList<Hidden...>, Last, Specs...> {
   using type = Network<Scalar, InputSize, Specs..., Last>;
 };
-template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
+/// A hidden layer is `DenseOf<Width>` and what stands `Behind` it.
+template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, template <int> class DenseOf,
+          class... Behind>
 struct Mlp;
-template <class Scalar, class InputSize, int Count, int Width, class OutputSize, class Activation>
-struct Mlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, Activation>
-    : Stack<Scalar, InputSize, Count, SpecList<Dense<Width>, Activation>, Dense<OutputSize::size>> {};
-template <class T>
-struct IsNetwork : std::false_type {};
-template <class Scalar, class InputSize, class... Specs>
-struct IsNetwork<Network<Scalar, InputSize, Specs...>> : std::true_type {};
+template <class Scalar, class InputSize, int Count, int Width, class OutputSize, template <int> class DenseOf,
+          class... Behind>
+struct Mlp<Scalar, InputSize, Hidden<Count, Width>, OutputSize, DenseOf, Behind...>
+    : Stack<Scalar, InputSize, Count, SpecList<DenseOf<Width>, Behind...>, Dense<OutputSize::size>> {};
 }  // namespace detail
 
 template <class T>
-inline constexpr bool is_network = detail::IsNetwork<T>::value;
+inline constexpr bool is_network = false;
+template <class Scalar, class InputSize, class... Specs>
+inline constexpr bool is_network<Network<Scalar, InputSize, Specs...>> = true;
 
 /// Eq. (4): `Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>`.
 template <class Scalar, class InputSize, class HiddenLayers, class OutputSize, class Activation>
-using Mlp = typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, Activation>::type;
+using Mlp = typename detail::Mlp<Scalar, InputSize, HiddenLayers, OutputSize, Dense, Activation>::type;
 
 }  // namespace pinnquad

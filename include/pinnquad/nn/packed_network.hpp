@@ -139,10 +139,10 @@ struct MemoryRun {
       using Packed = PackedLayer<typename Step::Layer, Pack>;
       constexpr int outputs = Step::Layer::outputs;
       if constexpr (keeps_sums<Keep, Activation>()) {
-        Packed::forward(at.packed, at.x, at.target, Unchanged{});
+        Packed::forward(at.packed, at.x, at.target, Activate<void>{});
         keep(Step::sums_offset, StoredOutputs<Scalar, outputs>{at.target});
         for (int i = 0; i < padded<Pack>(outputs); i += Pack::width) {
-          Activation::activate(Pack::load(at.target + i)).store(at.target + i);
+          Activate<Activation>{}(Pack::load(at.target + i)).store(at.target + i);
         }
       } else {
         Packed::forward(at.packed, at.x, at.target, Activate<Activation>{});
@@ -239,7 +239,7 @@ struct RegisterRun {
     constexpr int stride = Sizes::outputs_before(Here::next) - Sizes::outputs_before(Here::index);
     if constexpr (keeps_sums<Keep, Activation>()) {
       return in_turn<Layer, Count>(x, [&](const auto& values, int turn) PINNQUAD_INLINE_LAMBDA {
-        auto result = Layer::multiply(packed + turn * Layer::size, values, Unchanged{});
+        auto result = Layer::multiply(packed + turn * Layer::size, values, Activate<void>{});
         keep(Here::sums_offset + turn * stride, result);
         result.apply(Activate<Activation>{});
         keep(Here::outputs_offset + turn * stride, result);
@@ -270,40 +270,24 @@ struct RegisterRun {
   }
 };
 
-/// True for activations that go through a pack lane by lane. Registers hold a value in several lanes: each would be
-/// computed several times.
-template <class Activation, class = void>
-inline constexpr bool lane_by_lane = false;
-template <class Activation>
-inline constexpr bool lane_by_lane<Activation, std::void_t<decltype(Activation::lane_by_lane)>> =
-    Activation::lane_by_lane;
-
 /// Dense layers up to this many inputs and outputs run in registers; beyond it the unrolled code is too large.
 inline constexpr int largest_in_registers = 40;
 
-/// True if all steps of a network can be a RegisterRun.
-template <class Network, class Pack>
+/// Whether all steps of a network can be a RegisterRun. Registers hold a value in several lanes: an activation lane by
+/// lane would be computed several times.
+template <class Pack>
 struct FitsRegisters : StepByStep {
   template <class Step>
   constexpr bool visit(bool fits) const noexcept {
     using Layer = typename Step::Layer;
-    return fits && PackedLayer<Layer, Pack>::dense && !lane_by_lane<typename Step::Activation> &&
+    return fits && PackedLayer<Layer, Pack>::dense && !is_lane_by_lane<typename Step::Activation> &&
            Layer::inputs <= largest_in_registers && Layer::outputs <= largest_in_registers;
   }
 };
 template <class Network, class Pack>
 constexpr bool fits_registers() noexcept {
-  return walk_forward<Network, PackedKernel<Pack>>(FitsRegisters<Network, Pack>{}, keeps_layers_in_registers<Pack>);
+  return walk_forward<Network, PackedKernel<Pack>>(FitsRegisters<Pack>{}, keeps_layers_in_registers<Pack>);
 }
-
-template <class Network, class Pack, bool InRegisters = fits_registers<Network, Pack>()>
-struct ChooseRun {
-  using type = RegisterRun<Network, Pack>;
-};
-template <class Network, class Pack>
-struct ChooseRun<Network, Pack, false> {
-  using type = MemoryRun<Network, Pack>;
-};
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
@@ -346,7 +330,8 @@ class PackedNetwork {
   PINNQUAD_ALWAYS_INLINE bool finite() const noexcept { return all_finite(packed_, Run::size()); }
 
  private:
-  using Run = typename detail::ChooseRun<NetworkType, Pack>::type;
+  using Run = std::conditional_t<detail::fits_registers<NetworkType, Pack>(), detail::RegisterRun<NetworkType, Pack>,
+                                 detail::MemoryRun<NetworkType, Pack>>;
 
   alignas(64) Scalar packed_[static_cast<unsigned>(Run::size())] = {};
 };

@@ -38,8 +38,6 @@ struct Scaler {
       values[i] = standardised[i] * standard_deviation[static_cast<std::size_t>(i)] + mean[static_cast<std::size_t>(i)];
     }
   }
-
-  static constexpr std::array<Scalar, Size> ones() noexcept { return detail::ones<Scalar, Size>; }
 };
 
 }  // namespace pinnquad

@@ -7,11 +7,9 @@
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
-#include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/layer.hpp"
 
-namespace pinnquad {
-namespace detail {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// Direction of a walk: from the inputs to the outputs, or back.
@@ -129,17 +127,5 @@ struct StepByStep {
   static constexpr int together = 1;
 };
 
-/// The activation of a step as a function of a scalar or a pack.
-template <class Layer>
-struct Activate {
-  template <class Value>
-  PINNQUAD_ALWAYS_INLINE Value operator()(const Value& v) const noexcept {
-    return Layer::activate(v);
-  }
-};
-template <>
-struct Activate<void> : Unchanged {};
-
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -141,11 +141,9 @@ struct BatchDense : BatchParameters<Scalar, (In + (HasBias ? 1 : 0)) * padded<Pa
     }
   }
 };
-template <class Scalar, int In, int Out, class Pack, int BatchSize>
-struct BatchLayer<DenseLayer<Scalar, In, Out>, Pack, BatchSize, void> : BatchDense<Scalar, In, Out, true, Pack> {};
-template <class Scalar, int In, int Out, class Pack, int BatchSize>
-struct BatchLayer<DenseWithoutBiasLayer<Scalar, In, Out>, Pack, BatchSize, void>
-    : BatchDense<Scalar, In, Out, false, Pack> {};
+template <class Scalar, int In, int Out, bool HasBias, class Pack, int BatchSize>
+struct BatchLayer<DenseLayer<Scalar, In, Out, HasBias>, Pack, BatchSize, void>
+    : BatchDense<Scalar, In, Out, HasBias, Pack> {};
 
 /// Element-wise, with a slope from the output: forward works on its own buffer or on that of the layer before, dx
 /// overwrites dy. The padding columns of both may hold anything: no layer reads them into a real column. With a slope
@@ -166,7 +164,8 @@ struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>
 
   void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
     if constexpr (activates_pack<Layer, Pack>) {
-      for (int i = 0; i < samples * stride; i += Pack::width) Layer::activate(Pack::load(x + i)).store(y + i);
+      const Activate<Layer> activate;
+      for (int i = 0; i < samples * stride; i += Pack::width) activate(Pack::load(x + i)).store(y + i);
     } else {
       for (int i = 0; i < samples; ++i) Layer::forward(nullptr, x + i * stride, y + i * stride);
     }

@@ -19,7 +19,7 @@ namespace detail {
 /// One sample has no variance: it is normalised by the running statistics, which stay as they are, and the gradient is
 /// that of the affine map which remains. (PyTorch refuses such a batch.) The optimiser sees gamma and beta only.
 template <class Scalar, int Size, class Pack, int BatchSize>
-struct BatchLayer<BatchNormLayer<Scalar, Size>, Pack, BatchSize, void>
+struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
     : BatchParameters<Scalar, 2 * padded<Pack>(Size)> {  // gamma, then beta
   static_assert(BatchSize > 1, "pinnquad: batch norm can't be trained in batches of one sample; they have no variance");
   static constexpr bool couples_samples = true;

@@ -57,11 +57,11 @@ using Folded = typename FoldNetwork<NetworkType>::type;
 template <class Layer>
 inline constexpr int folded_bias = 0;
 template <class Scalar, int In, int Out>
-inline constexpr int folded_bias<DenseWithoutBiasLayer<Scalar, In, Out>> = Out;
+inline constexpr int folded_bias<DenseLayer<Scalar, In, Out, false>> = Out;
 
 /// W'_i = s_i W_i, b'_i = s_i (b_i - mean_i) + beta_i with s_i = gamma_i / sqrt(variance_i + 1e-5); computed in double.
 template <class Scalar, int Size>
-void fold_into_dense(BatchNormLayer<Scalar, Size>, const Scalar* norm, Scalar* dense, int inputs) {
+void fold_into_dense(BatchNorm::Bind<Scalar, Size>, const Scalar* norm, Scalar* dense, int inputs) {
   for (int row = 0; row < Size; ++row) {
     const auto value = [&](int part) { return static_cast<double>(norm[part * Size + row]); };
     const double scale = value(0) / std::sqrt(value(3) + batch_norm_epsilon);
@@ -76,7 +76,7 @@ void fold_into_dense(BatchNormLayer<Scalar, Size>, const Scalar* norm, Scalar* d
 template <class Layer>
 inline constexpr bool is_batch_norm = false;
 template <class Scalar, int Size>
-inline constexpr bool is_batch_norm<BatchNormLayer<Scalar, Size>> = true;
+inline constexpr bool is_batch_norm<BatchNorm::Bind<Scalar, Size>> = true;
 
 }  // namespace detail
 

@@ -7,7 +7,8 @@
 #include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// Scalars of a packed Rows x Columns matrix with bias.
 template <class Pack, int Rows, int Columns>
@@ -23,8 +24,6 @@ constexpr void pack_columns(const Scalar* weight, const Scalar* bias, Scalar* pa
   }
 }
 
-namespace detail {
-inline namespace PINNQUAD_INSTRUCTION_SET {
 /// `Count` packs of rows over all columns; `stride` scalars from column to column.
 template <class Pack, int Columns, int Count, class Activation>
 PINNQUAD_ALWAYS_INLINE void multiply_packed_rows(const typename Pack::Scalar* packed, int stride,
@@ -53,10 +52,6 @@ PINNQUAD_ALWAYS_INLINE void multiply_packed_rows(const typename Pack::Scalar* pa
     activation(total).store(y + v * Pack::width);
   });
 }
-}  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-
-inline namespace PINNQUAD_INSTRUCTION_SET {
 /// y[0, padded rows) = activation(W x + b). `activation` maps a pack to a pack.
 template <class Pack, int Rows, int Columns, class Activation>
 PINNQUAD_ALWAYS_INLINE void multiply_packed(const typename Pack::Scalar* packed, const typename Pack::Scalar* x,
@@ -66,14 +61,13 @@ PINNQUAD_ALWAYS_INLINE void multiply_packed(const typename Pack::Scalar* packed,
   constexpr int vectors = stride / Pack::width;
   constexpr int whole = vectors / 4 * 4;  // four packs of rows at once
   for (int v = 0; v < whole; v += 4) {
-    detail::multiply_packed_rows<Pack, Columns, 4>(packed + v * Pack::width, stride, x, y + v * Pack::width,
-                                                   activation);
+    multiply_packed_rows<Pack, Columns, 4>(packed + v * Pack::width, stride, x, y + v * Pack::width, activation);
   }
   if constexpr (vectors > whole) {
-    detail::multiply_packed_rows<Pack, Columns, vectors - whole>(packed + whole * Pack::width, stride, x,
-                                                                 y + whole * Pack::width, activation);
+    multiply_packed_rows<Pack, Columns, vectors - whole>(packed + whole * Pack::width, stride, x,
+                                                         y + whole * Pack::width, activation);
   }
 }
-}  // namespace PINNQUAD_INSTRUCTION_SET
 
-}  // namespace pinnquad
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad::detail

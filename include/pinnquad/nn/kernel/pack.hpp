@@ -28,20 +28,17 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Scalar>
 struct NativePack {
   using type = GenericPack<Scalar, 4>;
-  static constexpr bool vector_unit = false;
 };
 #if defined(PINNQUAD_FLOAT_PACK)
 template <>
 struct NativePack<float> {
   using type = PINNQUAD_FLOAT_PACK;
-  static constexpr bool vector_unit = true;
+  static_assert(type::fused == fuses_float, "pinnquad: this pack and the portable kernel round a * b + c differently");
 };
 #undef PINNQUAD_FLOAT_PACK
 #endif
 static_assert(NativePack<float>::type::unit == vector_unit,
               "pinnquad: this pack is not of the vector unit that core/instruction_set.hpp names");
-static_assert(!NativePack<float>::vector_unit || NativePack<float>::type::fused == fuses_float,
-              "pinnquad: this pack and the portable kernel round a * b + c differently");
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
@@ -52,7 +49,7 @@ using NativePack = typename detail::NativePack<Scalar>::type;
 inline namespace PINNQUAD_INSTRUCTION_SET {
 /// True if NativePack has its own instructions.
 template <class Scalar>
-inline constexpr bool has_vector_unit = detail::NativePack<Scalar>::vector_unit;
+inline constexpr bool has_vector_unit = NativePack<Scalar>::unit != VectorUnit::none;
 }  // namespace PINNQUAD_INSTRUCTION_SET
 
 /// `size` rounded up to whole packs.

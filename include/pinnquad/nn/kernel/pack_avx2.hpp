@@ -7,11 +7,10 @@
 
 #include <immintrin.h>
 
-#include "pinnquad/core/attributes.hpp"
-#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/scalar_math.hpp"
+#include "pinnquad/nn/kernel/pack_contract.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 8 floats in one register.
@@ -31,24 +30,12 @@ struct PackAvx2 {
   static PINNQUAD_ALWAYS_INLINE PackAvx2 multiply_add(PackAvx2 a, PackAvx2 b, PackAvx2 c) noexcept {
     return {_mm256_fmadd_ps(a.value, b.value, c.value)};
   }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx2 operator+(PackAvx2 a, PackAvx2 b) noexcept {
-    return {_mm256_add_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx2 operator-(PackAvx2 a, PackAvx2 b) noexcept {
-    return {_mm256_sub_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx2 operator*(PackAvx2 a, PackAvx2 b) noexcept {
-    return {_mm256_mul_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx2 operator/(PackAvx2 a, PackAvx2 b) noexcept {
-    return {_mm256_div_ps(a.value, b.value)};
-  }
   static PINNQUAD_ALWAYS_INLINE PackAvx2 square_root(PackAvx2 a) noexcept { return {_mm256_sqrt_ps(a.value)}; }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackAvx2 positive_part(PackAvx2 a) noexcept {
-    if constexpr (detail::finite_math_only) {  // the operands of max may be swapped, the bits not
+    if constexpr (finite_math_only) {  // the operands of max may be swapped, the bits not
       const __m256i bits = _mm256_castps_si256(a.value);
-      const __m256i below = _mm256_cmpgt_epi32(_mm256_set1_epi32(detail::above_negatives), bits);
+      const __m256i below = _mm256_cmpgt_epi32(_mm256_set1_epi32(above_negatives), bits);
       return {_mm256_castsi256_ps(_mm256_andnot_si256(below, bits))};
     } else {
       return {_mm256_max_ps(_mm256_setzero_ps(), a.value)};
@@ -124,6 +111,6 @@ struct PackAvx2 {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
 
 #endif

@@ -7,11 +7,10 @@
 
 #include <immintrin.h>
 
-#include "pinnquad/core/attributes.hpp"
-#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/scalar_math.hpp"
+#include "pinnquad/nn/kernel/pack_contract.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 16 floats in one register.
@@ -33,26 +32,14 @@ struct PackAvx512 {
   static PINNQUAD_ALWAYS_INLINE PackAvx512 multiply_add(PackAvx512 a, PackAvx512 b, PackAvx512 c) noexcept {
     return {_mm512_fmadd_ps(a.value, b.value, c.value)};
   }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx512 operator+(PackAvx512 a, PackAvx512 b) noexcept {
-    return {_mm512_add_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx512 operator-(PackAvx512 a, PackAvx512 b) noexcept {
-    return {_mm512_sub_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx512 operator*(PackAvx512 a, PackAvx512 b) noexcept {
-    return {_mm512_mul_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackAvx512 operator/(PackAvx512 a, PackAvx512 b) noexcept {
-    return {_mm512_div_ps(a.value, b.value)};
-  }
   static PINNQUAD_ALWAYS_INLINE PackAvx512 square_root(PackAvx512 a) noexcept {
     return {_mm512_maskz_sqrt_ps(all, a.value)};
   }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackAvx512 positive_part(PackAvx512 a) noexcept {
-    if constexpr (detail::finite_math_only) {  // the operands of max may be swapped, the bits not
+    if constexpr (finite_math_only) {  // the operands of max may be swapped, the bits not
       const __m512i bits = _mm512_castps_si512(a.value);
-      const __mmask16 kept = _mm512_cmp_epi32_mask(bits, _mm512_set1_epi32(detail::above_negatives), _MM_CMPINT_NLT);
+      const __mmask16 kept = _mm512_cmp_epi32_mask(bits, _mm512_set1_epi32(above_negatives), _MM_CMPINT_NLT);
       return {_mm512_castsi512_ps(_mm512_maskz_mov_epi32(kept, bits))};
     } else {
       return {_mm512_maskz_max_ps(all, _mm512_setzero_ps(), a.value)};
@@ -137,6 +124,6 @@ struct PackAvx512 {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
 
 #endif

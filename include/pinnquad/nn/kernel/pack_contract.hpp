@@ -27,25 +27,25 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 
-namespace pinnquad {
-namespace detail {
+namespace pinnquad::detail {
 
 // clang-format off
-template <class P> using LoadOf = decltype(P::load(std::declval<const typename P::Scalar*>()));
-template <class P> using StoreOf = decltype(std::declval<const P&>().store(std::declval<typename P::Scalar*>()));
-template <class P> using BroadcastOf = decltype(P::broadcast(std::declval<typename P::Scalar>()));
-template <class P> using SumOf = decltype(std::declval<P>() + std::declval<P>());
-template <class P> using DifferenceOf = decltype(std::declval<P>() - std::declval<P>());
-template <class P> using ProductOf = decltype(std::declval<P>() * std::declval<P>());
-template <class P> using QuotientOf = decltype(std::declval<P>() / std::declval<P>());
+template <class P> using MemoryOf = std::void_t<
+    decltype(P::load(std::declval<const typename P::Scalar*>())),
+    decltype(P::broadcast(std::declval<typename P::Scalar>())),
+    decltype(std::declval<const P&>().store(std::declval<typename P::Scalar*>()))>;
+template <class P> using OperatorsOf = std::void_t<
+    decltype(std::declval<P>() + std::declval<P>()), decltype(std::declval<P>() - std::declval<P>()),
+    decltype(std::declval<P>() * std::declval<P>()), decltype(std::declval<P>() / std::declval<P>())>;
 template <class P> using MultiplyAddOf =
     decltype(P::multiply_add(std::declval<P>(), std::declval<P>(), std::declval<P>()));
-template <class P> using SquareRootOf = decltype(P::square_root(std::declval<P>()));
-template <class P> using PositivePartOf = decltype(P::positive_part(std::declval<P>()));
-template <class P> using WherePositiveOf = decltype(P::where_positive(std::declval<P>(), std::declval<P>()));
+template <class P> using FunctionsOf = std::void_t<
+    decltype(P::square_root(std::declval<P>())), decltype(P::positive_part(std::declval<P>())),
+    decltype(P::where_positive(std::declval<P>(), std::declval<P>()))>;
 template <class P> using SettleOf = decltype(std::declval<P&>().settle());
 template <class P> using TileOf = std::enable_if_t<(P::tile_rows > 0 && P::tile_vectors > 0)>;
 template <class P> using ArithmeticOf =
@@ -56,40 +56,32 @@ template <class P> using ColumnsOf =
 template <class P> using ValuesOf =
     std::enable_if_t<P::values == P::blocks_per_register * (P::width / P::columns)>;
 template <class P> using ChainsOf = std::enable_if_t<(P::blocks_at_once > 0 && P::chains > 0)>;
-template <class P> using LaneOfValueOf = std::enable_if_t<(P::lane_of_value(0) == 0)>;
-template <class P> using RowOfPairOf = std::enable_if_t<(P::row_of_pair(0, 0) == 0)>;
-template <class P> using RepeatOf = decltype(std::declval<const P&>().template repeat<0>());
-template <class P> using RepeatMemoryOf = decltype(P::repeat(std::declval<const typename P::Scalar*>()));
-template <class P> using RepeatLastOf = decltype(P::repeat_last(std::declval<P>()));
+template <class P> using PlacesOf = std::enable_if_t<(P::lane_of_value(0) == 0 && P::row_of_pair(0, 0) == 0)>;
+template <class P> using RepeatOf = std::void_t<
+    decltype(std::declval<const P&>().template repeat<0>()), decltype(P::repeat_last(std::declval<P>())),
+    decltype(P::repeat(std::declval<const typename P::Scalar*>()))>;
 template <class P> using WithOneOf = decltype(std::declval<const P&>().with_one());
-template <class P> using FromScalarOf = decltype(P::from_scalar(std::declval<typename P::Scalar>()));
-template <class P> using FirstValueOf = decltype(std::declval<const P&>().first_value());
+template <class P> using FirstValueOf = std::void_t<
+    decltype(P::from_scalar(std::declval<typename P::Scalar>())), decltype(std::declval<const P&>().first_value())>;
 template <class P> using CollectOf = decltype(P::collect(std::declval<const P*>()));
-template <class P> using HeadOf = decltype(std::declval<const P&>().template head<1>());
-template <class P> using SumOfValuesOf = decltype(std::declval<const P&>().sum_of_values());
-template <class P> using StoreValuesOf =
-    decltype(std::declval<const P&>().template store_values<1>(std::declval<typename P::Scalar*>()));
+template <class P> using OfValuesOf = std::void_t<
+    decltype(std::declval<const P&>().template head<1>()), decltype(std::declval<const P&>().sum_of_values()),
+    decltype(std::declval<const P&>().template store_values<1>(std::declval<typename P::Scalar*>()))>;
 // clang-format on
-
-}  // namespace detail
 
 /// Compiles if `Pack` fulfils the contract at the head of this file; else the message says what it lacks.
 template <class Pack>
 constexpr bool require_pack() noexcept {
-  using namespace detail;
   static_assert(is_detected<ArithmeticOf, Pack>, "pinnquad: a pack states unit, fused and width (pack_contract.hpp)");
-  static_assert(is_detected<LoadOf, Pack>, "pinnquad: this pack lacks load(const Scalar*) (pack_contract.hpp)");
-  static_assert(is_detected<StoreOf, Pack>, "pinnquad: this pack lacks store(Scalar*) (pack_contract.hpp)");
-  static_assert(is_detected<BroadcastOf, Pack>, "pinnquad: this pack lacks broadcast(Scalar) (pack_contract.hpp)");
-  static_assert(is_detected<SumOf, Pack> && is_detected<DifferenceOf, Pack> && is_detected<ProductOf, Pack> &&
-                    is_detected<QuotientOf, Pack>,
-                "pinnquad: this pack lacks one of + - * / (pack_contract.hpp)");
+  static_assert(
+      is_detected<MemoryOf, Pack>,
+      "pinnquad: this pack lacks load(const Scalar*), store(Scalar*) or broadcast(Scalar) (pack_contract.hpp)");
+  static_assert(is_detected<OperatorsOf, Pack>, "pinnquad: this pack lacks one of + - * / (pack_contract.hpp)");
   static_assert(is_detected<MultiplyAddOf, Pack>,
                 "pinnquad: this pack lacks multiply_add(a, b, c) (pack_contract.hpp)");
-  static_assert(is_detected<SquareRootOf, Pack>, "pinnquad: this pack lacks square_root(a) (pack_contract.hpp)");
-  static_assert(is_detected<PositivePartOf, Pack>, "pinnquad: this pack lacks positive_part(a) (pack_contract.hpp)");
-  static_assert(is_detected<WherePositiveOf, Pack>,
-                "pinnquad: this pack lacks where_positive(gate, a) (pack_contract.hpp)");
+  static_assert(is_detected<FunctionsOf, Pack>,
+                "pinnquad: this pack lacks square_root(a), positive_part(a) or where_positive(gate, a) "
+                "(pack_contract.hpp)");
   static_assert(is_detected<SettleOf, Pack>, "pinnquad: this pack lacks settle() (pack_contract.hpp)");
   static_assert(is_detected<TileOf, Pack>, "pinnquad: this pack lacks tile_rows or tile_vectors (pack_contract.hpp)");
   return true;
@@ -98,28 +90,47 @@ constexpr bool require_pack() noexcept {
 /// The same for the second contract.
 template <class Pack>
 constexpr bool require_register_layout() noexcept {
-  using namespace detail;
   static_assert(is_detected<ColumnsOf, Pack>, "pinnquad: this pack's columns are not 1 or 2 (pack_contract.hpp)");
   static_assert(is_detected<ValuesOf, Pack>,
                 "pinnquad: this pack's values are not blocks_per_register * width / columns (pack_contract.hpp)");
   static_assert(is_detected<ChainsOf, Pack>, "pinnquad: this pack lacks blocks_at_once or chains (pack_contract.hpp)");
-  static_assert(is_detected<LaneOfValueOf, Pack>, "pinnquad: this pack lacks lane_of_value(i) (pack_contract.hpp)");
-  static_assert(is_detected<RowOfPairOf, Pack>,
-                "pinnquad: this pack lacks row_of_pair(block, pair) (pack_contract.hpp)");
-  static_assert(is_detected<RepeatOf, Pack>, "pinnquad: this pack lacks repeat<First>() (pack_contract.hpp)");
-  static_assert(is_detected<RepeatMemoryOf, Pack>,
-                "pinnquad: this pack lacks repeat(const Scalar*) (pack_contract.hpp)");
-  static_assert(is_detected<RepeatLastOf, Pack>, "pinnquad: this pack lacks repeat_last(v) (pack_contract.hpp)");
+  static_assert(is_detected<PlacesOf, Pack>,
+                "pinnquad: this pack lacks lane_of_value(i) or row_of_pair(block, pair) (pack_contract.hpp)");
+  static_assert(is_detected<RepeatOf, Pack>,
+                "pinnquad: this pack lacks repeat<First>(), repeat(const Scalar*) or repeat_last(v) "
+                "(pack_contract.hpp)");
   static_assert(is_detected<WithOneOf, Pack> || Pack::columns == 1,
                 "pinnquad: this pack lacks with_one() (pack_contract.hpp)");
-  static_assert(is_detected<FromScalarOf, Pack> && is_detected<FirstValueOf, Pack>,
+  static_assert(is_detected<FirstValueOf, Pack>,
                 "pinnquad: this pack lacks from_scalar(v) or first_value() (pack_contract.hpp)");
   static_assert(is_detected<CollectOf, Pack>, "pinnquad: this pack lacks collect(const Pack*) (pack_contract.hpp)");
-  static_assert(is_detected<HeadOf, Pack>, "pinnquad: this pack lacks head<Count>() (pack_contract.hpp)");
-  static_assert(is_detected<SumOfValuesOf, Pack>, "pinnquad: this pack lacks sum_of_values() (pack_contract.hpp)");
-  static_assert(is_detected<StoreValuesOf, Pack>,
-                "pinnquad: this pack lacks store_values<Count>(y) (pack_contract.hpp)");
+  static_assert(is_detected<OfValuesOf, Pack>,
+                "pinnquad: this pack lacks head<Count>(), sum_of_values() or store_values<Count>(y) "
+                "(pack_contract.hpp)");
   return true;
 }
 
-}  // namespace pinnquad
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// + - * / of a pack that is one register, `value`: the compiler's own operators are the instructions.
+template <class Pack>
+using RegisterOf = std::enable_if_t<Pack::unit != VectorUnit::none, decltype(Pack::value)>;
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator+(Pack a, Pack b) noexcept {
+  return {a.value + b.value};
+}
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator-(Pack a, Pack b) noexcept {
+  return {a.value - b.value};
+}
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator*(Pack a, Pack b) noexcept {
+  return {a.value * b.value};
+}
+template <class Pack, class = RegisterOf<Pack>>
+PINNQUAD_ALWAYS_INLINE Pack operator/(Pack a, Pack b) noexcept {
+  return {a.value / b.value};
+}
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad::detail

@@ -7,11 +7,10 @@
 
 #include <arm_neon.h>
 
-#include "pinnquad/core/attributes.hpp"
-#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/scalar_math.hpp"
+#include "pinnquad/nn/kernel/pack_contract.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 4 floats in one register.
@@ -31,18 +30,6 @@ struct PackNeon {
   /// a * b + c
   static PINNQUAD_ALWAYS_INLINE PackNeon multiply_add(PackNeon a, PackNeon b, PackNeon c) noexcept {
     return {vfmaq_f32(c.value, a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator+(PackNeon a, PackNeon b) noexcept {
-    return {vaddq_f32(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator-(PackNeon a, PackNeon b) noexcept {
-    return {vsubq_f32(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator*(PackNeon a, PackNeon b) noexcept {
-    return {vmulq_f32(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackNeon operator/(PackNeon a, PackNeon b) noexcept {
-    return {vdivq_f32(a.value, b.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackNeon square_root(PackNeon a) noexcept { return {vsqrtq_f32(a.value)}; }
   /// v < 0 ? 0 : v. FMAX returns NaN when either is, whichever comes first.
@@ -98,6 +85,6 @@ struct PackNeon {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
 
 #endif

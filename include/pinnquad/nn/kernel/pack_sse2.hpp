@@ -12,11 +12,10 @@
 #include <x86intrin.h>
 #endif
 
-#include "pinnquad/core/attributes.hpp"
-#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/scalar_math.hpp"
+#include "pinnquad/nn/kernel/pack_contract.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 4 floats in one register. Product and sum are rounded once where the processor has the instruction without AVX2.
@@ -47,24 +46,12 @@ struct PackSse2 {
     return a * b + c;
 #endif
   }
-  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator+(PackSse2 a, PackSse2 b) noexcept {
-    return {_mm_add_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator-(PackSse2 a, PackSse2 b) noexcept {
-    return {_mm_sub_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator*(PackSse2 a, PackSse2 b) noexcept {
-    return {_mm_mul_ps(a.value, b.value)};
-  }
-  friend PINNQUAD_ALWAYS_INLINE PackSse2 operator/(PackSse2 a, PackSse2 b) noexcept {
-    return {_mm_div_ps(a.value, b.value)};
-  }
   static PINNQUAD_ALWAYS_INLINE PackSse2 square_root(PackSse2 a) noexcept { return {_mm_sqrt_ps(a.value)}; }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackSse2 positive_part(PackSse2 a) noexcept {
-    if constexpr (detail::finite_math_only) {  // the operands of max may be swapped, the bits not
+    if constexpr (finite_math_only) {  // the operands of max may be swapped, the bits not
       const __m128i bits = _mm_castps_si128(a.value);
-      return {_mm_castsi128_ps(_mm_andnot_si128(_mm_cmplt_epi32(bits, _mm_set1_epi32(detail::above_negatives)), bits))};
+      return {_mm_castsi128_ps(_mm_andnot_si128(_mm_cmplt_epi32(bits, _mm_set1_epi32(above_negatives)), bits))};
     } else {
       return {_mm_max_ps(_mm_setzero_ps(), a.value)};
     }
@@ -120,6 +107,6 @@ struct PackSse2 {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
 
 #endif

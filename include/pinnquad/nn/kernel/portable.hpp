@@ -11,6 +11,7 @@
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
+#include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {
 
@@ -47,13 +48,6 @@ struct NoBias {
   PINNQUAD_ALWAYS_INLINE constexpr NoBias operator+(int) const noexcept { return {}; }
 };
 
-struct Unchanged {
-  template <class Scalar>
-  PINNQUAD_ALWAYS_INLINE Scalar operator()(Scalar v) const noexcept {
-    return v;
-  }
-};
-
 /// y[0, Rows) = activate(start + weight x), one row or two; rows of `weight` are `stride` apart.
 template <int Rows, int Columns, class Scalar, class Start, class Activate>
 PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start start, const Scalar (&x)[Columns],
@@ -84,34 +78,29 @@ PINNQUAD_ALWAYS_INLINE void multiply_held(const Scalar* weight, int stride, Star
   }
 }
 
-/// y = activate(start + W x), wide rows in parts of equal width: sums rest in y from one part to the next.
-template <int Rows, int Columns, class Scalar, class Start, class X, class Activate>
-PINNQUAD_ALWAYS_INLINE void multiply_parts(const Scalar* weight, Start start, X x, Scalar* y,
-                                           Activate activate) noexcept {
+}  // namespace detail
+
+/// y = activate(W x + b), entry by entry; W is Rows x Columns, row-major (row = output, column = input). `bias`: a
+/// pointer, or NoBias. y may not overlap x: a pointer, or, where all columns are held at a time, anything else with
+/// [column]. Wide rows are taken in parts of equal width: sums rest in y from one part to the next.
+template <int Rows, int Columns, class Scalar, class Bias, class X, class Activate = detail::Activate<void>>
+PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, Bias bias, X x, Scalar* y,
+                                               Activate activate = {}) noexcept {
+  using detail::held_inputs;
   constexpr int parts = (Columns + held_inputs - 1) / held_inputs;
   constexpr int width = (Columns + parts - 1) / parts;
   constexpr int last = width * (parts - 1);
   if constexpr (parts == 1) {
-    multiply_held<Rows, Columns>(weight, Columns, start, x, y, activate);
+    detail::multiply_held<Rows, Columns>(weight, Columns, bias, x, y, activate);
   } else {
     static_assert(std::is_pointer_v<X>, "pinnquad: inputs that are taken in parts stand in a row");
-    for (int row = 0; row < Rows; ++row) y[row] = start[row];
+    for (int row = 0; row < Rows; ++row) y[row] = bias[row];
     const Scalar* const sums = y;
     for (int part = 0; part < last; part += width) {
-      multiply_held<Rows, width>(weight + part, Columns, sums, x + part, y, Unchanged{});
+      detail::multiply_held<Rows, width>(weight + part, Columns, sums, x + part, y, detail::Activate<void>{});
     }
-    multiply_held<Rows, Columns - last>(weight + last, Columns, sums, x + last, y, activate);
+    detail::multiply_held<Rows, Columns - last>(weight + last, Columns, sums, x + last, y, activate);
   }
-}
-
-}  // namespace detail
-
-/// y = activate(W x + b), entry by entry; W is Rows x Columns, row-major (row = output, column = input). y may not
-/// overlap x: a pointer, or, where all columns are held at a time, anything else with [column].
-template <int Rows, int Columns, class Scalar, class X, class Activate = detail::Unchanged>
-PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* bias, X x, Scalar* y,
-                                               Activate activate = {}) noexcept {
-  detail::multiply_parts<Rows, Columns>(weight, bias, x, y, activate);
 }
 
 /// y += W x for the `Count` columns from `weight` on, at most held_inputs, of rows `stride` apart. Columns taken so in
@@ -120,13 +109,7 @@ template <int Rows, int Count, class Scalar>
 PINNQUAD_ALWAYS_INLINE void add_columns(const Scalar* weight, int stride, const Scalar* x, Scalar* y) noexcept {
   static_assert(Count <= detail::held_inputs);
   const Scalar* const sums = y;
-  detail::multiply_held<Rows, Count>(weight, stride, sums, x, y, detail::Unchanged{});
-}
-
-/// y = W x.
-template <int Rows, int Columns, class Scalar>
-PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, const Scalar* x, Scalar* y) noexcept {
-  detail::multiply_parts<Rows, Columns>(weight, detail::NoBias<Scalar>{}, x, y, detail::Unchanged{});
+  detail::multiply_held<Rows, Count>(weight, stride, sums, x, y, detail::Activate<void>{});
 }
 
 }  // namespace pinnquad

@@ -5,19 +5,17 @@
 // second contract of pack_contract.hpp.
 #pragma once
 
-#include <type_traits>
-
 #include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// True for packs that say how a layer lies in their registers.
-template <class Pack, class = void>
-inline constexpr bool keeps_layers_in_registers = false;
 template <class Pack>
-inline constexpr bool keeps_layers_in_registers<Pack, std::void_t<decltype(Pack::blocks_at_once)>> = true;
+using BlocksAtOnceOf = decltype(Pack::blocks_at_once);
+/// True for packs that say how a layer lies in their registers.
+template <class Pack>
+inline constexpr bool keeps_layers_in_registers = is_detected<BlocksAtOnceOf, Pack>;
 
 /// Outputs of a layer. One value past whole registers ("lone", 25 = 24 + 1) stands alone: a dot product is cheaper
 /// than a block for one row.
@@ -225,4 +223,4 @@ struct RegisterLayer {
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
