@@ -22,18 +22,14 @@ template <class Layer, class Scalar, class Engine>
 void initialise(Layer, [[maybe_unused]] Scalar* parameters, [[maybe_unused]] Engine& engine) {
   if constexpr (is_detected<InitialiseOf, Layer, Scalar, Engine>) Layer::initialise(parameters, engine);
 }
-template <class Scalar, int In, int Out, class Engine>
-void initialise(DenseWithoutBiasLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) {
+template <class Scalar, int In, int Out, bool HasBias, class Engine>
+void initialise(DenseLayer<Scalar, In, Out, HasBias>, Scalar* parameters, Engine& engine) {
   const double limit = std::sqrt(6.0 / (In + Out));
   for (int i = 0; i < Out * In; ++i) parameters[i] = Scalar(uniform(engine, -limit, limit));
 }
-template <class Scalar, int In, int Out, class Engine>
-void initialise(DenseLayer<Scalar, In, Out>, Scalar* parameters, Engine& engine) {
-  initialise(DenseWithoutBiasLayer<Scalar, In, Out>{}, parameters, engine);
-}
 /// Nearly the identity. Draws nothing.
 template <class Scalar, int Size, class Engine>
-void initialise(BatchNormLayer<Scalar, Size>, Scalar* parameters, Engine&) {
+void initialise(BatchNorm::Bind<Scalar, Size>, Scalar* parameters, Engine&) {
   for (int i = 0; i < Size; ++i) parameters[i] = parameters[3 * Size + i] = Scalar(1);  // gamma, variance
 }
 }  // namespace detail
