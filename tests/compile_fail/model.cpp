@@ -13,7 +13,7 @@
 // CASE OTHER_VEHICLE: pinnquad: the model was trained for another airframe than its Vehicle
 // CASE ROTORS_SWAPPED: pinnquad: the model was trained with another motor order than its Vehicle now has
 // CASE ROTOR_TURNS_THE_OTHER_WAY: pinnquad: the model was trained with another motor order than its Vehicle now has
-// CASE SPREAD_ZERO: pinnquad: a scaler's spread is not positive
+// CASE SPREAD_ZERO: pinnquad: a scaler's standard deviation is not positive
 // CASE WEIGHT_NOT_A_NUMBER: pinnquad: a weight of the model is NaN or infinite
 // CASE WEIGHT_INFINITE: pinnquad: a weight of the model is NaN or infinite
 // CASE SPREAD_INFINITE: pinnquad: a scaler's number is NaN or infinite

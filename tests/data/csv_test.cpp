@@ -222,6 +222,8 @@ TEST_CASE("extra columns: written behind the others as name and unit, read where
   CHECK(refused({{"battery_voltage", "V"}, {"battery_voltage", "mV"}}) ==
         ":1: expected extra columns that differ in name, found flight: it has a column battery_voltage already");
   CHECK(refused({{"altitude", "ft"}}).find(":1: expected extra columns that differ in name") == 0);
+  std::ofstream(path) << "t,u1,u2,u3,u4,u5,u6\n";
+  CHECK(refused({}) == ":1: expected the commands of four motors, u1 to u4, found a column u5");
   CHECK(pinnquad::extra_columns_in(folder.write("none.csv", "")).empty());
   CHECK(pinnquad::extra_columns_in(folder.write("odd.csv", "a[V],[V],b [V] x, [V],c []\n")).size() == 1);
 

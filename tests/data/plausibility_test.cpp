@@ -117,10 +117,11 @@ TEST_CASE("a cell like none of its neighbours is named, in a column that stands 
             .find(":500:9: expected a value like its neighbours in column v_by, found 150, ") != std::string::npos);
   Flight still = changed([](Sample& s) { s.velocity_m_s[1] = 0; });
   still[800].velocity_m_s[1] = 30;
-  CHECK(refusal(still) ==
-        "no/such/flight.csv:802:9: expected a value like its neighbours in column v_by, found 30, 300 robust spreads "
-        "from "
-        "the median 0");
+  CHECK(
+      refusal(still) ==
+      "no/such/flight.csv:802:9: expected a value like its neighbours in column v_by, found 30, 300 robust deviations "
+      "from "
+      "the median 0");
 }
 
 TEST_CASE("commands: what they are instead, and how to convert them") {

@@ -220,7 +220,7 @@ TEST_CASE("a number that is not finite is not written: it has no literal") {
   CHECK(said(model) == "export: number 1 of the lower envelope is not finite");
   model = sound;
   model.input.standard_deviation[15] = infinity;
-  CHECK(said(model) == "export: number 16 of the input spreads is not finite");
+  CHECK(said(model) == "export: number 16 of the input standard deviations is not finite");
   model = sound;
   model.output.mean[1] = nan;
   CHECK(said(model) == "export: number 2 of the output means is not finite");

@@ -106,9 +106,13 @@ std::string comparable(std::string text) {
   text.erase(commands, text.find(';', commands) - commands);
   const std::size_t hash = text.find("\n  // over all of this:");
   if (hash != std::string::npos) text.erase(hash, text.find("};", hash) - hash);
-  const std::string before = "inference/model_records.hpp";  // named in a comment by headers of before
-  const std::size_t records = text.find(before);
-  if (records != std::string::npos) text.replace(records, before.size(), "exported/model_records.hpp");
+  // names of before: of a file in a comment, of a meaning of commands
+  for (const auto& [before, now] :
+       {std::pair<std::string, std::string>{"inference/model_records.hpp", "exported/model_records.hpp"},
+        {"CommandMeaning::pulse_width", "CommandMeaning::throttle"}}) {
+    const std::size_t at = text.find(before);
+    if (at != std::string::npos) text.replace(at, before.size(), now);
+  }
   return text;
 }
 

@@ -171,7 +171,7 @@ TEST_CASE("a block of other terms than its header's does not open; a shape witho
   CHECK(opened<RecordedModel>(with_commands(CommandMeaning::thrust, 4030000)) == Status::ok);
   CHECK(opened<RecordedModel>(with_commands(CommandMeaning::thrust, 4100000)) == Status::block_incompatible);
   CHECK(opened<RecordedModel>(with_commands(CommandMeaning::thrust, 2000000)) == Status::block_incompatible);
-  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::pulse_width, 4000000)) == Status::block_incompatible);
+  CHECK(opened<RecordedModel>(with_commands(CommandMeaning::throttle, 4000000)) == Status::block_incompatible);
   CHECK(opened<RecordedModel>(with_commands(CommandMeaning::speed, 4000000)) == Status::block_incompatible);
 }
 

@@ -293,7 +293,7 @@ TEST_CASE("a value that is not finite is corrupt, wherever it stands") {
 TEST_CASE("a spread that is not positive and an envelope upside down are corrupt") {
   using Layout = ModelBlockLayout<DescribedModel>;
   for (const float spread : {0.0f, -0.0f, -1.0f}) {
-    for (const std::size_t i : {Layout::input_spread, Layout::input_spread + 15, Layout::output_spread + 3}) {
+    for (const std::size_t i : {Layout::input_deviation, Layout::input_deviation + 15, Layout::output_deviation + 3}) {
       CHECK(changed([&](BlockBytes& block) { block.set_scalar(i, spread); }) == Status::block_corrupt);
     }
   }

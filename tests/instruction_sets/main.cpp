@@ -188,9 +188,9 @@ void write_block() {
   number(Header::golden_vectors, golden, 4);
   number(Header::shape_hash, shape_hash<Model>, 8);
   scalars(Layout::input_mean, Model::input.mean);
-  scalars(Layout::input_spread, Model::input.standard_deviation);
+  scalars(Layout::input_deviation, Model::input.standard_deviation);
   scalars(Layout::output_mean, Model::output.mean);
-  scalars(Layout::output_spread, Model::output.standard_deviation);
+  scalars(Layout::output_deviation, Model::output.standard_deviation);
   scalars(Layout::envelope_lower, Model::envelope_lower);
   scalars(Layout::envelope_upper, Model::envelope_upper);
   scalars(Layout::golden_features, Model::golden_features);

@@ -67,7 +67,7 @@ double plain_monotonicity(const std::array<double, 4>& signs, int axis, double g
           batch.prediction(static_cast<int>(i), sample) * context.output.standard_deviation[i] + context.output.mean[i];
       sum += signs[i] * to_command(output);
     }
-    m.push_back(sum / context.signed_sum_spread[static_cast<std::size_t>(axis)]);
+    m.push_back(sum / context.signed_sum_deviation[static_cast<std::size_t>(axis)]);
     n.push_back(batch.features(3 + axis, sample));
   }
   double total = 0.0;
@@ -255,7 +255,7 @@ TEST_CASE("a motion and its commands agree: the loss of true commands is below t
     double sum = 0.0;
     for (std::size_t k = 0; k < 4; ++k)
       sum += signs[k] * batch.prediction(static_cast<int>(k), i) * context.output.standard_deviation[k];
-    batch.features(3, i) = sum / context.signed_sum_spread[0];
+    batch.features(3, i) = sum / context.signed_sum_deviation[0];
   }
   const double agreeing = value(LocalMonotonicity<Roll>{}, context, batch);
   batch.features.row(3) *= -1.0;

@@ -134,7 +134,7 @@ TEST_CASE("match: squared difference of the steps of the standardised series, me
     const Series s = physical_series({1, -1, 1, -1}, 1, context, batch);
     double total = 0.0;
     for (std::size_t i = 0; i + 1 < s.m.size(); ++i) {
-      const double step_m = std::tanh(3.0 * (s.m[i + 1] - s.m[i]) / context.signed_sum_spread[1]);
+      const double step_m = std::tanh(3.0 * (s.m[i + 1] - s.m[i]) / context.signed_sum_deviation[1]);
       const double difference = step_m - std::tanh(3.0 * (s.n[i + 1] - s.n[i]));
       total += difference * difference;
     }

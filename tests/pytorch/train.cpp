@@ -64,7 +64,7 @@ Knowledge knowledge() {
   Knowledge context;
   context.output.mean = {0.50, 0.52, 0.54, 0.56};
   context.output.standard_deviation = {0.03, 0.04, 0.05, 0.06};
-  context.signed_sum_spread = {0.11, 0.07, 0.05};
+  context.signed_sum_deviation = {0.11, 0.07, 0.05};
   return context;
 }
 
@@ -94,7 +94,7 @@ void train(const std::string& folder, const Loss& loss, const Optimizer& optimiz
 
   std::vector<double> scales(context.output.mean.begin(), context.output.mean.end());
   scales.insert(scales.end(), context.output.standard_deviation.begin(), context.output.standard_deviation.end());
-  scales.insert(scales.end(), context.signed_sum_spread.begin(), context.signed_sum_spread.end());
+  scales.insert(scales.end(), context.signed_sum_deviation.begin(), context.signed_sum_deviation.end());
   write(folder + "/features.f64", data.features);
   write(folder + "/outputs.f64", data.outputs);
   write(folder + "/order.i32", order);

@@ -82,8 +82,8 @@ TEST_CASE("climb: 60 % of the thrust above hover; descent: 35 % of the hover's i
   const double share = (1 - heavy.hover) / 0.35;
   REQUIRE(share < 1);
   CHECK(calm.max_yaw_rate_rad_s == doctest::Approx(1.0 * share).epsilon(1e-9));
-  CHECK(calm.thumbs.yaw_spread_rad_s == doctest::Approx(0.062 * share).epsilon(1e-9));
-  CHECK(calm.thumbs.roll_pitch_spread_rad_s == doctest::Approx(0.21 * share).epsilon(1e-9));
+  CHECK(calm.thumbs.yaw_deviation_rad_s == doctest::Approx(0.062 * share).epsilon(1e-9));
+  CHECK(calm.thumbs.roll_pitch_deviation_rad_s == doctest::Approx(0.21 * share).epsilon(1e-9));
   CHECK(calm.velocity_lag_s == doctest::Approx(0.45 / share).epsilon(1e-9));
 }
 
@@ -100,9 +100,10 @@ TEST_CASE("near the ground: as calm as pilot_style, and a third of what the thru
   CHECK(style.max_climb_m_s == std::min(usual.max_climb_m_s, agile.max_climb_m_s));
   CHECK(style.max_descent_m_s == std::min(usual.max_descent_m_s, agile.max_descent_m_s));
   CHECK(style.max_yaw_rate_rad_s == std::min(usual.max_yaw_rate_rad_s, agile.max_yaw_rate_rad_s));
-  CHECK(style.thumbs.yaw_spread_rad_s == std::min(usual.thumbs.yaw_spread_rad_s, agile.thumbs.yaw_spread_rad_s));
-  CHECK(style.thumbs.roll_pitch_spread_rad_s ==
-        std::min(usual.thumbs.roll_pitch_spread_rad_s, agile.thumbs.roll_pitch_spread_rad_s));
+  CHECK(style.thumbs.yaw_deviation_rad_s ==
+        std::min(usual.thumbs.yaw_deviation_rad_s, agile.thumbs.yaw_deviation_rad_s));
+  CHECK(style.thumbs.roll_pitch_deviation_rad_s ==
+        std::min(usual.thumbs.roll_pitch_deviation_rad_s, agile.thumbs.roll_pitch_deviation_rad_s));
   CHECK(style.max_speed_m_s == 1.0);
   CHECK(style.hover_speed_m_s == std::min(usual.hover_speed_m_s, 1.0));
 }

@@ -149,7 +149,7 @@ TEST_CASE("styles follow the airframe: the heavy one flies all three within boun
   const Airframe<double> heavy = airframe_value<ReferenceQuadrotor15, double>();
   const auto vehicle = flight_vehicle<NearGroundFlight>(heavy);
   const NearGroundStyle style = near_ground_style(vehicle, NearGroundFlight::plan().start_m);
-  CHECK(style.thumbs.roll_pitch_spread_rad_s < NearGroundStyle{}.thumbs.roll_pitch_spread_rad_s);
+  CHECK(style.thumbs.roll_pitch_deviation_rad_s < NearGroundStyle{}.thumbs.roll_pitch_deviation_rad_s);
   CHECK(style.velocity_lag_s > NearGroundStyle{}.velocity_lag_s);
   const RecordedFlight low = fly<NearGroundFlight>(heavy, std::mt19937_64(1));
   CHECK(low.report.end == FlightEnd::completed);

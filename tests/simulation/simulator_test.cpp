@@ -233,7 +233,7 @@ TEST_CASE("a pilot without lags asks for his targets at once; one whose limits a
     PilotStyle style;
     (which == 0   ? style.max_speed_m_s
      : which == 1 ? style.velocity_lag_s
-                  : style.thumbs.roll_pitch_spread_rad_s) = std::numeric_limits<double>::quiet_NaN();
+                  : style.thumbs.roll_pitch_deviation_rad_s) = std::numeric_limits<double>::quiet_NaN();
     Simulator<Vehicle, Pilot> blind(vehicle(), Pilot(std::mt19937_64(4), style, 0.877));
     CHECK_FALSE(blind.advance(5));
     CHECK(blind.status() == Status::not_finite);

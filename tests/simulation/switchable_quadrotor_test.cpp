@@ -40,7 +40,7 @@ Pilot pilot() {
   style.lowest_m = 0.3;
   style.highest_m = 1.5;
   style.braking_m = 0.2;
-  style.thumbs.roll_pitch_spread_rad_s = 0.05;
+  style.thumbs.roll_pitch_deviation_rad_s = 0.05;
   return Pilot(std::mt19937_64(4), style, site.ground_z_m);
 }
 

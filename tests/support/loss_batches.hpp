@@ -57,7 +57,7 @@ ContextType flight_context() {
     const double spread = std::abs(outputs_above[i] - context.output.mean[i]);
     context.output.standard_deviation[i] = spread > 1e-9 ? spread : 1.0;  // what does not move but by rounding
   }
-  context.signed_sum_spread = {0.11, 0.07, 0.05};
+  context.signed_sum_deviation = {0.11, 0.07, 0.05};
   return context;
 }
 

@@ -392,9 +392,9 @@ TEST_CASE("a loss whose numbers make no sense does not begin a training") {
   }
   SUBCASE("a spread of 0") {
     PaperContext context;
-    context.signed_sum_spread[2] = 0.0;
+    context.signed_sum_deviation[2] = 0.0;
     CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, context),
-                         "Context::signed_sum_spread: expected a standard deviation above 0, found 0",
+                         "Context::signed_sum_deviation: expected a standard deviation above 0, found 0",
                          std::invalid_argument);
   }
   SUBCASE("gain") {

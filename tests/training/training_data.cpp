@@ -105,7 +105,7 @@ TEST_CASE("spread of the signed sums: rows of Eq. (2) over the training set") {
       squares += m * m;
     }
     const double variance = squares / 30 - (sum / 30) * (sum / 30);
-    CHECK(context.signed_sum_spread[axis] == doctest::Approx(std::sqrt(variance)).epsilon(1e-9));
+    CHECK(context.signed_sum_deviation[axis] == doctest::Approx(std::sqrt(variance)).epsilon(1e-9));
   }
 }
 
@@ -181,7 +181,7 @@ TEST_CASE("rows of many flights are one set: as if they had been flown in one, w
   CHECK(context.input.mean == expected.input.mean);
   CHECK(context.input.standard_deviation == expected.input.standard_deviation);
   CHECK(context.output.mean == expected.output.mean);
-  CHECK(context.signed_sum_spread == expected.signed_sum_spread);
+  CHECK(context.signed_sum_deviation == expected.signed_sum_deviation);
   const auto data = standardised<float>(context, rows);
   const auto one = standardised<float>(expected, {whole, {0, 120}});
   CHECK(data.features == one.features);

@@ -47,10 +47,11 @@ inline void take_optional_records(const HeaderFile& header, pinnquad::detail::Wr
 inline pinnquad::detail::WrittenRecords stated_records(const HeaderFile& header) {
   pinnquad::detail::WrittenRecords records;
   records.answer = header.quoted("answer");
-  const std::string& meaning = header.text("command_meaning");
+  std::string meaning = header.text("command_meaning");
+  if (meaning == "pinnquad::CommandMeaning::pulse_width") meaning = "pinnquad::CommandMeaning::throttle";
   bool known = false;
   for (const pinnquad::CommandMeaning one :
-       {pinnquad::CommandMeaning::thrust, pinnquad::CommandMeaning::pulse_width, pinnquad::CommandMeaning::speed}) {
+       {pinnquad::CommandMeaning::thrust, pinnquad::CommandMeaning::throttle, pinnquad::CommandMeaning::speed}) {
     if (meaning != std::string("pinnquad::CommandMeaning::") + pinnquad::to_string(one)) continue;
     records.command_meaning = one;
     known = true;

@@ -34,12 +34,15 @@ std::vector<std::string> flight_columns(const Columns& extra) {
 
 /// Reads a flight, and the extra columns asked for. Columns are found by name, in any order; others are ignored. Units
 /// and frames: see `Sample`. An extra column is found by its name with its unit.
-/// Throws InputError (all of `read_csv`, time that does not increase from row to row, and extra columns of one name or
-/// of a name that every flight has), its text one line:
+/// Throws InputError (all of `read_csv`, time that does not increase from row to row, a column u5, and extra columns of
+/// one name or of a name that every flight has), its text one line:
 ///   flight.csv:17:5: expected a finite number in column wdot_x, found "abc"
 inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows,
                               const std::vector<ColumnName>& extra = {}) {
   Flight flight;
+  for (const std::string& head : detail::csv_header(path)) {
+    if (head == "u5") throw InputError(path, 1, 0, "the commands of four motors, u1 to u4", "a column u5");
+  }
   try {
     for (const ColumnName& column : extra) flight.add_column({column, {}});
   } catch (const std::invalid_argument& refused) {

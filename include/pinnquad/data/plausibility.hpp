@@ -147,7 +147,7 @@ inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t
     furthest = distance[row];
     worst = Implausible{row, field, "a value like its neighbours " + column_text(field),
                         number_text(values[row]) + ", " + std::to_string(static_cast<long long>(furthest / scale)) +
-                            " robust spreads from the median " + number_text(median)};
+                            " robust deviations from the median " + number_text(median)};
   }
   return worst;
 }

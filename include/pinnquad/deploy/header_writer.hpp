@@ -149,9 +149,9 @@ template <class Model>
 void require_finite_model(const Model& model) {
   require_finite(model.network.parameters, "the parameters");
   require_finite(model.input.mean, "the input means");
-  require_finite(model.input.standard_deviation, "the input spreads");
+  require_finite(model.input.standard_deviation, "the input standard deviations");
   require_finite(model.output.mean, "the output means");
-  require_finite(model.output.standard_deviation, "the output spreads");
+  require_finite(model.output.standard_deviation, "the output standard deviations");
   require_finite(model.envelope_lower, "the lower envelope");
   require_finite(model.envelope_upper, "the upper envelope");
 }

@@ -180,9 +180,10 @@ constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before
 /// The meaning of a motor command. A model flies a vehicle only where both mean the same. The values are those of a
 /// model block (exported/model_block.hpp).
 enum class CommandMeaning : std::uint8_t {
-  thrust = 0,       ///< u = (n / n_max)^2, the thrust over that at full command
-  pulse_width = 1,  ///< the share of a speed controller's pulse range: thrust between a share and its square
-  speed = 2,        ///< u = n / n_max
+  thrust = 0,              ///< u = (n / n_max)^2, the thrust over that at full command
+  throttle = 1,            ///< the share of a speed controller's pulse range: thrust between a share and its square
+  speed = 2,               ///< u = n / n_max
+  pulse_width = throttle,  ///< its earlier name, said by exported headers
 };
 
 /// Number of meanings; values from here on are none.
@@ -196,14 +197,14 @@ constexpr CommandMeaning command_meaning_of(const Airframe<Scalar>& airframe) no
     thrust = thrust && detail::equal(rotor.thrust_curve, Scalar(0));
     speed = speed && detail::equal(rotor.thrust_curve, Scalar(1));
   }
-  return thrust ? CommandMeaning::thrust : (speed ? CommandMeaning::speed : CommandMeaning::pulse_width);
+  return thrust ? CommandMeaning::thrust : (speed ? CommandMeaning::speed : CommandMeaning::throttle);
 }
 
 /// The enumerator as C++ text.
 constexpr const char* to_string(CommandMeaning meaning) noexcept {
   switch (meaning) {
     case CommandMeaning::thrust: return "thrust";
-    case CommandMeaning::pulse_width: return "pulse_width";
+    case CommandMeaning::throttle: return "throttle";
     case CommandMeaning::speed: return "speed";
   }
   return "unknown";

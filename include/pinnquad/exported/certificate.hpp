@@ -64,10 +64,10 @@ constexpr void take_paths(const CertifiedNumbers<Scalar>& from, int axis, Certif
   double held_fall = 0;
   for (int tap = 0; tap < from.taps; ++tap) {
     const PathBound<4>& path = from.paths[3 * tap + axis];
-    const double spread = static_cast<double>(from.scales.input_spread[from.places[tap] + axis]);
+    const double deviation = static_cast<double>(from.scales.input_deviation[from.places[tap] + axis]);
     double fall = 0, others = 0;
     for (int k = 0; k < 4; ++k) {
-      const double scale = static_cast<double>(from.scales.output_spread[k]) / spread;
+      const double scale = static_cast<double>(from.scales.output_deviation[k]) / deviation;
       const double below = -path.lower[k] * scale, above = path.upper[k] * scale;
       certificate.monotone = certificate.monotone && is_finite_constant(below) && is_finite_constant(above);
       if (k == 1 + axis) {
@@ -91,7 +91,7 @@ constexpr void bound_residual(const CertifiedNumbers<Scalar>& from, Certificate&
   certificate.bounded = true;
   if (!from.has_residual) return;
   for (int k = 0; k < 4; ++k) {
-    const double scale = static_cast<double>(from.scales.output_spread[k]);
+    const double scale = static_cast<double>(from.scales.output_deviation[k]);
     const double lower = static_cast<double>(from.bounds()[k]), upper = static_cast<double>(from.bounds()[4 + k]);
     certificate.residual_lower[k] = rounded_down(lower * scale);
     certificate.residual_upper[k] = rounded_up(upper * scale);
@@ -119,9 +119,9 @@ constexpr void take_thrust(const CertifiedNumbers<Scalar>& from, Certificate& ce
     const int place = from.thrusts[i];
     int other = place;
     for (int tap = 0; tap < from.taps; ++tap) other -= from.places[tap] < place ? 3 : 0;
-    const double spread = static_cast<double>(from.scales.input_spread[place]);
+    const double deviation = static_cast<double>(from.scales.input_deviation[place]);
     const double slope =
-        -static_cast<double>(from.weights()[other]) / spread * static_cast<double>(from.scales.output_spread[0]);
+        -static_cast<double>(from.weights()[other]) / deviation * static_cast<double>(from.scales.output_deviation[0]);
     if (i < from.thrust_present) present += slope;
     held += slope;
     magnitudes += magnitude(slope);
@@ -143,7 +143,7 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
     const double mean = static_cast<double>(scales.input_mean[feature]);
     const double below = magnitude(static_cast<double>(scales.lower[feature]) - mean);
     const double above = magnitude(static_cast<double>(scales.upper[feature]) - mean);
-    return larger(below, above) / static_cast<double>(scales.input_spread[feature]);
+    return larger(below, above) / static_cast<double>(scales.input_deviation[feature]);
   };
   double sums[4]{};
   for (int k = 0; k < 4; ++k) sums[k] = magnitude(static_cast<double>(from.intercepts()[k]));
@@ -169,7 +169,7 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
     double error = 0;
     for (int k = 0; k < 4; ++k) {
       const double residual = larger(-certificate.residual_lower[k], certificate.residual_upper[k]);
-      const double sum = sums[k] * static_cast<double>(scales.output_spread[k]) +
+      const double sum = sums[k] * static_cast<double>(scales.output_deviation[k]) +
                          magnitude(static_cast<double>(scales.output_mean[k])) + residual;
       error += magnitude(static_cast<double>(from.vehicle.mix.by[rotor][k])) * sum * roundings / (1 - roundings);
     }
@@ -198,13 +198,13 @@ constexpr Certificate certificate_of(const detail::CertifiedNumbers<Scalar>& fro
   certificate.monotone = detail::exact_mix(from.vehicle.mix) && from.taps <= 16;
   if (from.has_paths) certificate.monotone = certificate.monotone && detail::even_mix(from.vehicle.mix);
   for (int axis = 0; axis < 3; ++axis) {
-    const double scale = static_cast<double>(from.scales.output_spread[1 + axis]);
+    const double scale = static_cast<double>(from.scales.output_deviation[1 + axis]);
     bool finite = is_finite_constant(scale) && scale > 0;
     double present = 0, sum = 0, magnitudes = 0;
     for (int tap = 0; tap < from.taps; ++tap) {
-      const double spread = static_cast<double>(from.scales.input_spread[from.places[tap] + axis]);
-      const double slope = static_cast<double>(from.affine[3 * tap + axis]) / spread * scale;
-      finite = finite && is_finite_constant(slope) && spread > 0;
+      const double deviation = static_cast<double>(from.scales.input_deviation[from.places[tap] + axis]);
+      const double slope = static_cast<double>(from.affine[3 * tap + axis]) / deviation * scale;
+      finite = finite && is_finite_constant(slope) && deviation > 0;
       if (tap == 0) present = slope;
       sum += slope;
       magnitudes += slope < 0 ? -slope : slope;

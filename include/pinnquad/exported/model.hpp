@@ -143,12 +143,12 @@ constexpr void require_description() noexcept {
     static_assert(all_finite_constants(M::envelope_lower) && all_finite_constants(M::envelope_upper),
                   "pinnquad: a border of the model's envelope is NaN or infinite");
     static_assert(all_positive(M::input.standard_deviation) && all_positive(M::output.standard_deviation),
-                  "pinnquad: a scaler's spread is not positive");
+                  "pinnquad: a scaler's standard deviation is not positive");
     static_assert(
         is_envelope(M::input.mean.data(), M::input.standard_deviation.data(), M::envelope_lower.data(),
                     M::envelope_upper.data(), M::envelope_lower.size()),
         "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
-        "spread can have been (envelope_lower, envelope_upper, input)");
+        "standard deviation can have been (envelope_lower, envelope_upper, input)");
     static_assert(all_finite_constants(M::golden_commands), "pinnquad: a golden command is NaN or infinite");
     static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
     static_assert(same_contents<M>(),

@@ -19,18 +19,19 @@ constexpr bool is_clock_time(double seconds) noexcept { return seconds >= 0.0 &&
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// No row of a training lies further from the mean than this many spreads: sqrt(n - 1) at most of n rows (Samuelson),
-/// and a block counts them in 32 bits. Twice that, for the margin.
-inline constexpr double furthest_spreads = 131072.0;
+/// No row of a training lies further from the mean than this many standard deviations: sqrt(n - 1) at most of n rows
+/// (Samuelson), and a block counts them in 32 bits. Twice that, for the margin.
+inline constexpr double furthest_deviations = 131072.0;
 
-/// lower <= upper, and both where a training on features of that mean and spread can have been. False for NaN.
+/// lower <= upper, and both where a training on features of that mean and standard deviation can have been. False for
+/// NaN.
 template <class Scalar>
-constexpr bool is_envelope(const Scalar* mean, const Scalar* spread, const Scalar* lower, const Scalar* upper,
+constexpr bool is_envelope(const Scalar* mean, const Scalar* deviation, const Scalar* lower, const Scalar* upper,
                            std::size_t size) noexcept {
   bool sound = true;
   for (std::size_t i = 0; i < size; ++i) {
     const double centre = static_cast<double>(mean[i]), magnitude = centre < 0 ? -centre : centre;
-    const double reach = furthest_spreads * static_cast<double>(spread[i]) + magnitude;
+    const double reach = furthest_deviations * static_cast<double>(deviation[i]) + magnitude;
     const double below = centre - static_cast<double>(lower[i]), above = static_cast<double>(upper[i]) - centre;
     sound = sound && lower[i] <= upper[i] && below <= reach && above <= reach;
   }
@@ -72,9 +73,9 @@ inline constexpr bool has_bounded_residual<Answer, std::void_t<typename StatedSt
 /// A stated bound of a residual against the standardised one among the parameters. The writer rounds outward to a
 /// Scalar.
 template <class Scalar>
-constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar spread) noexcept {
+constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar deviation) noexcept {
   using Limits = std::numeric_limits<Scalar>;
-  const double bound = static_cast<double>(standardised) * static_cast<double>(spread);
+  const double bound = static_cast<double>(standardised) * static_cast<double>(deviation);
   const double difference = static_cast<double>(stated) - bound;
   const double rounding = 8 * static_cast<double>(Limits::epsilon()) * (bound < 0 ? -bound : bound);
   return (difference < 0 ? -difference : difference) <= rounding + 2 * static_cast<double>(Limits::denorm_min());
@@ -84,12 +85,12 @@ constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar spread) noe
 /// residual. A pointer into an array that is compared with null is no constant to g++ -fsanitize=undefined.
 template <class Scalar>
 constexpr bool same_residual_range(const Scalar* lower, const Scalar* upper, bool has_residual, const Scalar* bounds,
-                                   const Scalar* output_spread, std::size_t outputs) noexcept {
+                                   const Scalar* output_deviation, std::size_t outputs) noexcept {
   bool same = true;
   for (std::size_t i = 0; i < outputs; ++i) {
     const Scalar least = has_residual ? bounds[i] : Scalar(0);
     const Scalar most = has_residual ? bounds[outputs + i] : Scalar(0);
-    same = same && same_bound(lower[i], least, output_spread[i]) && same_bound(upper[i], most, output_spread[i]);
+    same = same && same_bound(lower[i], least, output_deviation[i]) && same_bound(upper[i], most, output_deviation[i]);
   }
   return same;
 }

@@ -30,8 +30,8 @@ inline constexpr std::size_t model_block_alignment = 8;
 ///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs,
 ///   u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
 /// In version 2 the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow: input
-/// mean and spread, output mean and spread, envelope lower and upper, golden features, golden commands, parameters
-/// (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
+/// mean and standard deviation, output mean and standard deviation, envelope lower and upper, golden features, golden
+/// commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
 struct ModelBlockHeader {
   static constexpr std::size_t version = 8;
   static constexpr std::size_t length = 12;
@@ -133,10 +133,10 @@ struct ModelBlockLayout {
   static constexpr std::size_t commands = rotor_count;
 
   static constexpr std::size_t input_mean = 0;
-  static constexpr std::size_t input_spread = inputs;
+  static constexpr std::size_t input_deviation = inputs;
   static constexpr std::size_t output_mean = 2 * inputs;
-  static constexpr std::size_t output_spread = output_mean + outputs;
-  static constexpr std::size_t envelope_lower = output_spread + outputs;
+  static constexpr std::size_t output_deviation = output_mean + outputs;
+  static constexpr std::size_t envelope_lower = output_deviation + outputs;
   static constexpr std::size_t envelope_upper = envelope_lower + inputs;
   static constexpr std::size_t golden_features = envelope_upper + inputs;
   static PINNQUAD_ALWAYS_INLINE constexpr std::size_t golden_commands(std::size_t golden) noexcept {

@@ -87,7 +87,7 @@ class ModelView : public detail::ModelScales<ShapeType> {
   /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
   /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
   /// another shape, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
-  /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a spread that is
+  /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a deviation that is
   /// not positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
   /// (exported/model_agreement.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
   /// untouched unless the Status is ok. Reads the whole block, twice: not for a control loop.
@@ -115,9 +115,9 @@ class ModelView : public detail::ModelScales<ShapeType> {
     if (!sound(scalars, golden, records)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
-    copy(scalars + Layout::input_spread, view.input.standard_deviation);
+    copy(scalars + Layout::input_deviation, view.input.standard_deviation);
     copy(scalars + Layout::output_mean, view.output.mean);
-    copy(scalars + Layout::output_spread, view.output.standard_deviation);
+    copy(scalars + Layout::output_deviation, view.output.standard_deviation);
     copy(scalars + Layout::envelope_lower, view.envelope_lower);
     copy(scalars + Layout::envelope_upper, view.envelope_upper);
     view.golden_features = {scalars + Layout::golden_features, golden};
@@ -155,10 +155,10 @@ class ModelView : public detail::ModelScales<ShapeType> {
     const Scalar* upper = scalars + Layout::envelope_upper;
     bool sound = true;
     for (std::size_t i = 0; i < count; ++i) sound &= is_finite(scalars[i]);
-    for (std::size_t i = 0; i < Layout::inputs; ++i) sound &= scalars[Layout::input_spread + i] > Scalar(0);
-    for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_spread + i] > Scalar(0);
-    sound &=
-        detail::is_envelope(scalars + Layout::input_mean, scalars + Layout::input_spread, lower, upper, Layout::inputs);
+    for (std::size_t i = 0; i < Layout::inputs; ++i) sound &= scalars[Layout::input_deviation + i] > Scalar(0);
+    for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_deviation + i] > Scalar(0);
+    sound &= detail::is_envelope(scalars + Layout::input_mean, scalars + Layout::input_deviation, lower, upper,
+                                 Layout::inputs);
     for (std::size_t row = 0; row < golden; ++row) {
       const Scalar* x = scalars + Layout::golden_features + row * Layout::inputs;
       sound &= detail::inside_envelope(lower, x, upper, Layout::inputs);
@@ -173,9 +173,9 @@ class ModelView : public detail::ModelScales<ShapeType> {
       const Scalar* bounds = nullptr;
       if constexpr (Structure::at >= 0) bounds = scalars + Layout::parameters(golden) + Structure::at;
       if (records.residual_range != nullptr) {
-        sound &=
-            detail::same_residual_range(records.residual_range, records.residual_range + Layout::outputs,
-                                        Structure::at >= 0, bounds, scalars + Layout::output_spread, Layout::outputs);
+        sound &= detail::same_residual_range(records.residual_range, records.residual_range + Layout::outputs,
+                                             Structure::at >= 0, bounds, scalars + Layout::output_deviation,
+                                             Layout::outputs);
       }
     }
     if constexpr (has_certificate<ShapeType>) {
@@ -183,8 +183,8 @@ class ModelView : public detail::ModelScales<ShapeType> {
           detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
       const Certificate certificate = certificate_of<ShapeType>(
           vehicle, scalars + Layout::parameters(golden),
-          {scalars + Layout::input_mean, scalars + Layout::input_spread, scalars + Layout::output_mean,
-           scalars + Layout::output_spread, scalars + Layout::envelope_lower, scalars + Layout::envelope_upper});
+          {scalars + Layout::input_mean, scalars + Layout::input_deviation, scalars + Layout::output_mean,
+           scalars + Layout::output_deviation, scalars + Layout::envelope_lower, scalars + Layout::envelope_upper});
       sound &= certificate.proven();
     }
     return sound;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From features to commands, written once: for a prediction, a batch, the Jacobian, the trainer's judgement.
-//   features x -> (x - mean) / spread -> network -> y = spread z + mean -> the schema's g(x, y) = commands
+//   features x -> (x - mean) / deviation -> network -> y = deviation z + mean -> the schema's g(x, y) = commands
 // Physical units outside, standardised ones around the network. Of several samples, entry k of sample s stands at
 // [k * stride + s]; the network takes `Lanes` of them side by side.
 #pragma once
@@ -46,10 +46,10 @@ PINNQUAD_ALWAYS_INLINE Scales<typename Model::Scalar> scales_of([[maybe_unused]]
 /// `count` samples, 1 to `Lanes`; padding repeats the last one. Its loop starts at 0: of one from a constant `count`
 /// g++ 12 warns that its index overflows.
 template <int Size, int Lanes, class Scalar>
-PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* spread, const Scalar* values, int stride,
+PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* deviation, const Scalar* values, int stride,
                                         int count, Scalar* standardised) noexcept {
   for (int i = 0; i < Size; ++i) {
-    const Scalar middle = mean[i], scale = spread[i];
+    const Scalar middle = mean[i], scale = deviation[i];
     const Scalar* from = values + i * stride;
     Scalar* to = standardised + i * Lanes;
     for (int s = 0; s < count; ++s) to[s] = (from[s] - middle) / scale;
@@ -86,7 +86,7 @@ struct Pipeline {
       run(scales, static_cast<const Scalar*>(x), static_cast<Scalar*>(outputs), commands, forward);
     } else {
       const Scalar* const seen = x;
-      standardise<Features::size, 1>(scales.input_mean, scales.input_spread, seen, 1, 1, x);
+      standardise<Features::size, 1>(scales.input_mean, scales.input_deviation, seen, 1, 1, x);
       forward(seen, commands);
       if constexpr (Map::rotor_by_rotor) {
         command(scales, seen, 1, static_cast<const Scalar*>(commands), 1, commands, commands);
@@ -102,7 +102,7 @@ struct Pipeline {
   static PINNQUAD_ALWAYS_INLINE void ask(const Scales<Scalar>& scales, const Scalar* x, int x_stride, int count,
                                          Scalar* answers, const Forward& forward) noexcept {
     alignas(Lanes > 1 ? 64 : alignof(Scalar)) Scalar standardised[Features::size * Lanes];
-    standardise<Features::size, Lanes>(scales.input_mean, scales.input_spread, x, x_stride, count, standardised);
+    standardise<Features::size, Lanes>(scales.input_mean, scales.input_deviation, x, x_stride, count, standardised);
     forward(static_cast<const Scalar*>(standardised), answers);
   }
 
@@ -113,12 +113,12 @@ struct Pipeline {
                                              const Setting<Scalar>& setting = own_setting<Scalar>) noexcept {
     if constexpr (Map::rotor_by_rotor) {  // one loop for both is less code in flash
       for (int i = 0; i < rotor_count; ++i) {
-        outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
+        outputs[i] = answers[i * stride] * scales.output_deviation[i] + scales.output_mean[i];
         commands[i] = Map::command(outputs[i], setting, i);
       }
     } else {
       for (int i = 0; i < Map::size; ++i)
-        outputs[i] = answers[i * stride] * scales.output_spread[i] + scales.output_mean[i];
+        outputs[i] = answers[i * stride] * scales.output_deviation[i] + scales.output_mean[i];
       Scalar features[Features::size];
       if (x_stride != 1) {
         for (int k = 0; k < Features::size; ++k) features[k] = x[k * x_stride];
@@ -141,9 +141,9 @@ struct Pipeline {
     if constexpr (Map::has_feature_slopes) Map::template feature_slopes<size>(x, outputs, setting, jacobian);
     for (int i = 0; i < rotor_count; ++i) {
       for (int j = Map::first_output(i); j < Map::last_output(i); ++j) {
-        const Scalar slope = by_outputs[Map::slope_index(i, j)] * scales.output_spread[j];
+        const Scalar slope = by_outputs[Map::slope_index(i, j)] * scales.output_deviation[j];
         for (int k = 0; k < size; ++k)
-          jacobian[i * size + k] += slopes[j * size + k] * (slope / scales.input_spread[k]);
+          jacobian[i * size + k] += slopes[j * size + k] * (slope / scales.input_deviation[k]);
       }
     }
   }

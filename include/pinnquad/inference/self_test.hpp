@@ -69,9 +69,9 @@ bool numbers_finite(const Model& model) noexcept {
   constexpr int size = Model::Features::size;
   const Scales<typename Model::Scalar> scales = scales_of(model);
   bool finite = all_finite(scales.lower, size) && all_finite(scales.upper, size);
-  finite &= all_finite(scales.input_mean, size) && all_finite(scales.input_spread, size);
+  finite &= all_finite(scales.input_mean, size) && all_finite(scales.input_deviation, size);
   finite &= all_finite(scales.output_mean, Model::Network::outputs);
-  finite &= all_finite(scales.output_spread, Model::Network::outputs);
+  finite &= all_finite(scales.output_deviation, Model::Network::outputs);
   if constexpr (is_packed<Model>) finite &= packed_weights(model).finite();
   return finite;
 }

@@ -103,7 +103,7 @@ struct Context : detail::ContextAirframe<VehicleType> {
 
   Scaler<double, Features::size> input{};  ///< physical -> standardised, by the training set
   Scaler<double, output_count> output{};
-  std::array<double, 3> signed_sum_spread{1.0, 1.0, 1.0};  ///< standard deviations of the signed command sums
+  std::array<double, 3> signed_sum_deviation{1.0, 1.0, 1.0};  ///< standard deviations of the signed command sums
   Progress progress{};
 
   /// Throws std::invalid_argument unless every mean is finite and every standard deviation is finite and above 0. A
@@ -111,7 +111,7 @@ struct Context : detail::ContextAirframe<VehicleType> {
   constexpr void check() const {
     check_scaler("Context::input", input.mean, input.standard_deviation);
     check_scaler("Context::output", output.mean, output.standard_deviation);
-    check_scaler("Context::signed_sum_spread", std::array<double, 3>{}, signed_sum_spread);
+    check_scaler("Context::signed_sum_deviation", std::array<double, 3>{}, signed_sum_deviation);
   }
 
  private:

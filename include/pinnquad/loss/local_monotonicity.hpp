@@ -229,7 +229,7 @@ struct LocalMonotonicity {
     using Scalar = typename Batch::Scalar;
     using Series = detail::SignedCommandSum<Axis, Context, Batch>;
     constexpr auto axis = static_cast<std::size_t>(Axis::axis);
-    Series series(context, batch, Form::physical_units ? Scalar(1) : Scalar(context.signed_sum_spread[axis]));
+    Series series(context, batch, Form::physical_units ? Scalar(1) : Scalar(context.signed_sum_deviation[axis]));
     if constexpr (Form::physical_units) {
       constexpr auto feature = static_cast<std::size_t>(Context::Features::angular_acceleration) + axis;
       series.angular_acceleration *=

@@ -53,9 +53,9 @@ struct PredictorBase {
 template <class Scalar>
 struct Scales {
   const Scalar* input_mean;
-  const Scalar* input_spread;
+  const Scalar* input_deviation;
   const Scalar* output_mean;
-  const Scalar* output_spread;
+  const Scalar* output_deviation;
   const Scalar* lower;  ///< of the envelope
   const Scalar* upper;
 };

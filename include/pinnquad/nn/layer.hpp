@@ -3,12 +3,12 @@
 //   using Scalar;  static constexpr int inputs, outputs, parameter_count;
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
 // A spec may name itself for flash: `static constexpr const char* description` (model/description.hpp).
-// An activation derives from ElementwiseLayer (below) and has activate(v) and slope(y) or slope_from_input(v); their
-// forms for a whole pack, as in relu.hpp or gelu.hpp, are optional: with them it is computed inside the layer before it.
-// Layers are types without data: a network owns all parameters in one flat array, as the exported header does.
-// forward(), activate() and the slope are noexcept. They see samples alone: a batch that is padded to whole packs
-// repeats a sample, or leaves the padding out (training). Lanes past the last neuron may hold anything, NaN too: they
-// are not read.
+// An activation derives from ElementwiseLayer (below) and has activate(v) and slope(y) or slope_from_input(v). It is
+// computed inside the layer before it where it has forms for a whole pack too (relu.hpp), or says that they are those
+// of each lane: `static constexpr bool lane_by_lane = true` (gelu.hpp). Layers are types without data: a network owns
+// all parameters in one flat array, as the exported header does. forward(), activate() and the slope are noexcept. They
+// see samples alone: a batch that is padded to whole packs repeats a sample, or leaves the padding out (training).
+// Lanes past the last neuron may hold anything, NaN too: they are not read.
 //
 // A layer has no memory. A recurrent cell is a layer from [new inputs, state] to [outputs, next state]; forward()
 // stays a pure function. The caller owns the state: it feeds the outputs of one call into the next and sets them to

@@ -77,8 +77,8 @@ PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vec
   const double calm = (1 - hover_command) / calm_reserve;
   if (calm < 1) {
     style.max_yaw_rate_rad_s *= calm;
-    style.thumbs.yaw_spread_rad_s *= calm;
-    style.thumbs.roll_pitch_spread_rad_s *= calm;
+    style.thumbs.yaw_deviation_rad_s *= calm;
+    style.thumbs.roll_pitch_deviation_rad_s *= calm;
     style.velocity_lag_s /= calm;
   }
   return style;
@@ -100,8 +100,8 @@ NearGroundStyle near_ground_style(const Quadrotor<double, Effects...>& quadrotor
   lower(style.max_climb_m_s, agile.max_climb_m_s);
   lower(style.max_descent_m_s, agile.max_descent_m_s);
   lower(style.max_yaw_rate_rad_s, agile.max_yaw_rate_rad_s);
-  lower(style.thumbs.roll_pitch_spread_rad_s, agile.thumbs.roll_pitch_spread_rad_s);
-  lower(style.thumbs.yaw_spread_rad_s, agile.thumbs.yaw_spread_rad_s);
+  lower(style.thumbs.roll_pitch_deviation_rad_s, agile.thumbs.roll_pitch_deviation_rad_s);
+  lower(style.thumbs.yaw_deviation_rad_s, agile.thumbs.yaw_deviation_rad_s);
   constexpr double reserve_share = 1.0 / 3;
   const double hover = hover_command(quadrotor, place_m);
   lower(style.max_vertical_acceleration_m_s2, reserve_share * (1 / hover - 1) * quadrotor.site().gravity_m_s2);

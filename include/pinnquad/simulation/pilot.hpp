@@ -35,21 +35,22 @@ namespace detail {
 
 /// How the thumbs move.
 struct ThumbStyle {
-  double frame_s{0.004};                 ///< the sticks arrive in frames, as over a 250 Hz radio link
-  double bandwidth_rad_s{14};            ///< of a first-order random process
-  double roll_pitch_spread_rad_s{0.21};  ///< its standard deviation
-  double yaw_spread_rad_s{0.062};
+  double frame_s{0.004};                    ///< the sticks arrive in frames, as over a 250 Hz radio link
+  double bandwidth_rad_s{14};               ///< of a first-order random process
+  double roll_pitch_deviation_rad_s{0.21};  ///< its standard deviation
+  double yaw_deviation_rad_s{0.062};
 };
 
-/// Stick noise. Per axis s(k+1) = a s(k) + sqrt(1 - a^2) spread n(k), a = exp(-frame bandwidth), n normal; held between
-/// frames. Three draws per frame: roll, pitch, yaw.
+/// Stick noise. Per axis s(k+1) = a s(k) + sqrt(1 - a^2) deviation n(k), a = exp(-frame bandwidth), n normal; held
+/// between frames. Three draws per frame: roll, pitch, yaw.
 class Thumbs {
  public:
   explicit Thumbs(const ThumbStyle& style)
       : frame_s_(style.frame_s),
         memory_(std::exp(-style.frame_s * style.bandwidth_rad_s)),
         drive_(std::sqrt(1 - memory_ * memory_)),
-        spread_rad_s_(style.roll_pitch_spread_rad_s, style.roll_pitch_spread_rad_s, style.yaw_spread_rad_s) {}
+        deviation_rad_s_(style.roll_pitch_deviation_rad_s, style.roll_pitch_deviation_rad_s,
+                         style.yaw_deviation_rad_s) {}
 
   /// Moves the sticks if a frame is due; rad/s about the body axes, FRD. To be called in time order, once per tick;
   /// with a tick longer than a frame one frame per tick arrives.
@@ -59,7 +60,7 @@ class Thumbs {
     if (time_s < next_frame_s_ - early) return;
     next_frame_s_ += frame_s_;
     for (int i = 0; i < 3; ++i) {
-      stick_rad_s[i] = memory_ * stick_rad_s[i] + drive_ * spread_rad_s_[i] * standard_normal(engine);
+      stick_rad_s[i] = memory_ * stick_rad_s[i] + drive_ * deviation_rad_s_[i] * standard_normal(engine);
     }
   }
 
@@ -67,7 +68,7 @@ class Thumbs {
   double frame_s_;
   double memory_;
   double drive_;
-  Vector3<double> spread_rad_s_;
+  Vector3<double> deviation_rad_s_;
   double next_frame_s_{0};
 };
 

@@ -101,7 +101,7 @@ struct RecorderErrors {
 /// The paper calls yaw strongly correlated too, which speaks for the second.
 constexpr RecorderErrors noisy_gyro_errors() noexcept {
   RecorderErrors errors;
-  errors.gyro_noise_rad_s = 0.05;  // over 10 ms: 7.1 rad/s^2 in the acceleration, whose own spread is 6.6 in roll
+  errors.gyro_noise_rad_s = 0.05;  // over 10 ms: 7.1 rad/s^2 in the acceleration, whose own deviation is 6.6 in roll
   errors.command_jitter_s = 0.010;
   return errors;
 }

@@ -209,7 +209,7 @@ ContextType make_context(const RowSet& rows,
     context.output.mean[i] = columns[inputs + i].mean;
     context.output.standard_deviation[i] = columns[inputs + i].scale();
   }
-  for (std::size_t i = 0; i < axes; ++i) context.signed_sum_spread[i] = columns[inputs + outputs + i].scale();
+  for (std::size_t i = 0; i < axes; ++i) context.signed_sum_deviation[i] = columns[inputs + outputs + i].scale();
   return context;
 }
 

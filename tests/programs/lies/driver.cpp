@@ -118,9 +118,9 @@ const std::vector<Lie<Residual>> residual_lies = {
     {"golden_feature_nan",
      [](Residual& b) { b.bytes.set_scalar(Residual::Layout::golden_features + 3, not_a_number); }},
     {"parameter_edited", [](Residual& b) { b.scale(first_parameter + 3, 1, 1.05); }},
-    {"input_spread_0", [](Residual& b) { b.bytes.set_scalar(Residual::Layout::input_spread + 2, 0.0F); }},
-    {"input_spread_negative", [](Residual& b) { b.scale(Residual::Layout::input_spread + 2, 1, -1); }},
-    {"output_spread_doubled", [](Residual& b) { b.scale(Residual::Layout::output_spread, 4, 2); }},
+    {"input_spread_0", [](Residual& b) { b.bytes.set_scalar(Residual::Layout::input_deviation + 2, 0.0F); }},
+    {"input_spread_negative", [](Residual& b) { b.scale(Residual::Layout::input_deviation + 2, 1, -1); }},
+    {"output_spread_doubled", [](Residual& b) { b.scale(Residual::Layout::output_deviation, 4, 2); }},
     {"allocation_edited", [](Residual& b) { b.scale_record(BlockRecord::allocation, 4, 1, 1.00001); }},
     {"command_range_swapped",
      [](Residual& b) {

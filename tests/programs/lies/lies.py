@@ -105,8 +105,8 @@ residual_lies = [
     ("parameter edited", edited("parameters", number(3, scaled(1.05))), None),
     # one that moves no golden command by more than rounding
     ("last parameter edited", edited("parameters", number(-1, scaled(1.05))), ""),
-    ("input spread 0", edited("input", number(22, "0.0f")), "spread is not positive"),
-    ("input spread negative", edited("input", number(22, scaled(-1))), "spread is not positive"),
+    ("input spread 0", edited("input", number(22, "0.0f")), "standard deviation is not positive"),
+    ("input spread negative", edited("input", number(22, scaled(-1))), "standard deviation is not positive"),
     ("output spread doubled", edited("output", at_places(range(4, 8), scaled(2))), RANGE),
     ("allocation edited", edited("allocation", number(1, scaled(1.00001))), "trained for another allocation"),
     ("motor order edited", edited("motor_torque_signs", number(0, "1")), "trained with another motor order"),

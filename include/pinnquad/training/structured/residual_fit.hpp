@@ -95,7 +95,7 @@ auto residual_context(const ContextType& context) {
         context.input.standard_deviation[static_cast<std::size_t>(feature)];
   });
   residual.output = context.output;
-  residual.signed_sum_spread = context.signed_sum_spread;
+  residual.signed_sum_deviation = context.signed_sum_deviation;
   return residual;
 }
 
