@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <pinnquad/data/csv.hpp>
 #include <pinnquad/data/split.hpp>

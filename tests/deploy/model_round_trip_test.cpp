@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <type_traits>
 
 #include "models/v2/crazyflie_tanh.hpp"
