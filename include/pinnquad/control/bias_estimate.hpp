@@ -8,6 +8,7 @@
 
 namespace pinnquad {
 
+/// Settings of a BiasEstimate.
 template <class Scalar>
 struct BiasSettings {
   Scalar bandwidth_1_s = Scalar(5.5);  ///< both poles of the estimate; 0: no estimate

@@ -126,6 +126,8 @@ struct SetPoint {
   Vector3<Scalar> stick_rad_s = Vector3<Scalar>::Zero();   ///< added to the body rates wanted, FRD
 };
 
+/// Linear and angular acceleration wanted of a state and a set point, NED and FRD, SI units. Outputs are untouched
+/// where the status is not ok.
 template <class Scalar>
 class FlightController {
  public:

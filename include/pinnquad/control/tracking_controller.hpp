@@ -12,6 +12,8 @@
 
 namespace pinnquad {
 
+/// Commands of a reference point and a measured state, NED and FRD, SI units. Status `limited` where a command was
+/// limited, `fell_back` where the feed-forward declined and the rigid body flew.
 template <class Scalar, class FeedForward>
 class TrackingController {
   static_assert(is_feed_forward<FeedForward, Scalar>,

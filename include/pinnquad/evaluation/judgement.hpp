@@ -104,6 +104,7 @@ std::array<AxisSeries, 3> axis_series(const AirframeSource& airframe, const RowS
   return series;
 }
 
+/// Shares of neighbouring rows on which sum and angular acceleration move apart, axis by axis (docs/monotonicity.md).
 inline Judgement::PairSigns pair_signs(const std::array<AxisSeries, 3>& series) {
   constexpr double large_step_share = 0.5;  // of the standard deviation
   Judgement::PairSigns result;

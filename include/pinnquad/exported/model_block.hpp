@@ -17,10 +17,12 @@
 
 namespace pinnquad {
 
+/// The first bytes of a block.
 inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N', 'N', 'Q', 'U', 'A', 'D'};
 
 /// The version that this library writes: 2 has records, 1 has none and still opens.
 inline constexpr std::uint32_t model_block_version = 2;
+/// The least version that open() reads.
 inline constexpr std::uint32_t oldest_model_block_version = 1;
 
 /// Where a block may begin: at multiples of this many bytes, so that its scalars can be read in place.
@@ -69,6 +71,7 @@ enum class BlockRecord : std::uint16_t {
   distance = 10,  ///< scalars: means of all features, lower triangle of L^-1 row by row, limit of the norm; optional
 };
 
+/// Bit of a record's type: a reader that does not know the record refuses the block.
 inline constexpr std::uint16_t mandatory_record = 0x8000;
 
 namespace detail {

@@ -51,6 +51,7 @@ struct SpecificForce : detail::MotionPart<SpecificForce> {
   }
 };
 
+/// Derivative of the body rates, FRD, rad/s^2.
 struct AngularAcceleration : detail::MotionPart<AngularAcceleration> {
   static constexpr int angular_acceleration = 0;
   static constexpr std::array<const char*, 3> names = {"wdot_x", "wdot_y", "wdot_z"};
@@ -62,6 +63,7 @@ struct AngularAcceleration : detail::MotionPart<AngularAcceleration> {
   }
 };
 
+/// Body rates p, q, r, FRD, rad/s.
 struct BodyRates : detail::MotionPart<BodyRates> {
   static constexpr std::array<const char*, 3> names = {"w_x", "w_y", "w_z"};
   static constexpr std::array<const char*, 3> units = {"rad/s", "rad/s", "rad/s"};

@@ -7,6 +7,7 @@
 
 namespace pinnquad {
 
+/// Activation of a network: clip of each output of the layer before. The formula is at the head of this file.
 struct Clip {
   static constexpr const char* description = "pinnquad::Clip";
 

@@ -8,6 +8,7 @@
 
 namespace pinnquad {
 
+/// Activation of a network: GELU of each output of the layer before. The formula is at the head of this file.
 struct Gelu {
   static constexpr const char* description = "pinnquad::Gelu";
 

@@ -8,6 +8,7 @@
 
 namespace pinnquad {
 
+/// Activation of a network: sine of each output of the layer before. The formula is at the head of this file.
 struct Sine {
   static constexpr const char* description = "pinnquad::Sine";
 

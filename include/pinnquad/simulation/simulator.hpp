@@ -267,6 +267,7 @@ struct FlightReport {
   double saturated_share{0};  ///< rows in which a rotor is at 0 or at 1
 };
 
+/// A flight and what is worth knowing of it.
 struct RecordedFlight {
   Flight flight;
   FlightReport report;

@@ -24,6 +24,7 @@ enum class Reaction : std::uint8_t {
   gives_up,        ///< no commands: the flight stack must take over
 };
 
+/// The enumerator as C++ text.
 constexpr const char* to_string(Reaction reaction) noexcept {
   switch (reaction) {
     case Reaction::flies: return "flies";

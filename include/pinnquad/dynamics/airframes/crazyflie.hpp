@@ -11,6 +11,7 @@
 
 namespace pinnquad {
 
+/// 27 g, X frame; values and their sources at each line.
 struct Crazyflie {
   static constexpr const char* name = "crazyflie_2_1";
 

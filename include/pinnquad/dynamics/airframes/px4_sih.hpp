@@ -8,6 +8,7 @@
 
 namespace pinnquad {
 
+/// PX4's simulated vehicle; values and their sources at each line.
 struct Px4Sih {
   static constexpr const char* name = "px4_sih";
 

@@ -8,6 +8,7 @@
 
 namespace pinnquad {
 
+/// 0.752 kg; values and their sources at each line.
 struct Racer5Inch {
   static constexpr const char* name = "racer_5_inch";
 

@@ -24,6 +24,7 @@ constexpr Airframe<Scalar> reference_rotors_and_drag() {
 }
 }  // namespace detail
 
+/// The vehicle at 1.5 kg.
 struct ReferenceQuadrotor15 {
   static constexpr const char* name = "reference_1.5kg";
 
@@ -36,6 +37,7 @@ struct ReferenceQuadrotor15 {
   }
 };
 
+/// The vehicle at 1.0 kg.
 struct ReferenceQuadrotor10 {
   static constexpr const char* name = "reference_1.0kg";
 

@@ -129,6 +129,7 @@ struct MonotoneShape {
   AxisSlopes airframe_slopes{};  ///< hover_slopes()
 };
 
+/// The places and scales of a context's features, as the equations of the fit read them.
 template <class ContextType>
 MonotoneShape monotone_shape(const ContextType& context) {
   using Features = typename ContextType::Features;
