@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 
 #include "pinnquad/core/instruction_set.hpp"
@@ -26,14 +27,17 @@ constexpr std::string_view printed_type() noexcept {
   return text.substr(before, text.size() - before - after);
 }
 
+template <std::size_t Size>
+struct Letters {
+  std::array<char, Size> letter{};
+  std::size_t size = 0;
+};
+
 template <class T>
 constexpr auto without_instruction_set() noexcept {
   constexpr std::string_view text = printed_type<T>();
   constexpr std::string_view set = instruction_set;  // stands between two "::"
-  struct Letters {
-    std::array<char, text.size()> letter{};
-    std::size_t size = 0;
-  } kept;
+  Letters<text.size()> kept;
   for (std::size_t i = 0; i < text.size(); ++i) {
     kept.letter[kept.size++] = text[i];
     const bool behind_scope = i > 0 && text[i - 1] == ':' && text[i] == ':';
