@@ -274,9 +274,6 @@ class PythonSimulator {
     const VehicleState<double>& vehicle = idle().running_.vehicle();
     const State<double>& body = vehicle.body;
     const EulerAngles<double> euler = to_euler(body.attitude);
-    const auto loads = with_quadrotor(running_.quadrotor(), [&](const auto& quadrotor) {
-      return quadrotor.evaluate(body, vehicle.rotors, vehicle.time_s);
-    });
     py::dict d;
     d["time_s"] = vehicle.time_s;
     d["position_m"] = array_of(body.position_m);
@@ -287,9 +284,12 @@ class PythonSimulator {
     d["altitude_m"] = running_.altitude_m();
     d["commands"] = array_of(running_.commands());
     d["rotor_commands"] = array_of(vehicle.rotors);
-    d["rotor_thrust_N"] = -loads.rotors.force_N[2];
-    d["aerodynamic_force_N"] = array_of(loads.aerodynamic.force_N);
-    d["wind_m_s"] = array_of(loads.surroundings.wind_m_s);
+    with_quadrotor(running_.quadrotor(), [&](const auto& quadrotor) {
+      const auto loads = quadrotor.evaluate(body, vehicle.rotors, vehicle.time_s);
+      d["rotor_thrust_N"] = -loads.rotors.force_N[2];
+      d["aerodynamic_force_N"] = array_of(loads.aerodynamic.force_N);
+      d["wind_m_s"] = array_of(loads.surroundings.wind_m_s);
+    });
     return d;
   }
 
