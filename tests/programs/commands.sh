@@ -4,7 +4,10 @@ source "$(dirname "$0")/common.sh" "$@"
 
 number() { sed -n "s/^#define PINNQUAD_VERSION_$1 \([0-9]*\)$/\1/p" "$source_dir/include/pinnquad/version.hpp"; }
 version="pinnquad $(number MAJOR).$(number MINOR).$(number PATCH)"
-commands=("" fly train study evaluate certify replay block import airframe "airframe list" "airframe check" "airframe convert" new "study paper" "study ablation" "study merge" report)
+# a command is a header of that name in a room of tools/; beyond is a command of study
+mapfile -t top < <(find "$source_dir/tools" -name '*_command.hpp' ! -name beyond_command.hpp | sed 's|.*/||; s|_command.hpp$||' | sort)
+[ ${#top[@]} -ge 11 ] || fail "tools/ has the headers of ${#top[@]} commands"
+commands=("" "${top[@]}" "airframe list" "airframe check" "airframe convert" "study paper" "study ablation" "study beyond" "study merge")
 for command in "${commands[@]}"; do
   # shellcheck disable=SC2086 # several words
   "$pinnquad" $command --help >help.txt 2>stderr.txt || fail "pinnquad $command --help: exit code $?"
@@ -15,7 +18,7 @@ for command in "${commands[@]}"; do
   # shellcheck disable=SC2086
   [ "$("$pinnquad" $command --version)" = "$version" ] || fail "pinnquad $command --version"
 done
-for command in fly import train study report evaluate certify replay block airframe new; do
+for command in "${top[@]}"; do
   "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
 done
 

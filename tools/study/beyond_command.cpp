@@ -236,6 +236,6 @@ programs::Command programs::beyond_command(CLI::App& study) {
   add_number(*line, "--threads", options->threads, 1u, 1024u, "trainings at once (default: all cores)")
       ->default_str("");
   line->add_option("--shard", options->shard, "run part i of n only, for job arrays")->type_name("i/n");
-  line->footer("The same command goes on where it was stopped or killed.");
+  line->footer(study::exit_codes);
   return {line, [options] { return run(*options); }};
 }

@@ -22,6 +22,11 @@
 
 namespace study {
 
+/// Of the commands of study, for their help.
+inline constexpr const char* exit_codes =
+    "Exit codes: 0 all trainings are there, whatever the verdicts; 1 (merge) some are missing; 2 bad input or a file "
+    "that can't be read or written; 130 interrupted: the same command goes on.";
+
 /// One training to run.
 struct Job {
   const Contender* contender = nullptr;

@@ -104,10 +104,6 @@ std::shared_ptr<StudyOptions> training_options(CLI::App& line, int flights, cons
   return options;
 }
 
-constexpr const char* study_exit_codes =
-    "Exit codes: 0 all trainings are there, whatever the verdicts; 1 (merge) some are missing; 2 bad input or a file "
-    "that can't be read or written; 130 interrupted: the same command goes on.";
-
 programs::Command paper_command(CLI::App& parent) {
   CLI::App* line =
       parent.add_subcommand("paper", "The 14 models of Table 2; each finished training is a row of DIR/rows.csv");
@@ -120,7 +116,7 @@ programs::Command paper_command(CLI::App& parent) {
                            "  pinnquad study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
                            "  pinnquad study merge study/* --out study/all         joins such parts\n"
                            "The same command goes on where it was stopped or killed.\n") +
-               study_exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
+               study::exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
   return {line, [options] { return run_campaign(*options, "table 2", study::chosen_models(options->models)); }};
 }
 
@@ -131,7 +127,7 @@ programs::Command ablation_command(CLI::App& parent) {
   const auto options = training_options(*line, 1, "flights d1, the seeds from --flight-seed on");
   line->add_option("--variants", options->variants, "some of the variants, by the names in rows.csv (default: all)")
       ->delimiter(',');
-  line->footer(study_exit_codes);
+  line->footer(study::exit_codes);
   return {line, [options] { return run_campaign(*options, "ablation", study::chosen_variants(options->variants)); }};
 }
 
@@ -153,7 +149,7 @@ programs::Command merge_command(CLI::App& parent) {
 
 programs::Command programs::study_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("study", "The paper's campaign: its models trained and judged, seed by seed");
-  line->footer(study_exit_codes);
+  line->footer(study::exit_codes);
   const std::vector<Command> commands = {paper_command(*line), ablation_command(*line), beyond_command(*line),
                                          merge_command(*line)};
   return {line, [commands] { return run_chosen(commands); }};

@@ -12,17 +12,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "pinnquad/nn/clip.hpp"
-#include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/activations.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
-#include "pinnquad/nn/relu.hpp"
-#include "pinnquad/nn/silu.hpp"
-#include "pinnquad/nn/sine.hpp"
-#include "pinnquad/nn/softplus.hpp"
-#include "pinnquad/nn/tanh.hpp"
 
 namespace programs {
 
@@ -46,16 +41,17 @@ Activation<Scalar> activation_of() {
           }};
 }
 
+template <class Scalar, class... Specs>
+std::vector<Activation<Scalar>> activations_of(const std::tuple<Specs...>&) {
+  return {activation_of<Specs, Scalar>()...};
+}
+
 }  // namespace detail
 
+/// Those of the library.
 template <class Scalar>
 const std::vector<Activation<Scalar>>& activations() {
-  using namespace pinnquad;
-  static const std::vector<Activation<Scalar>> all = {
-      detail::activation_of<Relu, Scalar>(),     detail::activation_of<Tanh, Scalar>(),
-      detail::activation_of<Gelu, Scalar>(),     detail::activation_of<Silu, Scalar>(),
-      detail::activation_of<Softplus, Scalar>(), detail::activation_of<Sine, Scalar>(),
-      detail::activation_of<Clip, Scalar>()};
+  static const std::vector<Activation<Scalar>> all = detail::activations_of<Scalar>(pinnquad::Activations{});
   return all;
 }
 
