@@ -145,7 +145,7 @@ struct Broken {
   int not_finite_written = 0;  ///< a command that is NaN or infinite
   int touched = 0;             ///< commands changed though the Status has no output
   int bad_input_answered = 0;  ///< the network answered a NaN, an infinity or (where inputs are checked) a bad attitude
-  int bad_input_fell_back = 0;     ///< the inverse by formula answered one
+  int bad_input_fell_back = 0;     ///< the analytic inverse answered one
   int outside_limits_written = 0;  ///< a command outside the guard's limits
   int report_differs = 0;          ///< the overload with a report gives another Status or other bits
   int features_differ = 0;         ///< predict_features() answers what is not finite, or writes it

@@ -88,7 +88,7 @@ unsigned char inverse(const Scalar* state, const Scalar* wanted, Scalar* u) noex
   return static_cast<unsigned char>(status);
 }
 
-/// Every policy of a guard that can stand beside the others, falling back to the inverse by formula.
+/// Every policy of a guard that can stand beside the others, falling back to the analytic inverse.
 using Guarded = pinnquad::InverseDynamics<
     SmallModel,
     pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::RefuseCommands<WideCommands>, pinnquad::ClipCommands<>,

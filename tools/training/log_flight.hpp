@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A model of logged flights in a closed loop: the vehicle that the logs show flies a figure-eight inside what they have
-// flown, with the model as feed-forward, beside the inverse by formula and none.
+// flown, with the model as feed-forward, beside the analytic inverse and none.
 #pragma once
 
 #include <algorithm>
