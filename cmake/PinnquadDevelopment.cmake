@@ -42,9 +42,9 @@ set(PINNQUAD_UNOPTIMISED "" CACHE STRING
   "Rooms whose tests are compiled with -O0: what takes longer to optimise than to run as it is")
 
 option(PINNQUAD_BUILD_AT_ONCE
-  "Compile the program for a build from nothing (scripts/test): several sources at once, up to a third less. Off for who edits:
-  one changed source costs its neighbours too" OFF)
-# pinnquad_at_once(<target>): its sources are compiled together where PINNQUAD_BUILD_AT_ONCE says so.
-function(pinnquad_at_once target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD "${PINNQUAD_BUILD_AT_ONCE}" UNITY_BUILD_BATCH_SIZE 5)
+  "Compile the program for a build from nothing (scripts/test, scripts/demo): several sources at once, up to a third less. Off for
+  who edits: one changed source costs its neighbours too" OFF)
+# pinnquad_at_once(<target> <count>): so many of its sources are compiled together where PINNQUAD_BUILD_AT_ONCE says so.
+function(pinnquad_at_once target count)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD "${PINNQUAD_BUILD_AT_ONCE}" UNITY_BUILD_BATCH_SIZE ${count})
 endfunction()

@@ -72,7 +72,7 @@ inline std::string measure_text(std::size_t measure, double value) {
   return format("%.3f", m.scale * value) + (measure == 0 ? "e-3" : " deg");
 }
 
-inline std::string percent(double share) { return format("%+.1f %%", 100 * share); }
+inline std::string signed_percent(double share) { return format("%+.1f %%", 100 * share); }
 
 inline std::string cell_name(const ModelPair& pair, std::size_t measure) {
   return pair_text(pair) + ", " + table3_measures[measure].label;
@@ -83,10 +83,10 @@ inline Evidence evidence(const Comparison& c) {
   e.what = cell_name(c.pair, c.measure);
   e.from = measure_text(c.measure, c.result.baseline_mean);
   e.to = measure_text(c.measure, c.result.candidate_mean);
-  e.change = percent(c.result.relative_difference);
+  e.change = signed_percent(c.result.relative_difference);
   e.wins = std::to_string(c.result.wins) + "/" + std::to_string(c.result.pairs);
   e.p_value = format("%.2g", c.result.p_value);
-  if (const std::optional<double> paper = paper_change(c.pair, c.measure)) e.paper = percent(*paper);
+  if (const std::optional<double> paper = paper_change(c.pair, c.measure)) e.paper = signed_percent(*paper);
   e.says = outcome_name(outcome(c.result));
   return e;
 }
@@ -218,7 +218,7 @@ inline Judged judge_linearized_angles(const Study& study) {
       Evidence line{"1 against " + std::to_string(model) + ", " + table3_measures[measure].label,
                     measure_text(measure, *network),
                     measure_text(measure, *one),
-                    percent(*one / *network - 1),
+                    signed_percent(*one / *network - 1),
                     "",
                     "",
                     "",
@@ -227,7 +227,7 @@ inline Judged judge_linearized_angles(const Study& study) {
         tally.judged.evidence.push_back(std::move(line));
         continue;
       }
-      line.paper = percent(paper_entry(1, measure).mean / paper_entry(model, measure).mean - 1);
+      line.paper = signed_percent(paper_entry(1, measure).mean / paper_entry(model, measure).mean - 1);
       tally.count(*one < *network, std::move(line));
     }
   }
@@ -253,9 +253,9 @@ inline Judged judge_competitive(const Study& study) {
   if (!informed) tally.lacks(6);
   if (!vanilla || !informed) return tally.judged;
   const double excess = *vanilla / *informed - 1;
-  tally.count(excess <= close,
-              {"5 against 6, mean absolute error", measure_text(0, *informed), measure_text(0, *vanilla),
-               percent(excess), "", "", percent(paper_entry(5, 0).mean / paper_entry(6, 0).mean - 1), ""});
+  tally.count(excess <= close, {"5 against 6, mean absolute error", measure_text(0, *informed),
+                                measure_text(0, *vanilla), signed_percent(excess), "", "",
+                                signed_percent(paper_entry(5, 0).mean / paper_entry(6, 0).mean - 1), ""});
   return tally.result();
 }
 
@@ -270,7 +270,7 @@ inline Judged judge_larger_gain(const Study& study) {
     tally.judged.rests_on(std::min(reduced->result.pairs, full->result.pairs));
     const double gain = reduced->result.relative_difference, full_gain = full->result.relative_difference;
     tally.count(gain < full_gain && gain < 0,
-                {pair_text(pair) + "; on the full set 6 against 5", percent(full_gain), percent(gain),
+                {pair_text(pair) + "; on the full set 6 against 5", signed_percent(full_gain), signed_percent(gain),
                  format("%+.1f points", 100 * (gain - full_gain)), "", "",
                  format("%+.1f points", 100 * (*paper_change(pair, 0) - *paper_change({5, 6}, 0))), ""});
   }
@@ -286,8 +286,8 @@ inline Judged judge_degradation(const Study& study) {
     if (!full || !reduced) continue;
     tally.count(*reduced > *full,
                 {pair_text(pair) + ", mean absolute error", measure_text(0, *full), measure_text(0, *reduced),
-                 percent(*reduced / *full - 1), "", "",
-                 percent(paper_entry(pair.candidate, 0).mean / paper_entry(pair.baseline, 0).mean - 1), ""});
+                 signed_percent(*reduced / *full - 1), "", "",
+                 signed_percent(paper_entry(pair.candidate, 0).mean / paper_entry(pair.baseline, 0).mean - 1), ""});
   }
   return tally.result();
 }

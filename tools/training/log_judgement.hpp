@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "logs/finding.hpp"
 #include "training/log_fits.hpp"
 
 namespace programs {
@@ -91,8 +92,6 @@ inline PairSigns pair_signs(const LogPlan& plan, const pinnquad::RowSet& rows, c
   const pinnquad::GivenAirframe airframe{plan.airframe.name, plan.airframe.value};
   return programs::pair_signs(axis_series(airframe, counted.rows, counted.predictions));
 }
-
-inline std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 }  // namespace detail
 
