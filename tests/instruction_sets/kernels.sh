@@ -32,10 +32,14 @@ command -v "$compiler" >/dev/null || skip "no $compiler"
 # every test of these rooms that names a pack or what runs on one
 mapfile -t sources < <(grep -lE 'Pack|JacobianPass' "$root"/tests/nn/*.cpp "$root"/tests/training/network_gradient.cpp)
 [ "${#sources[@]}" -ge 8 ] || { echo "failed: only ${#sources[@]} tests of kernels: ${sources[*]}"; exit 1; }
-objects=()
-for source in "$root/tests/main.cpp" "${sources[@]}"; do
+# what each includes, compiled once for all of them
+printf '#include <Eigen/Core>\n#include <doctest/doctest.h>\n' >"$work/precompiled.hpp"
+"$compiler" "${flags[@]}" -x c++-header "$work/precompiled.hpp" -o "$work/precompiled.hpp.gch"
+"$compiler" "${flags[@]}" -c "$root/tests/main.cpp" -o "$work/main.o"
+objects=("$work/main.o")
+for source in "${sources[@]}"; do
   objects+=("$work/$(basename "$source" .cpp).o")
-  "$compiler" "${flags[@]}" -c "$source" -o "${objects[-1]}"
+  "$compiler" "${flags[@]}" -include "$work/precompiled.hpp" -c "$source" -o "${objects[-1]}"
 done
 "$compiler" "${flags[@]}" "${objects[@]}" -o "$work/kernels"
 "$emulator" "$work/kernels"
