@@ -43,6 +43,14 @@ need_natural() {
   fi
 }
 
+# configure <preset>: in the root of the repository. From nothing the program's sources are compiled several at once; who has
+# begun to edit keeps what was chosen.
+configure() {
+  local at_once=()
+  if [ ! -f "build/$1/CMakeCache.txt" ]; then at_once=(-DPINNQUAD_BUILD_AT_ONCE=ON); fi
+  cmake --preset "$1" ${at_once[@]+"${at_once[@]}"}
+}
+
 # parallel_jobs: how many compilers at a time. PINNQUAD_JOBS overrides; a heavy translation unit takes about a
 # gigabyte, so memory is a limit too.
 parallel_jobs() {

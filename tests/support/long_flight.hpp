@@ -5,20 +5,17 @@
 
 #include <doctest/doctest.h>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define PINNQUAD_FLIES_SHORT true
-#elif defined(__has_feature)  // as clang says it
-#if __has_feature(address_sanitizer)
-#define PINNQUAD_FLIES_SHORT true
-#endif
-#endif
-#ifndef PINNQUAD_FLIES_SHORT
-#define PINNQUAD_FLIES_SHORT false
-#endif
-
 namespace pinnquad::test {
 
 /// TEST_CASE("..." * long_flight()): skipped under the address sanitizer.
-inline doctest::skip long_flight() noexcept { return doctest::skip(PINNQUAD_FLIES_SHORT); }
+inline doctest::skip long_flight() noexcept {
+#if defined(__SANITIZE_ADDRESS__)
+  return doctest::skip(true);
+#elif defined(__has_feature)  // clang
+  return doctest::skip(__has_feature(address_sanitizer));
+#else
+  return doctest::skip(false);
+#endif
+}
 
 }  // namespace pinnquad::test
