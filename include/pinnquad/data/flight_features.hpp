@@ -60,13 +60,26 @@ class FlightInputs {
   const Flight* flight_;
 };
 
+namespace detail {
+/// Values of a flight's extra column. Throws std::invalid_argument, one line, for one that is absent or in another unit.
+inline const std::vector<double>& column_values(const Flight& flight, const std::string& name,
+                                                const std::string& unit) {
+  const ExtraColumn* column = flight.column(name);
+  const std::string expected =
+      "flight '" + flight.name + "': expected a column " + name + " in " + unit + ", found ";
+  if (column == nullptr) throw std::invalid_argument(expected + "none of that name");
+  if (column->unit != unit) throw std::invalid_argument(expected + "it in " + column->unit);
+  return column->values;
+}
+}  // namespace detail
+
 /// Inputs with extra columns, found by name. Throws std::invalid_argument for one that is absent or in another unit.
 template <class Base, class Scalar, class... Column>
 class FlightInputs<detail::InputsWithColumns<Base, Scalar, Column...>> {
  public:
   using Inputs = detail::InputsWithColumns<Base, Scalar, Column...>;
 
-  explicit FlightInputs(const FlightRows& rows) : base_(rows), columns_{values_of<Column>(*rows.flight)...} {}
+  explicit FlightInputs(const FlightRows& rows) : base_(rows), columns_{&detail::column_values(*rows.flight, Column::name, Column::unit)...} {}
 
   bool read(std::size_t row, Inputs& inputs) const {
     Inputs read;
@@ -77,22 +90,31 @@ class FlightInputs<detail::InputsWithColumns<Base, Scalar, Column...>> {
   }
 
  private:
-  template <class Wanted>
-  static const std::vector<double>* values_of(const Flight& flight) {
-    const ExtraColumn* column = flight.column(Wanted::name);
-    const std::string expected =
-        "flight '" + flight.name + "': expected a column " + Wanted::name + " in " + Wanted::unit + ", found ";
-    if (column == nullptr) throw std::invalid_argument(expected + "none of that name");
-    if (column->unit != Wanted::unit) throw std::invalid_argument(expected + "it in " + column->unit);
-    return &column->values;
-  }
-
   FlightInputs<Base> base_;
   std::array<const std::vector<double>*, sizeof...(Column)> columns_;
 };
 
-/// Windows about a row, which is their present instant; the taps are interpolated as in flight
-/// (features/input_history.hpp). False where a tap lies beyond these rows or behind a gap: no window crosses a border.
+namespace detail {
+/// The other taps of a window about a row, interpolated as in flight (features/input_history.hpp). `read(row, tap)`:
+/// the inputs of a row alone. False where a tap lies beyond these rows or behind a gap: no window crosses a border.
+template <class Scalar, class Window, class Read, class Tap>
+bool read_window(const Window& window, const FlightRows& rows, std::size_t row, const Read& read, Tap* others) {
+  const auto time_of = [&rows](std::size_t i) { return (*rows.flight)[i].time_s; };
+  const double present_s = time_of(row);
+  std::size_t first = row, last = row;
+  while (first > rows.rows.begin && time_of(first) > present_s + window.earliest_s &&
+         follows(window, time_of(first - 1), time_of(first))) {
+    --first;
+  }
+  while (last + 1 < rows.rows.end && time_of(last) < present_s + window.latest_s &&
+         follows(window, time_of(last), time_of(last + 1))) {
+    ++last;
+  }
+  return fill_window<Scalar>(window, present_s, first, last, row, time_of, read, others);
+}
+}  // namespace detail
+
+/// Windows about a row, which is their present instant.
 template <class Tap, class Scalar, class Window>
 class FlightInputs<detail::WindowInputs<Tap, Scalar, Window>> {
  public:
@@ -103,27 +125,15 @@ class FlightInputs<detail::WindowInputs<Tap, Scalar, Window>> {
   bool read(std::size_t row, Inputs& inputs) const {
     Inputs read;
     if (!taps_.read(row, read)) return false;
-    const double present_s = time_of(row);
-    std::size_t first = row, last = row;
-    while (first > rows_.rows.begin && time_of(first) > present_s + Window::earliest_s &&
-           detail::follows<Window>(time_of(first - 1), time_of(first))) {
-      --first;
-    }
-    while (last + 1 < rows_.rows.end && time_of(last) < present_s + Window::latest_s &&
-           detail::follows<Window>(time_of(last), time_of(last + 1))) {
-      ++last;
-    }
-    detail::fill_window(
-        present_s, first, last, row, [this](std::size_t i) { return time_of(i); },
-        [this](std::size_t i, Tap& tap) { return taps_.read(i, tap); }, read);
+    read.complete = detail::read_window<Scalar>(
+        Window{}, rows_, row, [this](std::size_t i, Tap& tap) { return taps_.read(i, tap); },
+        read.others.data());
     if (!read.complete) return false;
     inputs = read;
     return true;
   }
 
  private:
-  double time_of(std::size_t row) const { return (*rows_.flight)[row].time_s; }
-
   FlightRows rows_;
   FlightInputs<Tap> taps_;
 };

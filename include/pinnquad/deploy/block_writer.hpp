@@ -3,6 +3,7 @@
 // (deploy/weight_file.hpp), or its text. Layout: exported/model_block.hpp; the same bytes on every machine.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -14,6 +15,8 @@
 
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/version.hpp"
 
 namespace pinnquad {
 namespace detail {
@@ -43,6 +46,30 @@ class LittleEndianBytes {
   std::vector<unsigned char> bytes;
 };
 
+inline std::uint64_t double_bits(double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+/// Where a model comes from and how it was judged: name and value in turn.
+inline std::vector<std::string> provenance_texts(const WrittenRecords& records) {
+  std::vector<std::string> texts = {"name", records.name,
+                                    "training_data", records.training_data,
+                                    "seed", std::to_string(records.seed),
+                                    "epochs", std::to_string(records.epochs),
+                                    "loss", records.loss,
+                                    "pinnquad", PINNQUAD_VERSION};
+  const auto& verdict = records.verdict;
+  if (verdict && is_finite(verdict->test_r_squared) && is_finite(verdict->linear_regression_r_squared)) {
+    append_texts(texts, std::array{"test_r_squared", "linear_regression_r_squared"},
+                 std::array{number_text(stated_figure(verdict->test_r_squared)),
+                            number_text(stated_figure(verdict->linear_regression_r_squared))});
+  }
+  for (std::string& text : texts) text = printable(text);
+  return texts;
+}
+
 /// The records of a block: their counts, then each.
 template <class Scalar>
 std::vector<unsigned char> block_records(const WrittenRecords& records) {
@@ -52,6 +79,14 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
   constexpr bool mandatory = true, optional = false;
   Bytes out;
   std::uint32_t count = 0;
+  const auto closed = [](const std::vector<std::string>& texts) {
+    Bytes all;
+    for (const std::string& text : texts) {
+      all.add(text);
+      all.add('\0');
+    }
+    return std::move(all.bytes);
+  };
   const auto record = [&](BlockRecord type, bool is_mandatory, const auto&... values) {
     Bytes body;
     (body.add(values), ...);
@@ -68,14 +103,9 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
   record(BlockRecord::clock, mandatory, nanoseconds(records.sample_period_s), nanoseconds(records.lag_removed_s));
   record(BlockRecord::window, mandatory, records.window_taps, std::uint32_t{records.causal});
   if (!records.column_names.empty()) {
-    Bytes texts;
-    for (std::size_t i = 0; i < records.column_names.size(); ++i) {
-      for (const std::string& text : {records.column_names[i], records.column_units.at(i)}) {
-        texts.add(text);
-        texts.add('\0');
-      }
-    }
-    record(BlockRecord::columns, mandatory, texts.bytes);
+    std::vector<std::string> texts;
+    append_texts(texts, records.column_names, records.column_units);
+    record(BlockRecord::columns, mandatory, closed(texts));
   }
   record(BlockRecord::allocation, mandatory, records.allocation);
   if (!records.base.empty()) record(BlockRecord::base, mandatory, records.base);
@@ -91,6 +121,35 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
   if (const auto& distance = records.distance) {
     record(BlockRecord::distance, optional, distance->mean, distance->inverse_cholesky, distance->limit);
   }
+  record(BlockRecord::answer, mandatory, records.answer);
+  record(BlockRecord::features, mandatory, closed(records.feature_texts));
+  record(BlockRecord::outputs, mandatory, closed(records.output_texts));
+  std::vector<std::uint64_t> airframe;
+  each_number(records.airframe, [&](auto number) { airframe.push_back(double_bits(static_cast<double>(number))); });
+  record(BlockRecord::vehicle, mandatory, airframe, records.flown_airframe, records.vehicle_name);
+  record(BlockRecord::contents, mandatory, records.contents_hash);
+  if (!records.affine.empty()) record(BlockRecord::affine, optional, records.affine);
+  if (const auto& trust = records.trust) {
+    record(BlockRecord::trust, optional, double_bits(trust->squared_distance_limit),
+           double_bits(trust->residual_factor), double_bits(trust->residual_limit),
+           double_bits(trust->residual_cleared), double_bits(trust->update_period_s), trust->mean, trust->whitening);
+  }
+  if (const auto& proven = records.certificate) {
+    std::vector<std::uint64_t> numbers;
+    const auto add = [&](const auto& values) {
+      for (const double value : values) numbers.push_back(double_bits(value));
+    };
+    add(proven->slope);
+    add(proven->held_slope);
+    add(std::array<double, 2>{proven->thrust_slope, proven->held_thrust_slope});
+    add(proven->command_bound);
+    record(BlockRecord::certificate, optional, numbers);
+  }
+  const std::vector<unsigned char> provenance = closed(provenance_texts(records));
+  if (provenance.size() > longest_provenance) {
+    throw std::invalid_argument("export: name, training data and loss of a model are too long together");
+  }
+  record(BlockRecord::provenance, optional, provenance);
   Bytes all;
   all.add(count);
   all.add(static_cast<std::uint32_t>(out.bytes.size()));

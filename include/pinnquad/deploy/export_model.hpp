@@ -58,26 +58,29 @@ Exported export_model(const Exported::Files& files, const std::string& name,
   AtomicFile header(files.header);
   write_model(header.stream(), name, model, golden, provenance);
   std::optional<AtomicFile> block, trust;
-  if (!files.block.empty()) {
-    const std::vector<unsigned char> bytes = model_block(model, golden, provenance);
-    block.emplace(files.block);
-    detail::write_block(block->stream(), bytes);
-    result.block_bytes = bytes.size();
-  }
+  std::optional<FittedTrust<Model::Features::size>> limits;
   if constexpr (WithTrust) {
     if (!files.trust.empty()) {
       try {
-        const auto limits = fit_trust(model, split.train, split.validation);
+        limits = fit_trust(model, split.train, split.validation);
         trust.emplace(files.trust);
         trust->stream() << "// To be included after the header of " << name << ". Limits by " << split.validation.size()
                         << " validation rows: guesses where those are\n// less than 30 minutes of flight "
                            "(docs/trust.md).\n#pragma once\n\n#include <array>\n#include <cstdint>\n";
-        write_trust<typename Model::Scalar>(trust->stream(), name, limits, provenance.training_data_hash);
+        write_trust<typename Model::Scalar>(trust->stream(), name, *limits, provenance.training_data_hash);
       } catch (const std::invalid_argument& refused) {
         result.no_trust_because = refused.what();
         trust.reset();
+        limits.reset();
       }
     }
+  }
+  if (!files.block.empty()) {
+    const std::vector<unsigned char> bytes =
+        model_block(model, golden, provenance, name, limits ? &*limits : nullptr);
+    block.emplace(files.block);
+    detail::write_block(block->stream(), bytes);
+    result.block_bytes = bytes.size();
   }
   for (std::optional<AtomicFile>* file : {&block, &trust}) {
     if (*file) (*file)->close();

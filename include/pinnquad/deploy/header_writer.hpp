@@ -107,7 +107,7 @@ class ConstantWriter {
   std::uint64_t sum_ = 0;
 };
 
-/// Writes the constants of format 3 into a struct, whose texts around them are `out`'s.
+/// Writes the records of a header into a struct, whose texts around them are `out`'s.
 template <class Scalar>
 void write_header_records(std::ostream& out, ConstantWriter& write, const WrittenRecords& records) {
   const std::string scalar = std::is_same_v<Scalar, float> ? "float" : "double";
@@ -178,29 +178,19 @@ std::vector<Commands<typename Model::Scalar>> golden_commands(
 
 }  // namespace detail
 
-/// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
-/// commands are computed here by the portable kernel. The contract of the struct: exported/model.hpp. No locale plays a
-/// part. A GivenAirframe stands before the model as a struct of its own. A model that is worse than the mean says so at
-/// its head. Throws std::invalid_argument, and writes nothing, for a name that no struct may have, for no golden
-/// vector, for one outside the envelope, for a number that is not finite, for a provenance that no model has, and for a
-/// model of proven structure that has no certificate.
-template <class NetworkType, class ContextType>
-void write_model(std::ostream& stream, const std::string& struct_name,
-                 const TrainedModel<NetworkType, ContextType>& model,
-                 const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
-                 const Provenance& provenance) {
-  using Model = TrainedModel<NetworkType, ContextType>;
+namespace detail {
+
+/// The header of a model into `out`; returns its contents_hash.
+template <class Model>
+std::uint64_t write_struct(std::ostream& out, const std::string& struct_name, const Model& model,
+                           const std::vector<typename Model::FeatureVector>& golden,
+                           const std::vector<Commands<typename Model::Scalar>>& golden_commands,
+                           const WrittenRecords& records, const Provenance& provenance) {
   using Scalar = typename Model::Scalar;
-  detail::require_identifier(struct_name);
-  const auto golden_commands = detail::golden_commands(model, golden);
-  const auto records = detail::records_of_training(model, provenance);
   constexpr bool own_airframe = std::is_same_v<typename Model::Vehicle, GivenAirframe>;
   const std::string vehicle_name = model.airframe_name();
-  std::ostringstream out;
-  out.imbue(std::locale::classic());  // a global locale may group digits
-
   const std::string scalar = type_name<Scalar>();
-  detail::ConstantWriter write(out);
+  ConstantWriter write(out);
 
   out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
       << ". Generated: export again rather than edit.\n"
@@ -219,7 +209,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   }
   out << "struct " << struct_name << " {\n"
       << "  using Scalar = " << scalar << ";\n"
-      << "  using Network = " << type_name<NetworkType>() << ";\n"
+      << "  using Network = " << type_name<typename Model::Network>() << ";\n"
       << "  using Features = " << type_name<typename Model::Features>() << ";\n"
       << "  using Outputs = " << type_name<typename Model::Outputs>() << ";\n"
       << "  using Vehicle = " << vehicle << ";\n"
@@ -238,9 +228,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   if (provenance.verdict) {
     const Verdict& verdict = *provenance.verdict;
     const auto figure = [&](const char* name, double value) {
-      constexpr double digits = 1e6;  // as far as sums over the test rows are the same on every machine
-      const double rounded = std::abs(value) < digits ? std::round(value * digits) / digits : value;
-      if (is_finite(value)) write.number(name, rounded);
+      if (is_finite(value)) write.number(name, stated_figure(value));
     };
     out << "\n  // how it was judged, on rows that it was not trained on: R^2, mean over the commands\n";
     figure("test_r_squared", verdict.test_r_squared);
@@ -257,7 +245,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   write.text("vehicle_name", vehicle_name);
   out << "  // rotor by rotor: signs of its torque about x, y, z\n";
   write.table("int", "motor_torque_signs", motor_torque_signs(model.template airframe<double>()));
-  detail::write_header_records<Scalar>(out, write, records);
+  write_header_records<Scalar>(out, write, records);
   out << "\n  // standardisation: (value - mean) / spread\n";
   write.scaler(scalar, "input", model.input);
   write.scaler(scalar, "output", model.output);
@@ -278,6 +266,28 @@ void write_model(std::ostream& stream, const std::string& struct_name,
   if constexpr (has_certificate<Model>) {
     out << "static_assert(pinnquad::require_certificate<" << struct_name << ">());  // docs/certificate.md\n";
   }
+  return write.contents_hash();
+}
+
+}  // namespace detail
+
+/// Writes `struct <struct_name>` to `out`. `golden` are feature vectors inside the envelope, at least one; their
+/// commands are computed here by the portable kernel. The contract of the struct: exported/model.hpp. No locale plays a
+/// part. A GivenAirframe stands before the model as a struct of its own. A model that is worse than the mean says so at
+/// its head. Throws std::invalid_argument, and writes nothing, for a name that no struct may have, for no golden
+/// vector, for one outside the envelope, for a number that is not finite, for a provenance that no model has, and for a
+/// model of proven structure that has no certificate.
+template <class NetworkType, class ContextType>
+void write_model(std::ostream& stream, const std::string& struct_name,
+                 const TrainedModel<NetworkType, ContextType>& model,
+                 const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
+                 const Provenance& provenance) {
+  detail::require_identifier(struct_name);
+  const auto golden_commands = detail::golden_commands(model, golden);
+  const auto records = detail::records_of_training(model, provenance);
+  std::ostringstream out;
+  out.imbue(std::locale::classic());  // a global locale may group digits
+  detail::write_struct(out, struct_name, model, golden, golden_commands, records, provenance);
   stream << out.str();
 }
 

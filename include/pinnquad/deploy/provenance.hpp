@@ -17,6 +17,8 @@
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/exported/run_time_outputs.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad {
 
@@ -72,6 +74,12 @@ std::string description_text() {
 
 /// The records of a model, as header and block state them: those of its training, and those that its types say.
 struct WrittenRecords : Provenance {
+  /// Limits of trust (training/structured/trust_limits.hpp), as the model's Scalar has them.
+  struct Trust {
+    double squared_distance_limit, residual_factor, residual_limit, residual_cleared, update_period_s;
+    std::vector<double> mean, whitening;
+  };
+
   AllocationMatrix<double> allocation{};
   std::optional<std::uint32_t> judged{};  ///< judged_bits()
   std::uint32_t window_taps = 1;          ///< 1: the present alone
@@ -79,7 +87,68 @@ struct WrittenRecords : Provenance {
   std::vector<std::string> column_names, column_units;
   std::string answer;  ///< description of what the parameters are of
   std::string base;    ///< description of the outputs' base; empty: none
+
+  // of a block alone: a header has types for these, and its own hash
+  std::string name;  ///< of the header's struct
+  std::vector<std::string> feature_texts;  ///< name and unit of each
+  std::vector<std::string> output_texts;   ///< the schema's description, then name and unit of each
+  std::string vehicle_name;
+  Airframe<double> airframe{};
+  std::vector<double> flown_airframe;  ///< each_number() of it in the model's Scalar
+  std::vector<double> affine;          ///< of a schema of a user's own (detail::affine_schema())
+  std::uint64_t contents_hash = 0;
+  std::optional<Certificate> certificate{};
+  std::optional<Trust> trust{};
 };
+
+/// Commands at outputs 0 and by each output, 4 + 4 x size, of a linear schema of a user's own; empty for another one.
+template <class Outputs, class Scalar>
+std::vector<double> affine_schema(const Airframe<Scalar>& airframe) {
+  std::vector<double> numbers;
+  using Map = OutputMap<Outputs>;
+  if constexpr (!Map::takes_features && !is_known_schema<Outputs> && is_detected<IsLinear, Outputs>) {
+    const auto setting = Map::setting(airframe);
+    Scalar outputs[Map::size]{}, commands[rotor_count]{}, slopes[Map::slope_count]{};
+    const Scalar* none = nullptr;
+    Map::commands(none, static_cast<const Scalar*>(outputs), setting, static_cast<Scalar*>(commands));
+    Map::slopes(none, static_cast<const Scalar*>(outputs), setting, static_cast<Scalar*>(slopes));
+    for (const Scalar command : commands) numbers.push_back(static_cast<double>(command));
+    for (int rotor = 0; rotor < rotor_count; ++rotor) {
+      for (int k = 0; k < Map::size; ++k) {
+        const bool reads = k >= Map::first_output(rotor) && k < Map::last_output(rotor);
+        numbers.push_back(reads ? static_cast<double>(slopes[Map::slope_index(rotor, k)]) : 0.0);
+      }
+    }
+  }
+  return numbers;
+}
+
+/// A figure of a judgement, rounded as far as sums over the test rows are the same on every machine.
+inline double stated_figure(double value) {
+  constexpr double digits = 1e6;
+  return std::abs(value) < digits ? std::round(value * digits) / digits : value;
+}
+
+/// Names and units in turn.
+template <class Names, class Units>
+void append_texts(std::vector<std::string>& to, const Names& names, const Units& units) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    to.emplace_back(names[i]);
+    to.emplace_back(units[i]);
+  }
+}
+
+/// Adds an airframe as it is and as the model's Scalar has it.
+template <class Outputs, class Scalar>
+void take_airframe(WrittenRecords& records, const std::string& name, const Airframe<double>& airframe,
+                   const Airframe<Scalar>& flown) {
+  records.vehicle_name = name;
+  records.airframe = airframe;
+  records.flown_airframe.clear();
+  each_number(flown, [&](auto number) { records.flown_airframe.push_back(static_cast<double>(number)); });
+  records.allocation = allocation(airframe);
+  records.affine = affine_schema<Outputs>(flown);
+}
 
 template <class M>
 WrittenRecords records_of_types() {
@@ -93,6 +162,10 @@ WrittenRecords records_of_types() {
   records.column_units.assign(units.begin(), units.end());
   records.answer = description_text<typename M::Network>();
   records.base = description_text<typename BaseOf<typename M::Outputs>::type>();
+  using Map = OutputMap<typename M::Outputs>;
+  append_texts(records.feature_texts, M::Features::names, M::Features::units);
+  records.output_texts = {description_text<typename M::Outputs>()};
+  append_texts(records.output_texts, Map::names, Map::units);
   return records;
 }
 
@@ -147,6 +220,7 @@ WrittenRecords records_of_training(const Model& model, const Provenance& from) {
                                                                : "the bounds of the residual are none"));
     }
     records.slope_signs = motor_torque_signs(airframe);
+    records.certificate = certificate;
     Provenance::ResidualRange range;
     using Scalar = typename Model::Scalar;
     const auto outward = [](double bound, double to) {  // as the model's Scalar holds it
@@ -161,7 +235,8 @@ WrittenRecords records_of_training(const Model& model, const Provenance& from) {
   if (!from.command_meaning) records.command_meaning = command_meaning_of(airframe);
   constexpr double window_s = WindowOf<typename Model::Features>::period_s;
   if (window_s > 0) records.sample_period_s = window_s;
-  records.allocation = allocation(airframe);
+  take_airframe<typename Model::Outputs>(records, printable(model.airframe_name()), airframe,
+                                         model.template airframe<typename Model::Scalar>());
   if (from.verdict) {
     records.judged = judged_bits(from.verdict->worse_than_mean(), from.verdict->beats_linear_regression());
   }
@@ -176,11 +251,32 @@ std::vector<To> converted(const Numbers& numbers) {
   return result;
 }
 
+template <class M>
+using WordsOf = std::void_t<decltype(M::name), decltype(M::training_data), decltype(M::seed), decltype(M::epochs),
+                            decltype(M::loss)>;
+template <class M>
+using FiguresOf = std::void_t<decltype(M::test_r_squared), decltype(M::linear_regression_r_squared)>;
+
 /// Of an exported header, of whatever format.
 template <class M>
 WrittenRecords records_of_header() {
   WrittenRecords records = records_of_types<M>();
-  records.allocation = allocation(airframe_value<typename M::Vehicle, double>());
+  take_airframe<typename M::Outputs>(records, M::Vehicle::name, airframe_value<typename M::Vehicle, double>(),
+                                     airframe_value<typename M::Vehicle, typename M::Scalar>());
+  if constexpr (has_certificate<M>) records.certificate = certificate_of<M>();
+  if constexpr (is_detected<WordsOf, M>) {
+    records.name = M::name;
+    records.training_data = M::training_data;
+    records.seed = M::seed;
+    records.epochs = M::epochs;
+    records.loss = M::loss;
+  }
+  if constexpr (is_detected<FiguresOf, M>) {
+    records.verdict = Verdict{};
+    records.verdict->test_r_squared = M::test_r_squared;
+    records.verdict->linear_regression_r_squared = M::linear_regression_r_squared;
+  }
+  records.contents_hash = contents_hash_of<M>();
   records.command_meaning = header_command_meaning<M>();
   records.sample_period_s = header_period_s<M>();
   if constexpr (is_detected<RecordsOf, M>) {

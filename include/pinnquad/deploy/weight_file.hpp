@@ -11,6 +11,7 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/exported/model_block.hpp"
 #include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/training/structured/trust_limits.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {
@@ -43,22 +44,38 @@ std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& go
 }  // namespace detail
 
 /// The block of a trained model. `golden` as for write_model(): feature vectors inside the envelope, at least one.
+/// `name`: of the header's struct. `trust`: limits of trust, or null.
 /// Throws std::invalid_argument where write_model() does.
 template <class NetworkType, class ContextType>
 std::vector<unsigned char> model_block(
     const TrainedModel<NetworkType, ContextType>& model,
     const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
-    const Provenance& provenance) {
+    const Provenance& provenance, const std::string& name = "Model",
+    const FittedTrust<ContextType::Features::size>* trust = nullptr) {
   using Model = TrainedModel<NetworkType, ContextType>;
   const auto golden_commands = detail::golden_commands(model, golden);
-  const auto records = detail::records_of_training(model, provenance);
+  auto records = detail::records_of_training(model, provenance);
+  std::ostream nowhere(nullptr);
+  records.name = name;
+  records.contents_hash =
+      detail::write_struct(nowhere, name, model, golden, golden_commands, records, provenance);
+  if (trust != nullptr) {
+    records.trust = {trust->squared_distance_limit,
+                     trust->command_residual_factor,
+                     trust->command_residual_limit,
+                     trust->command_residual_cleared,
+                     trust->update_period_s,
+                     {trust->distribution.mean.begin(), trust->distribution.mean.end()},
+                     {trust->distribution.whitening.begin(), trust->distribution.whitening.end()}};
+  }
   const std::uint64_t shape = detail::hash_of_shape<Model>(printable(model.airframe_name()),
                                                            motor_torque_signs(model.template airframe<double>()));
   return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, records, shape,
                                  provenance.training_data_hash, provenance.training_rows);
 }
 
-/// The block of an exported header, of format 2 or later: the bytes that its training would have written as a block.
+/// The block of an exported header, of format 2 or later: the bytes that its training would have written as a block,
+/// but for the limits of trust, which stand in a header of their own.
 template <class Model>
 std::vector<unsigned char> model_block() {
   static_assert(require_model<Model>());

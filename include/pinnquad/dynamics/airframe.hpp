@@ -116,6 +116,38 @@ struct Airframe {
   }
 };
 
+/// Calls `visit(number)` for every number of an airframe, in the order in which files and hashes hold them; a Spin is
+/// one of them.
+template <class AirframeType, class Visit>
+constexpr void each_number(AirframeType& airframe, const Visit& visit) {
+  const auto all = [&visit](auto& numbers) {
+    for (auto& number : numbers) visit(number);
+  };
+  visit(airframe.mass_kg);
+  all(airframe.inertia_kg_m2);
+  all(airframe.inertia_products_kg_m2);
+  for (auto& rotor : airframe.rotors) {
+    visit(rotor.x_m);
+    visit(rotor.y_m);
+    visit(rotor.spin);
+    visit(rotor.z_m);
+    all(rotor.axis);
+    visit(rotor.thrust_scale);
+    visit(rotor.thrust_curve);
+    visit(rotor.rise_time_constant_s);
+    visit(rotor.fall_time_constant_s);
+  }
+  visit(airframe.thrust_coefficient);
+  visit(airframe.power_coefficient);
+  visit(airframe.propeller_diameter_m);
+  visit(airframe.max_rotor_speed_rev_s);
+  visit(airframe.rotor_time_constant_s);
+  all(airframe.drag_area_m2);
+  visit(airframe.drag_deadband_m_s);
+}
+/// How many those are.
+inline constexpr int airframe_number_count = 16 + 11 * rotor_count;
+
 /// True for a body whose principal axes are those of the body frame.
 template <class Scalar>
 constexpr bool has_diagonal_inertia(const Airframe<Scalar>& airframe) noexcept {

@@ -82,27 +82,13 @@ class ConstantHash {
     add(scaler.standard_deviation);
   }
   constexpr void add(const Airframe<double>& airframe) noexcept {
-    add(airframe.mass_kg);
-    add(airframe.inertia_kg_m2);
-    add(airframe.inertia_products_kg_m2);
-    for (const RotorMount<double>& rotor : airframe.rotors) {
-      add(rotor.x_m);
-      add(rotor.y_m);
-      add(static_cast<int>(rotor.spin));
-      add(rotor.z_m);
-      add(rotor.axis);
-      add(rotor.thrust_scale);
-      add(rotor.thrust_curve);
-      add(rotor.rise_time_constant_s);
-      add(rotor.fall_time_constant_s);
-    }
-    add(airframe.thrust_coefficient);
-    add(airframe.power_coefficient);
-    add(airframe.propeller_diameter_m);
-    add(airframe.max_rotor_speed_rev_s);
-    add(airframe.rotor_time_constant_s);
-    add(airframe.drag_area_m2);
-    add(airframe.drag_deadband_m_s);
+    each_number(airframe, [this](const auto& number) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(number)>, Spin>) {
+        add(static_cast<int>(number));
+      } else {
+        add(number);
+      }
+    });
   }
 
  private:

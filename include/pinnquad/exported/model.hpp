@@ -30,12 +30,14 @@ namespace pinnquad {
 ///   3  besides, and with output_units always: records, and what they name (exported/model_records.hpp). A Vehicle
 ///      that is none of the library's stands before the model, in the same header. Optional: contents_hash, over all
 ///      of it (exported/contents_hash.hpp).
-inline constexpr int model_format_version = 3;
+///   4  as 3; contents_hash always. The block beside the header says the same hash and describes itself
+///      (exported/run_time_model.hpp).
+inline constexpr int model_format_version = 4;
 
 /// The oldest format that still flies.
 inline constexpr int oldest_model_format_version = 1;
 
-/// The frames of every feature set, as a header of format 2 or 3 states them.
+/// The frames of every feature set, as a header states them from format 2 on.
 inline constexpr const char* model_frame = "body FRD, world NED";
 
 /// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
@@ -109,7 +111,7 @@ constexpr bool all_positive(const Array& values) noexcept {
   return true;
 }
 
-/// Compares the words of a header of format 2 or 3 with its types.
+/// Compares the words of a header of format 2 or later with its types.
 template <class M>
 constexpr void require_description() noexcept {
   constexpr bool described =
@@ -235,6 +237,10 @@ constexpr bool require_model() noexcept {
                   "pinnquad: a golden vector does not have the length of features or commands");
     if constexpr (M::format_version >= 2) detail::require_description<M>();
     if constexpr (M::format_version >= 3) detail::require_records<M>();
+    if constexpr (M::format_version >= 4) {
+      static_assert(is_detected<detail::ContentsHashOf, M>,
+                    "pinnquad: the model lacks the hash over all that it says (contents_hash); export it again");
+    }
   }
   return is_model<M>;
 }

@@ -20,8 +20,9 @@ namespace pinnquad {
 /// The first bytes of a block.
 inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N', 'N', 'Q', 'U', 'A', 'D'};
 
-/// The version that this library writes: 2 has records, 1 has none and still opens.
-inline constexpr std::uint32_t model_block_version = 2;
+/// The version that this library writes, the format of its headers: 4 describes itself, 2 has records that need the
+/// shape of the including code, 1 has none; both still open.
+inline constexpr std::uint32_t model_block_version = 4;
 /// The least version that open() reads.
 inline constexpr std::uint32_t oldest_model_block_version = 1;
 
@@ -31,7 +32,7 @@ inline constexpr std::size_t model_block_alignment = 8;
 /// Byte offsets of the header's fields, and what they hold:
 ///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs,
 ///   u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
-/// In version 2 the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow: input
+/// From version 2 on the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow: input
 /// mean and standard deviation, output mean and standard deviation, envelope lower and upper, golden features, golden
 /// commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before them.
 struct ModelBlockHeader {
@@ -69,6 +70,17 @@ enum class BlockRecord : std::uint16_t {
   slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z, 0 unproven; optional
   residual_range = 9,  ///< scalars: lower bounds of all outputs, then upper ones; optional
   distance = 10,  ///< scalars: means of all features, lower triangle of L^-1 row by row, limit of the norm; optional
+  // those of version 4, with which a block describes itself (exported/run_time_model.hpp)
+  answer = 11,    ///< description of the predictor (model/description.hpp)
+  features = 12,  ///< name and unit of each feature, every text closed by a 0
+  outputs = 13,   ///< description of the output schema, then name and unit of each output, every text closed by a 0
+  vehicle = 14,   ///< each_number() of the airframe in f64, the same in scalars as it flies, its name
+  contents = 15,  ///< u64 contents_hash of the header beside it (exported/contents_hash.hpp)
+  trust = 16,     ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
+                  ///< means of all features, whitening triangle column by column; optional
+  certificate = 17,  ///< f64 slope (3), held slope (3), thrust slope, held thrust slope, command bound (4); optional
+  provenance = 18,   ///< name and value in turn, every text closed by a 0; optional
+  affine = 19,       ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
 };
 
 /// Bit of a record's type: a reader that does not know the record refuses the block.
@@ -76,7 +88,15 @@ inline constexpr std::uint16_t mandatory_record = 0x8000;
 
 namespace detail {
 
-inline constexpr std::uint32_t block_record_types = 10;
+/// Version 3 was of headers alone.
+constexpr bool is_block_version(std::uint32_t version) noexcept {
+  return version >= oldest_model_block_version && version <= model_block_version && version != 3;
+}
+
+inline constexpr std::uint32_t block_record_types = 19;
+
+/// The most bytes of a block's provenance.
+inline constexpr std::uint32_t longest_provenance = 2048;
 
 PINNQUAD_ALWAYS_INLINE constexpr std::uint32_t read_u32(const unsigned char* from) noexcept {
   return std::uint32_t{from[0]} | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 |
@@ -100,17 +120,25 @@ struct RecordLengths {
 };
 constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t inputs, std::uint32_t outputs) noexcept {
   constexpr std::uint32_t rotors = rotor_count;
-  const std::uint32_t distance = inputs + std::uint32_t(triangle(inputs)) + 1;
-  return {{0, 8 + 2 * scalar, 8, 8, 0, 4 * rotors * scalar, 0, 8, 3 * rotors, 2 * outputs * scalar, distance * scalar}};
+  const std::uint32_t distance = (inputs + std::uint32_t(triangle(inputs))) * scalar;
+  return {{0, 8 + 2 * scalar, 8, 8, 0, 4 * rotors * scalar, 0, 8, 3 * rotors, 2 * outputs * scalar, distance + scalar,
+           0, 0, 0, 0, 8, 5 * 8 + distance, 12 * 8, 0, rotors * (1 + outputs) * scalar}};
 }
 
+/// The bytes of texts, each closed by a 0.
+template <class... Lists>
+constexpr std::size_t texts_length(const Lists&... lists) noexcept {
+  std::size_t length = 0;
+  const auto add = [&length](const auto& list) {
+    for (const char* text : list) length += std::string_view(text).size() + 1;
+  };
+  (add(lists), ...);
+  return length;
+}
 /// The bytes of a record of extra columns.
 template <class Features>
 constexpr std::size_t columns_length() noexcept {
-  std::size_t length = 0;
-  for (const char* name : extra_column_names<Features>) length += std::string_view(name).size() + 1;
-  for (const char* unit : extra_column_units<Features>) length += std::string_view(unit).size() + 1;
-  return length;
+  return texts_length(extra_column_names<Features>, extra_column_units<Features>);
 }
 template <class Features>
 constexpr auto column_bytes() noexcept {
@@ -157,13 +185,29 @@ struct ModelBlockLayout {
   /// Bytes of the records, counts included, that no block of this library exceeds: room for one in a buffer is
   /// length(golden) and this.
   static constexpr std::size_t most_record_bytes() noexcept {
+    using Features = typename Shape::Features;
+    using Map = OutputMap<typename Shape::Outputs>;
     using Base = typename detail::BaseOf<typename Shape::Outputs>::type;
     constexpr auto lengths = detail::record_lengths(sizeof(typename Shape::Scalar), inputs, outputs);
     std::size_t bytes = ModelBlockHeader::record_counts;
     for (std::uint32_t type = 1; type <= detail::block_record_types; ++type) {
       std::size_t length = lengths.of[type];
-      if (BlockRecord(type) == BlockRecord::columns) length = detail::columns_length<typename Shape::Features>();
-      if (BlockRecord(type) == BlockRecord::base) length = detail::description_length<Base>();
+      switch (BlockRecord(type)) {
+        case BlockRecord::columns: length = detail::columns_length<Features>(); break;
+        case BlockRecord::base: length = detail::description_length<Base>(); break;
+        case BlockRecord::answer: length = detail::description_length<typename Shape::Network>(); break;
+        case BlockRecord::features: length = detail::texts_length(Features::names, Features::units); break;
+        case BlockRecord::outputs:
+          length = detail::description_length<typename Shape::Outputs>() + 1 +
+                   detail::texts_length(Map::names, Map::units);
+          break;
+        case BlockRecord::vehicle:
+          length = airframe_number_count * (8 + sizeof(typename Shape::Scalar)) +
+                   std::string_view(Shape::Vehicle::name).size();
+          break;
+        case BlockRecord::provenance: length = detail::longest_provenance; break;
+        default: break;
+      }
       bytes += ModelBlockHeader::record_head + ModelBlockHeader::padded(length);
     }
     return bytes;
@@ -216,9 +260,9 @@ struct ExpectedBlock {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The checks of a block that need no scalar, in this order: place and length (`block_truncated`), magic and version
-/// (`block_incompatible`), length stated (`block_truncated`), checksum (`block_corrupt`), shape (`block_incompatible`).
-inline Status check_block(const unsigned char* block, std::size_t available, const ExpectedBlock& expected) noexcept {
+/// The checks of a block that need no scalar and no shape, in this order: place and length (`block_truncated`), magic
+/// and version (`block_incompatible`), length stated (`block_truncated`), checksum (`block_corrupt`).
+inline Status check_bytes(const unsigned char* block, std::size_t available) noexcept {
   using Header = ModelBlockHeader;
   if (block == nullptr || reinterpret_cast<std::uintptr_t>(block) % model_block_alignment != 0) {
     return Status::block_truncated;
@@ -228,13 +272,19 @@ inline Status check_block(const unsigned char* block, std::size_t available, con
   for (std::size_t i = 0; i < sizeof model_block_magic; ++i) {
     if (block[i] != magic[i]) return Status::block_incompatible;
   }
-  const std::uint32_t version = read_u32(block + Header::version);
-  if (version < oldest_model_block_version || version > model_block_version) return Status::block_incompatible;
+  if (!is_block_version(read_u32(block + Header::version))) return Status::block_incompatible;
   const std::size_t length = read_u32(block + Header::length);
   if (length > available) return Status::block_truncated;
   if (length < Header::size + Header::checksum_size) return Status::block_corrupt;
   const std::size_t checked = length - Header::checksum_size;
-  if (crc32(block, checked) != read_u32(block + checked)) return Status::block_corrupt;
+  return crc32(block, checked) == read_u32(block + checked) ? Status::ok : Status::block_corrupt;
+}
+
+/// The same, and the shape (`block_incompatible`).
+inline Status check_block(const unsigned char* block, std::size_t available, const ExpectedBlock& expected) noexcept {
+  using Header = ModelBlockHeader;
+  const Status checked = check_bytes(block, available);
+  if (checked != Status::ok) return checked;
   const bool fits = read_u32(block + Header::scalar_bytes) == expected.scalar_bytes &&
                     read_u32(block + Header::inputs) == expected.inputs &&
                     read_u32(block + Header::outputs) == expected.outputs &&

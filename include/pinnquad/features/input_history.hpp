@@ -58,17 +58,18 @@ InputsWithColumns<Base, Scalar, Column...> interpolated(const InputsWithColumns<
 }
 
 /// Inputs at an instant among samples `first` to `last`, whose times rise; the search begins at `near`. A sample within
-/// the window's tolerance is taken as it is. False before the first and behind the last sample.
+/// the window's tolerance is taken as it is. False before the first and behind the last sample. `window`: a TapWindow,
+/// or one that is known at run time alone.
 template <class Scalar, class Window, class Index, class TimeOf, class Read, class Tap>
-bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
-             Tap& result) noexcept {
-  const double until_s = time_s + Window::tolerance_s;
+bool read_at(const Window& window, double time_s, Index first, Index last, Index near, const TimeOf& time_of,
+             const Read& read, Tap& result) noexcept {
+  const double until_s = time_s + window.tolerance_s;
   Index at = near;
   while (at > first && time_of(at) > until_s) --at;
   while (at < last && time_of(at + 1) <= until_s) ++at;
   const double behind_s = time_s - time_of(at);
-  if (behind_s < -Window::tolerance_s) return false;
-  if (behind_s <= Window::tolerance_s) return read(at, result);
+  if (behind_s < -window.tolerance_s) return false;
+  if (behind_s <= window.tolerance_s) return read(at, result);
   if (at == last) return false;
   Tap before, after;
   if (!read(at, before) || !read(at + 1, after)) return false;
@@ -77,22 +78,22 @@ bool read_at(double time_s, Index first, Index last, Index near, const TimeOf& t
   return true;
 }
 
-/// Fills the other taps of a window about a present instant; `complete` if all of them are there.
-template <class Tap, class Scalar, class Window, class Index, class TimeOf, class Read>
-void fill_window(double present_s, Index first, Index last, Index near, const TimeOf& time_of, const Read& read,
-                 WindowInputs<Tap, Scalar, Window>& window) noexcept {
-  window.complete = true;
-  for (int tap = 0; tap < Window::taps - 1; ++tap) {
-    const double time_s = present_s + Window::offset_s(tap);
-    window.complete &=
-        read_at<Scalar, Window>(time_s, first, last, near, time_of, read, window.others[std::size_t(tap)]);
+/// Fills the other taps of a window about a present instant. False where one of them is not there.
+template <class Scalar, class Window, class Index, class TimeOf, class Read, class Tap>
+bool fill_window(const Window& window, double present_s, Index first, Index last, Index near, const TimeOf& time_of,
+                 const Read& read, Tap* others) noexcept {
+  bool complete = true;
+  for (int tap = 0; tap < window.taps - 1; ++tap) {
+    const double time_s = present_s + window.offset_s(tap);
+    complete &= read_at<Scalar>(window, time_s, first, last, near, time_of, read, others[tap]);
   }
+  return complete;
 }
 
 /// True for two samples that are neighbours to a window: later, and not by more than a gap.
 template <class Window>
-constexpr bool follows(double earlier_s, double later_s) noexcept {
-  return later_s > earlier_s && later_s - earlier_s <= Window::largest_gap_s + Window::tolerance_s;
+constexpr bool follows(const Window& window, double earlier_s, double later_s) noexcept {
+  return later_s > earlier_s && later_s - earlier_s <= window.largest_gap_s + window.tolerance_s;
 }
 
 }  // namespace detail
@@ -151,10 +152,10 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
       const double newest_s = sample(count_ - 1).time_s;
       if (detail::equal(time_s, newest_s)) {
         --count_;
-      } else if (!detail::follows<Window>(newest_s, time_s)) {
+      } else if (!detail::follows(Window{}, newest_s, time_s)) {
         count_ = 0;
       } else if (count_ > 1 && newest_s - sample(count_ - 2).time_s < thinned_s &&
-                 (!keeps_neighbours || detail::follows<Window>(sample(count_ - 2).time_s, time_s))) {
+                 (!keeps_neighbours || detail::follows(Window{}, sample(count_ - 2).time_s, time_s))) {
         --count_;  // the present one takes the place of one that was kept as the newest alone
       }
     }
@@ -164,13 +165,13 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
       oldest_ = (oldest_ + 1) % MostSamples;
       --count_;
     }
-    detail::fill_window(
-        time_s, 0, count_ - 1, count_ - 1, [this](int i) noexcept { return sample(i).time_s; },
+    inputs_.complete = detail::fill_window<Scalar>(
+        Window{}, time_s, 0, count_ - 1, count_ - 1, [this](int i) noexcept { return sample(i).time_s; },
         [this](int i, Present& result) noexcept {
           result = sample(i).inputs;
           return true;
         },
-        inputs_);
+        inputs_.others.data());
     return inputs_.complete ? Status::ok : Status::warming_up;
   }
 

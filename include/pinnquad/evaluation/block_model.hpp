@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+// A model from a block that describes itself, on the ground: one motion in, commands out; rows of flights; derivatives;
+// what is proven of it. Of any network, feature set, columns and outputs (exported/run_time_model.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/exported/run_time_certificate.hpp"
+#include "pinnquad/io/text_file.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
+
+namespace pinnquad {
+
+/// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, s^2/rad.
+using AxisDerivatives = std::array<double, 3>;
+
+namespace detail {
+
+/// Motions of a flight's rows as a run-time model asks for them. Throws std::invalid_argument for a flight without a
+/// column that the model asks for.
+template <class Scalar>
+class RunTimeFlightInputs {
+ public:
+  using Inputs = RunTimeInputs<Scalar>;
+
+  RunTimeFlightInputs(const RunTimeFeatures& features, const FlightRows& rows) : features_(&features), rows_(rows) {
+    for (int i = 0; i < features.column_count(); ++i) {
+      const auto [name, unit] = features.column(i);
+      columns_.push_back(&column_values(*rows.flight, std::string(name), std::string(unit)));
+    }
+  }
+
+  /// `taps`: as many as the window has, the present first. False where the rows do not hold them.
+  bool read(std::size_t row, Inputs* taps) const {
+    taps[0] = at(row);
+    const RunTimeWindow& window = features_->window();
+    const auto read_row = [this](std::size_t i, Inputs& inputs) {
+      inputs = at(i);
+      return true;
+    };
+    return window.taps == 1 || read_window<Scalar>(window, rows_, row, read_row, taps + 1);
+  }
+
+ private:
+  Inputs at(std::size_t row) const {
+    Inputs inputs;
+    static_cast<MotionInputsWithAltitude<Scalar>&>(inputs) =
+        sample_inputs<MotionInputsWithAltitude<Scalar>>((*rows_.flight)[row]);
+    for (std::size_t i = 0; i < columns_.size(); ++i) inputs.columns[i] = static_cast<Scalar>((*columns_[i])[row]);
+    return inputs;
+  }
+
+  const RunTimeFeatures* features_;
+  FlightRows rows_;
+  std::vector<const std::vector<double>*> columns_;
+};
+
+}  // namespace detail
+
+/// The answer of a model to a row.
+struct AnsweredRow {
+  Commands<double> commands{};     ///< in the model's own scalar
+  AxisDerivatives derivatives{};   ///< in double; of a window by an acceleration that is held
+  bool inside_envelope = true;
+};
+
+class BlockModel {
+ public:
+  /// Reads a file. Throws InputError, one line: not readable, no block that describes itself, one that contradicts
+  /// itself, one whose weights do not give its golden commands.
+  explicit BlockModel(const std::string& path) : BlockModel(path, file_text(path)) {}
+  /// Of bytes; `path` is for messages.
+  template <class Bytes>
+  BlockModel(const std::string& path, const Bytes& bytes) : path_(path), length_(bytes.size()) {
+    bytes_.resize((length_ + 7) / 8);
+    if (length_ > 0) std::memcpy(bytes_.data(), bytes.data(), length_);
+    const bool is_double = length_ >= ModelBlockHeader::size &&
+                           detail::read_u32(data() + ModelBlockHeader::scalar_bytes) == sizeof(double);
+    is_double ? open<double>() : open<float>();
+  }
+
+  const std::string& path() const noexcept { return path_; }
+  const unsigned char* data() const noexcept { return reinterpret_cast<const unsigned char*>(bytes_.data()); }
+  std::size_t size() const noexcept { return length_; }
+  std::uint32_t checksum() const noexcept {
+    return detail::read_u32(data() + detail::read_u32(data() + ModelBlockHeader::length) -
+                            ModelBlockHeader::checksum_size);
+  }
+  /// Calls `use` with its RunTimeModel, of float or of double.
+  template <class Use>
+  decltype(auto) with(const Use& use) const {
+    if (const auto* model = std::get_if<std::unique_ptr<const RunTimeModel<float>>>(&model_)) return use(**model);
+    return use(*std::get<std::unique_ptr<const RunTimeModel<double>>>(model_));
+  }
+  bool is_double() const noexcept { return model_.index() == 1; }
+
+  std::string name() const { return provenance("name"); }
+  std::string provenance(const char* word) const {
+    return with([&](const auto& model) { return std::string(model.provenance(word)); });
+  }
+  std::string answer() const {
+    return with([](const auto& model) { return std::string(model.records().answer); });
+  }
+  std::string schema() const {
+    return with([](const auto& model) { return std::string(model.schema()); });
+  }
+  const RunTimeNetwork& network() const {
+    return with([](const auto& model) -> const RunTimeNetwork& { return model.network(); });
+  }
+  const RunTimeFeatures& features() const {
+    return with([](const auto& model) -> const RunTimeFeatures& { return model.features(); });
+  }
+  std::string airframe_name() const {
+    return with([](const auto& model) { return std::string(model.records().vehicle_name); });
+  }
+  const Airframe<double>& airframe() const {
+    return with([](const auto& model) -> const Airframe<double>& { return model.airframe(); });
+  }
+  std::uint64_t contents_hash() const {
+    return with([](const auto& model) { return model.records().contents_hash; });
+  }
+  std::vector<std::string> feature_names() const {
+    std::vector<std::string> names;
+    for (int i = 0; i < features().size(); ++i) names.emplace_back(features()[i].name);
+    return names;
+  }
+  /// Of a flight, beyond those that every flight has.
+  std::vector<ColumnName> columns() const {
+    std::vector<ColumnName> columns;
+    for (int i = 0; i < features().column_count(); ++i) {
+      const auto [column, unit] = features().column(i);
+      columns.push_back({std::string(column), std::string(unit)});
+    }
+    return columns;
+  }
+  /// Places of the angular acceleration of each tap that has one, the present first.
+  std::vector<int> angular_accelerations() const {
+    std::vector<int> places;
+    for (int tap = 0; tap < features().window().taps; ++tap) {
+      const int place = features().angular_acceleration(tap);
+      if (place >= 0) places.push_back(place);
+    }
+    return places;
+  }
+  bool is_axis_commands() const {
+    return with([](const auto& model) { return model.outputs().is_axis_commands(); });
+  }
+  /// The commands are an affine map of the network's outputs and of the features.
+  bool has_affine_schema() const {
+    bool curved = false;
+    for (const auto& rotor : airframe().rotors) curved = curved || rotor.thrust_curve > 0;
+    return with([&](const auto& model) { return model.outputs().is_affine(curved); });
+  }
+  std::vector<double> envelope_lower() const {
+    return with([](const auto& m) { return in_double(m.scales().lower, m.features().size()); });
+  }
+  std::vector<double> envelope_upper() const {
+    return with([](const auto& m) { return in_double(m.scales().upper, m.features().size()); });
+  }
+  int golden_count() const {
+    return with([](const auto& model) { return model.golden_count(); });
+  }
+  std::vector<double> golden_features(int vector) const {
+    return with([&](const auto& m) { return in_double(m.golden_features(vector), m.features().size()); });
+  }
+  /// The largest difference of a golden command from what its weights give.
+  double golden_difference() const {
+    return with([](const auto& model) {
+      std::vector<ScalarOf<decltype(model)>> work(model.workspace());
+      return static_cast<double>(model.golden_difference(work.data()));
+    });
+  }
+  /// Of a model with a structure that can be proven.
+  std::optional<Certificate> certificate() const {
+    std::vector<double> work;
+    for (int i = 0; i < network().part_count(); ++i) work.resize(work.size() + path_workspace(network().part(i)));
+    Certificate certificate;
+    const bool has_structure =
+        with([&](const auto& model) { return certificate_of(model, work.data(), certificate); });
+    return has_structure ? std::optional(certificate) : std::nullopt;
+  }
+
+  /// Commands of features in physical units, in the model's own scalar.
+  Commands<double> commands(const std::vector<double>& x) const {
+    return with([&](const auto& model) {
+      using Scalar = ScalarOf<decltype(model)>;
+      const std::vector<Scalar> own(x.begin(), x.end());
+      std::vector<Scalar> work(model.workspace());
+      Commands<Scalar> u{};
+      model.commands(own.data(), u.data(), work.data());
+      return in_double_commands(u);
+    });
+  }
+
+  /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is moved;
+  /// else the present alone.
+  AxisDerivatives derivatives(const std::vector<double>& x, bool held = true) const {
+    return with([&](const auto& model) { return derivatives_of(model, x.data(), held); });
+  }
+
+  /// Calls `take(row, AnsweredRow)` for the rows that have features, `row` counted through the set. Throws
+  /// std::invalid_argument for a flight without a column that the model asks for.
+  template <class Take>
+  void answer(const RowSet& rows, const Take& take, bool with_derivatives = true) const {
+    with([&](const auto& model) {
+      using Scalar = ScalarOf<decltype(model)>;
+      const auto taps = std::size_t(model.features().window().taps), size = std::size_t(model.features().size());
+      std::vector<RunTimeInputs<Scalar>> inputs(taps);
+      std::vector<RunTimeInputs<double>> exact(taps);
+      std::vector<Scalar> x(size), work(model.workspace());
+      std::vector<double> exact_x(size);
+      std::size_t first = 0;
+      for (const FlightRows& piece : rows.pieces()) {
+        const detail::RunTimeFlightInputs<Scalar> own(model.features(), piece);
+        const detail::RunTimeFlightInputs<double> in_double(model.features(), piece);
+        for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+          if (!own.read(row, inputs.data())) continue;
+          model.features().extract(static_cast<const RunTimeInputs<Scalar>*>(inputs.data()), x.data());
+          Commands<Scalar> u{};
+          model.commands(x.data(), u.data(), work.data());
+          AnsweredRow answered;
+          answered.commands = in_double_commands(u);
+          answered.inside_envelope = model.inside_envelope(x.data());
+          if (with_derivatives && in_double.read(row, exact.data())) {
+            model.features().extract(static_cast<const RunTimeInputs<double>*>(exact.data()), exact_x.data());
+            answered.derivatives = derivatives_of(model, exact_x.data(), true);
+          }
+          take(first + row - piece.rows.begin, static_cast<const AnsweredRow&>(answered));
+        }
+        first += piece.rows.size();
+      }
+    });
+  }
+
+ private:
+  template <class Model>
+  struct ScalarOfModel;
+  template <class Scalar>
+  struct ScalarOfModel<RunTimeModel<Scalar>> {
+    using type = Scalar;
+  };
+  template <class Model>
+  using ScalarOf = typename ScalarOfModel<std::decay_t<Model>>::type;
+
+  template <class Scalar>
+  void open() {
+    auto model = std::make_unique<RunTimeModel<Scalar>>();
+    BlockFault fault;
+    if (RunTimeModel<Scalar>::open(data(), length_, *model, fault) != Status::ok) refuse(fault.expected, fault.found);
+    outputs_.find(model->schema());
+    if (const Scalar* affine = model->records().affine) {
+      const std::vector<double> numbers(affine, affine + rotor_count * (1 + model->network().outputs()));
+      if (!outputs_.find(model->schema())) outputs_.take_affine(numbers.data(), model->network().outputs());
+    }
+    outputs_.prepare(model->airframe());
+    const auto& airframe = model->airframe();
+    for (std::size_t axis = 0; axis < 3; ++axis) signs_[axis] = allocation_signs(airframe, static_cast<int>(axis));
+    const bool says_signs = model->records().slope_signs != nullptr;
+    model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
+    if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
+    const std::optional<Certificate> proof = says_signs ? certificate() : std::nullopt;
+    if (proof && !proof->proven()) refuse("slopes and bounds of which its certificate is proven", "others");
+  }
+  [[noreturn]] void refuse(const char* expected, const char* found) const {
+    throw InputError(path_, 0, 0, expected, found);
+  }
+
+  template <class Scalar>
+  static std::vector<double> in_double(const Scalar* numbers, int count) {
+    return {numbers, numbers + count};
+  }
+  template <class Scalar>
+  static Commands<double> in_double_commands(const Commands<Scalar>& own) {
+    Commands<double> commands{};
+    for (std::size_t i = 0; i < commands.size(); ++i) commands[i] = static_cast<double>(own[i]);
+    return commands;
+  }
+
+  template <class Scalar>
+  AxisDerivatives derivatives_of(const RunTimeModel<Scalar>& model, const double* features, bool held) const {
+    using Entry = RunTimeNetwork::Values<double, 4>;  // a value, and its derivatives by three angular accelerations
+    const RunTimeNetwork& net = model.network();
+    const detail::Scales<Scalar>& scales = model.scales();
+    const int inputs = net.inputs(), outputs = net.outputs();
+    std::vector<Entry> work(std::size_t(inputs + outputs) + net.workspace());
+    Entry* const x = work.data();
+    Entry* const y = x + inputs;
+    for (int i = 0; i < inputs; ++i) {
+      x[i] = {(features[i] - static_cast<double>(scales.input_mean[i])) /
+              static_cast<double>(scales.input_deviation[i])};
+    }
+    const int last_tap = held ? model.features().window().taps - 1 : 0;
+    const auto each_angular_acceleration = [&](const auto& visit) {
+      for (int tap = 0; tap <= last_tap; ++tap) {
+        const int place = model.features().angular_acceleration(tap);
+        for (int axis = 0; place >= 0 && axis < 3; ++axis) visit(std::size_t(axis), place + axis);
+      }
+    };
+    each_angular_acceleration([&](std::size_t axis, int feature) {
+      x[feature][axis + 1] = 1 / static_cast<double>(scales.input_deviation[feature]);
+    });
+    net.forward<double, 4>(model.parameters(), static_cast<const Entry*>(x), y, y + outputs);
+    std::vector<double> made(static_cast<std::size_t>(outputs)), by_outputs(std::size_t(rotor_count * outputs));
+    for (int k = 0; k < outputs; ++k) {
+      made[std::size_t(k)] = y[k][0] * static_cast<double>(scales.output_deviation[k]) +
+                             static_cast<double>(scales.output_mean[k]);
+    }
+    constexpr int read = RunTimeOutputs<double>::base_features;
+    double by_x[rotor_count * read];
+    outputs_.slopes(features, made.data(), by_outputs.data(), static_cast<double*>(by_x));
+    std::array<Commands<double>, 3> by_acceleration{};
+    for (std::size_t rotor = 0; rotor < std::size_t(rotor_count); ++rotor) {
+      for (int k = 0; k < outputs; ++k) {
+        const double slope = by_outputs[rotor * std::size_t(outputs) + std::size_t(k)] *
+                             static_cast<double>(scales.output_deviation[k]);
+        for (std::size_t axis = 0; axis < 3; ++axis) by_acceleration[axis][rotor] += slope * y[k][axis + 1];
+      }
+    }
+    each_angular_acceleration([&](std::size_t axis, int feature) {
+      for (std::size_t rotor = 0; feature < read && rotor < std::size_t(rotor_count); ++rotor) {
+        by_acceleration[axis][rotor] += by_x[rotor * std::size_t(read) + std::size_t(feature)];
+      }
+    });
+    AxisDerivatives result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = signed_sum(signs_[axis], by_acceleration[axis]);
+    return result;
+  }
+
+  std::string path_;
+  std::size_t length_ = 0;
+  std::vector<std::uint64_t> bytes_;  ///< aligned as a block must be
+  std::variant<std::unique_ptr<const RunTimeModel<float>>, std::unique_ptr<const RunTimeModel<double>>> model_;
+  RunTimeOutputs<double> outputs_;
+  std::array<std::array<double, rotor_count>, 3> signs_{};
+};
+
+}  // namespace pinnquad

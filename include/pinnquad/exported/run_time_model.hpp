@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+// A model as its block describes it (version 4): any network, feature set, columns and outputs, of no type that the
+// compiler has seen. It commands what the compiled model commands, to the bit of the portable kernel. The numbers stay
+// in the block, which must neither move nor change; no heap: the caller owns the workspace.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/run_time_features.hpp"
+#include "pinnquad/exported/run_time_network.hpp"
+#include "pinnquad/exported/run_time_outputs.hpp"
+#include "pinnquad/nn/packed_network.hpp"
+
+namespace pinnquad {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// What is wrong with a block, in words: a refusal on the ground says both.
+struct BlockFault {
+  const char* expected = nullptr;
+  const char* found = nullptr;
+};
+
+template <class Scalar>
+class RunTimeModel {
+ public:
+  template <class Number, int Count>
+  using Values = RunTimeNetwork::Values<Number, Count>;
+  using Records = detail::BlockRecords<Scalar>;
+  using Layout = ModelBlockHeader;
+
+  /// Makes `model` the model of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
+  /// Statuses as ModelView::open(); `block_incompatible` too for a block that does not describe itself, and for a layer,
+  /// feature or schema that this library can't work out. `model` is of no use unless the Status is ok. Its weights are
+  /// not asked: see golden_difference().
+  static Status open(const void* block, std::size_t length, RunTimeModel& model, BlockFault& fault) noexcept {
+    return model.read(static_cast<const unsigned char*>(block), length, fault);
+  }
+
+  const RunTimeNetwork& network() const noexcept { return network_; }
+  const RunTimeFeatures& features() const noexcept { return features_; }
+  const RunTimeOutputs<Scalar>& outputs() const noexcept { return outputs_; }
+  const Airframe<double>& airframe() const noexcept { return airframe_; }
+  const Airframe<Scalar>& flown_airframe() const noexcept { return flown_; }
+  const Records& records() const noexcept { return records_; }
+  const detail::Scales<Scalar>& scales() const noexcept { return scales_; }
+  const Scalar* parameters() const noexcept { return parameters_; }
+  int golden_count() const noexcept { return golden_count_; }
+  const Scalar* golden_features(int vector) const noexcept { return golden_features_ + vector * features_.size(); }
+  const Scalar* golden_commands(int vector) const noexcept { return golden_commands_ + vector * rotor_count; }
+  std::uint32_t training_rows() const noexcept { return training_rows_; }
+  std::uint64_t training_data_hash() const noexcept { return training_data_hash_; }
+  std::uint64_t shape_hash() const noexcept { return shape_hash_; }
+
+  /// Entries of Scalar that commands() works in.
+  std::size_t workspace() const noexcept {
+    return std::size_t(features_.size()) + std::size_t(network_.outputs()) + network_.workspace();
+  }
+
+  /// Commands of features in physical units; the envelope is not looked at.
+  void commands(const Scalar* x, Scalar* u, Scalar* work) const noexcept {
+    const auto size = std::size_t(features_.size());
+    for (std::size_t i = 0; i < size; ++i) work[i] = (x[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
+    answer(x, work, u, work + size);
+  }
+  /// The same of features that the caller has standardised; `work` has network().outputs() and its workspace().
+  void answer(const Scalar* x, const Scalar* standardised, Scalar* u, Scalar* work) const noexcept {
+    static_assert(sizeof(Values<Scalar, 1>) == sizeof(Scalar));
+    using Entry = Values<Scalar, 1>;
+    auto* made = reinterpret_cast<Entry*>(work);
+    network_.template forward<Scalar, 1>(parameters_, reinterpret_cast<const Entry*>(standardised), made,
+                                         made + network_.outputs());
+    for (int k = 0; k < network_.outputs(); ++k) {
+      work[k] = work[k] * scales_.output_deviation[k] + scales_.output_mean[k];
+    }
+    outputs_.commands(x, work, u);
+  }
+  bool inside_envelope(const Scalar* x) const noexcept {
+    return detail::inside_envelope(scales_.lower, x, scales_.upper, std::size_t(features_.size()));
+  }
+
+  /// Largest difference of a golden command from what the weights make of its features; NaN where one is none.
+  Scalar golden_difference(Scalar* work) const noexcept {
+    Scalar largest(0);
+    for (int vector = 0; vector < golden_count_; ++vector) {
+      Scalar u[rotor_count];
+      commands(golden_features(vector), static_cast<Scalar*>(u), work);
+      for (int i = 0; i < rotor_count; ++i) {
+        const Scalar difference = detail::absolute(u[i] - golden_commands(vector)[i]);
+        if (!(difference <= largest)) largest = difference;
+      }
+    }
+    return largest;
+  }
+
+  /// A word of the provenance, "" where the block has none of that name.
+  std::string_view provenance(std::string_view wanted) const noexcept {
+    std::string_view rest = records_.provenance, name, value;
+    while (RunTimeFeatures::take_text(rest, name) && RunTimeFeatures::take_text(rest, value)) {
+      if (name == wanted) return value;
+    }
+    return "";
+  }
+  /// Description, names and units of the outputs, as the block has them.
+  std::string_view schema() const noexcept { return schema_; }
+  RunTimeFeatures::Named output(int k) const noexcept {
+    std::string_view rest = output_texts_;
+    RunTimeFeatures::Named named;
+    for (; k >= 0; --k) {
+      RunTimeFeatures::take_text(rest, named.name);
+      RunTimeFeatures::take_text(rest, named.unit);
+    }
+    return named;
+  }
+
+ private:
+  Status read(const unsigned char* block, std::size_t available, BlockFault& fault) noexcept {
+    const Status checked = detail::check_bytes(block, available);
+    if (checked == Status::block_truncated) return refuse(fault, checked, "a model block", "one that is cut short");
+    if (checked == Status::block_corrupt) {
+      return refuse(fault, checked, "a model block", "one whose checksum does not hold");
+    }
+    if (checked != Status::ok) return refuse(fault, checked, "a model block of version 4", "another version, or none");
+    if (detail::read_u32(block + Layout::version) < model_block_version) {
+      return refuse(fault, Status::block_incompatible, "a model block that describes itself (version 4)",
+                    "an earlier one: write it again from its header (docs/blocks.md)");
+    }
+    if (detail::read_u32(block + Layout::scalar_bytes) != sizeof(Scalar)) {
+      return refuse(fault, Status::block_incompatible, "another scalar type", "this one");
+    }
+    const std::size_t inputs = detail::read_u32(block + Layout::inputs);
+    const std::size_t outputs = detail::read_u32(block + Layout::outputs);
+    const std::size_t parameters = detail::read_u32(block + Layout::parameters);
+    const std::size_t golden = detail::read_u32(block + Layout::golden_vectors);
+    const std::size_t length = detail::read_u32(block + Layout::length);
+    if (inputs < 1 || inputs > std::size_t(RunTimeFeatures::most_features) || outputs < 1 ||
+        outputs > std::size_t(RunTimeOutputs<Scalar>::most_outputs) || golden < 1 || golden > length ||
+        parameters > length) {
+      return refuse(fault, Status::block_corrupt, "counts that fit its length, and at most 512 features and 16 outputs",
+                    "others");
+    }
+    records_ = {};
+    std::size_t record_bytes = 0;
+    const std::size_t behind = length - Layout::size - Layout::checksum_size;
+    const Status read = detail::read_records<Scalar>(block + Layout::size, behind, inputs, outputs, records_,
+                                                     record_bytes);
+    if (read == Status::block_incompatible) return refuse(fault, read, "records that are known", "a newer one");
+    if (read != Status::ok) return refuse(fault, read, "records that fit, with numbers", "others");
+    const std::size_t scalars = 4 * inputs + 2 * outputs + golden * (inputs + rotor_count) + parameters;
+    if ((behind - record_bytes) != scalars * sizeof(Scalar)) {
+      return refuse(fault, Status::block_corrupt, "counts that fit its length", "others");
+    }
+    place(static_cast<const Scalar*>(static_cast<const void*>(block + Layout::size + record_bytes)), inputs, outputs,
+          golden);
+    training_rows_ = detail::read_u32(block + Layout::training_rows);
+    shape_hash_ = detail::read_u64(block + Layout::shape_hash);
+    training_data_hash_ = detail::read_u64(block + Layout::training_data_hash);
+    const Status described = describe(inputs, outputs, parameters, fault);
+    if (described != Status::ok) return described;
+    return sound(scalars, fault);
+  }
+
+  static Status refuse(BlockFault& fault, Status status, const char* expected, const char* found) noexcept {
+    fault = {expected, found};
+    return status;
+  }
+
+  void place(const Scalar* at, std::size_t inputs, std::size_t outputs, std::size_t golden) noexcept {
+    first_ = at;
+    scales_ = {at, at + inputs, at + 2 * inputs, at + 2 * inputs + outputs, at + 2 * inputs + 2 * outputs,
+               at + 3 * inputs + 2 * outputs};
+    golden_features_ = at + 4 * inputs + 2 * outputs;
+    golden_commands_ = golden_features_ + golden * inputs;
+    parameters_ = golden_commands_ + golden * rotor_count;
+    golden_count_ = static_cast<int>(golden);
+  }
+
+  /// Takes the description apart and compares what it says twice.
+  Status describe(std::size_t inputs, std::size_t outputs, std::size_t parameters, BlockFault& fault) noexcept {
+    const auto incompatible = [&fault](const char* expected, const char* found) {
+      return refuse(fault, Status::block_incompatible, expected, found);
+    };
+    const auto corrupt = [&fault](const char* expected, const char* found) {
+      return refuse(fault, Status::block_corrupt, expected, found);
+    };
+    for (const BlockRecord record : {BlockRecord::commands, BlockRecord::clock, BlockRecord::window,
+                                     BlockRecord::allocation, BlockRecord::answer, BlockRecord::features,
+                                     BlockRecord::outputs, BlockRecord::vehicle, BlockRecord::contents}) {
+      if (!records_.said(record)) return corrupt("all records of a block that describes itself", "one less");
+    }
+    if (!network_.parse(records_.answer)) {
+      return incompatible("a network of dense layers and known activations, or a monotone model of one", "another");
+    }
+    if (network_.inputs() != int(inputs) || network_.outputs() != int(outputs) ||
+        network_.parameter_count() != int(parameters) || network_.is_double() != (sizeof(Scalar) == 8)) {
+      return corrupt("a description of its inputs, outputs and parameters", "one of others");
+    }
+    const RunTimeWindow window(static_cast<int>(records_.window_taps < 65 ? records_.window_taps : 65),
+                               records_.causal != 0, 1e-9 * records_.sample_period_ns);
+    if (!features_.read(records_.features, int(inputs), window)) {
+      return corrupt("names and units of its features", "others, or some that its window has not");
+    }
+    if (window.taps > 1 && records_.sample_period_ns == 0) return corrupt("the period of its window", "none");
+    if (window.taps > 1 && !window.causal && window.taps % 2 == 0) return corrupt("an odd centred window", "an even one");
+    if (!take_vehicle()) return corrupt("an airframe that can fly", "another");
+    if (!take_outputs(int(outputs))) return incompatible("an output schema that is known, or linear", "another");
+    const auto own = allocation(flown_);
+    const auto expected = [&own](std::size_t row, std::size_t column) { return own[row][column]; };
+    if (!detail::same_allocation<Scalar>(detail::RowMajorAllocation<Scalar>{records_.allocation}, expected)) {
+      return corrupt("the allocation of its airframe", "another");
+    }
+    return own_shape_hash() == shape_hash_ ? Status::ok
+                                           : corrupt("a description that its shape's hash is of", "another");
+  }
+
+  bool take_vehicle() noexcept {
+    const unsigned char* exact = records_.airframe;
+    const auto next = [&exact] {
+      double value = 0;
+      std::memcpy(&value, exact, sizeof value);
+      exact += sizeof value;
+      return value;
+    };
+    const Scalar* flown = records_.flown_airframe;
+    bool sound = true;
+    const auto take = [&sound](auto& number, auto value) {
+      sound &= is_finite(value);
+      if constexpr (std::is_same_v<std::decay_t<decltype(number)>, Spin>) {
+        sound &= detail::equal(detail::absolute(value), decltype(value)(1));
+        number = value < 0 ? Spin::clockwise : Spin::counter_clockwise;
+      } else {
+        number = value;
+      }
+    };
+    each_number(airframe_, [&](auto& number) { take(number, next()); });
+    each_number(flown_, [&](auto& number) { take(number, *flown++); });
+    return sound && check_airframe(airframe_) == Status::ok && Rotors<double>(airframe_).status() == Status::ok &&
+           check_airframe(flown_) == Status::ok && Rotors<Scalar>(flown_).status() == Status::ok;
+  }
+
+  bool take_outputs(int count) noexcept {
+    std::string_view rest = records_.outputs;
+    if (!RunTimeFeatures::take_text(rest, schema_)) return false;
+    output_texts_ = rest;
+    if (!outputs_.find(schema_)) {
+      if (records_.affine == nullptr) return false;
+      outputs_.take_affine(records_.affine, count);
+    }
+    for (int k = 0; k < count; ++k) {
+      RunTimeFeatures::Named named;
+      if (!RunTimeFeatures::take_text(rest, named.name) || !RunTimeFeatures::take_text(rest, named.unit)) return false;
+      if (!outputs_.has(k, named.name, named.unit)) return false;
+    }
+    bool same_base = true;
+    outputs_.with_base([&](auto base) { same_base = detail::describes<decltype(base)>(records_.base); });
+    const bool reads = outputs_.reads_its_features(
+        features_.size(), [this](int i) { return features_[i].name; }, [this](int i) { return features_[i].unit; });
+    outputs_.prepare(flown_);
+    return rest.empty() && outputs_.size() == count && same_base && reads;
+  }
+
+  /// As detail::hash_of_shape().
+  std::uint64_t own_shape_hash() const noexcept {
+    detail::Fnv1a fnv;
+    fnv.absorb_text(records_.answer);
+    fnv.absorb_text(model_frame);
+    for (int i = 0; i < features_.size(); ++i) fnv.absorb_text(features_[i].name);
+    for (int i = 0; i < features_.size(); ++i) fnv.absorb_text(features_[i].unit);
+    bool one_unit = true;
+    for (int k = 0; k < outputs_.size(); ++k) {
+      fnv.absorb_text(output(k).name);
+      one_unit = one_unit && output(k).unit == output(0).unit;
+    }
+    for (int k = 0; k < (one_unit ? 1 : outputs_.size()); ++k) fnv.absorb_text(output(k).unit);
+    fnv.absorb_text(records_.vehicle_name);
+    for (const auto& rotor : motor_torque_signs(airframe_)) {
+      for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
+    }
+    return fnv.hash;
+  }
+
+  /// The numbers, as ModelView::open() wants them.
+  Status sound(std::size_t scalars, BlockFault& fault) const noexcept {
+    const auto corrupt = [&fault](const char* expected, const char* found) {
+      return refuse(fault, Status::block_corrupt, expected, found);
+    };
+    const auto inputs = std::size_t(features_.size()), outputs = std::size_t(network_.outputs());
+    bool finite = true, positive = true;
+    for (std::size_t i = 0; i < scalars; ++i) finite &= is_finite(first_[i]);
+    if (!finite) return corrupt("numbers", "NaN or Inf");
+    for (std::size_t i = 0; i < inputs; ++i) positive &= scales_.input_deviation[i] > Scalar(0);
+    for (std::size_t i = 0; i < outputs; ++i) positive &= scales_.output_deviation[i] > Scalar(0);
+    if (!positive) return corrupt("standard deviations above 0", "another");
+    if (!detail::is_envelope(scales_.input_mean, scales_.input_deviation, scales_.lower, scales_.upper, inputs)) {
+      return corrupt("an envelope about the features' mean, as far as their standard deviation lets a training reach",
+                     "another");
+    }
+    for (int vector = 0; vector < golden_count_; ++vector) {
+      if (!inside_envelope(golden_features(vector))) {
+        return corrupt("golden vectors inside the envelope", "one outside of it");
+      }
+    }
+    if (const Scalar* distance = records_.distance) {
+      const Scalar* triangle = distance + inputs;
+      if (!detail::is_distance(distance, triangle, triangle[detail::triangle(inputs)], scales_.lower, scales_.upper,
+                               inputs)) {
+        return corrupt("statistics of a distance", "a mean outside the envelope, or a diagonal or a limit not above 0");
+      }
+    }
+    return structure_sound(fault);
+  }
+
+  /// What a base in closed form, alone or with a residual between bounds, says twice (detail::StatedStructure).
+  Status structure_sound(BlockFault& fault) const noexcept {
+    const RunTimePart& base = network_.part(0);
+    const bool has_residual = network_.part_count() == 2 && network_.part(1).bounded;
+    if (!base.axis_aligned || (network_.part_count() > 1 && !has_residual)) return Status::ok;
+    if (const signed char* stated = records_.slope_signs) {
+      const auto own = motor_torque_signs(airframe_);
+      for (std::size_t i = 0; i < std::size_t(3 * rotor_count); ++i) {
+        if (detail::true_slope_sign(stated[i], own[i / 3][i % 3])) continue;
+        return refuse(fault, Status::block_corrupt, "slope signs of the torques that its rotors make", "another");
+      }
+    }
+    const auto outputs = std::size_t(network_.outputs());
+    const Scalar* range = records_.residual_range;
+    if (range != nullptr && !detail::same_residual_range(range, range + outputs, has_residual,
+                                                         parameters_ + base.parameter_count,
+                                                         scales_.output_deviation, outputs)) {
+      return refuse(fault, Status::block_corrupt, "a range of the residual as its parameters bound it", "another");
+    }
+    return Status::ok;
+  }
+
+  RunTimeNetwork network_;
+  RunTimeFeatures features_;
+  RunTimeOutputs<Scalar> outputs_;
+  Records records_;
+  Airframe<double> airframe_;
+  Airframe<Scalar> flown_;
+  std::string_view schema_, output_texts_;
+  const Scalar* first_ = nullptr;
+  detail::Scales<Scalar> scales_{};
+  const Scalar* golden_features_ = nullptr;
+  const Scalar* golden_commands_ = nullptr;
+  const Scalar* parameters_ = nullptr;
+  std::uint64_t training_data_hash_ = 0, shape_hash_ = 0;
+  std::uint32_t training_rows_ = 0;
+  int golden_count_ = 0;
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace pinnquad
