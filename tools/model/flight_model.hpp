@@ -6,10 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "model/block.hpp"
-#include "model/identity.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/evaluation/block_model.hpp"
 
 namespace programs {
 
@@ -24,23 +23,13 @@ class FlightModel {
   FlightModel& operator=(const FlightModel&) = delete;
   virtual ~FlightModel() = default;
 
-  /// pinnquad::self_test(): its weights give its golden commands.
-  virtual bool tests_itself() const = 0;
   /// Adds a row per row of the flight, the one of that number; calls `on_row()` after each. Throws
   /// std::invalid_argument for a flight without a column that the model asks for.
   virtual void run(const pinnquad::Flight& flight, std::size_t number, std::vector<ReplayedRow>& rows,
                    const std::function<void()>& on_row) const = 0;
 };
 
-/// Of a block that was identified.
-std::unique_ptr<const FlightModel> flight_model(const Block& block, const Identity& identity, ReplayGuard guard);
+/// Of a model, which must stay where it is.
+std::unique_ptr<const FlightModel> flight_model(const pinnquad::BlockModel& model, ReplayGuard guard);
 
-namespace detail {
-
-/// The two kinds, each a translation unit of its own. Null for another.
-std::unique_ptr<const FlightModel> plain_flight_model(const Block& block, const Identity& identity, ReplayGuard guard);
-std::unique_ptr<const FlightModel> physics_flight_model(const Block& block, const Identity& identity,
-                                                        ReplayGuard guard);
-
-}  // namespace detail
 }  // namespace programs

@@ -3,29 +3,25 @@
 // alone, its guard, and an airframe as it has one.
 #pragma once
 
-#include "airframe/names.hpp"
 #include "model/run_time_view.hpp"
 #include "pinnquad/control/autopilot/neural_controller.hpp"
 
 namespace programs {
 
 /// The guard that flies.
-using FlightStackController = pinnquad::autopilot::NeuralController<RunTimeShape<pinnquad::PaperFeatures, float>,
-                                                                    RunTimeView<pinnquad::PaperFeatures, float>>;
+using FlightStackController = pinnquad::autopilot::NeuralController<RunTimeShape<CoreFeatures, float>, RunTimeView<CoreFeatures, float>>;
 using FallbackInverse = FlightStackController::Analytic;
 using FlightStackGuard = pinnquad::Extend<FlightStackController::NetworkGuard, pinnquad::Fallback<FallbackInverse>>;
 
-/// The airframe as flight code has it: of the program's own airframes the type's numbers, else each rounded.
-inline pinnquad::Airframe<float> flying_airframe(const NamedAirframe& airframe) {
-  pinnquad::Airframe<float> result = pinnquad::airframe_in<float>(airframe.value);
-  each_airframe([&](auto tag) {
-    using Vehicle = typename decltype(tag)::type;
-    const bool same =
-        airframe.name == Vehicle::name &&
-        pinnquad::detail::equal(airframe.value.mass_kg, pinnquad::airframe_value<Vehicle, double>().mass_kg);
-    if (same) result = pinnquad::airframe_value<Vehicle, float>();
+/// The airframe as flight code has it.
+inline pinnquad::Airframe<float> flying_airframe(const pinnquad::BlockModel& model) {
+  return model.with([](const auto& own) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(own.flown_airframe())>, pinnquad::Airframe<float>>) {
+      return own.flown_airframe();
+    } else {
+      return pinnquad::airframe_in<float>(own.airframe());
+    }
   });
-  return result;
 }
 
 }  // namespace programs

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -23,8 +24,7 @@
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "model/flight_model.hpp"
-#include "model/model_file.hpp"
-#include "model/model_options.hpp"
+#include "model/given_model.hpp"
 #include "model/replay_core.hpp"
 #include "model/replay_input.hpp"
 #include "model/replay_summary.hpp"
@@ -35,15 +35,12 @@ namespace {
 using namespace pinnquad;
 using programs::Replayed;
 using programs::ReplayInput;
-using programs::ReplayModel;
 
 struct ReplayOptions {
   std::string log;
   std::vector<std::string> models;
-  programs::ModelHints hints;
   std::string guard = "flight_stack";
   std::vector<std::string> settings;
-  std::string trust;
   double tolerance = 1e-5;
   std::string out;
   bool json = false;
@@ -51,21 +48,6 @@ struct ReplayOptions {
 
 programs::ReplayGuard guard_of(const ReplayOptions& options) {
   return options.guard == "training" ? programs::ReplayGuard::training : programs::ReplayGuard::flight_stack;
-}
-
-/// Throws InputError and std::invalid_argument: no model, one that does not give its golden commands.
-ReplayModel read_model(const std::string& path, const ReplayOptions& options) {
-  ReplayModel model;
-  model.path = path;
-  programs::ModelHints hints = options.hints;
-  model.bytes = programs::block_bytes(path, hints);
-  model.block = programs::read_block(model.path, model.bytes);
-  model.block.path = path;
-  model.identity = programs::identify(model.block, hints);
-  const auto tested = programs::flight_model(model.block, model.identity, guard_of(options));
-  if (tested == nullptr) throw InputError(path, 0, 0, "a model of float", "one of double with these features");
-  if (!tested->tests_itself()) throw InputError(path, 0, 0, "golden commands that its weights give", "others");
-  return model;
 }
 
 /// NAME=VALUE of --set. Throws std::invalid_argument: no such setting, no number.
@@ -95,7 +77,7 @@ void apply_setting(const std::string& text, pinnquad::autopilot::CoreSettings& s
 }
 
 Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
-                        const std::vector<ReplayModel>& models) {
+                        const std::vector<BlockModel>& models) {
   if (models.size() > 1) {
     throw std::invalid_argument(
         "--model: a log of flights takes one model; several are for a log of a core, which names them");
@@ -103,10 +85,6 @@ Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
   if (!options.settings.empty()) {
     throw std::invalid_argument(
         "--set: these are settings of a flight stack's core, and the log has none of its records");
-  }
-  if (!options.trust.empty()) {
-    throw std::invalid_argument(
-        "--trust: these are limits of a flight stack's core, and the log has none of its records");
   }
   Replayed replayed;
   replayed.notes = input.notes;
@@ -117,7 +95,7 @@ Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
   }
   programs::ProgressLine progress("replaying " + std::to_string(rows) + " rows");
   replayed.rows.reserve(rows);
-  const auto model = programs::flight_model(models.front().block, models.front().identity, guard_of(options));
+  const auto model = programs::flight_model(models.front(), guard_of(options));
   for (std::size_t i = 0; i < input.flights.size(); ++i) {
     model->run(input.flights[i], i, replayed.rows,
                [&] { progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(rows)); });
@@ -128,8 +106,8 @@ Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
 /// The model that flew in each tick, by checksum; one model alone stands for whatever flew.
 class FlownModels {
  public:
-  explicit FlownModels(const std::vector<ReplayModel>& models) {
-    for (const ReplayModel& model : models) checksums_.push_back(model.checksum());
+  explicit FlownModels(const std::vector<BlockModel>& models) {
+    for (const BlockModel& model : models) checksums_.push_back(model.checksum());
   }
 
   /// Throws std::invalid_argument for one that is not among several.
@@ -152,41 +130,42 @@ class FlownModels {
   std::vector<std::uint32_t> checksums_, strangers_;
 };
 
-/// The limits that the core had. Throws InputError and std::invalid_argument: it had some and none are given.
-void take_trust(const ReplayOptions& options, programs::CoreReplayOptions& core, Replayed& replayed) {
-  const pinnquad::autopilot::CoreSettings& logged = core.settings;
-  if (options.trust.empty()) {
-    if (!(logged.distance_limit > 0)) return;
-    throw std::invalid_argument(
-        "--trust: the core that flew had limits of distance and command residual: give the trust.hpp "
-        "that it was compiled with");
+/// The limits that the core had are those of the block. Throws std::invalid_argument where it has none, and notes others.
+void compare_trust(const BlockModel& model, const pinnquad::autopilot::CoreSettings& logged, Replayed& replayed) {
+  if (!(logged.distance_limit > 0)) return;
+  const unsigned char* trust = model.with([](const auto& own) { return own.records().trust; });
+  if (trust == nullptr) {
+    throw std::invalid_argument("--model: the core that flew had limits of distance and command residual, and " +
+                                model.path() + " has none");
   }
-  core.trust = programs::read_trust(options.trust);
-  const bool same = static_cast<float>(core.trust->squared_distance_limit) >= logged.distance_limit &&
-                    static_cast<float>(core.trust->squared_distance_limit) <= logged.distance_limit &&
-                    static_cast<float>(core.trust->command_residual_limit) >= logged.innovation_limit &&
-                    static_cast<float>(core.trust->command_residual_limit) <= logged.innovation_limit;
-  if (!same) replayed.notes.push_back("--trust: other limits than those that flew: what follows may differ for that");
+  double limits[5];
+  std::memcpy(limits, trust, sizeof limits);
+  const auto same = [](double own, float flown) {
+    return static_cast<float>(own) >= flown && static_cast<float>(own) <= flown;
+  };
+  if (!same(limits[0], logged.distance_limit) || !same(limits[2], logged.innovation_limit)) {
+    replayed.notes.push_back("the block's limits of trust are not those that flew: what follows may differ for that");
+  }
 }
 
-Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, const std::vector<ReplayModel>& models) {
+Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, const std::vector<BlockModel>& models) {
   Replayed replayed;
   replayed.of_core = true;
   replayed.notes = input.notes;
   replayed.flights = {printable(std::filesystem::path(options.log).filename().string())};
-  programs::CoreReplayOptions of_core{input.settings, {}, options.tolerance};
-  const Airframe<float> airframe = programs::flying_airframe(models.front().identity.airframe);
+  programs::CoreReplayOptions of_core{input.settings, options.tolerance};
+  const Airframe<float> airframe = programs::flying_airframe(models.front());
   if (!input.has_settings) {
     using Core = programs::FlightStackController;
     of_core.settings = Core(Core::Vehicle(airframe)).settings();
     replayed.notes.push_back("the log has no topic pinnquad_settings: a core's own limits and gains are taken");
   }
   for (const std::string& setting : options.settings) apply_setting(setting, of_core.settings);
-  take_trust(options, of_core, replayed);
-  for (const ReplayModel& model : models) {
-    if (model.identity.airframe.name == models.front().identity.airframe.name) continue;
-    throw std::invalid_argument("--model: " + models.front().path + " is for " + models.front().identity.airframe.name +
-                                ", " + model.path + " for " + model.identity.airframe.name);
+  compare_trust(models.front(), of_core.settings, replayed);
+  for (const BlockModel& model : models) {
+    if (model.airframe_name() == models.front().airframe_name()) continue;
+    throw std::invalid_argument("--model: " + models.front().path() + " is for " + models.front().airframe_name() +
+                                ", " + model.path() + " for " + model.airframe_name());
   }
   const std::unique_ptr<programs::CoreReplay> core = programs::core_replay(models, airframe, of_core);
   FlownModels flown(models);
@@ -199,11 +178,11 @@ Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, con
   return replayed;
 }
 
-void print_head(const ReplayOptions& options, const Replayed& replayed, const std::vector<ReplayModel>& models) {
+void print_head(const ReplayOptions& options, const Replayed& replayed, const std::vector<BlockModel>& models) {
   std::printf("%-11s %s\n", "log", printable(options.log).c_str());
-  for (const ReplayModel& model : models) {
-    std::printf("%-11s %s (checksum %08x), for %s\n", "model", printable(model.path).c_str(), model.checksum(),
-                model.identity.airframe.name.c_str());
+  for (const BlockModel& model : models) {
+    std::printf("%-11s %s (checksum %08x), for %s\n", "model", printable(model.path()).c_str(), model.checksum(),
+                model.airframe_name().c_str());
   }
   std::printf("%-11s %s\n", "run by",
               replayed.of_core ? "the flight stacks' controller, tick by tick, and compared with what it logged"
@@ -217,10 +196,9 @@ int replay(const ReplayOptions& options) {
   programs::FileRoles roles;
   roles.reads("LOG", options.log);
   for (const std::string& model : options.models) roles.reads("--model", model);
-  if (!options.trust.empty()) roles.reads("--trust", options.trust);
   roles.writes("--out", options.out);
-  std::vector<ReplayModel> models;
-  for (const std::string& path : options.models) models.push_back(read_model(path, options));
+  std::vector<BlockModel> models;
+  for (const std::string& path : options.models) models.push_back(programs::read_model(path));
   const ReplayInput input = programs::read_replay_input(options.log);
   const Replayed replayed =
       input.of_core() ? replay_core(options, input, models) : replay_flights(options, input, models);
@@ -233,10 +211,10 @@ int replay(const ReplayOptions& options) {
     nlohmann::json json = programs::as_json(replayed, summary);
     json["log"] = options.log;
     json["run_by"] = input.of_core() ? "core" : options.guard;
-    for (const ReplayModel& model : models) {
-      json["models"].push_back({{"path", model.path},
+    for (const BlockModel& model : models) {
+      json["models"].push_back({{"path", model.path()},
                                 {"checksum", programs::in_words("%08x", model.checksum())},
-                                {"airframe", model.identity.airframe.name}});
+                                {"airframe", model.airframe_name()}});
     }
     std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
@@ -249,7 +227,7 @@ int replay(const ReplayOptions& options) {
     return programs::exit_failed;
   }
   if (input.of_core() || programs::detail::count_of(summary.answerers, "model") > 0) return 0;
-  programs::complain("replay", models.front().path + ": answers no row of this log");
+  programs::complain("replay", models.front().path() + ": answers no row of this log");
   return programs::exit_failed;
 }
 
@@ -266,9 +244,9 @@ programs::Command programs::replay_command(CLI::App& program) {
            "ULog file, a folder that ulog2csv wrote, NAME_pinnquad_record_0.csv")
       ->required();
   add_paths(*line, "--model", options->models, "MODEL",
-            "a header that pinnquad train exported (MODEL.hpp), or a model block; of a core's log all that flew")
+            "a model block, as pinnquad train writes it (model.block), or the header beside it; of a core's log all that "
+           "flew")
       ->required();
-  add_model_hints(*line, options->hints);
   line->add_option("--guard", options->guard,
                    "what stands between model and motors where the log is a flight: flight_stack, as "
                    "the autopilot, which falls back to the analytic inverse; training, which refuses")
@@ -277,8 +255,6 @@ programs::Command programs::replay_command(CLI::App& program) {
   line->add_option("--set", options->settings,
                    "a setting of the core other than the log's, to see what it would have done: --set tilt_1_s=7")
       ->type_name("NAME=VALUE");
-  add_path(*line, "--trust", options->trust, "TRUST.hpp",
-           "limits of distance and command residual that the core was compiled with, as pinnquad train wrote them");
   add_number(*line, "--tolerance", options->tolerance, 0.0, 1.0,
              "largest difference of a command from the core's log that counts as the same");
   add_path(*line, "--out", options->out, "FILE.csv", "every row: status, who answered, commands, the reason in words");
@@ -286,9 +262,9 @@ programs::Command programs::replay_command(CLI::App& program) {
   line->footer(
       "Examples:\n"
       "  pinnquad replay flight.csv --model my_model/model.hpp\n"
-      "  pinnquad replay flight.csv --model my_model/weights.block --out rows.csv\n"
-      "  pinnquad replay flight.ulg --model weights.block        the core, tick by tick\n"
-      "  pinnquad replay flight.ulg --model weights.block --set attitude_us=30000\n"
+      "  pinnquad replay flight.csv --model my_model/model.block --out rows.csv\n"
+      "  pinnquad replay flight.ulg --model model.block        the core, tick by tick\n"
+      "  pinnquad replay flight.ulg --model model.block --set attitude_us=30000\n"
       "Exit codes: 0; 1 the core answers otherwise than was logged, nothing of its log can be compared, or the model\n"
       "answers no row; 2 bad input or a file that can't be read or written; 130 interrupted.\n"
       "docs/replay_log.md says what a core logs. A flight as a page in 3D: pinnquad fly --replay.");

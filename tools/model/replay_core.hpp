@@ -13,29 +13,13 @@
 
 #include "model/core_words.hpp"
 #include "model/flight_stack.hpp"
-#include "model/log_schemas.hpp"
 #include "model/recorded_effects.hpp"
 #include "model/replay_reason.hpp"
-#include "model/run_time_trust.hpp"
 
 namespace programs {
 
-/// A model as `replay` is given it.
-struct ReplayModel {
-  std::string path;
-  std::string bytes;  ///< of the block; aligned by the heap
-  Block block;
-  Identity identity;
-
-  std::uint32_t checksum() const {
-    return pinnquad::crc32(reinterpret_cast<const unsigned char*>(bytes.data()),
-                           bytes.size() - pinnquad::ModelBlockHeader::checksum_size);
-  }
-};
-
 struct CoreReplayOptions {
   pinnquad::autopilot::CoreSettings settings;
-  std::optional<TrustLimits> trust;
   double tolerance = 1e-5;  ///< of a command
 };
 
@@ -55,53 +39,36 @@ class CoreReplay {
 
 /// `models` must stay where they are. Throws std::invalid_argument for a model that no flight stack flies, for some of
 /// different features, for an effect or limits of trust that are not known.
-std::unique_ptr<CoreReplay> core_replay(const std::vector<ReplayModel>& models,
+std::unique_ptr<CoreReplay> core_replay(const std::vector<pinnquad::BlockModel>& models,
                                         const pinnquad::Airframe<float>& airframe, const CoreReplayOptions& options);
 
 namespace detail {
 
-/// Calls `function` with the schemas, if there are any, that a model of these features has, as each_schema() does.
-template <class FeatureSet, class Function>
-void each_schema_of(const ReplayModel& model, const Function& function) {
-  const auto try_schema = [&](auto features, auto outputs) {
-    if constexpr (std::is_same_v<decltype(features), FeatureSet>) {
-      using Outputs = decltype(outputs);
-      if (!model.block.is_double && shape_hash_of<FeatureSet, Outputs>(
-                                        model.identity.answer, model.identity.airframe) == model.block.shape_hash) {
-        function(outputs);
-      }
-    }
-  };
-  each_schema(try_schema);
-  each_log_schema(try_schema);
-}
-
-/// Of models whose features are these.
-template <class FeatureSet>
 class CoreReplayOf : public CoreReplay {
-  using Shape = RunTimeShape<FeatureSet, float>;
-  using View = RunTimeView<FeatureSet, float>;
+  using Shape = RunTimeShape<CoreFeatures, float>;
+  using View = RunTimeView<CoreFeatures, float>;
   using Vehicle = pinnquad::Quadrotor<float, RecordedEffects>;
-  using Trust = RunTimeTrust<FeatureSet>;
+  using Trust = RunTimeTrust<CoreFeatures>;
   using Controller = pinnquad::autopilot::NeuralController<Shape, View, Vehicle, Trust>;
   using Record = pinnquad::autopilot::CoreRecord;
   using Features = typename Shape::Features;
 
  public:
-  CoreReplayOf(const std::vector<ReplayModel>& models, const pinnquad::Airframe<float>& airframe,
+  CoreReplayOf(const std::vector<pinnquad::BlockModel>& models, const pinnquad::Airframe<float>& airframe,
                const CoreReplayOptions& options)
       : models_(models),
         vehicle_(airframe, {}, recorded_effects(options.settings)),
         options_(options),
         words_(options.settings) {
-    if (options.trust) Trust::set(*options.trust);
-    for (const ReplayModel& model : models) {
-      std::optional<View> view;
-      each_schema_of<FeatureSet>(model, [&](auto outputs) { view = View::of(model.block, model.identity, outputs); });
-      if (!view)
-        throw std::invalid_argument("--model: " + models.front().path + " and " + model.path + " differ in features");
-      View::know(model.bytes.data(), *view);
-      reasons_.emplace_back(*view);
+    const pinnquad::RunTimeFeatures& features = models.front().features();
+    CoreFeatures::of = &features;
+    models.front().with([this](const auto& own) { take_trust(own); });
+    for (const pinnquad::BlockModel& model : models) {
+      if (model.feature_names() != models.front().feature_names()) {
+        throw std::invalid_argument("--model: " + models.front().path() + " and " + model.path() +
+                                    " differ in features");
+      }
+      model.with([&](const auto& own) { take(model, own); });
     }
     restart();
   }
@@ -137,6 +104,20 @@ class CoreReplayOf : public CoreReplay {
   }
 
  private:
+  template <class Scalar>
+  void take(const pinnquad::BlockModel& model, const pinnquad::RunTimeModel<Scalar>& own) {
+    if constexpr (std::is_same_v<Scalar, float>) {  // CoreFeatures::fits() has refused others
+      const View view(own);
+      View::know(model.data(), view);
+      reasons_.emplace_back(view, own.features());
+    }
+  }
+  template <class Scalar>
+  void take_trust([[maybe_unused]] const pinnquad::RunTimeModel<Scalar>& own) {
+    if constexpr (std::is_same_v<Scalar, float>) {
+      if (options_.settings.distance_limit > 0) has_trust_ = Trust::set(own);
+    }
+  }
   static pinnquad::Vector3<float> vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
   void restart() {
@@ -176,8 +157,8 @@ class CoreReplayOf : public CoreReplay {
 
   void take_model(std::optional<std::size_t> model) {
     if (!model || flown_ == model) return;
-    const ReplayModel& flies = models_[*model];
-    static_cast<void>(controller_->offer_model(flies.bytes.data(), flies.bytes.size()));
+    const pinnquad::BlockModel& flies = models_[*model];
+    static_cast<void>(controller_->offer_model(flies.data(), flies.size()));
     flown_ = model;
   }
 
@@ -223,7 +204,7 @@ class CoreReplayOf : public CoreReplay {
     row.cause = report.cause;
     row.reaction = pinnquad::autopilot::to_string(report.reaction);
     row.excess = static_cast<double>(report.worst_excess);
-    if (report.worst_feature >= 0) row.feature = Features::names[static_cast<std::size_t>(report.worst_feature)];
+    if (report.worst_feature >= 0) row.feature = reasons_.front().name(report.worst_feature);
     if (report.reaction != Reaction::gives_up) {
       for (std::size_t i = 0; i < commands.size(); ++i) row.commands[i] = static_cast<double>(commands[i]);
     }
@@ -245,7 +226,7 @@ class CoreReplayOf : public CoreReplay {
                        : std::string(", analytic inverse (") + to_string(report.cause) + ")";
     }
     if (model && models_.size() > 1) {
-      row.state += " [" + std::filesystem::path(models_[*model].path).filename().string() + "]";
+      row.state += " [" + std::filesystem::path(models_[*model].path()).filename().string() + "]";
     }
     row.reason = words_.stale(report, record.timestamp);
     if (!model) row.reason = "no model was accepted yet";
@@ -336,7 +317,7 @@ class CoreReplayOf : public CoreReplay {
                      static_cast<double>(record.bias_m_s2[i])));
       }
     }
-    if (options_.trust && record.timestamp >= window_known_us_) compare_trust(record, say);
+    if (has_trust_ && record.timestamp >= window_known_us_) compare_trust(record, say);
     for (std::size_t i = 0; i < 4; ++i) {
       const double mine = row.commands[i], theirs = row.logged[i];
       const bool same = std::isnan(mine) ? std::isnan(theirs) : std::fabs(mine - theirs) <= options_.tolerance;
@@ -373,11 +354,12 @@ class CoreReplayOf : public CoreReplay {
            (report.cause == Status::outside_envelope ? report.worst_excess : record.envelope_excess) <= rounding;
   }
 
-  const std::vector<ReplayModel>& models_;
+  const std::vector<pinnquad::BlockModel>& models_;
   Vehicle vehicle_;
   CoreReplayOptions options_;
+  bool has_trust_ = false;  ///< the core that flew had limits, and the block has them
   CoreWords words_;
-  std::vector<ReasonOf<Features, View>> reasons_;  ///< of each model
+  std::vector<ReasonOf<View>> reasons_;  ///< of each model
   std::optional<Controller> controller_;
   std::optional<std::size_t> flown_;
   std::uint32_t last_tick_ = 0;

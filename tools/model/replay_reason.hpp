@@ -10,18 +10,20 @@
 
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
+#include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/inference/guard.hpp"
 
 namespace programs {
 
 /// A model's features: what they are called, and between which numbers it was trained.
-template <class Features, class View>
+template <class View>
 class ReasonOf {
  public:
   using Scalar = typename View::Scalar;
   using FeatureVector = typename View::FeatureVector;
 
-  explicit ReasonOf(const View& view) : view_(view) {}
+  /// The features must stay where they are.
+  ReasonOf(const View& view, const pinnquad::RunTimeFeatures& features) : view_(view), features_(&features) {}
 
   /// Of what the network alone came to; `x`: its features. Empty where it answered.
   template <class Report>
@@ -40,26 +42,26 @@ class ReasonOf {
     }
   }
 
-  static const char* name(int feature) { return Features::names[static_cast<std::size_t>(feature)]; }
+  std::string name(int feature) const { return std::string((*features_)[feature].name); }
 
   /// "wdot_x = 71.2 rad/s^2 is above 62.9, by 0.13 half-widths of its range"
   std::string beyond(int feature, double value, double half_widths) const {
     const auto i = static_cast<std::size_t>(feature);
-    const std::string unit = std::string(Features::units[i]) == "1" ? "" : std::string(" ") + Features::units[i];
-    if (!std::isfinite(value)) return std::string(name(feature)) + (std::isnan(value) ? " is NaN" : " is infinite");
+    const std::string said(features_->operator[](feature).unit), unit = said == "1" ? "" : " " + said;
+    if (!std::isfinite(value)) return name(feature) + (std::isnan(value) ? " is NaN" : " is infinite");
     const auto lower = static_cast<double>(view_.envelope_lower[i]),
                upper = static_cast<double>(view_.envelope_upper[i]);
     const bool below = value < lower;
-    return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(feature), value, unit.c_str(),
+    return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(feature).c_str(), value, unit.c_str(),
                     below ? "below" : "above", below ? lower : upper, half_widths);
   }
 
  private:
   std::string not_finite(const FeatureVector& x) const {
     std::string names;
-    for (int i = 0; i < Features::size; ++i) {
+    for (int i = 0; i < features_->size(); ++i) {
       if (std::isfinite(x[static_cast<std::size_t>(i)])) continue;
-      add_to_list(names, std::string(name(i)));
+      add_to_list(names, name(i));
     }
     return names.empty() ? "an input is NaN or infinite" : "NaN or infinite: " + names;
   }
@@ -73,7 +75,7 @@ class ReasonOf {
     std::string others;
     for (std::size_t i = 0; i < report.excess.size(); ++i) {
       if (i == worst || pinnquad::detail::equal(report.excess[i], Scalar(0))) continue;
-      add_to_list(others, std::string(Features::names[i]));
+      add_to_list(others, name(static_cast<int>(i)));
     }
     return others.empty() ? reason : reason + "; outside too: " + others;
   }
@@ -89,6 +91,7 @@ class ReasonOf {
   }
 
   View view_;
+  const pinnquad::RunTimeFeatures* features_;
 };
 
 }  // namespace programs

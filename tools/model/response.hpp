@@ -13,8 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pinnquad/model/certified_numbers.hpp"
-#include "training/run_time_network.hpp"
+#include "pinnquad/evaluation/block_model.hpp"
 
 namespace programs {
 
@@ -91,62 +90,74 @@ struct Response {
   double least(std::size_t sum) const { return base_least[sum] + residual_least[sum]; }
 };
 
-/// A base as pinnquad::AxisAligned and what is added to it, or the base alone; scalers' spreads.
-inline Response response_along(const Direction& direction, const std::vector<NetworkSpec>& parts,
-                               const std::vector<double>& parameters, const std::vector<double>& input_deviation,
-                               const std::vector<double>& output_deviation) {
-  const NetworkSpec& base = parts.front();
-  const auto features = static_cast<std::size_t>(base.inputs);
-  const double* const behind = parameters.data() + base.parameter_count();
-  const std::vector<double> plain = detail::plain_parameters(base, parameters.data(), behind);
-  Direction scaled(features);
-  for (std::size_t i = 0; i < features; ++i) {
-    scaled.least[i] = direction.least[i] / input_deviation[i];
-    scaled.most[i] = direction.most[i] / input_deviation[i];
+namespace detail {
+
+/// The base's output k, standardised, along a direction.
+template <class Scalar>
+void respond(const pinnquad::RunTimePart& base, const Scalar* parameters, std::size_t k, const Direction& scaled,
+             Response& response) {
+  const auto add = [&](Scalar weight, int feature) {
+    const auto i = static_cast<std::size_t>(feature);
+    const double slope = static_cast<double>(weight);
+    response.base_least[k] += slope * (slope < 0 ? scaled.most[i] : scaled.least[i]);
+    response.base_most[k] += slope * (slope < 0 ? scaled.least[i] : scaled.most[i]);
+  };
+  const Scalar* weights = parameters + 3 * base.three_count + static_cast<int>(k) * base.shown();
+  for (int feature = 0; feature < base.inputs; ++feature) {
+    if (!base.in_three(feature)) add(*weights++, feature);
   }
-  Response response;
-  pinnquad::detail::weigh_intervals(plain.data(), base.inputs, 4, scaled.least.data(), scaled.most.data(),
-                                    response.base_least.data(), response.base_most.data());
-  for (std::size_t k = 0; k < 4; ++k) {
-    response.base_least[k] *= output_deviation[k];
-    response.base_most[k] *= output_deviation[k];
+  for (int tap = 0; k > 0 && tap < base.three_count; ++tap) {
+    const int axis = static_cast<int>(k) - 1;
+    add(parameters[3 * tap + axis], base.threes[tap] + axis);
   }
-  if (parts.size() < 2) return response;
-  const NetworkSpec& residual = parts[1];
-  if (!detail::has_path_bound(residual)) {
-    response.residual_least.fill(-std::numeric_limits<double>::infinity());
-    response.residual_most.fill(std::numeric_limits<double>::infinity());
-    return response;
-  }
-  std::vector<int> widths;
-  for (const LayerSpec& layer : residual.layers) {
-    if (layer.size > 0) widths.push_back(layer.size);
-  }
-  const int widest = *std::max_element(widths.begin(), widths.end());
-  std::vector<double> work(4 * static_cast<std::size_t>(widest));
-  std::array<double, 4> lower{}, upper{};
-  const auto bound = [&](const Direction& along) {
+}
+
+}  // namespace detail
+
+/// Of a model whose first part is axis-aligned, alone or with a residual.
+inline Response response_along(const Direction& direction, const pinnquad::BlockModel& model) {
+  return model.with([&](const auto& own) {
+    const pinnquad::RunTimeNetwork& network = own.network();
+    const pinnquad::RunTimePart& base = network.part(0);
+    const auto features = static_cast<std::size_t>(base.inputs);
+    Direction scaled(features);
+    for (std::size_t i = 0; i < features; ++i) {
+      scaled.least[i] = direction.least[i] / static_cast<double>(own.scales().input_deviation[i]);
+      scaled.most[i] = direction.most[i] / static_cast<double>(own.scales().input_deviation[i]);
+    }
+    Response response;
+    for (std::size_t k = 0; k < 4; ++k) {
+      detail::respond(base, own.parameters(), k, scaled, response);
+      const auto deviation = static_cast<double>(own.scales().output_deviation[k]);
+      response.base_least[k] *= deviation;
+      response.base_most[k] *= deviation;
+    }
+    if (network.part_count() < 2) return response;
+    const pinnquad::RunTimePart& residual = network.part(1);
+    int widths[3], layers = 0;
+    if (!pinnquad::has_path_bound(network, residual, widths, layers)) {
+      response.residual_least.fill(-std::numeric_limits<double>::infinity());
+      response.residual_most.fill(std::numeric_limits<double>::infinity());
+      return response;
+    }
     Direction shown(0);
     for (std::size_t i = 0; i < features; ++i) {
-      const int place = static_cast<int>(i);
-      const bool hidden = std::any_of(residual.threes.begin(), residual.threes.end(),
-                                      [place](int three) { return place >= three && place < three + 3; });
-      if (hidden) continue;
-      shown.least.push_back(along.least[i]);
-      shown.most.push_back(along.most[i]);
+      if (residual.in_three(static_cast<int>(i))) continue;
+      shown.least.push_back(scaled.least[i]);
+      shown.most.push_back(scaled.most[i]);
     }
-    pinnquad::path_bound_along(behind + (residual.bounded ? 8 : 0), residual.shown(), widths.data(),
-                               static_cast<int>(widths.size()), shown.least.data(), shown.most.data(), work.data(),
-                               widest, lower.data(), upper.data());
-  };
-  bound(scaled);
-  response.residual_least = lower;
-  response.residual_most = upper;
-  for (std::size_t k = 0; k < 4; ++k) {  // a bound that clips has a slope from 0 to 1
-    response.residual_least[k] = std::min(0.0, response.residual_least[k]) * output_deviation[k];
-    response.residual_most[k] = std::max(0.0, response.residual_most[k]) * output_deviation[k];
-  }
-  return response;
+    std::vector<double> work(pinnquad::path_workspace(residual));
+    pinnquad::path_bound_along(own.parameters() + base.parameter_count + (residual.bounded ? 8 : 0), residual.shown(),
+                               static_cast<const int*>(widths), layers, shown.least.data(), shown.most.data(),
+                               work.data(), residual.widest, response.residual_least.data(),
+                               response.residual_most.data());
+    for (std::size_t k = 0; k < 4; ++k) {  // a bound that clips has a slope from 0 to 1
+      const auto deviation = static_cast<double>(own.scales().output_deviation[k]);
+      response.residual_least[k] = std::min(0.0, response.residual_least[k]) * deviation;
+      response.residual_most[k] = std::max(0.0, response.residual_most[k]) * deviation;
+    }
+    return response;
+  });
 }
 
 }  // namespace programs

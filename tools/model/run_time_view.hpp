@@ -1,33 +1,90 @@
 // SPDX-License-Identifier: MIT
 // A model that is known at run time alone, where flying code wants a compiled one: InverseDynamics<RunTimeView<...>,
-// Guard> and the flight stacks' controller run it with the checks, guards and reports that fly.
+// Guard> and the flight stacks' controller run it with the checks, guards and reports that fly. A feature set of these
+// has room for any model's; what a model does not use is 0 and inside the envelope.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
 
-#include "model/run_time_model.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/evaluation/block_model.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
 namespace programs {
 
-/// A feature set that remembers the last X it made: what a report's feature was.
-template <class FeatureSet>
-struct Watched : FeatureSet {
-  template <class Scalar>
-  static inline std::array<Scalar, static_cast<std::size_t>(FeatureSet::size)> last{};
+/// Texts for a feature set that names nothing.
+template <std::size_t Size>
+constexpr std::array<const char*, Size> no_names() {
+  std::array<const char*, Size> names{};
+  for (const char*& name : names) name = "";
+  return names;
+}
 
-  template <class Inputs, class Scalar>
-  static void extract(const Inputs& in, Scalar* x) noexcept {
-    FeatureSet::extract(in, x);
-    for (std::size_t i = 0; i < last<Scalar>.size(); ++i) last<Scalar>[i] = x[i];
+/// The motion of every instant that a model asks for; the base is the present one, which a fallback sees.
+template <class Scalar>
+struct FlightInputs : pinnquad::MotionInputs<Scalar> {
+  const pinnquad::RunTimeFeatures* features = nullptr;
+  std::vector<pinnquad::RunTimeInputs<Scalar>> taps;  ///< the present first
+  bool complete = false;                              ///< all of them are there
+};
+
+/// Features of a flight's rows: windows, columns, the altitude among them.
+struct FlightFeatures {
+  template <class Scalar>
+  using Inputs = FlightInputs<Scalar>;
+  static constexpr int size = pinnquad::RunTimeFeatures::most_features;
+  static constexpr int angular_acceleration = -1;
+  static constexpr auto names = no_names<std::size_t(size)>();
+  static constexpr auto units = names;
+
+  template <class Scalar>
+  static pinnquad::Status check(const FlightInputs<Scalar>& in) noexcept {
+    if (in.complete) return in.features->check(in.taps.data());
+    const pinnquad::Status present = pinnquad::PaperFeatures::check<Scalar>(in);
+    return present == pinnquad::Status::ok ? pinnquad::Status::warming_up : present;
+  }
+  template <class Scalar>
+  static void extract(const FlightInputs<Scalar>& in, Scalar* x) noexcept {
+    for (int i = 0; i < size; ++i) x[i] = Scalar(0);
+    if (in.complete) in.features->extract(in.taps.data(), x);
+  }
+};
+
+/// Features of a core, which is given the motion of the present alone. One set for the program: `of` says which.
+struct CoreFeatures {
+  template <class Scalar>
+  using Inputs = pinnquad::MotionInputs<Scalar>;
+  static constexpr int size = pinnquad::NamedFeatures::size;
+  static constexpr int angular_acceleration = -1;
+  static constexpr auto names = no_names<std::size_t(size)>();
+  static constexpr auto units = names;
+
+  static inline const pinnquad::RunTimeFeatures* of = nullptr;
+  template <class Scalar>
+  static inline std::array<Scalar, std::size_t(size)> last{};  ///< X made last: what a report's feature was
+
+  template <class Scalar>
+  static pinnquad::Status check(const pinnquad::MotionInputs<Scalar>& in) noexcept {
+    return pinnquad::PaperFeatures::check<Scalar>(in);
+  }
+  template <class Scalar>
+  static void extract(const pinnquad::MotionInputs<Scalar>& in, Scalar* x) noexcept {
+    pinnquad::RunTimeInputs<Scalar> inputs;
+    static_cast<pinnquad::MotionInputs<Scalar>&>(inputs) = in;
+    for (int i = 0; i < size; ++i) x[i] = Scalar(0);
+    if (of != nullptr) of->extract(&inputs, x);
+    for (int i = 0; i < size; ++i) last<Scalar>[std::size_t(i)] = x[i];
+  }
+  /// True for a model that a core can fly: of the motion of the present alone.
+  static bool fits(const pinnquad::BlockModel& model) {
+    const pinnquad::RunTimeFeatures& features = model.features();
+    return !model.is_double() && features.size() <= size && features.window().taps == 1 &&
+           features.column_count() == 0 && !features.asks_for_altitude();
   }
 };
 
@@ -46,7 +103,7 @@ struct AnswerShape {
 template <class FeatureSet, class ScalarType>
 struct RunTimeShape {
   using Scalar = ScalarType;
-  using Features = Watched<FeatureSet>;
+  using Features = FeatureSet;
   using Outputs = pinnquad::CommandOutputs;
   using Vehicle = pinnquad::PaperQuadrotor;
   using Network = AnswerShape<Scalar, Features::size>;
@@ -73,28 +130,23 @@ class RunTimeView {
   std::vector<std::array<Scalar, pinnquad::rotor_count>> golden_commands;
 
   RunTimeView() = default;
-  template <class OutputSchema>
-  static RunTimeView of(const Block& block, const Identity& identity, OutputSchema /*outputs*/) {
-    RunTimeView view;
-    const auto model = std::make_shared<const RunTimeModel<FeatureSet, OutputSchema, Scalar>>(block, identity);
-    view.answer_ = [model](const std::vector<Scalar>& standardised) {
-      FeatureVector x{};  // X again, to rounding: a schema may ask for it
-      model->input().restore(standardised.data(), x.data());
-      return model->answer(x.data(), standardised);
-    };
-    view.input = model->input();
-    const auto take = [](const double* from, auto& to) {
-      for (std::size_t i = 0; i < to.size(); ++i) to[i] = static_cast<Scalar>(from[i]);
-    };
-    take(block.envelope_lower.data(), view.envelope_lower);
-    take(block.envelope_upper.data(), view.envelope_upper);
-    view.golden_features.resize(block.golden_count);
-    view.golden_commands.resize(block.golden_count);
-    for (std::size_t i = 0; i < block.golden_count; ++i) {
-      take(block.golden_features.data() + i * view.envelope_lower.size(), view.golden_features[i]);
-      take(block.golden_commands.data() + i * pinnquad::rotor_count, view.golden_commands[i]);
+  /// The model must stay where it is.
+  explicit RunTimeView(const pinnquad::RunTimeModel<Scalar>& model) : model_(&model), work_(model.workspace()) {
+    const auto size = static_cast<std::size_t>(model.features().size());
+    envelope_lower = {};
+    for (std::size_t i = 0; i < size; ++i) {
+      input.mean[i] = model.scales().input_mean[i];
+      input.standard_deviation[i] = model.scales().input_deviation[i];
+      envelope_lower[i] = model.scales().lower[i];
+      envelope_upper[i] = model.scales().upper[i];
     }
-    return view;
+    for (int vector = 0; vector < model.golden_count(); ++vector) {
+      FeatureVector x{};
+      std::copy_n(model.golden_features(vector), size, x.begin());
+      golden_features.push_back(x);
+      golden_commands.emplace_back();
+      std::copy_n(model.golden_commands(vector), pinnquad::rotor_count, golden_commands.back().begin());
+    }
   }
 
   static void know(const void* block, const RunTimeView& view) { known()[block] = view; }
@@ -107,8 +159,13 @@ class RunTimeView {
   }
 
   void forward(const Scalar* standardised, Scalar* commands) const noexcept {
-    const pinnquad::Commands<Scalar> made = answer_(std::vector<Scalar>(standardised, standardised + Features::size));
-    for (std::size_t i = 0; i < made.size(); ++i) commands[i] = made[i];
+    if (model_ == nullptr) {
+      for (int i = 0; i < pinnquad::rotor_count; ++i) commands[i] = std::numeric_limits<Scalar>::quiet_NaN();
+      return;
+    }
+    FeatureVector x{};  // X again, to rounding: a schema may ask for it
+    input.restore(standardised, x.data());
+    model_->answer(x.data(), standardised, commands, work_.data());
   }
 
  private:
@@ -117,11 +174,44 @@ class RunTimeView {
     return all;
   }
 
-  std::function<pinnquad::Commands<Scalar>(const std::vector<Scalar>&)> answer_ = [](const std::vector<Scalar>&) {
-    pinnquad::Commands<Scalar> none;
-    for (Scalar& u : none) u = std::numeric_limits<Scalar>::quiet_NaN();
-    return none;
-  };
+  const pinnquad::RunTimeModel<Scalar>* model_ = nullptr;
+  mutable std::vector<Scalar> work_;
+};
+
+/// Limits of trust (docs/trust.md) as `struct <Model>Trust`; as made, everything is trusted. One for the program.
+template <class FeatureSet>
+struct RunTimeTrust {
+  static constexpr auto size = static_cast<std::size_t>(FeatureSet::size);
+  static constexpr double unlimited = 1e30;
+
+  static inline std::array<float, size> distribution_mean{};
+  static inline std::array<float, size*(size + 1) / 2> whitening{};
+  static inline double squared_distance_limit = unlimited;
+  static inline double command_residual_factor = 1;
+  static inline double command_residual_limit = unlimited;
+  static inline double command_residual_cleared = unlimited;
+  static inline double update_period_s = 1;
+
+  /// Takes those of a block. False where it has none.
+  static bool set(const pinnquad::RunTimeModel<float>& model) {
+    const auto& records = model.records();
+    if (records.trust == nullptr) return false;
+    double limits[5];
+    std::memcpy(limits, records.trust, sizeof limits);
+    squared_distance_limit = limits[0];
+    command_residual_factor = limits[1];
+    command_residual_limit = limits[2];
+    command_residual_cleared = limits[3];
+    update_period_s = limits[4];
+    const auto* numbers = static_cast<const float*>(static_cast<const void*>(records.trust + sizeof limits));
+    const auto own = static_cast<std::size_t>(model.features().size());
+    std::copy_n(numbers, own, distribution_mean.begin());
+    numbers += own;
+    for (std::size_t column = 0, at = 0; column < size; at += size - column, ++column) {
+      for (std::size_t row = column; column < own && row < own; ++row) whitening[at + row - column] = *numbers++;
+    }
+    return true;
+  }
 };
 
 }  // namespace programs

@@ -18,7 +18,7 @@
 #include "airframe/choice.hpp"
 #include "command_line/folders.hpp"
 #include "command_line/options.hpp"
-#include "model/header_airframe.hpp"
+#include "model/given_model.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/io/atomic_file.hpp"
@@ -31,9 +31,9 @@ namespace fs = std::filesystem;
 
 struct NewOptions {
   std::string folder;
-  std::string airframe;  ///< a name or a file; empty: the header's, or the paper's
-  std::string model;     ///< an exported header whose types the project begins with; empty: the paper's
-  std::string name;      ///< of the struct that the project exports; empty: the header's
+  std::string airframe;  ///< a name or a file; empty: the model's, or the paper's
+  std::string model;     ///< an exported model whose types the project begins with; empty: the paper's
+  std::string name;      ///< of the struct that the project exports; empty: the model's
 };
 
 /// A place of the template and what goes there.
@@ -53,21 +53,22 @@ std::string short_name(std::string type) {
   return type;
 }
 
-/// A type as it stands in an exported header.
-std::string library_type(const programs::HeaderFile& header, const std::string& name) {
-  const std::string& type = header.text(name);
+/// A type of the library that a block names.
+std::string library_type(const BlockModel& model, const char* word) {
+  const std::string type = model.provenance(word);
   const char* known = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:<>, ";
   if (type.compare(0, library.size(), library) != 0 || type.find_first_not_of(known) != std::string::npos) {
-    header.refuse(name, "a type of the library", "`" + printable(type) + "`");
+    throw InputError(model.path(), 0, 0, std::string("a model whose ") + word + " are a type of the library",
+                     "`" + printable(type) + "`");
   }
   return short_name(type);
 }
 
-/// The network of a header: what the project's trainer trains. A structured model is fitted otherwise.
-std::string trained_network(const programs::HeaderFile& header) {
-  const std::string type = library_type(header, "Network");
+/// The network of a model: what the project's trainer trains. A structured model is fitted otherwise.
+std::string trained_network(const BlockModel& model) {
+  const std::string type = library_type(model, "network");
   if (type.compare(0, 8, "Network<") != 0) {
-    header.refuse("Network", "a network, as pinnquad train --recipe paper exports it", "`" + type + "`");
+    throw InputError(model.path(), 0, 0, "a network, as pinnquad train --recipe paper exports it", "`" + type + "`");
   }
   return type;
 }
@@ -105,23 +106,30 @@ Filling library_airframe(const std::string& type) {
   return {{"struct", ""}, {"airframe", type}, {"airframe_value", "{}"}};
 }
 
+Filling given_airframe(const programs::NamedAirframe& airframe) {
+  std::ostringstream text;
+  write_airframe(text << '\n', "OwnAirframe", airframe.name, airframe.value);
+  return own_airframe(text.str(), "OwnAirframe");
+}
+
 /// That of a name or a file.
 Filling chosen_airframe(const std::string& name_or_file) {
   Filling places;
   programs::with_airframe(name_or_file, [&places](auto tag) {
     places = library_airframe(short_name(type_name<typename decltype(tag)::type>()));
   });
-  if (!places.empty()) return places;
-  const programs::NamedAirframe airframe = programs::chosen_airframe(name_or_file);
-  std::ostringstream text;
-  write_airframe(text << '\n', "OwnAirframe", airframe.name, airframe.value);
-  return own_airframe(text.str(), "OwnAirframe");
+  return places.empty() ? given_airframe(programs::chosen_airframe(name_or_file)) : places;
 }
 
-/// That of a header, which may bring the struct with it.
-Filling airframe_of(const programs::HeaderFile& header) {
-  const std::string own = programs::airframe_struct(header);
-  return own.empty() ? library_airframe(library_type(header, "Vehicle")) : own_airframe(own, header.text("Vehicle"));
+/// That of a model: one of the library, where it has its name and mass.
+Filling airframe_of(const BlockModel& model) {
+  Filling places;
+  programs::with_airframe(model.airframe_name(), [&](auto tag) {
+    using Vehicle = typename decltype(tag)::type;
+    if (!pinnquad::detail::equal(airframe_value<Vehicle, double>().mass_kg, model.airframe().mass_kg)) return;
+    places = library_airframe(short_name(type_name<Vehicle>()));
+  });
+  return places.empty() ? given_airframe({model.airframe_name(), model.airframe()}) : places;
 }
 
 /// Values for the places of the template.
@@ -131,12 +139,12 @@ Filling filling(const NewOptions& options) {
                            {"outputs", "CommandOutputs"},
                            {"network", "Mlp<float, InputSize<MyFeatures::size>, Hidden<10, 25>, OutputSize<4>, Relu>"}};
   if (!options.model.empty()) {
-    const programs::HeaderFile header(options.model);
-    if (airframe.empty()) places = airframe_of(header);
-    types = {{"features", library_type(header, "Features")},
-             {"outputs", library_type(header, "Outputs")},
-             {"network", as_mlp(trained_network(header))}};
-    name = header.quoted("name");
+    const BlockModel model = programs::read_model(options.model);
+    if (airframe.empty()) places = airframe_of(model);
+    types = {{"features", library_type(model, "features")},
+             {"outputs", library_type(model, "outputs")},
+             {"network", as_mlp(trained_network(model))}};
+    name = model.name();
   }
   if (places.empty()) places = chosen_airframe(airframe.empty() ? PaperQuadrotor::name : airframe);
   if (!options.name.empty()) name = options.name;
@@ -206,12 +214,12 @@ programs::Command programs::new_command(CLI::App& program) {
   add_path(*line, "folder", options->folder, "FOLDER", "where to write it: not there yet, or empty")->required();
   add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
            "what flies: a file (examples/airframes), or one of: " + airframe_names() +
-               " (default: that of MODEL.hpp, or " + pinnquad::PaperQuadrotor::name + ")");
-  add_path(*line, "--model", options->model, "MODEL.hpp",
-           "begin with features, network and airframe of this exported header, no structured model's (default: the "
+               " (default: that of MODEL, or " + pinnquad::PaperQuadrotor::name + ")");
+  add_path(*line, "--model", options->model, "MODEL",
+           "begin with features, network and airframe of this exported model, no structured one (default: the "
            "paper's)");
   add_path(*line, "--name", options->name, "NAME",
-           "name of the struct that the project exports (default: that of MODEL.hpp, or TrainedQuadModel)");
+           "name of the struct that the project exports (default: that of MODEL, or TrainedQuadModel)");
   line->footer(
       "Examples:\n"
       "  pinnquad new my_training --airframe mine.toml\n"

@@ -13,6 +13,7 @@
 
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/evaluation/block_model.hpp"
 #include "pinnquad/loss/context.hpp"
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/nn/scaler.hpp"
@@ -21,8 +22,7 @@
 
 namespace programs {
 
-/// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, in 1 / (rad/s^2).
-using AxisDerivatives = std::array<double, 3>;
+using pinnquad::AxisDerivatives;
 
 /// Counts rows in which the derivative is negative, and keeps the least, per axis.
 class DerivativeSigns {

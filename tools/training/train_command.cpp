@@ -53,7 +53,6 @@ struct TrainOptions {
   std::string airframe = PaperQuadrotor::name;
   std::string out = "demo_out";
   std::string model_name = "TrainedQuadModel";
-  std::string block;  ///< where to write the weights as a block too; empty: nowhere
   std::string recipe = programs::recipes.front()().name;
   std::vector<std::string> losses = {programs::vanilla.key, programs::physics_informed.key};
   std::string altitude = "auto";
@@ -106,7 +105,7 @@ void draw(const GivenAirframe& airframe, const std::string& folder, const RowSet
 std::string earlier_export(const TrainOptions& options) {
   std::vector<std::string> there;
   for (const std::string& path :
-       {options.out + "/model.hpp", options.out + "/trust.hpp", options.out + "/replay.txt", options.block}) {
+       {options.out + "/model.hpp", options.out + "/trust.hpp", options.out + "/replay.txt", options.out + "/model.block"}) {
     std::error_code ignored;
     if (!path.empty() && std::filesystem::exists(path, ignored)) there.push_back(path);
   }
@@ -191,7 +190,7 @@ void export_network(const TrainOptions& options, const programs::Training& train
   const std::string header = options.out + "/model.hpp", trust = options.out + "/trust.hpp";
   const bool trusted = programs::is_structured(training.loss);
   const Exported exported =
-      network.export_to({header, options.block, trusted ? trust : ""}, options.model_name, split, provenance);
+      network.export_to({header, options.out + "/model.block", trusted ? trust : ""}, options.model_name, split, provenance);
   std::error_code ignored;
   if (!trusted) std::filesystem::remove(trust, ignored);
   network.write_replay(options.out + "/replay.txt", split.test);
@@ -204,8 +203,7 @@ void export_network(const TrainOptions& options, const programs::Training& train
     std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
                 trust.c_str(), options.model_name.c_str());
   }
-  if (options.block.empty()) return;
-  std::printf("  %s: the same weights as a block of %zu bytes\n", options.block.c_str(), exported.block_bytes);
+  std::printf("  %s: the same weights as a block of %zu bytes\n", (options.out + "/model.block").c_str(), exported.block_bytes);
 }
 
 /// Per kind, on one core.
@@ -294,7 +292,7 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
     const programs::Training& exported = trainings[*best - 1];  // results[0] is the linearized model
     export_network(options, exported, split, from);
     say_certificate(options, *exported.network, plan.airframe, report);
-    report.write_exported(folder + "model.hpp", options.block);
+    report.write_exported(folder + "model.hpp", folder + "model.block");
   } else {
     programs::complain(
         "train", "not exported: " + reason + "; " + instead_of_poor(options, chosen.loss) + earlier_export(options));
@@ -315,8 +313,8 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
 }
 
 /// The files of --out.
-constexpr std::array<const char*, 8> output_names = {"results.csv",    "report.json", "ellipses.svg", "errors.svg",
-                                                     "prediction.svg", "model.hpp",   "trust.hpp",    "replay.txt"};
+constexpr std::array<const char*, 9> output_names = {"results.csv",    "report.json", "ellipses.svg", "errors.svg",
+                                                     "prediction.svg", "model.hpp",   "model.block",  "trust.hpp",    "replay.txt"};
 
 /// No output takes the place of a flight or of another output.
 void require_separate_files(const TrainOptions& options) {
@@ -325,7 +323,6 @@ void require_separate_files(const TrainOptions& options) {
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   for (const char* name : output_names) roles.writes("--out", options.out + "/" + name);
-  roles.writes("--block", options.block);
 }
 
 /// Options common to logs and flights; `given(name)`: the option is in the command line.
@@ -335,7 +332,6 @@ programs::LogTrainingOptions log_options(const TrainOptions& options, const Give
   logs.airframe = given("--airframe") ? options.airframe : "";
   logs.out = options.out;
   logs.model_name = options.model_name;
-  logs.block = options.block;
   logs.seeds = options.seeds;
   logs.epochs = given("--epochs") ? options.epochs : 0;
   logs.seed = options.seed;
@@ -368,7 +364,6 @@ int train_chosen(const TrainOptions& options) {
   const programs::FolderLock folder(options.out);
   // what cannot be written is found before the training
   for (const char* name : output_names) AtomicFile probe(options.out + "/" + name);
-  if (!options.block.empty()) AtomicFile probe(options.block);
   return train_judge_export(options, recipe, losses, airframe, dataset, split);
 }
 
@@ -379,7 +374,7 @@ void add_options(CLI::App& app, TrainOptions& options) {
       "Examples:\n"
       "  pinnquad train --flight d1.csv --out my_model\n"
       "  pinnquad train --flight a.csv --flight b.csv --flight c.csv --airframe mine.toml --recipe best\n"
-      "  pinnquad train --flight d1.csv --recipe small --block weights.block\n"
+      "  pinnquad train --flight d1.csv --recipe small --out small\n"
       "  pinnquad train --log logs --mapping px4 --hold-out flight7 --out my_model\n"
       "  pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model\n"
       "Exit codes: 0; 1 nothing exported: no model was finished, or the best is worse than the mean of the commands;\n"
@@ -426,7 +421,6 @@ void add_options(CLI::App& app, TrainOptions& options) {
       ->type_name("learned|pinned")
       ->capture_default_str();
   app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
-  add_path(app, "--block", options.block, "FILE", "also write the exported weights as a model block");
   add_number(app, "--seeds", options.seeds, 1, static_cast<int>(most_pairs), "models per kind");
   add_number(app, "--epochs", options.epochs, 1, 100000, "training epochs");
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,

@@ -38,7 +38,8 @@ using namespace pinnquad;
 using programs::LogTrainingOptions;
 
 /// The files of --out.
-constexpr std::array<const char*, 4> log_output_names = {"report.json", "report.html", "model.hpp", "replay.txt"};
+constexpr std::array<const char*, 5> log_output_names = {"report.json", "report.html", "model.hpp", "model.block",
+                                                          "replay.txt"};
 
 void require_separate_files(const LogTrainingOptions& options) {
   programs::FileRoles roles;
@@ -47,7 +48,6 @@ void require_separate_files(const LogTrainingOptions& options) {
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   for (const char* name : log_output_names) roles.writes("--out", options.out + "/" + name);
-  roles.writes("--block", options.block);
 }
 
 std::string decimals(double value, int digits) {
@@ -147,7 +147,7 @@ class LogTraining {
     report_.write_not_exported(reason);
     told_ = "Nothing was exported: " + reason + ".";
     std::string earlier;
-    for (const std::string& path : {options_.out + "/model.hpp", options_.out + "/replay.txt", options_.block}) {
+    for (const std::string& path : {options_.out + "/model.hpp", options_.out + "/replay.txt", options_.out + "/model.block"}) {
       std::error_code ignored;
       if (!path.empty() && std::filesystem::exists(path, ignored))
         earlier += (earlier.empty() ? "; of an earlier training: " : ", ") + path;
@@ -249,19 +249,17 @@ class LogTraining {
   void write(const Exported& made, const programs::LogModelKind& kind, const Verdict& verdict) {
     const Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                                     made.seed, options_.epochs, verdict);
-    const std::string header = options_.out + "/model.hpp";
+    const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::size_t block_bytes =
-        made.model->export_to({header, options_.block, {}}, options_.model_name, made.fold->split, from).block_bytes;
+        made.model->export_to({header, block, {}}, options_.model_name, made.fold->split, from).block_bytes;
     made.model->write_replay(options_.out + "/replay.txt",
                              made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
     std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
                 kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
                 verdict.worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
-    if (!options_.block.empty()) {
-      std::printf("  %s: the same weights as a block of %zu bytes\n", options_.block.c_str(), block_bytes);
-    }
+    std::printf("  %s: the same weights as a block of %zu bytes\n", block.c_str(), block_bytes);
     tell_flight(made.flown);
-    report_.write_exported(kind, made.seed, header, options_.block);
+    report_.write_exported(kind, made.seed, header, block);
     told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +
             (rotated() ? "fitted anew to all flights, validated on " + made.fold->validation.front() +
                              ": the figures are of the fits of the rotation"
@@ -356,7 +354,6 @@ int programs::train_on_logs(const LogTrainingOptions& options) {
   const FolderLock lock(options.out);
   if (!options.logs.empty()) write_dataset_folder(folder, dataset);
   for (const char* name : log_output_names) AtomicFile probe(options.out + "/" + name);
-  if (!options.block.empty()) AtomicFile probe(options.block);
   std::printf("      %zu rows of %zu flights\n", dataset.flights.rows(), dataset.flights.size());
   print_folds(folds);
   return LogTraining(options, dataset, airframe, std::move(folds)).run();

@@ -20,7 +20,6 @@ struct LogTrainingOptions {
   std::string airframe;  ///< empty: none was given
   std::string out = "demo_out";
   std::string model_name = "TrainedQuadModel";
-  std::string block;
   int seeds = 5;
   int epochs = 0;  ///< 0: what suits each kind
   std::uint64_t seed = 1;

@@ -59,6 +59,9 @@ inline std::vector<std::string> provenance_texts(const WrittenRecords& records) 
                                     "seed", std::to_string(records.seed),
                                     "epochs", std::to_string(records.epochs),
                                     "loss", records.loss,
+                                    "network", records.network_type,
+                                    "features", records.features_type,
+                                    "outputs", records.outputs_type,
                                     "pinnquad", PINNQUAD_VERSION};
   const auto& verdict = records.verdict;
   if (verdict && is_finite(verdict->test_r_squared) && is_finite(verdict->linear_regression_r_squared)) {

@@ -90,6 +90,7 @@ struct WrittenRecords : Provenance {
 
   // of a block alone: a header has types for these, and its own hash
   std::string name;  ///< of the header's struct
+  std::string network_type, features_type, outputs_type;  ///< as a header names them, for a reader
   std::vector<std::string> feature_texts;  ///< name and unit of each
   std::vector<std::string> output_texts;   ///< the schema's description, then name and unit of each
   std::string vehicle_name;
@@ -164,6 +165,9 @@ WrittenRecords records_of_types() {
   records.base = description_text<typename BaseOf<typename M::Outputs>::type>();
   using Map = OutputMap<typename M::Outputs>;
   append_texts(records.feature_texts, M::Features::names, M::Features::units);
+  records.network_type = type_name<typename M::Network>();
+  records.features_type = type_name<typename M::Features>();
+  records.outputs_type = type_name<typename M::Outputs>();
   records.output_texts = {description_text<typename M::Outputs>()};
   append_texts(records.output_texts, Map::names, Map::units);
   return records;

@@ -201,6 +201,11 @@ class BlockModel {
     });
   }
 
+  /// Signed sums of commands about roll, pitch, yaw.
+  std::array<double, 3> signed_sums(const Commands<double>& u) const {
+    return {signed_sum(signs_[0], u), signed_sum(signs_[1], u), signed_sum(signs_[2], u)};
+  }
+
   /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is moved;
   /// else the present alone.
   AxisDerivatives derivatives(const std::vector<double>& x, bool held = true) const {

@@ -96,7 +96,7 @@ constexpr bool is_block_version(std::uint32_t version) noexcept {
 inline constexpr std::uint32_t block_record_types = 19;
 
 /// The most bytes of a block's provenance.
-inline constexpr std::uint32_t longest_provenance = 2048;
+inline constexpr std::uint32_t longest_provenance = 4096;
 
 PINNQUAD_ALWAYS_INLINE constexpr std::uint32_t read_u32(const unsigned char* from) noexcept {
   return std::uint32_t{from[0]} | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 |

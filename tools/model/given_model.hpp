@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The model that a command is given: a block that describes itself, or an exported header, beside which its block
+// stands.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "command_line/options.hpp"
+#include "pinnquad/evaluation/block_model.hpp"
+
+namespace programs {
+
+/// MODEL, of a command that takes one.
+void add_model(CLI::App& line, std::string& model);
+
+/// The path of the block: itself, or the one beside a header, which says the header's hash. Throws InputError, one line:
+/// no block is there, or one of another header.
+std::string block_path(const std::string& model);
+
+/// Throws InputError as block_path() and BlockModel.
+inline pinnquad::BlockModel read_model(const std::string& model) { return pinnquad::BlockModel(block_path(model)); }
+
+/// A model of which nothing is proven, though it has the structure, is none to fly. Throws InputError.
+void require_provable(const pinnquad::BlockModel& model);
+
+}  // namespace programs
