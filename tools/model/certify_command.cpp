@@ -86,15 +86,18 @@ bool has_base(const BlockModel& model) {
 /// To what moves several features at once. The body rates move a base too, which is no part of the response.
 void add_responses(const BlockModel& model, Findings& findings) {
   const auto along = [&](const std::optional<programs::Direction>& direction) {
-    return direction ? std::optional(programs::response_along(*direction, model)) : std::nullopt;
+    if (!direction) return std::optional<programs::Response>();
+    return model.with([&](const auto& own) {
+      return std::optional(programs::response_along(*direction, own.network(), own.parameters(),
+                                                    own.scales().input_deviation, own.scales().output_deviation));
+    });
   };
   findings.thrust = along(programs::more_thrust(findings.names));
   const RunTimeWindow& window = model.features().window();
   if (has_base(model) || window.taps < 2) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    findings.with_rates[axis] =
-        along(programs::held_with_rates(findings.names, axis, {window.period_s, window.earliest_s},
-                                        model.envelope_lower(), model.envelope_upper()));
+    findings.with_rates[axis] = along(programs::held_with_rates(
+        findings.names, axis, {window.period_s, window.earliest_s}, model.envelope_lower(), model.envelope_upper()));
   }
 }
 
@@ -285,8 +288,8 @@ void print_text(const BlockModel& model, const Findings& findings) {
     std::printf("proven     each signed sum of the commands rises with the angular acceleration about its axis%s\n",
                 !findings.certificate ? ""
                                       : (sees_angular_acceleration(model) ? ", and each rotor goes the right way"
-                                                                             : " and with no other, before a limit "
-                                                                               "clips a command"));
+                                                                          : " and with no other, before a limit "
+                                                                            "clips a command"));
     std::printf("for        all finite features, inside the envelope and outside of it\n");
     std::printf("by         %s\n", findings.argument);
     for (std::size_t axis = 0; axis < 3; ++axis) {

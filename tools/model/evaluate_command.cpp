@@ -115,9 +115,8 @@ int evaluate(const EvaluateOptions& options) {
     throw std::invalid_argument("--flight: no row of " + pinnquad::flight_names(dataset) +
                                 " has the whole window of instants that the model asks for");
   }
-  programs::Judgement judged =
-      programs::judge(GivenAirframe(model.airframe_name(), model.airframe()),
-                      evaluation.answered.rows, evaluation.answered.predictions);
+  programs::Judgement judged = programs::judge(GivenAirframe(model.airframe_name(), model.airframe()),
+                                               evaluation.answered.rows, evaluation.answered.predictions);
   judged.derivatives = evaluation.derivatives;
   if (options.json) {
     print_json(options, model, dataset, evaluation, judged);

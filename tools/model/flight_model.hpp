@@ -8,7 +8,7 @@
 
 #include "model/replayed_row.hpp"
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 
 namespace programs {
 

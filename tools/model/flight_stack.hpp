@@ -9,7 +9,8 @@
 namespace programs {
 
 /// The guard that flies.
-using FlightStackController = pinnquad::autopilot::NeuralController<RunTimeShape<CoreFeatures, float>, RunTimeView<CoreFeatures, float>>;
+using FlightStackController =
+    pinnquad::autopilot::NeuralController<RunTimeShape<CoreFeatures, float>, RunTimeView<CoreFeatures, float>>;
 using FallbackInverse = FlightStackController::Analytic;
 using FlightStackGuard = pinnquad::Extend<FlightStackController::NetworkGuard, pinnquad::Fallback<FallbackInverse>>;
 

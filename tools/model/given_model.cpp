@@ -37,17 +37,17 @@ std::string block_path(const std::string& model) {
   const std::uint64_t hash = stated_hash(model);
   const std::string block = std::filesystem::path(path).replace_extension(".block").string();
   if (!std::filesystem::exists(block)) {
-    throw pinnquad::InputError(model, 0, 0,
-                               "the block of this header beside it, " + pinnquad::printable(block) +
-                                   " (docs/blocks.md says how to write it)",
-                               "none");
+    throw pinnquad::InputError(
+        model, 0, 0,
+        "the block of this header beside it, " + pinnquad::printable(block) + " (docs/blocks.md says how to write it)",
+        "none");
   }
   const pinnquad::BlockModel own(block);
   if (hash == 0 || own.contents_hash() != hash) {
-    throw pinnquad::InputError(block, 0, 0,
-                               "the block of " + pinnquad::printable(model) + " (contents_hash " +
-                                   pinnquad::hexadecimal(hash) + ")",
-                               "one of another header (" + pinnquad::hexadecimal(own.contents_hash()) + ")");
+    throw pinnquad::InputError(
+        block, 0, 0,
+        "the block of " + pinnquad::printable(model) + " (contents_hash " + pinnquad::hexadecimal(hash) + ")",
+        "one of another header (" + pinnquad::hexadecimal(own.contents_hash()) + ")");
   }
   return block;
 }

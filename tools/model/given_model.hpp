@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line/options.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 
 namespace programs {
 

@@ -76,8 +76,7 @@ void apply_setting(const std::string& text, pinnquad::autopilot::CoreSettings& s
   if (!found) throw std::invalid_argument("--set: no setting named '" + name + "'; known: " + known);
 }
 
-Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input,
-                        const std::vector<BlockModel>& models) {
+Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input, const std::vector<BlockModel>& models) {
   if (models.size() > 1) {
     throw std::invalid_argument(
         "--model: a log of flights takes one model; several are for a log of a core, which names them");
@@ -243,9 +242,10 @@ programs::Command programs::replay_command(CLI::App& program) {
            "a recorded flight (FILE.csv), a folder that pinnquad import wrote, or what a flight stack's core logged: a "
            "ULog file, a folder that ulog2csv wrote, NAME_pinnquad_record_0.csv")
       ->required();
-  add_paths(*line, "--model", options->models, "MODEL",
-            "a model block, as pinnquad train writes it (model.block), or the header beside it; of a core's log all that "
-           "flew")
+  add_paths(
+      *line, "--model", options->models, "MODEL",
+      "a model block, as pinnquad train writes it (model.block), or the header beside it; of a core's log all that "
+      "flew")
       ->required();
   line->add_option("--guard", options->guard,
                    "what stands between model and motors where the log is a flight: flight_stack, as "

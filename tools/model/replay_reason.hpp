@@ -52,8 +52,8 @@ class ReasonOf {
     const auto lower = static_cast<double>(view_.envelope_lower[i]),
                upper = static_cast<double>(view_.envelope_upper[i]);
     const bool below = value < lower;
-    return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(feature).c_str(), value, unit.c_str(),
-                    below ? "below" : "above", below ? lower : upper, half_widths);
+    return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(feature).c_str(), value,
+                    unit.c_str(), below ? "below" : "above", below ? lower : upper, half_widths);
   }
 
  private:

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 
 namespace programs {
 
@@ -114,50 +114,49 @@ void respond(const pinnquad::RunTimePart& base, const Scalar* parameters, std::s
 
 }  // namespace detail
 
-/// Of a model whose first part is axis-aligned, alone or with a residual.
-inline Response response_along(const Direction& direction, const pinnquad::BlockModel& model) {
-  return model.with([&](const auto& own) {
-    const pinnquad::RunTimeNetwork& network = own.network();
-    const pinnquad::RunTimePart& base = network.part(0);
-    const auto features = static_cast<std::size_t>(base.inputs);
-    Direction scaled(features);
-    for (std::size_t i = 0; i < features; ++i) {
-      scaled.least[i] = direction.least[i] / static_cast<double>(own.scales().input_deviation[i]);
-      scaled.most[i] = direction.most[i] / static_cast<double>(own.scales().input_deviation[i]);
-    }
-    Response response;
-    for (std::size_t k = 0; k < 4; ++k) {
-      detail::respond(base, own.parameters(), k, scaled, response);
-      const auto deviation = static_cast<double>(own.scales().output_deviation[k]);
-      response.base_least[k] *= deviation;
-      response.base_most[k] *= deviation;
-    }
-    if (network.part_count() < 2) return response;
-    const pinnquad::RunTimePart& residual = network.part(1);
-    int widths[3], layers = 0;
-    if (!pinnquad::has_path_bound(network, residual, widths, layers)) {
-      response.residual_least.fill(-std::numeric_limits<double>::infinity());
-      response.residual_most.fill(std::numeric_limits<double>::infinity());
-      return response;
-    }
-    Direction shown(0);
-    for (std::size_t i = 0; i < features; ++i) {
-      if (residual.in_three(static_cast<int>(i))) continue;
-      shown.least.push_back(scaled.least[i]);
-      shown.most.push_back(scaled.most[i]);
-    }
-    std::vector<double> work(pinnquad::path_workspace(residual));
-    pinnquad::path_bound_along(own.parameters() + base.parameter_count + (residual.bounded ? 8 : 0), residual.shown(),
-                               static_cast<const int*>(widths), layers, shown.least.data(), shown.most.data(),
-                               work.data(), residual.widest, response.residual_least.data(),
-                               response.residual_most.data());
-    for (std::size_t k = 0; k < 4; ++k) {  // a bound that clips has a slope from 0 to 1
-      const auto deviation = static_cast<double>(own.scales().output_deviation[k]);
-      response.residual_least[k] = std::min(0.0, response.residual_least[k]) * deviation;
-      response.residual_most[k] = std::max(0.0, response.residual_most[k]) * deviation;
-    }
+/// Of a network whose first part is axis-aligned, alone or with a residual, between scalers.
+template <class Scalar>
+Response response_along(const Direction& direction, const pinnquad::RunTimeNetwork& network, const Scalar* parameters,
+                        const Scalar* input_deviation, const Scalar* output_deviation) {
+  const pinnquad::RunTimePart& base = network.part(0);
+  const auto features = static_cast<std::size_t>(base.inputs);
+  Direction scaled(features);
+  for (std::size_t i = 0; i < features; ++i) {
+    scaled.least[i] = direction.least[i] / static_cast<double>(input_deviation[i]);
+    scaled.most[i] = direction.most[i] / static_cast<double>(input_deviation[i]);
+  }
+  Response response;
+  for (std::size_t k = 0; k < 4; ++k) {
+    detail::respond(base, parameters, k, scaled, response);
+    const auto deviation = static_cast<double>(output_deviation[k]);
+    response.base_least[k] *= deviation;
+    response.base_most[k] *= deviation;
+  }
+  if (network.part_count() < 2) return response;
+  const pinnquad::RunTimePart& residual = network.part(1);
+  int widths[3], layers = 0;
+  if (!pinnquad::has_path_bound(network, residual, widths, layers)) {
+    response.residual_least.fill(-std::numeric_limits<double>::infinity());
+    response.residual_most.fill(std::numeric_limits<double>::infinity());
     return response;
-  });
+  }
+  Direction shown(0);
+  for (std::size_t i = 0; i < features; ++i) {
+    if (residual.in_three(static_cast<int>(i))) continue;
+    shown.least.push_back(scaled.least[i]);
+    shown.most.push_back(scaled.most[i]);
+  }
+  std::vector<double> work(pinnquad::path_workspace(residual));
+  pinnquad::path_bound_along(parameters + base.parameter_count + (residual.bounded ? 8 : 0), residual.shown(),
+                             static_cast<const int*>(widths), layers, shown.least.data(), shown.most.data(),
+                             work.data(), residual.widest, response.residual_least.data(),
+                             response.residual_most.data());
+  for (std::size_t k = 0; k < 4; ++k) {  // a bound that clips has a slope from 0 to 1
+    const auto deviation = static_cast<double>(output_deviation[k]);
+    response.residual_least[k] = std::min(0.0, response.residual_least[k]) * deviation;
+    response.residual_most[k] = std::max(0.0, response.residual_most[k]) * deviation;
+  }
+  return response;
 }
 
 }  // namespace programs

@@ -10,8 +10,8 @@
 #include <memory>
 #include <vector>
 
+#include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/inference/self_test.hpp"
 

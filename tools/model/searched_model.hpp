@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/counterexample.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 
 namespace programs {
 
@@ -30,7 +30,8 @@ inline SearchedModel searched_model(const pinnquad::BlockModel& model) {
     return all;
   };
   searched.sums = [&model](const std::vector<double>& x) { return model.signed_sums(model.commands(x)); };
-  for (int vector = 0; vector < model.golden_count(); ++vector) searched.starts.push_back(model.golden_features(vector));
+  for (int vector = 0; vector < model.golden_count(); ++vector)
+    searched.starts.push_back(model.golden_features(vector));
   return searched;
 }
 

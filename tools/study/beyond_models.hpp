@@ -43,7 +43,7 @@ class JudgedModelOf : public JudgedModel {
     return pinnquad::predicted_commands(model_, rows, true);
   }
   programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
-    return programs::derivative_figures(rows, programs::derivatives_of(model_));
+    return programs::derivative_figures_of(model_, rows);
   }
   std::optional<pinnquad::Certificate> certificate() const override {
     return programs::certificate_of_structure(model_);

@@ -104,8 +104,8 @@ void draw(const GivenAirframe& airframe, const std::string& folder, const RowSet
 /// "; of an earlier training: ..." with the files an export would have replaced; nothing where there are none.
 std::string earlier_export(const TrainOptions& options) {
   std::vector<std::string> there;
-  for (const std::string& path :
-       {options.out + "/model.hpp", options.out + "/trust.hpp", options.out + "/replay.txt", options.out + "/model.block"}) {
+  for (const std::string& path : {options.out + "/model.hpp", options.out + "/trust.hpp", options.out + "/replay.txt",
+                                  options.out + "/model.block"}) {
     std::error_code ignored;
     if (!path.empty() && std::filesystem::exists(path, ignored)) there.push_back(path);
   }
@@ -189,8 +189,8 @@ void export_network(const TrainOptions& options, const programs::Training& train
   const programs::TrainedNetwork& network = *training.network;
   const std::string header = options.out + "/model.hpp", trust = options.out + "/trust.hpp";
   const bool trusted = programs::is_structured(training.loss);
-  const Exported exported =
-      network.export_to({header, options.out + "/model.block", trusted ? trust : ""}, options.model_name, split, provenance);
+  const Exported exported = network.export_to({header, options.out + "/model.block", trusted ? trust : ""},
+                                              options.model_name, split, provenance);
   std::error_code ignored;
   if (!trusted) std::filesystem::remove(trust, ignored);
   network.write_replay(options.out + "/replay.txt", split.test);
@@ -203,7 +203,8 @@ void export_network(const TrainOptions& options, const programs::Training& train
     std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
                 trust.c_str(), options.model_name.c_str());
   }
-  std::printf("  %s: the same weights as a block of %zu bytes\n", (options.out + "/model.block").c_str(), exported.block_bytes);
+  std::printf("  %s: the same weights as a block of %zu bytes\n", (options.out + "/model.block").c_str(),
+              exported.block_bytes);
 }
 
 /// Per kind, on one core.
@@ -313,8 +314,9 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
 }
 
 /// The files of --out.
-constexpr std::array<const char*, 9> output_names = {"results.csv",    "report.json", "ellipses.svg", "errors.svg",
-                                                     "prediction.svg", "model.hpp",   "model.block",  "trust.hpp",    "replay.txt"};
+constexpr std::array<const char*, 9> output_names = {"results.csv", "report.json",    "ellipses.svg",
+                                                     "errors.svg",  "prediction.svg", "model.hpp",
+                                                     "model.block", "trust.hpp",      "replay.txt"};
 
 /// No output takes the place of a flight or of another output.
 void require_separate_files(const TrainOptions& options) {

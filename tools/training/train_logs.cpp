@@ -39,7 +39,7 @@ using programs::LogTrainingOptions;
 
 /// The files of --out.
 constexpr std::array<const char*, 5> log_output_names = {"report.json", "report.html", "model.hpp", "model.block",
-                                                          "replay.txt"};
+                                                         "replay.txt"};
 
 void require_separate_files(const LogTrainingOptions& options) {
   programs::FileRoles roles;
@@ -147,7 +147,8 @@ class LogTraining {
     report_.write_not_exported(reason);
     told_ = "Nothing was exported: " + reason + ".";
     std::string earlier;
-    for (const std::string& path : {options_.out + "/model.hpp", options_.out + "/replay.txt", options_.out + "/model.block"}) {
+    for (const std::string& path :
+         {options_.out + "/model.hpp", options_.out + "/replay.txt", options_.out + "/model.block"}) {
       std::error_code ignored;
       if (!path.empty() && std::filesystem::exists(path, ignored))
         earlier += (earlier.empty() ? "; of an earlier training: " : ", ") + path;

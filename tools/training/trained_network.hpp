@@ -68,7 +68,7 @@ class NetworkOfModel : public TrainedNetwork {
     return pinnquad::predicted_commands(model_, rows, true);
   }
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
-    return derivative_figures(rows, derivatives_of(model_));
+    return derivative_figures_of(model_, rows);
   }
   std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_structure(model_); }
   pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,

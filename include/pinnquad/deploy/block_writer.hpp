@@ -54,15 +54,15 @@ inline std::uint64_t double_bits(double value) {
 
 /// Where a model comes from and how it was judged: name and value in turn.
 inline std::vector<std::string> provenance_texts(const WrittenRecords& records) {
-  std::vector<std::string> texts = {"name", records.name,
+  std::vector<std::string> texts = {"name",          records.name,
                                     "training_data", records.training_data,
-                                    "seed", std::to_string(records.seed),
-                                    "epochs", std::to_string(records.epochs),
-                                    "loss", records.loss,
-                                    "network", records.network_type,
-                                    "features", records.features_type,
-                                    "outputs", records.outputs_type,
-                                    "pinnquad", PINNQUAD_VERSION};
+                                    "seed",          std::to_string(records.seed),
+                                    "epochs",        std::to_string(records.epochs),
+                                    "loss",          records.loss,
+                                    "network",       records.network_type,
+                                    "features",      records.features_type,
+                                    "outputs",       records.outputs_type,
+                                    "pinnquad",      PINNQUAD_VERSION};
   const auto& verdict = records.verdict;
   if (verdict && is_finite(verdict->test_r_squared) && is_finite(verdict->linear_regression_r_squared)) {
     append_texts(texts, std::array{"test_r_squared", "linear_regression_r_squared"},

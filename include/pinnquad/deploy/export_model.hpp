@@ -76,8 +76,7 @@ Exported export_model(const Exported::Files& files, const std::string& name,
     }
   }
   if (!files.block.empty()) {
-    const std::vector<unsigned char> bytes =
-        model_block(model, golden, provenance, name, limits ? &*limits : nullptr);
+    const std::vector<unsigned char> bytes = model_block(model, golden, provenance, name, limits ? &*limits : nullptr);
     block.emplace(files.block);
     detail::write_block(block->stream(), bytes);
     result.block_bytes = bytes.size();

@@ -89,10 +89,10 @@ struct WrittenRecords : Provenance {
   std::string base;    ///< description of the outputs' base; empty: none
 
   // of a block alone: a header has types for these, and its own hash
-  std::string name;  ///< of the header's struct
+  std::string name;                                       ///< of the header's struct
   std::string network_type, features_type, outputs_type;  ///< as a header names them, for a reader
-  std::vector<std::string> feature_texts;  ///< name and unit of each
-  std::vector<std::string> output_texts;   ///< the schema's description, then name and unit of each
+  std::vector<std::string> feature_texts;                 ///< name and unit of each
+  std::vector<std::string> output_texts;                  ///< the schema's description, then name and unit of each
   std::string vehicle_name;
   Airframe<double> airframe{};
   std::vector<double> flown_airframe;  ///< each_number() of it in the model's Scalar

@@ -57,8 +57,7 @@ std::vector<unsigned char> model_block(
   auto records = detail::records_of_training(model, provenance);
   std::ostream nowhere(nullptr);
   records.name = name;
-  records.contents_hash =
-      detail::write_struct(nowhere, name, model, golden, golden_commands, records, provenance);
+  records.contents_hash = detail::write_struct(nowhere, name, model, golden, golden_commands, records, provenance);
   if (trust != nullptr) {
     records.trust = {trust->squared_distance_limit,
                      trust->command_residual_factor,

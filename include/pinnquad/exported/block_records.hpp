@@ -53,9 +53,7 @@ struct BlockRecords : ModelRecords<Scalar> {
   const Scalar* affine = nullptr;
   std::uint32_t seen = 0;  ///< a bit per type
 
-  constexpr bool said(BlockRecord record) const noexcept {
-    return (seen >> static_cast<unsigned>(record) & 1u) != 0;
-  }
+  constexpr bool said(BlockRecord record) const noexcept { return (seen >> static_cast<unsigned>(record) & 1u) != 0; }
 
   /// `block_corrupt` for a record of another length than its type has, and for numbers that are none.
   Status take(BlockRecord type, const unsigned char* bytes, std::uint32_t length, std::size_t inputs,
@@ -228,10 +226,10 @@ struct RecordReader {
     if (said.allocation == nullptr || (has_base && !said.said(BlockRecord::base))) return false;
     bool fits = said.window_taps == std::uint32_t(Window::taps) && said.causal == std::uint32_t(Window::causal);
     fits &= window_ns == 0 || same_period_ns(said.sample_period_ns, window_ns);
-    fits &= said.columns.size() == columns.count &&
-            std::memcmp(said.columns.data(), &columns.text[0], columns.count) == 0;
-    fits &= !said.said(BlockRecord::base) ||
-            same_letters(&base.text[0], base.count, said.base.data(), said.base.size());
+    fits &=
+        said.columns.size() == columns.count && std::memcmp(said.columns.data(), &columns.text[0], columns.count) == 0;
+    fits &=
+        !said.said(BlockRecord::base) || same_letters(&base.text[0], base.count, said.base.data(), said.base.size());
     fits &= same_allocation<Scalar>(RowMajorAllocation<Scalar>{said.allocation},
                                     RowMajorAllocation<Scalar>{first_of<Scalar>(expected)});
     if (said.said(BlockRecord::answer)) {

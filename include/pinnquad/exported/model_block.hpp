@@ -76,8 +76,8 @@ enum class BlockRecord : std::uint16_t {
   outputs = 13,   ///< description of the output schema, then name and unit of each output, every text closed by a 0
   vehicle = 14,   ///< each_number() of the airframe in f64, the same in scalars as it flies, its name
   contents = 15,  ///< u64 contents_hash of the header beside it (exported/contents_hash.hpp)
-  trust = 16,     ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
-                  ///< means of all features, whitening triangle column by column; optional
+  trust = 16,  ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
+               ///< means of all features, whitening triangle column by column; optional
   certificate = 17,  ///< f64 slope (3), held slope (3), thrust slope, held thrust slope, command bound (4); optional
   provenance = 18,   ///< name and value in turn, every text closed by a 0; optional
   affine = 19,       ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
@@ -121,8 +121,26 @@ struct RecordLengths {
 constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t inputs, std::uint32_t outputs) noexcept {
   constexpr std::uint32_t rotors = rotor_count;
   const std::uint32_t distance = (inputs + std::uint32_t(triangle(inputs))) * scalar;
-  return {{0, 8 + 2 * scalar, 8, 8, 0, 4 * rotors * scalar, 0, 8, 3 * rotors, 2 * outputs * scalar, distance + scalar,
-           0, 0, 0, 0, 8, 5 * 8 + distance, 12 * 8, 0, rotors * (1 + outputs) * scalar}};
+  return {{0,
+           8 + 2 * scalar,
+           8,
+           8,
+           0,
+           4 * rotors * scalar,
+           0,
+           8,
+           3 * rotors,
+           2 * outputs * scalar,
+           distance + scalar,
+           0,
+           0,
+           0,
+           0,
+           8,
+           5 * 8 + distance,
+           12 * 8,
+           0,
+           rotors * (1 + outputs) * scalar}};
 }
 
 /// The bytes of texts, each closed by a 0.
@@ -198,8 +216,8 @@ struct ModelBlockLayout {
         case BlockRecord::answer: length = detail::description_length<typename Shape::Network>(); break;
         case BlockRecord::features: length = detail::texts_length(Features::names, Features::units); break;
         case BlockRecord::outputs:
-          length = detail::description_length<typename Shape::Outputs>() + 1 +
-                   detail::texts_length(Map::names, Map::units);
+          length =
+              detail::description_length<typename Shape::Outputs>() + 1 + detail::texts_length(Map::names, Map::units);
           break;
         case BlockRecord::vehicle:
           length = airframe_number_count * (8 + sizeof(typename Shape::Scalar)) +

@@ -25,14 +25,14 @@ inline bool has_path_bound(const RunTimeNetwork& network, const RunTimePart& par
   }
   return true;
 }
-/// Entries of the workspace of certificate_of() and path bounds.
+/// Entries of the workspace of run_time_certificate() and path bounds.
 inline std::size_t path_workspace(const RunTimePart& part) noexcept { return std::size_t(4 * part.widest); }
 
 /// False, and nothing is written, for a model whose structure says nothing of its slopes: other outputs than axis
 /// commands, no affine base that covers the angular acceleration of every tap, a residual that is shown it without a
 /// bound of its paths.
 template <class Scalar>
-bool certificate_of(const RunTimeModel<Scalar>& model, double* work, Certificate& certificate) noexcept {
+bool run_time_certificate(const RunTimeModel<Scalar>& model, double* work, Certificate& certificate) noexcept {
   constexpr int most_taps = 16;
   const RunTimeNetwork& network = model.network();
   const RunTimeFeatures& features = model.features();
@@ -57,8 +57,8 @@ bool certificate_of(const RunTimeModel<Scalar>& model, double* work, Certificate
     int widths[3], layers = 0;
     if (has_paths && !has_path_bound(network, residual, widths, layers)) return false;
     for (int i = 0; has_paths && i < 3 * base.three_count; ++i) {
-      path_bound(model.parameters() + base.parameter_count + 8, residual.inputs, static_cast<const int*>(widths), layers,
-                 base.threes[i / 3] + i % 3, work, residual.widest, static_cast<double*>(paths[i].lower),
+      path_bound(model.parameters() + base.parameter_count + 8, residual.inputs, static_cast<const int*>(widths),
+                 layers, base.threes[i / 3] + i % 3, work, residual.widest, static_cast<double*>(paths[i].lower),
                  static_cast<double*>(paths[i].upper));
     }
   }
@@ -71,14 +71,13 @@ bool certificate_of(const RunTimeModel<Scalar>& model, double* work, Certificate
       present += now ? 1 : 0;
     }
   }
-  const auto vehicle =
-      model.records().base.empty()
-          ? detail::certified_vehicle<AxisCommandOutputs>(model.flown_airframe())
-          : detail::certified_vehicle<SignedSumsOn<RigidBodyBase>>(model.flown_airframe());
+  const auto vehicle = model.records().base.empty()
+                           ? detail::certified_vehicle<AxisCommandOutputs>(model.flown_airframe())
+                           : detail::certified_vehicle<SignedSumsOn<RigidBodyBase>>(model.flown_airframe());
   certificate = certificate_of(detail::CertifiedNumbers<Scalar>{
       features.size(), base.three_count, static_cast<const int*>(base.threes), thrust_count, present,
-      static_cast<const int*>(thrusts), model.parameters(), has_residual, static_cast<const detail::PathBound<4>*>(paths),
-      has_paths, model.scales(), vehicle});
+      static_cast<const int*>(thrusts), model.parameters(), has_residual,
+      static_cast<const detail::PathBound<4>*>(paths), has_paths, model.scales(), vehicle});
   return true;
 }
 

@@ -145,8 +145,8 @@ class RunTimeModel {
     records_ = {};
     std::size_t record_bytes = 0;
     const std::size_t behind = length - Layout::size - Layout::checksum_size;
-    const Status read = detail::read_records<Scalar>(block + Layout::size, behind, inputs, outputs, records_,
-                                                     record_bytes);
+    const Status read =
+        detail::read_records<Scalar>(block + Layout::size, behind, inputs, outputs, records_, record_bytes);
     if (read == Status::block_incompatible) return refuse(fault, read, "records that are known", "a newer one");
     if (read != Status::ok) return refuse(fault, read, "records that fit, with numbers", "others");
     const std::size_t scalars = 4 * inputs + 2 * outputs + golden * (inputs + rotor_count) + parameters;
@@ -170,7 +170,11 @@ class RunTimeModel {
 
   void place(const Scalar* at, std::size_t inputs, std::size_t outputs, std::size_t golden) noexcept {
     first_ = at;
-    scales_ = {at, at + inputs, at + 2 * inputs, at + 2 * inputs + outputs, at + 2 * inputs + 2 * outputs,
+    scales_ = {at,
+               at + inputs,
+               at + 2 * inputs,
+               at + 2 * inputs + outputs,
+               at + 2 * inputs + 2 * outputs,
                at + 3 * inputs + 2 * outputs};
     golden_features_ = at + 4 * inputs + 2 * outputs;
     golden_commands_ = golden_features_ + golden * inputs;
@@ -186,9 +190,9 @@ class RunTimeModel {
     const auto corrupt = [&fault](const char* expected, const char* found) {
       return refuse(fault, Status::block_corrupt, expected, found);
     };
-    for (const BlockRecord record : {BlockRecord::commands, BlockRecord::clock, BlockRecord::window,
-                                     BlockRecord::allocation, BlockRecord::answer, BlockRecord::features,
-                                     BlockRecord::outputs, BlockRecord::vehicle, BlockRecord::contents}) {
+    for (const BlockRecord record :
+         {BlockRecord::commands, BlockRecord::clock, BlockRecord::window, BlockRecord::allocation, BlockRecord::answer,
+          BlockRecord::features, BlockRecord::outputs, BlockRecord::vehicle, BlockRecord::contents}) {
       if (!records_.said(record)) return corrupt("all records of a block that describes itself", "one less");
     }
     if (!network_.parse(records_.answer)) {
@@ -204,7 +208,8 @@ class RunTimeModel {
       return corrupt("names and units of its features", "others, or some that its window has not");
     }
     if (window.taps > 1 && records_.sample_period_ns == 0) return corrupt("the period of its window", "none");
-    if (window.taps > 1 && !window.causal && window.taps % 2 == 0) return corrupt("an odd centred window", "an even one");
+    if (window.taps > 1 && !window.causal && window.taps % 2 == 0)
+      return corrupt("an odd centred window", "an even one");
     if (!take_vehicle()) return corrupt("an airframe that can fly", "another");
     if (!take_outputs(int(outputs))) return incompatible("an output schema that is known, or linear", "another");
     const auto own = allocation(flown_);
@@ -327,9 +332,9 @@ class RunTimeModel {
     }
     const auto outputs = std::size_t(network_.outputs());
     const Scalar* range = records_.residual_range;
-    if (range != nullptr && !detail::same_residual_range(range, range + outputs, has_residual,
-                                                         parameters_ + base.parameter_count,
-                                                         scales_.output_deviation, outputs)) {
+    if (range != nullptr &&
+        !detail::same_residual_range(range, range + outputs, has_residual, parameters_ + base.parameter_count,
+                                     scales_.output_deviation, outputs)) {
       return refuse(fault, Status::block_corrupt, "a range of the residual as its parameters bound it", "another");
     }
     return Status::ok;

@@ -69,10 +69,10 @@ void check_against_differences(const char* what) {
   }
   const std::array<std::array<double, rotor_count>, 3> signs = {
       model.template signs<Roll>(), model.template signs<Pitch>(), model.template signs<Yaw>()};
-  const auto derivatives = programs::derivatives_of(model);
+  const auto derivatives = ExactDerivatives::of_trained(model);
   int both_signs[2] = {0, 0};
   for (const Sample& row : samples(50, engine)) {
-    const programs::AxisDerivatives found = derivatives(row);
+    const programs::AxisDerivatives found = derivatives(sample_features<PaperFeatures, double>(row).data());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       CAPTURE(axis);
       // small: a kink of ReLU in between is not to be expected
@@ -114,13 +114,13 @@ TEST_CASE("derivatives of a sum through a window: by an angular acceleration tha
   for (double& spread : model.input.standard_deviation) spread = 1.5 + any(engine);
   for (double& spread : model.output.standard_deviation) spread = 1.5 + any(engine);
   for (double& mean : model.input.mean) mean = any(engine);
-  const auto derivatives = programs::derivatives_of(model);
+  const auto derivatives = ExactDerivatives::of_trained(model);
   const std::array<std::array<double, rotor_count>, 3> signs = {
       model.template signs<Roll>(), model.template signs<Pitch>(), model.template signs<Yaw>()};
   for (int draw = 0; draw < 50; ++draw) {
     Model::FeatureVector x{};
     for (double& feature : x) feature = any(engine);
-    const programs::AxisDerivatives found = derivatives(x);
+    const programs::AxisDerivatives found = derivatives(x.data());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       constexpr double step = 1e-6;
       auto above = x, below = x;
@@ -142,10 +142,10 @@ TEST_CASE("derivatives of a residual are its base's too") {
   Model model{GivenAirframe("paper", airframe)};
   model.input.standard_deviation.fill(1);
   model.output.standard_deviation.fill(1);
-  const auto derivatives = programs::derivatives_of(model);
+  const auto derivatives = ExactDerivatives::of_trained(model);
   std::mt19937_64 engine(3);
   for (const Sample& row : samples(3, engine)) {
-    const programs::AxisDerivatives found = derivatives(row);
+    const programs::AxisDerivatives found = derivatives(sample_features<PaperFeatures, double>(row).data());
     const double thrust_N = airframe.max_rotor_thrust_N();
     CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
     CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));

@@ -30,27 +30,15 @@ constexpr double fastest = 3;  ///< body rates, rad/s
 
 template <class Model>
 programs::Response response_of(const Model& model, const programs::Direction& direction) {
-  std::vector<programs::NetworkSpec> parts = {
-      *programs::parse_network(detail::description_text<typename Model::Base>())};
-  if constexpr (Model::Structure::has_residual) {
-    parts.push_back(*programs::parse_network(detail::description_text<typename Model::Added>()));
-  }
-  const auto wide = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
-  return programs::response_along(direction, parts, wide(model.parameters), wide(model.input.standard_deviation),
-                                  wide(model.output.standard_deviation));
+  RunTimeNetwork network;
+  REQUIRE(network.parse(detail::description_text<typename Model::Answer>()));
+  return programs::response_along(direction, network, model.parameters.data(), model.input.standard_deviation.data(),
+                                  model.output.standard_deviation.data());
 }
 
-template <class Answer>
-struct SecondOf {
-  using type = void;
-};
-template <class First, class Second>
-struct SecondOf<Sum<First, Second>> {
-  using type = Second;
-};
 template <class Shape>
 struct Model : MonotoneModel<Shape> {
-  using Added = typename SecondOf<typename Shape::Network>::type;
+  using Answer = typename Shape::Network;
   explicit Model(std::uint64_t seed) : MonotoneModel<Shape>(seed) {
     if constexpr (MonotoneModel<Shape>::Structure::has_residual) {
       for (int k = 0; k < 4; ++k) {  // so far away that nothing is clipped

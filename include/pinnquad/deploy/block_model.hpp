@@ -14,14 +14,11 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/deploy/exact_derivatives.hpp"
 #include "pinnquad/exported/run_time_certificate.hpp"
 #include "pinnquad/io/text_file.hpp"
-#include "pinnquad/loss/local_monotonicity.hpp"
 
 namespace pinnquad {
-
-/// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, s^2/rad.
-using AxisDerivatives = std::array<double, 3>;
 
 namespace detail {
 
@@ -68,8 +65,8 @@ class RunTimeFlightInputs {
 
 /// The answer of a model to a row.
 struct AnsweredRow {
-  Commands<double> commands{};     ///< in the model's own scalar
-  AxisDerivatives derivatives{};   ///< in double; of a window by an acceleration that is held
+  Commands<double> commands{};    ///< in the model's own scalar
+  AxisDerivatives derivatives{};  ///< in double; of a window by an acceleration that is held
   bool inside_envelope = true;
 };
 
@@ -185,7 +182,7 @@ class BlockModel {
     for (int i = 0; i < network().part_count(); ++i) work.resize(work.size() + path_workspace(network().part(i)));
     Certificate certificate;
     const bool has_structure =
-        with([&](const auto& model) { return certificate_of(model, work.data(), certificate); });
+        with([&](const auto& model) { return run_time_certificate(model, work.data(), certificate); });
     return has_structure ? std::optional(certificate) : std::nullopt;
   }
 
@@ -202,14 +199,12 @@ class BlockModel {
   }
 
   /// Signed sums of commands about roll, pitch, yaw.
-  std::array<double, 3> signed_sums(const Commands<double>& u) const {
-    return {signed_sum(signs_[0], u), signed_sum(signs_[1], u), signed_sum(signs_[2], u)};
-  }
+  std::array<double, 3> signed_sums(const Commands<double>& u) const { return derivatives_.signed_sums(u); }
 
   /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is moved;
   /// else the present alone.
   AxisDerivatives derivatives(const std::vector<double>& x, bool held = true) const {
-    return with([&](const auto& model) { return derivatives_of(model, x.data(), held); });
+    return derivatives_(x.data(), held);
   }
 
   /// Calls `take(row, AnsweredRow)` for the rows that have features, `row` counted through the set. Throws
@@ -237,7 +232,7 @@ class BlockModel {
           answered.inside_envelope = model.inside_envelope(x.data());
           if (with_derivatives && in_double.read(row, exact.data())) {
             model.features().extract(static_cast<const RunTimeInputs<double>*>(exact.data()), exact_x.data());
-            answered.derivatives = derivatives_of(model, exact_x.data(), true);
+            answered.derivatives = derivatives_(exact_x.data());
           }
           take(first + row - piece.rows.begin, static_cast<const AnsweredRow&>(answered));
         }
@@ -261,14 +256,7 @@ class BlockModel {
     auto model = std::make_unique<RunTimeModel<Scalar>>();
     BlockFault fault;
     if (RunTimeModel<Scalar>::open(data(), length_, *model, fault) != Status::ok) refuse(fault.expected, fault.found);
-    outputs_.find(model->schema());
-    if (const Scalar* affine = model->records().affine) {
-      const std::vector<double> numbers(affine, affine + rotor_count * (1 + model->network().outputs()));
-      if (!outputs_.find(model->schema())) outputs_.take_affine(numbers.data(), model->network().outputs());
-    }
-    outputs_.prepare(model->airframe());
-    const auto& airframe = model->airframe();
-    for (std::size_t axis = 0; axis < 3; ++axis) signs_[axis] = allocation_signs(airframe, static_cast<int>(axis));
+    derivatives_ = ExactDerivatives(*model);
     const bool says_signs = model->records().slope_signs != nullptr;
     model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
     if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
@@ -290,62 +278,11 @@ class BlockModel {
     return commands;
   }
 
-  template <class Scalar>
-  AxisDerivatives derivatives_of(const RunTimeModel<Scalar>& model, const double* features, bool held) const {
-    using Entry = RunTimeNetwork::Values<double, 4>;  // a value, and its derivatives by three angular accelerations
-    const RunTimeNetwork& net = model.network();
-    const detail::Scales<Scalar>& scales = model.scales();
-    const int inputs = net.inputs(), outputs = net.outputs();
-    std::vector<Entry> work(std::size_t(inputs + outputs) + net.workspace());
-    Entry* const x = work.data();
-    Entry* const y = x + inputs;
-    for (int i = 0; i < inputs; ++i) {
-      x[i] = {(features[i] - static_cast<double>(scales.input_mean[i])) /
-              static_cast<double>(scales.input_deviation[i])};
-    }
-    const int last_tap = held ? model.features().window().taps - 1 : 0;
-    const auto each_angular_acceleration = [&](const auto& visit) {
-      for (int tap = 0; tap <= last_tap; ++tap) {
-        const int place = model.features().angular_acceleration(tap);
-        for (int axis = 0; place >= 0 && axis < 3; ++axis) visit(std::size_t(axis), place + axis);
-      }
-    };
-    each_angular_acceleration([&](std::size_t axis, int feature) {
-      x[feature][axis + 1] = 1 / static_cast<double>(scales.input_deviation[feature]);
-    });
-    net.forward<double, 4>(model.parameters(), static_cast<const Entry*>(x), y, y + outputs);
-    std::vector<double> made(static_cast<std::size_t>(outputs)), by_outputs(std::size_t(rotor_count * outputs));
-    for (int k = 0; k < outputs; ++k) {
-      made[std::size_t(k)] = y[k][0] * static_cast<double>(scales.output_deviation[k]) +
-                             static_cast<double>(scales.output_mean[k]);
-    }
-    constexpr int read = RunTimeOutputs<double>::base_features;
-    double by_x[rotor_count * read];
-    outputs_.slopes(features, made.data(), by_outputs.data(), static_cast<double*>(by_x));
-    std::array<Commands<double>, 3> by_acceleration{};
-    for (std::size_t rotor = 0; rotor < std::size_t(rotor_count); ++rotor) {
-      for (int k = 0; k < outputs; ++k) {
-        const double slope = by_outputs[rotor * std::size_t(outputs) + std::size_t(k)] *
-                             static_cast<double>(scales.output_deviation[k]);
-        for (std::size_t axis = 0; axis < 3; ++axis) by_acceleration[axis][rotor] += slope * y[k][axis + 1];
-      }
-    }
-    each_angular_acceleration([&](std::size_t axis, int feature) {
-      for (std::size_t rotor = 0; feature < read && rotor < std::size_t(rotor_count); ++rotor) {
-        by_acceleration[axis][rotor] += by_x[rotor * std::size_t(read) + std::size_t(feature)];
-      }
-    });
-    AxisDerivatives result{};
-    for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = signed_sum(signs_[axis], by_acceleration[axis]);
-    return result;
-  }
-
   std::string path_;
   std::size_t length_ = 0;
   std::vector<std::uint64_t> bytes_;  ///< aligned as a block must be
   std::variant<std::unique_ptr<const RunTimeModel<float>>, std::unique_ptr<const RunTimeModel<double>>> model_;
-  RunTimeOutputs<double> outputs_;
-  std::array<std::array<double, rotor_count>, 3> signs_{};
+  ExactDerivatives derivatives_;
 };
 
 }  // namespace pinnquad
