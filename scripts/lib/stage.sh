@@ -43,12 +43,19 @@ need_natural() {
   fi
 }
 
-# configure <preset>: in the root of the repository. From nothing the program's sources are compiled several at once; who has
-# begun to edit keeps what was chosen.
+# configure <preset> [<folder> <setting>...]: in the root of the repository, in build/<preset> or the folder. From nothing the
+# program's sources are compiled several at once; who has begun to edit keeps what was chosen.
 configure() {
-  local at_once=()
-  if [ ! -f "build/$1/CMakeCache.txt" ]; then at_once=(-DPINNQUAD_BUILD_AT_ONCE=ON); fi
-  cmake --preset "$1" ${at_once[@]+"${at_once[@]}"}
+  local preset=$1 folder=${2:-build/$1} at_once=()
+  shift $(($# > 1 ? 2 : 1))
+  if [ ! -f "$folder/CMakeCache.txt" ]; then at_once=(-DPINNQUAD_BUILD_AT_ONCE=ON); fi
+  cmake --preset "$preset" -B "$folder" ${at_once[@]+"${at_once[@]}"} "$@"
+}
+
+# build_program: in build/demo, optimised for this machine, the program alone.
+build_program() {
+  configure native build/demo -DPINNQUAD_BUILD_TESTS=OFF -DPINNQUAD_BUILD_BENCH=OFF
+  cmake --build build/demo -j "$(parallel_jobs)" --target pinnquad_program
 }
 
 # parallel_jobs: how many compilers at a time. PINNQUAD_JOBS overrides; a heavy translation unit takes about a
