@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program pinnquad: fly, train, study, judge, report. Each command is a translation unit of its own in its room.
+// The program pinnquad: fly, train, judge, prove, export. Each command is a translation unit of its own in its room.
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +13,6 @@
 #include "model/evaluate_command.hpp"
 #include "model/replay_command.hpp"
 #include "project/new_command.hpp"
-#include "report/report_command.hpp"
-#include "study/study_command.hpp"
 #include "training/train_command.hpp"
 
 namespace {
@@ -23,10 +21,9 @@ int run(int argument_count, char** arguments, std::string& name) {
   CLI::App program("Physics-informed inverse dynamics of quadrotors: from a flight to a network that may fly", name);
   program.fallthrough();  // --config may stand anywhere
   const std::vector<programs::Command> commands = {
-      programs::fly_command(program),      programs::import_command(program), programs::train_command(program),
-      programs::study_command(program),    programs::report_command(program), programs::evaluate_command(program),
-      programs::certify_command(program),  programs::replay_command(program), programs::block_command(program),
-      programs::airframe_command(program), programs::new_command(program)};
+      programs::fly_command(program),      programs::import_command(program),   programs::train_command(program),
+      programs::evaluate_command(program), programs::certify_command(program),  programs::replay_command(program),
+      programs::block_command(program),    programs::airframe_command(program), programs::new_command(program)};
   program.footer(
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv                    a simulated flight\n"
@@ -35,7 +32,9 @@ int run(int argument_count, char** arguments, std::string& name) {
       "pinnquad COMMAND --help says more.\n"
       "Exit codes: 0 good; 1 it ran, but the answer is no; 2 bad input or a file that can't be read or written; 3 "
       "undecided; 130 interrupted. Each command says which of them it has.");
-  if (const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name)) return *code;
+  const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name,
+                                                           "; the paper's study is the program pinnquad-study");
+  if (code) return *code;
   return programs::run_chosen(commands);
 }
 

@@ -74,8 +74,8 @@ check_simple_command() {
     build/*/bin/* | build/*/examples/*) [ -x "$tree/$program" ] || fault "$line" "no such program: $program" ;;
   esac
   case $program in
-    pinnquad | */pinnquad) # the command, and that of a command
-      program=pinnquad
+    pinnquad | */pinnquad | pinnquad-study | */pinnquad-study) # the command, and that of a command
+      program=${program##*/}
       for word in "${words[@]:1:2}"; do
         help_of "$program" | grep -q '^Commands:' && [[ $word != -* ]] || break
         help_of "$program" | sed '1,/^Commands:/d' | grep -qE "^  $word( |$)" || { fault "$line" "$program has no command $word"; return 0; }

@@ -4,10 +4,10 @@ source "$(dirname "$0")/common.sh" "$@"
 
 number() { sed -n "s/^#define PINNQUAD_VERSION_$1 \([0-9]*\)$/\1/p" "$source_dir/include/pinnquad/version.hpp"; }
 version="pinnquad $(number MAJOR).$(number MINOR).$(number PATCH)"
-# a command is a header of that name in a room of tools/; beyond is a command of study
-mapfile -t top < <(find "$source_dir/tools" -name '*_command.hpp' ! -name beyond_command.hpp | sed 's|.*/||; s|_command.hpp$||' | sort)
-[ ${#top[@]} -ge 11 ] || fail "tools/ has the headers of ${#top[@]} commands"
-commands=("" "${top[@]}" "airframe list" "airframe check" "airframe convert" "study paper" "study ablation" "study beyond" "study merge")
+# a command is a header of that name in a room of tools/; those of report/ and study/ are pinnquad-study's
+mapfile -t top < <(find "$source_dir/tools"/*/ -name '*_command.hpp' | grep -vE '/tools/+(report|study)/+[^/]*$' | sed 's|.*/||; s|_command.hpp$||' | sort)
+[ ${#top[@]} -ge 9 ] || fail "tools/ has the headers of ${#top[@]} commands"
+commands=("" "${top[@]}" "airframe list" "airframe check" "airframe convert")
 for command in "${commands[@]}"; do
   # shellcheck disable=SC2086 # several words
   "$pinnquad" $command --help >help.txt 2>stderr.txt || fail "pinnquad $command --help: exit code $?"
@@ -22,7 +22,7 @@ for command in "${top[@]}"; do
   "$pinnquad" --help | grep -qE "^  $command  " || fail "pinnquad --help does not name $command"
 done
 
-for command in "" fly evaluate certify replay block import airframe "airframe list" "airframe check" "airframe convert" new "study paper"; do
+for command in "" fly evaluate certify replay block import airframe "airframe list" "airframe check" "airframe convert" new; do
   # shellcheck disable=SC2086
   "$pinnquad" $command --help | grep -A1 '^Examples:$' | grep -qE "^  (pinnquad|cmake) " || fail "pinnquad $command --help has no example"
 done
@@ -43,9 +43,8 @@ source "$source_dir/tools/command_line/completion.bash"
 complete_words 'fly' f
 complete_words 'new' n
 complete_words '--airframe' new x --air
-complete_words 'paper' study p
+complete_words 'convert' airframe con
 complete_words '--samples' fly d1 --sam
-complete_words '--models' study paper --mo
 complete_words '--config' train --seeds 3 --conf
 complete_words '' fly d1 --out 'fi'
 
@@ -72,18 +71,14 @@ if command -v help2man >/dev/null; then
   fi
 fi
 
-expect_line 2 '^pinnquad: expected a command: fly, import, train, study, report' "$pinnquad"
-expect_line 2 "^pinnquad: no command named 'land'; known: fly, import, train, study, report" "$pinnquad" land --seed 1
+expect_line 2 '^pinnquad: expected a command: fly, import, train, evaluate, certify' "$pinnquad"
+expect_line 2 "^pinnquad: no command named 'land'; known: fly, import, train, evaluate, certify" "$pinnquad" land --seed 1
 expect_line 2 '^pinnquad: expected a command before --seed: fly, ' "$pinnquad" --seed 1
-expect_line 2 '^study: expected a command: paper, ablation, beyond, merge ' "$pinnquad" study
-expect_line 2 "^study: no command named 'news'; known: paper, ablation, beyond, merge" "$pinnquad" study news
+expect_line 2 "^pinnquad: no command named 'study'; known: fly, .*; the paper's study is the program pinnquad-study" "$pinnquad" study paper
 expect_line 2 '^fly: The following argument was not expected: train' "$pinnquad" fly d1 train --out f.csv
 expect_line 2 '^fly: The following argument was not expected: --epochs' "$pinnquad" fly d1 --out f.csv --epochs
-expect_line 2 '^study: The following argument was not expected: ablation' "$pinnquad" study paper --out o ablation
-[ ! -e o ] || fail "a study was begun"
 expect_line 2 '^airframe: The following argument was not expected: check' "$pinnquad" airframe list check
 expect_line 2 '^train: --flight, --dataset or --log is required' "$pinnquad" train --seeds 1
-expect_line 2 '^report: dir is required' "$pinnquad" report
 
 # options from a file: the same flight; the command line goes first; it may stand before the command or behind
 cat >options.toml <<'EOF'
@@ -96,9 +91,6 @@ max-speed = 5.5
 [train]
 flight = ["a.csv", "b.csv"]
 allow-poor = true
-
-[study.paper]
-models = "2,4"
 EOF
 "$pinnquad" fly d3 --seed 4 --samples 50 --max-speed 5.5 --out words.csv >/dev/null
 "$pinnquad" fly --config options.toml --out behind.csv >/dev/null

@@ -2,6 +2,7 @@
 # Arguments and checks that the program tests share.
 set -euo pipefail
 pinnquad=$1
+study=${1%/*}/pinnquad-study # is beside it
 source_dir=$2
 work=$3
 compiler=$4

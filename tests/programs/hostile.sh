@@ -14,8 +14,7 @@ settings=() # of the environment: NAME=value
 run_it() { "$timeout" --foreground -s KILL "${HOSTILE_PATIENCE:-20}" ${settings[@]+"$env" "${settings[@]}"} "$@"; } # nobody waits for ever
 fly() { run_it "$pinnquad" fly "$@"; }
 train() { run_it "$pinnquad" train "$@"; }
-study() { run_it "$pinnquad" study "$@"; }
-report() { run_it "$pinnquad" report "$@"; }
+study() { run_it "$study" "$@"; }
 new() { run_it "$pinnquad" new "$@"; }
 pinnquad() { run_it "$pinnquad" "$@"; }
 fly_export() { run_it "$fly_export" "$@"; }
@@ -48,7 +47,7 @@ expect() {
   "$@" >stdout.txt 2>stderr.txt || actual=$?
   sed -i '/^train: warning: /d' stderr.txt # of a poor network: one epoch makes no other
   for word in "$@"; do
-    case $word in fly | train | study | report | new | pinnquad | fly_export | demo) program=$word && break ;; esac
+    case $word in fly | train | study | new | pinnquad | fly_export | demo) program=$word && break ;; esac
   done
   [ "$actual" -eq "$code" ] || problem "exit code $actual instead of $code"
   lines=$(wc -l <stderr.txt)
@@ -320,11 +319,11 @@ hostile_study() {
   done
   for words in '' 'absent' 'in/short.csv' 'in x' '--out in'; do
     # shellcheck disable=SC2086
-    refused report $words
+    refused study report $words
   done
   for path in '' in/short.csv in/short.csv/x /dev/null /proc/x run/fifo run/dangling run/loop "run/$(printf 'n%.0s' {1..256})"; do
     left_alone study paper --models 1 "${short[@]}" --out "$path"
-    left_alone report "$path"
+    left_alone study report "$path"
     left_alone study merge "$path" --out run/o
   done
   for surroundings in closed_stdout full_stdout; do expect 2 nothing $surroundings study --help; done

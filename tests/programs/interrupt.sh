@@ -22,30 +22,6 @@ kept=$(sed -nE 's/.*interrupted; ([0-9]+) of.*/\1/p' stderr.txt)
 [ -s out/model.hpp ] || fail "nothing was exported although trainings were finished"
 [ -z "$(find out -name '*.partial*')" ] || fail "a half-written file was left behind"
 
-# the terminal that closes is no other: a first signal keeps what is finished; under nohup it is none
-hung_up() { # <command>...: hung up once it has said how far it is
-  : >stderr.txt  # what the command before said is not this one's
-  setsid "$@" >stdout.txt 2>stderr.txt &
-  pid=$!
-  for ((wait = 0; wait < 2400; ++wait)); do
-    if grep -q ' %' stderr.txt || ! kill -0 "$pid" 2>/dev/null; then break; fi
-    sleep 0.1
-  done
-  kill -HUP "$pid"
-  code=0
-}
-hung_up "$pinnquad" study paper --models 2 --flights 1 --seeds 500 --epochs 30 --threads 2 --out hung
-wait "$pid" || code=$?
-[ "$code" -eq 130 ] || fail "exit code $code instead of 130 after a hangup; said: $(cat stderr.txt)"
-grep -qE '^study: interrupted; [0-9]+ of 500 trainings are in hung/rows.csv' stderr.txt || fail "said: $(cat stderr.txt)"
-[ -z "$(find hung -name '*.partial*')" ] || fail "a half-written file was left behind"
-hung_up nohup "$pinnquad" study paper --models 2 --flights 1 --seeds 500 --epochs 30 --threads 2 --out hung_nohup
-sleep 0.5
-kill -0 "$pid" 2>/dev/null || fail "a hangup ended what runs under nohup: $(cat stderr.txt)"
-kill -INT "$pid"
-wait "$pid" || code=$?
-[ "$code" -eq 130 ] || fail "exit code $code instead of 130; said: $(cat stderr.txt)"
-
 # Ctrl-C while gnuplot draws (one that never ends): what is finished is kept, one line, the code of an interrupt
 mkdir tools pictures exported
 printf '#!/bin/sh\n: >"%s/drawing"\nexec sleep 300\n' "$work" >tools/gnuplot

@@ -12,7 +12,7 @@ commands_of() {
   for command in $below; do commands_of "$@" "$command"; done
 }
 commands_of >commands.txt
-[ "$(wc -l <commands.txt)" -ge 16 ] || fail "few commands: $(cat commands.txt)"
+[ "$(wc -l <commands.txt)" -ge 5 ] || fail "few commands: $(cat commands.txt)"
 
 mkdir here
 cd here
@@ -49,19 +49,14 @@ while read -r -a command; do
 done <../commands.txt
 cd ..
 echo "$tried values refused"
-[ "$tried" -ge 300 ] || fail "few options were found"
+[ "$tried" -ge 100 ] || fail "few options were found"
+
+[ "${pinnquad##*/}" = pinnquad ] || exit 0 # of pinnquad-study the rest is that of study_commands.sh
 
 # those that are read when the command runs
-for value in nan 0 -1 0/1 2/1 1/0x10 1/-1 1/1e400; do
-  for kind in paper ablation beyond; do
-    expect_line 2 '^study: --shard .*expected i/n' timeout 20 "$pinnquad" study "$kind" --out o --shard "$value"
-  done
-done
 for value in nan inf 1e400 0x10 -2 ' '; do
   expect_line 2 '^import: --lag: expected auto, or seconds' timeout 20 "$pinnquad" import x.csv --mapping px4 --out o --lag "$value"
 done
-expect_line 2 "^study: --models: expected TEXT, found ''" timeout 20 "$pinnquad" study paper --models '' --out o
-[ ! -e o ] || fail "a study was begun"
 
 # as entries of a file
 for entry in 'seconds = nan' 'seconds = "nan"' 'seconds = inf' 'seconds = 0' 'seed = -1' 'seed = ""' 'seed = 1e400'; do

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash disable=SC2154
-# pinnquad study beyond: a small run end to end, gone on with after rows were lost, refused where it asks for what there is not.
+# pinnquad-study beyond: a small run end to end, gone on with after rows were lost, refused where it asks for what there is not.
 source "$(dirname "$0")/common.sh" "$@"
 
 options=(--conditions d1,d3_5,d1_speed,d1_told_heavy --models none,inverse,structured --seeds 2 --flights 1 --epochs 3 --threads 2)
@@ -13,7 +13,7 @@ figure() {
 }
 holds() { awk "BEGIN { exit !($1) }" || fail "$1 does not hold: $2"; }
 
-"$pinnquad" study beyond "${options[@]}" --out whole >whole.txt
+"$study" beyond "${options[@]}" --out whole >whole.txt
 # four conditions: the paper's network and the structured model by two seeds, the formulas once
 [ "$(wc -l <whole/rows.csv)" -eq 25 ] || fail "rows.csv: a header and 24 rows were expected"
 grep -q '^structured,d1_speed,101,2,3,' whole/rows.csv || fail "no row of the structured model: $(cat whole/rows.csv)"
@@ -39,11 +39,11 @@ holds "($trained - $(figure whole structured d1 1 mean_absolute_error))^2 < 1e-1
 
 cp -r whole again
 head -n 5 whole/rows.csv >again/rows.csv
-"$pinnquad" study beyond "${options[@]}" --out again >again.txt
+"$study" beyond "${options[@]}" --out again >again.txt
 grep -q '^24 of 24 trainings are in again/rows.csv, 4 of them from before' again.txt || fail "said: $(cat again.txt)"
 diff <(figures whole) <(figures again) || fail "gone on with, the rows are others"
 
-expect_line 2 "no condition 'd9'; known: d1, " "$pinnquad" study beyond --conditions d9 --out no
-expect_line 2 "no model 'x'; known: none, " "$pinnquad" study beyond --models x --out no
-expect_line 2 '--out DIR is needed' "$pinnquad" study beyond --seeds 1
+expect_line 2 "no condition 'd9'; known: d1, " "$study" beyond --conditions d9 --out no
+expect_line 2 "no model 'x'; known: none, " "$study" beyond --models x --out no
+expect_line 2 '--out DIR is needed' "$study" beyond --seeds 1
 [ ! -e no ] || fail "a refused command left the folder no"

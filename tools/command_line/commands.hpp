@@ -21,7 +21,7 @@ namespace programs {
 
 namespace detail {
 
-/// The command that was chosen: of `study merge` it is merge; the program itself where none was.
+/// The command that was chosen: of `airframe list` it is list; the program itself where none was.
 inline const CLI::App& chosen_command(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
@@ -34,7 +34,7 @@ inline void complete(CLI::App& command, const std::string& version) {
   command.get_help_ptr()->description("Print this help and exit");
   command.formatter(std::make_shared<HelpFormatter>());
   refuse_empty_values(command);
-  command.require_subcommand(0, 1);  // `study paper ablation` is a word too many
+  command.require_subcommand(0, 1);  // `airframe list check` is a word too many
   for (CLI::App* part : command.get_subcommands({})) {
     part->group("Commands");
     complete(*part, version);
@@ -42,8 +42,8 @@ inline void complete(CLI::App& command, const std::string& version) {
 }
 
 /// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command
-/// does not know is handed up.
-inline void require_command(const CLI::App& program) {
+/// does not know is handed up. `elsewhere` ends the line about a command that there is not.
+inline void require_command(const CLI::App& program, const std::string& elsewhere) {
   const CLI::App& command = chosen_command(program);
   const std::vector<std::string> unknown = program.remaining();
   const std::string known = listed(command.get_subcommands([](const CLI::App*) { return true; }),
@@ -56,7 +56,7 @@ inline void require_command(const CLI::App& program) {
   if (unknown.front().compare(0, 1, "-") == 0) {
     throw std::invalid_argument("expected a command before " + unknown.front() + ": " + known + " (see --help)");
   }
-  throw std::invalid_argument("no command named '" + unknown.front() + "'; known: " + known);
+  throw std::invalid_argument("no command named '" + unknown.front() + "'; known: " + known + elsewhere);
 }
 
 }  // namespace detail
@@ -70,15 +70,16 @@ inline int run_chosen(const std::vector<Command>& commands) {
 }
 
 /// Adds --version and --config to a program whose commands are complete, and parses. Empty to go on; else the exit
-/// code. `name` becomes that of the command as soon as it is known: messages name it.
-inline std::optional<int> choose_command(CLI::App& program, int argument_count, char** arguments, std::string& name) {
+/// code. `name` becomes that of the command as soon as it is known: messages name it. `elsewhere` says, to
+/// who asks for a command that there is not, which program has it.
+inline std::optional<int> choose_command(CLI::App& program, int argument_count, char** arguments, std::string& name,
+                                         const std::string& elsewhere = {}) {
   detail::complete(program, program.get_name() + " " + PINNQUAD_VERSION);
   program
       .add_option_function<std::string>(
           "--config", [&program](const std::string& path) { take_settings(program, path); },
-          "options from a file: a table per command, such as [fly], an entry per option, such as seed = 3; what stands "
-          "on "
-          "the command line goes first")
+          "options from a file: a table per command, such as [" + program.get_subcommands({}).front()->get_name() +
+              "], an entry per option, such as seed = 3; what stands on the command line goes first")
       ->type_name("FILE.toml");
   program.allow_extras();
   for (CLI::App* command : program.get_subcommands({})) {
@@ -86,7 +87,7 @@ inline std::optional<int> choose_command(CLI::App& program, int argument_count, 
   }
   try {
     program.parse(argument_count, arguments);
-    detail::require_command(program);
+    detail::require_command(program, elsewhere);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
     complain(name.c_str(), error.what());

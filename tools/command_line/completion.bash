@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-# Completion of pinnquad's commands and options for bash, from what the program says of itself; other words are files.
-# Installed as share/bash-completion/completions/pinnquad; in a build tree: source tools/command_line/completion.bash
+# Completion of the commands and options of pinnquad and pinnquad-study for bash, from what the program says of itself.
+# Other words are files. Installed as share/bash-completion/completions/pinnquad and pinnquad-study; in a build tree:
+#   source tools/command_line/completion.bash
 _pinnquad() {
   local program=${COMP_WORDS[0]} current=${COMP_WORDS[COMP_CWORD]} help commands word
   local -a chosen=()
@@ -19,4 +20,4 @@ _pinnquad() {
   fi
   mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current")
 }
-complete -o default -F _pinnquad pinnquad
+complete -o default -F _pinnquad pinnquad pinnquad-study

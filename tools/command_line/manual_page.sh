@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# Writes the manual page of pinnquad from what the program says of itself: help2man's page of --help and --version, with a section
-# for the commands, what they take and when they fail.
-#   manual_page.sh PINNQUAD PAGE
+# Writes the manual page of pinnquad, or of pinnquad-study, from what the program says of itself: help2man's page of --help
+# and --version, with a section for the commands, what they take and when they fail.
+#   manual_page.sh PROGRAM PAGE
 set -euo pipefail
 program=$(realpath -- "$1") page=$2
+name=${program##*/}
 work=$(mktemp -d)
 trap 'rm -rf -- "$work"' EXIT
 
 # as_roff <command>...: its --help without what every command has
 as_roff() {
-  "$program" "$@" --help | awk -v name="pinnquad $*" '
+  "$program" "$@" --help | awk -v name="$name $*" '
     function roff(text) {
       gsub(/\\/, "\\e", text)
       gsub(/-/, "\\-", text)
@@ -60,6 +61,9 @@ commands() { "$program" "$@" --help | sed '1,/^Commands:/d' | awk '/^  [a-z]/ { 
 takes a table per command and an entry per option, named as on the command line; a flag is true or false, several values are a list:
 .PP
 .nf
+TEXT
+  if [ "$name" = pinnquad ]; then
+    cat <<'TEXT'
   [fly]
   flight = "d3"
   samples = 5000
@@ -68,25 +72,37 @@ takes a table per command and an entry per option, named as on the command line;
   [train]
   flight = ["d1.csv", "d3.csv", "d5.csv"]
   allow\-poor = true
-
-  [study.paper]
+TEXT
+  else
+    cat <<'TEXT'
+  [paper]
   models = "2,4"
+  seeds = 3
+TEXT
+  fi
+  cat <<'TEXT'
 .fi
 .PP
 What stands on the command line goes first. A name or a value that the command would refuse is told with line and column.
 
 [FILES]
+TEXT
+  if [ "$name" = pinnquad ]; then
+    cat <<'TEXT'
 .TP
 .I share/pinnquad/replay.html
 beside the program's folder bin: the page that
 .B pinnquad fly \-\-replay
 fills.
+TEXT
+  fi
+  cat <<TEXT
 .TP
-.I share/bash-completion/completions/pinnquad
+.I share/bash-completion/completions/$name
 completes commands and options in bash.
 .PP
 An output appears whole or not at all: it is written as
-.IR FILE.partial\-N ,
+.IR FILE.partial\\-N ,
 then gets its name.
 
 [EXIT STATUS]
@@ -104,13 +120,14 @@ Bad input, or a file that can't be read or written: one line on standard error s
 Undecided.
 .TP
 .B 130
-Interrupted by Ctrl\-C; what is finished is kept, as the command says.
+Interrupted by Ctrl\\-C; what is finished is kept, as the command says.
 TEXT
 } >"$work/include"
 
 # what help2man reads: commands and exit codes stand in sections of their own
-printf '#!/bin/sh\n"%s" "$@" | sed "/^Commands:/,/^$/d; /^pinnquad COMMAND/,\\$d"\n' "$program" >"$work/pinnquad"
-chmod +x "$work/pinnquad"
-(cd -- "$work" && help2man --no-info --section 1 --name 'from a quadrotor'\''s flight to a network that may fly' \
-  --include include ./pinnquad >page)
+printf '#!/bin/sh\n"%s" "$@" | sed "/^Commands:/,/^$/d; /^pinnquad[-a-z]* COMMAND/,\\$d"\n' "$program" >"$work/$name"
+chmod +x "$work/$name"
+what="from a quadrotor's flight to a network that may fly"
+[ "$name" = pinnquad ] || what="the paper's study of pinnquad: its models trained and judged, seed by seed"
+(cd -- "$work" && help2man --no-info --section 1 --name "$what" --include include "./$name" >page)
 mv -- "$work/page" "$page"

@@ -2,8 +2,8 @@
 // Options from a file: a TOML table per command, an entry per option, named as on the command line.
 //   [fly]
 //   seed = 3
-//   [study.paper]
-//   models = "2,4"
+//   [airframe.convert]
+//   name = "racer"
 #pragma once
 
 #include <CLI/CLI.hpp>

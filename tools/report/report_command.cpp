@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Writes the report of a study into its folder.
-//   pinnquad report DIR
+//   pinnquad-study report DIR
 #include "report/report_command.hpp"
 
 #include <memory>
@@ -17,7 +17,7 @@ programs::Command programs::report_command(CLI::App& program) {
   add_path(*line, "dir", *folder, "DIR", "folder of a study")->required();
   line->footer(
       "Examples:\n"
-      "  pinnquad study paper --seeds 20 --out study && pinnquad report study\n"
+      "  pinnquad-study paper --seeds 20 --out study && pinnquad-study report study\n"
       "Exit codes: 0 written, whatever its verdicts; 2 bad input or a file that can't be read or written; 130 "
       "interrupted, nothing written.");
   return {line, [folder] {

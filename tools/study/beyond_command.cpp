@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ideas beyond the paper, each beside the paper's network on the same rows.
-//   pinnquad study beyond --seeds 10 --out DIR
+//   pinnquad-study beyond --seeds 10 --out DIR
 #include "study/beyond_command.hpp"
 
 #include <filesystem>
@@ -213,11 +213,11 @@ int run(const BeyondOptions& options) {
 
 }  // namespace
 
-programs::Command programs::beyond_command(CLI::App& study) {
+programs::Command programs::beyond_command(CLI::App& program) {
   CLI::App* line =
-      study.add_subcommand("beyond",
-                           "What goes beyond the paper: structured models beside its network, condition by "
-                           "condition; rows.csv, beyond.html, beyond.json");
+      program.add_subcommand("beyond",
+                             "What goes beyond the paper: structured models beside its network, condition by "
+                             "condition; rows.csv, beyond.html, beyond.json");
   const auto options = std::make_shared<BeyondOptions>();
   add_path(*line, "--out", options->out, "DIR",
            "folder of rows.csv, study.json, beyond.html, beyond.json and beyond.svg");

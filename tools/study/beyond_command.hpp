@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// `pinnquad study beyond` on the command line.
+// `pinnquad-study beyond` on the command line.
 #pragma once
 
 #include "command_line/command.hpp"
 
 namespace programs {
 
-Command beyond_command(CLI::App& study);
+Command beyond_command(CLI::App& program);
 
 }  // namespace programs

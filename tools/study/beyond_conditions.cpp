@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The conditions of `study beyond`; a further one is an entry of flown_conditions().
+// The conditions of the command `beyond`; a further one is an entry of flown_conditions().
 #include "study/beyond_conditions.hpp"
 
 #include <algorithm>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "command_line/listed.hpp"
+#include "flight/choice.hpp"
 #include "pinnquad/simulation/recorder.hpp"
 
 namespace study {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Conditions that the models of `study beyond` are trained and judged on: a condition is a flight or two, rows that
-// train, validate and test, and the airframe that a model is told.
+// Conditions that the models of the command `beyond` are trained and judged on: a condition is a flight or two, rows
+// that train, validate and test, and the airframe that a model is told.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of who competes in `study beyond`. The paper's networks train as the study of Table 2 does.
+// The list of who competes in the command `beyond`. The paper's networks train as the study of Table 2 does.
 #include "study/beyond_models.hpp"
 
 #include <algorithm>

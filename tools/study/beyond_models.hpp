@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Contenders of `study beyond`, their types hidden: a name and a function that trains. A further idea is a line of the
-// list in beyond_models.cpp.
+// Contenders of the command `beyond`, their types hidden: a name and a function that trains. A further idea is a line
+// of the list in beyond_models.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Picture of `study beyond`: errors over those of the paper's network, and how far off the closed loop flies.
+// Picture of the command `beyond`: errors over those of the paper's network, and how far off the closed loop flies.
 #pragma once
 
 #include <array>

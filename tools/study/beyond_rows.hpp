@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Columns of rows.csv of `study beyond`: the figures of a model (training/model_figures.hpp), of each motor, and of the
-// closed loop.
+// Columns of rows.csv of the command `beyond`: the figures of a model (training/model_figures.hpp), of each motor, and
+// of the closed loop.
 #pragma once
 
 #include <string>

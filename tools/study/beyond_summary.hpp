@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Results of `study beyond`: a table per condition on the terminal, on a page and as JSON, each model beside the
+// Results of the command `beyond`: a table per condition on the terminal, on a page and as JSON, each model beside the
 // paper's network of the same flight and seed.
 #pragma once
 

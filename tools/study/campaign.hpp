@@ -22,7 +22,7 @@
 
 namespace study {
 
-/// Of the commands of study, for their help.
+/// Of the commands that train, for their help.
 inline constexpr const char* exit_codes =
     "Exit codes: 0 all trainings are there, whatever the verdicts; 1 (merge) some are missing; 2 bad input or a file "
     "that can't be read or written; 130 interrupted: the same command goes on.";
@@ -154,8 +154,9 @@ class Campaign {
 
  private:
   int told_interrupted(std::size_t finished) const {
-    programs::complain("study", "interrupted; " + std::to_string(finished) + " of " + std::to_string(jobs_.size()) +
-                                    " trainings are in " + folder_.rows() + "; the same command goes on");
+    programs::complain("pinnquad-study", "interrupted; " + std::to_string(finished) + " of " +
+                                             std::to_string(jobs_.size()) + " trainings are in " + folder_.rows() +
+                                             "; the same command goes on");
     return programs::exit_interrupted;
   }
 
@@ -184,8 +185,9 @@ class Campaign {
     for (const Job& job : jobs_) own[job.id()] = job.assignment.epochs;
     require_own_rows(folder_.rows(), stored_, own, plan_.best_weights);
     if (stored_.broken > 0) {
-      programs::complain("study", folder_.rows() + ": " + std::to_string(stored_.broken) +
-                                      (stored_.broken == 1 ? " row is" : " rows are") + " not whole; run again");
+      programs::complain("pinnquad-study", folder_.rows() + ": " + std::to_string(stored_.broken) +
+                                               (stored_.broken == 1 ? " row is" : " rows are") +
+                                               " not whole; run again");
     }
     note_run();
     write_rows(folder_.rows(), lines(), plan_.format.header);

@@ -62,7 +62,7 @@ inline Part read_part(const std::string& path) {
   }
   part.stored = read_rows(path + "/rows.csv", part.configuration.value("columns", rows_header()));
   if (part.stored.broken > 0) {
-    programs::complain("study", path + "/rows.csv: " + std::to_string(part.stored.broken) + " not whole; left out");
+    programs::complain("merge", path + "/rows.csv: " + std::to_string(part.stored.broken) + " not whole; left out");
   }
   return part;
 }
@@ -74,7 +74,7 @@ inline void add_rows(const Part& part, std::map<RowId, std::string>& rows) {
   for (const auto& [id, row] : part.stored.rows) {
     const auto [known, is_new] = rows.emplace(id, row);
     if (!is_new && without_time(known->second) != without_time(row)) {
-      throw std::invalid_argument("merge: " + part.path + " has other figures than a part before for " + to_string(id));
+      throw std::invalid_argument(part.path + " has other figures than a part before for " + to_string(id));
     }
   }
 }
@@ -142,12 +142,11 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
     parts.push_back(detail::read_part(path));
     const std::string differs = difference(parts.front().configuration, parts.back().configuration, {"shard"});
     if (!differs.empty()) {
-      throw std::invalid_argument("merge: " + path + " is of another study than " + parts.front().path + ": " +
-                                  differs);
+      throw std::invalid_argument(path + " is of another study than " + parts.front().path + ": " + differs);
     }
     detail::add_rows(parts.back(), rows);
   }
-  if (parts.empty()) throw std::invalid_argument("merge: " + out + " is the folder to write; there is nothing to join");
+  if (parts.empty()) throw std::invalid_argument(out + " is the folder to write; there is nothing to join");
   std::error_code error;
   std::set<std::string> series;
   for (const detail::Part& part : parts) {
@@ -186,7 +185,7 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
     }
   }
   if (programs::interrupted()) {
-    programs::complain("study", "merge: interrupted; nothing was written");
+    programs::complain("merge", "interrupted; nothing was written");
     return programs::exit_interrupted;
   }
   for (std::size_t i = 0; i < named; ++i) {
@@ -205,8 +204,8 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
   std::printf("%zu of %zu trainings from %zu folders are in %s, %zu of them from before\n", lines.size(),
               expected.size(), named, folder.rows().c_str(), held);
   if (missing == nullptr) return 0;
-  programs::complain("study", "merge: " + std::to_string(expected.size() - lines.size()) +
-                                  " trainings are missing, the first is " + to_string(*missing));
+  programs::complain("merge", std::to_string(expected.size() - lines.size()) + " trainings are missing, the first is " +
+                                  to_string(*missing));
   return programs::exit_failed;
 }
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The paper's campaign: the 14 models of Table 2 on three flights, 20 seeds each, as rows for Table 3.
-//   pinnquad study paper --seeds 20 --out DIR
-//   pinnquad study merge DIR... --out DIR
-//   pinnquad study ablation --out DIR
-//   pinnquad study beyond --out DIR
-#include "study/study_command.hpp"
-
+// The program pinnquad-study: the paper's campaign (the 14 models of Table 2 on three flights, 20 seeds each, as rows
+// for Table 3), the ablation, what goes beyond the paper, and the report.
+//   pinnquad-study paper --seeds 20 --out DIR
+//   pinnquad-study merge DIR... --out DIR
+//   pinnquad-study report DIR
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -20,11 +19,12 @@
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "report/paper.hpp"
 #include "report/report.hpp"
+#include "report/report_command.hpp"
 #include "study/ablation.hpp"
 #include "study/beyond_command.hpp"
 #include "study/campaign.hpp"
+#include "study/flights.hpp"
 #include "study/merge.hpp"
-#include "study/pictures.hpp"
 #include "study/summary.hpp"
 #include "study/table.hpp"
 
@@ -85,7 +85,7 @@ int run_campaign(const StudyOptions& options, const char* kind, std::vector<stud
   // a shard's rows are for merge; an ablation is no Table 3
   if (code == 0 && plan.kind == "table 2" && options.shard == "1/1") {
     if (!study::draw_flights(options.out, options.flight_seed) && programs::interrupted()) {
-      programs::complain("study", "interrupted; all trainings are in " + options.out +
+      programs::complain("paper", "interrupted; all trainings are in " + options.out +
                                       "/rows.csv, the report is missing; the same command goes on");
       return programs::exit_interrupted;
     }
@@ -104,24 +104,24 @@ std::shared_ptr<StudyOptions> training_options(CLI::App& line, int flights, cons
   return options;
 }
 
-programs::Command paper_command(CLI::App& parent) {
+programs::Command paper_command(CLI::App& program) {
   CLI::App* line =
-      parent.add_subcommand("paper", "The 14 models of Table 2; each finished training is a row of DIR/rows.csv");
+      program.add_subcommand("paper", "The 14 models of Table 2; each finished training is a row of DIR/rows.csv");
   const auto options =
       training_options(*line, 4, "flights d1 of the main comparison (models 2, 3, 4), the seeds from --flight-seed on");
   line->add_option("--models", options->models, "models of Table 2, such as 2,4,5-8 (default: all 14)");
   line->footer(std::string("Examples:\n"
-                           "  pinnquad study paper --seeds 20 --out study\n"
-                           "  pinnquad study paper --models 2,4,5-8 --epochs 100 --out part\n"
-                           "  pinnquad study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
-                           "  pinnquad study merge study/* --out study/all         joins such parts\n"
+                           "  pinnquad-study paper --seeds 20 --out study\n"
+                           "  pinnquad-study paper --models 2,4,5-8 --epochs 100 --out part\n"
+                           "  pinnquad-study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
+                           "  pinnquad-study merge study/* --out study/all         joins such parts\n"
                            "The same command goes on where it was stopped or killed.\n") +
                study::exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
   return {line, [options] { return run_campaign(*options, "table 2", study::chosen_models(options->models)); }};
 }
 
-programs::Command ablation_command(CLI::App& parent) {
-  CLI::App* line = parent.add_subcommand(
+programs::Command ablation_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
       "ablation",
       "What decides: gain, lambda, batch order, learning rate, loss forms, and the same budget for vanilla");
   const auto options = training_options(*line, 1, "flights d1, the seeds from --flight-seed on");
@@ -131,8 +131,8 @@ programs::Command ablation_command(CLI::App& parent) {
   return {line, [options] { return run_campaign(*options, "ablation", study::chosen_variants(options->variants)); }};
 }
 
-programs::Command merge_command(CLI::App& parent) {
-  CLI::App* line = parent.add_subcommand("merge", "Joins the folders of a study's shards into one");
+programs::Command merge_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand("merge", "Joins the folders of a study's shards into one");
   const auto options = std::make_shared<StudyOptions>();
   line->add_option("parts", options->parts, "folders to join")->type_name("DIR")->required();
   programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
@@ -145,12 +145,25 @@ programs::Command merge_command(CLI::App& parent) {
           }};
 }
 
+int run(int argument_count, char** arguments, std::string& name) {
+  CLI::App program("The paper's campaign: its models trained and judged, seed by seed", name);
+  program.fallthrough();  // --config may stand anywhere
+  const std::vector<programs::Command> commands = {paper_command(program), ablation_command(program),
+                                                   programs::beyond_command(program), merge_command(program),
+                                                   programs::report_command(program)};
+  program.footer(
+      std::string("Examples:\n"
+                  "  pinnquad-study paper --seeds 20 --out study       the study and its report\n"
+                  "  pinnquad-study beyond --seeds 10 --out beyond     structured models beside its network\n"
+                  "pinnquad-study COMMAND --help says more.\n") +
+      study::exit_codes);
+  if (const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name)) return *code;
+  return programs::run_chosen(commands);
+}
+
 }  // namespace
 
-programs::Command programs::study_command(CLI::App& program) {
-  CLI::App* line = program.add_subcommand("study", "The paper's campaign: its models trained and judged, seed by seed");
-  line->footer(study::exit_codes);
-  const std::vector<Command> commands = {paper_command(*line), ablation_command(*line), beyond_command(*line),
-                                         merge_command(*line)};
-  return {line, [commands] { return run_chosen(commands); }};
+int main(int argument_count, char** arguments) {
+  std::string name = "pinnquad-study";
+  return programs::run_program(name, [&] { return run(argument_count, arguments, name); });
 }

@@ -1,24 +1,34 @@
 // SPDX-License-Identifier: MIT
-// Pictures of the study's flights, Figs. 2, 4 (d), 5 and 6, drawn into its folder for the report to embed.
-#pragma once
+// The study's flights, flown; and drawn, forces taken apart (Figs. 2, 4 (d), 5 and 6), for the report to embed.
+#include "study/flights.hpp"
 
 #include <random>
-#include <string>
+#include <stdexcept>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "command_line/folders.hpp"
 #include "command_line/progress_line.hpp"
+#include "flight/choice.hpp"
 #include "flight/pictures.hpp"
 #include "flight/trace.hpp"
-#include "study/flights.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
 
-namespace study {
+pinnquad::Flight study::flown(const programs::StudyFlight& id) {
+  pinnquad::RecordedFlight recorded;
+  programs::with_flight(id.name, [&](auto tag) {
+    using PaperFlight = typename decltype(tag)::type;
+    recorded = pinnquad::fly<PaperFlight>(pinnquad::airframe_value<Airframe, double>(), std::mt19937_64(id.seed));
+  });
+  if (recorded.report.end != pinnquad::FlightEnd::completed) {
+    throw std::runtime_error("flight " + id.name + " of seed " + std::to_string(id.seed) + " ended after " +
+                             std::to_string(recorded.report.rows) + " rows: choose another --flight-seed");
+  }
+  return std::move(recorded.flight);
+}
 
-/// Flies d1, d2 and d3 of one seed again, forces taken apart, and draws `folder`/flights/{d1,d2,d3}/*.svg as
-/// `fly NAME --pictures` does. False, after one line on stderr, where gnuplot is missing or failed; the report then
-/// leaves them out.
-inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
+bool study::draw_flights(const std::string& folder, std::uint64_t seed) {
   using namespace pinnquad;
   const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();
   bool drawn = true;
@@ -41,5 +51,3 @@ inline bool draw_flights(const std::string& folder, std::uint64_t seed) {
   });
   return drawn;
 }
-
-}  // namespace study
