@@ -31,7 +31,8 @@ int run(int argument_count, char** arguments, std::string& name) {
       "  pinnquad --config options.toml train                     options from a file\n"
       "pinnquad COMMAND --help says more.\n"
       "Exit codes: 0 good; 1 it ran, but the answer is no; 2 bad input or a file that can't be read or written; 3 "
-      "undecided; 130 interrupted. Each command says which of them it has.");
+      "undecided; 70 a fault of the program, to be reported; 130 interrupted. Each command says which of the others it "
+      "has.");
   const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name,
                                                            "; the paper's study is the program pinnquad-study");
   if (code) return *code;

@@ -7,17 +7,21 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include "pinnquad/io/file_error.hpp"
+#include "pinnquad/version.hpp"
 
 namespace programs {
 
 constexpr int exit_failed = 1;
 constexpr int exit_bad_input = 2;
+constexpr int exit_internal_fault = 70;  ///< as sysexits.h has it
 
 /// "fly: what is wrong" on stderr: one line, whatever stands in a path or an argument.
 inline void complain(const char* program, const std::string& what) {
@@ -34,10 +38,19 @@ inline void take_closed_streams() {
   }
 }
 
+/// A refusal names something that the user can mend: a file, an argument, a thing that the system denies.
+inline bool is_refusal(const std::exception& error) {
+  return dynamic_cast<const pinnquad::InputError*>(&error) != nullptr ||
+         dynamic_cast<const pinnquad::OutputError*>(&error) != nullptr ||
+         dynamic_cast<const std::invalid_argument*>(&error) != nullptr ||
+         dynamic_cast<const std::system_error*>(&error) != nullptr;
+}
+
 }  // namespace detail
 
-/// Runs a program: `body()` gives its exit code; what it throws becomes one line and exit_bad_input. Standard output
-/// that could not be written (a full disk, a closed pipe: files are finished all the same) is told the same way.
+/// Runs a program: `body()` gives its exit code; what it throws becomes one line. A refusal and the want of memory are
+/// exit_bad_input. Any other exception is a fault of ours, and exit_internal_fault. Standard output that could not be
+/// written (a full disk, a closed pipe: files are finished all the same) is told as a refusal is.
 /// Lines begin with `program`, which the body may change: to the command that was chosen.
 template <class Body>
 int run_program(const std::string& program, const Body& body) {
@@ -45,12 +58,22 @@ int run_program(const std::string& program, const Body& body) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader who left is no reason to lose a training
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a full disk: an error to report
   int code = exit_bad_input;
+  const auto fault = [&code](const std::string& what) {
+    complain("pinnquad " PINNQUAD_VERSION, "internal fault: " + what + "; please report it");
+    code = exit_internal_fault;
+  };
   try {
     code = body();
   } catch (const std::bad_alloc&) {
     complain(program.c_str(), "out of memory");
-  } catch (const std::exception& error) {  // InputError, OutputError, contradictions: one line
-    complain(program.c_str(), error.what());
+  } catch (const std::exception& error) {
+    if (detail::is_refusal(error)) {
+      complain(program.c_str(), error.what());
+    } else {
+      fault(error.what());
+    }
+  } catch (...) {
+    fault("an exception without a description");
   }
   errno = 0;
   const bool failed_before = std::ferror(stdout) != 0;

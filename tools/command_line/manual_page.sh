@@ -119,6 +119,9 @@ Bad input, or a file that can't be read or written: one line on standard error s
 .B 3
 Undecided.
 .TP
+.B 70
+A fault of the program itself: one line on standard error says which; please report it.
+.TP
 .B 130
 Interrupted by Ctrl\\-C; what is finished is kept, as the command says.
 TEXT

@@ -83,9 +83,9 @@ bool takes_part(const study::BeyondModel& model, const study::Condition& conditi
 }
 
 std::string name_of_file(const std::string& path, const std::set<std::string>& taken) {
-  std::string name = std::filesystem::path(path).stem().string();
+  std::string name = pinnquad::printable(std::filesystem::path(path).stem().string());
   for (char& c : name) {
-    if (c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20) c = '_';
+    if (c == ',' || c == '"') c = '_';
   }
   while (name.empty() || taken.count(name) > 0) name += "_";
   return name;

@@ -79,8 +79,8 @@ RowSplit end_of_second(const OfFlights& flights) {
 
 void require_completed(const programs::StudyFlight& id, const pinnquad::FlightReport& report) {
   if (report.end == pinnquad::FlightEnd::completed) return;
-  throw std::runtime_error("flight " + id.name + " of seed " + std::to_string(id.seed) + " ended after " +
-                           std::to_string(report.rows) + " rows: choose another --flight-seed");
+  throw std::invalid_argument("flight " + id.name + " of seed " + std::to_string(id.seed) + " ended after " +
+                              std::to_string(report.rows) + " rows: choose another --flight-seed");
 }
 
 /// `name` without `ending`. False if it does not end so.

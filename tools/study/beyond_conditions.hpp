@@ -40,7 +40,7 @@ Condition given_condition(const std::string& name, const pinnquad::GivenAirframe
 std::vector<Condition> chosen_conditions(std::vector<Condition> all, const std::vector<std::string>& names);
 
 /// Flies "d1", "d2", "d3"; with "_noisy" behind it as a log has it (noisy_gyro_errors()), with "_payload" a fifth
-/// heavier. Throws std::runtime_error, one line, if the flight ends early.
+/// heavier. Throws std::invalid_argument, one line, if the flight ends early.
 pinnquad::Flight fly_for_beyond(const programs::StudyFlight& id);
 
 /// The border of speed extrapolation, over ground.

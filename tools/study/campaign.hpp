@@ -135,7 +135,7 @@ class Campaign {
   Campaign(const Plan& plan, const std::string& out, unsigned threads)
       : plan_(plan), folder_(out), threads_(threads), jobs_(jobs_of_shard(all_jobs(plan), plan.shard)) {}
 
-  /// Exit code: 0, or that of an interrupt. Throws InputError, OutputError, std::runtime_error; finished rows are kept.
+  /// Exit code: 0, or that of an interrupt. Throws InputError, OutputError, std::invalid_argument; finished rows are kept.
   int run() {
     Workshop workshop(fly_all(plan_));
     if (programs::interrupted()) return told_interrupted(0);

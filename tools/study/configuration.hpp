@@ -116,7 +116,7 @@ inline std::string difference(const nlohmann::json& there, const nlohmann::json&
     return configuration.contains(at) ? configuration.at(at).dump() : std::string("absent");
   };
   for (const std::string& name : names) {
-    const nlohmann::json::json_pointer entry("/" + name);
+    const nlohmann::json::json_pointer entry = nlohmann::json::json_pointer() / name;
     const nlohmann::json in_a = a.contains(name) ? a.at(name) : nlohmann::json(),
                          in_b = b.contains(name) ? b.at(name) : nlohmann::json();
     if (in_a == in_b) continue;
@@ -127,7 +127,7 @@ inline std::string difference(const nlohmann::json& there, const nlohmann::json&
              " here";
     }
     const nlohmann::json flat = nlohmann::json::diff(in_a, in_b);  // not empty: they differ
-    const nlohmann::json::json_pointer at("/" + name + flat.front().at("path").get<std::string>());
+    const auto at = entry / nlohmann::json::json_pointer(flat.front().at("path").get<std::string>());
     return at.to_string().substr(1) + " is " + told(a, at) + " there and " + told(b, at) + " here";
   }
   return {};
@@ -140,8 +140,9 @@ inline nlohmann::json read_configuration(const std::string& path) {
     const auto fact = [&read](const char* name, const nlohmann::json& otherwise) {
       return read.value(name, otherwise);
     };
-    return fact("wall_s", 0.0).is_number() && fact("threads", 1).is_number() && fact("started", "").is_string() &&
-           fact("cpu", "").is_string() && fact("weights", "").is_string();
+    return fact("wall_s", 0.0).is_number() && fact("threads", 1).is_number() && fact("parts", 1).is_number() &&
+           fact("columns", "").is_string() && fact("started", "").is_string() && fact("cpu", "").is_string() &&
+           fact("weights", "").is_string();
   };
   if (!read.is_object() || !facts_are_usual())
     throw pinnquad::InputError(path, 0, 0, "the settings of a study as JSON", "something else");

@@ -22,8 +22,8 @@ pinnquad::Flight study::flown(const programs::StudyFlight& id) {
     recorded = pinnquad::fly<PaperFlight>(pinnquad::airframe_value<Airframe, double>(), std::mt19937_64(id.seed));
   });
   if (recorded.report.end != pinnquad::FlightEnd::completed) {
-    throw std::runtime_error("flight " + id.name + " of seed " + std::to_string(id.seed) + " ended after " +
-                             std::to_string(recorded.report.rows) + " rows: choose another --flight-seed");
+    throw std::invalid_argument("flight " + id.name + " of seed " + std::to_string(id.seed) + " ended after " +
+                                std::to_string(recorded.report.rows) + " rows: choose another --flight-seed");
   }
   return std::move(recorded.flight);
 }

@@ -15,7 +15,7 @@ namespace study {
 /// Flights of the study.
 using Airframe = pinnquad::PaperQuadrotor;
 
-/// Flies `fly NAME --seed SEED`. Throws std::runtime_error, one line, if the flight ends early.
+/// Flies `fly NAME --seed SEED`. Throws std::invalid_argument, one line, if the flight ends early.
 pinnquad::Flight flown(const programs::StudyFlight& id);
 
 /// Flies d1, d2 and d3 of one seed again, forces taken apart, and draws `folder`/flights/{d1,d2,d3}/*.svg as

@@ -156,7 +156,7 @@ int run(int argument_count, char** arguments, std::string& name) {
                   "  pinnquad-study paper --seeds 20 --out study       the study and its report\n"
                   "  pinnquad-study beyond --seeds 10 --out beyond     structured models beside its network\n"
                   "pinnquad-study COMMAND --help says more.\n") +
-      study::exit_codes);
+      study::exit_codes + " 70 is a fault of the program, to be reported.");
   if (const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name)) return *code;
   return programs::run_chosen(commands);
 }

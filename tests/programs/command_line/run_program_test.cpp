@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// What a program makes of an exception: a refusal is its user's to mend, anything else is a fault of ours.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <variant>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "command_line/console.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace {
+
+struct Ended {
+  int code;
+  std::string said;
+};
+
+/// Runs a program that does as `body` does, and keeps its standard error.
+template <class Body>
+Ended ended(const Body& body) {
+  const pinnquad_test::TemporaryFolder folder;
+  const std::string path = folder.path("stderr.txt");
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT, 0600), terminal = ::dup(STDERR_FILENO);
+  REQUIRE(file >= 0);
+  ::dup2(file, STDERR_FILENO);
+  const int code = programs::run_program("land", body);
+  ::dup2(terminal, STDERR_FILENO);
+  ::close(terminal);
+  ::close(file);
+  std::ifstream said(path);
+  return {code, {std::istreambuf_iterator<char>(said), {}}};
+}
+
+template <class Error>
+Ended ended_by(const Error& error) {
+  return ended([&error]() -> int { throw error; });
+}
+
+void check_refused(const Ended& end, const std::string& what) {
+  CHECK(end.code == 2);
+  CHECK(end.said == "land: " + what + "\n");
+}
+
+void check_fault(const Ended& end, const std::string& what) {
+  CHECK(end.code == 70);
+  CHECK(end.said == "pinnquad " PINNQUAD_VERSION ": internal fault: " + what + "; please report it\n");
+}
+
+}  // namespace
+
+TEST_CASE("an exit code is handed on, and nothing is said") {
+  for (const int code : {0, 1, 3, 130}) {
+    const Ended end = ended([code] { return code; });
+    CHECK(end.code == code);
+    CHECK(end.said.empty());
+  }
+}
+
+TEST_CASE("a refusal is one line of the command, exit code 2") {
+  check_refused(ended_by(pinnquad::InputError("a.csv", 3, 0, "a number", "'x'")),
+                "a.csv:3: expected a number, found 'x'");
+  check_refused(ended_by(pinnquad::OutputError("a.csv", "the disk is full")), "cannot write a.csv: the disk is full");
+  check_refused(ended_by(std::invalid_argument("--out is needed\nhere")), "--out is needed?here");
+  const std::filesystem::filesystem_error denied("reading", std::make_error_code(std::errc::permission_denied));
+  check_refused(ended_by(denied), denied.what());
+  check_refused(ended_by(std::bad_alloc()), "out of memory");
+}
+
+TEST_CASE("any other exception is a fault of the program, exit code 70") {
+  check_fault(ended_by(std::logic_error("no model")), "no model");
+  check_fault(ended_by(std::runtime_error("no solution")), "no solution");
+  check_fault(ended_by(std::out_of_range("no row 7")), "no row 7");
+  check_fault(ended([] { return std::optional<int>().value(); }), std::bad_optional_access().what());
+  CHECK(ended([] { return std::get<int>(std::variant<int, char>('x')); }).code == 70);
+  check_fault(ended_by(1), "an exception without a description");
+}
