@@ -7,7 +7,7 @@
 #include "airframe/airframe_command.hpp"
 #include "command_line/commands.hpp"
 #include "flight/fly_command.hpp"
-#include "logs/import_command.hpp"
+#include "import/import_command.hpp"
 #include "model/block_command.hpp"
 #include "model/certify_command.hpp"
 #include "model/evaluate_command.hpp"

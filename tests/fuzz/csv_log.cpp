@@ -17,8 +17,8 @@
 
 namespace {
 
+using pinnquad::logs::LogTopic;
 using pinnquad_test::expect;
-using programs::LogTopic;
 
 pinnquad_test::Tally tally;
 
@@ -76,10 +76,10 @@ void check(const LogTopic& topic) {
     expect(text.values.size() == topic.size(), "texts are as long as the clock");
     expect(text.first_text < topic.size(), "a text has a cell that is no number");
     double ignored = 0;
-    expect(!programs::csv_log::cell_number(text.values[text.first_text], ignored), "that cell is no number");
+    expect(!pinnquad::logs::cell_number(text.values[text.first_text], ignored), "that cell is no number");
   }
   const MemoryFile file(written(topic));
-  const LogTopic again = programs::read_csv_topic(file.path());
+  const LogTopic again = pinnquad::logs::read_csv_topic(file.path());
   expect(again.size() == topic.size() && again.columns.size() == topic.columns.size(), "written and read is the same");
   for (std::size_t i = 0; i < topic.columns.size(); ++i) {
     expect(again.columns[i].name == topic.columns[i].name, "names survive");
@@ -99,9 +99,9 @@ void check(const LogTopic& topic) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file(std::string(reinterpret_cast<const char*>(data), size));
   try {
-    programs::LogSelection selection;
+    pinnquad::logs::LogSelection selection;
     if (size % 2 == 0) selection.clock_column = "t";
-    const LogTopic topic = programs::read_csv_topic(file.path(), selection);
+    const LogTopic topic = pinnquad::logs::read_csv_topic(file.path(), selection);
     check(topic);
     ++tally.count[topic.size() > 0 ? "ok" : "no row"];
   } catch (const pinnquad::InputError& error) {

@@ -11,8 +11,8 @@
 #include "fuzz/fuzzing.hpp"
 #include "logs/derived_motion.hpp"
 #include "logs/log_parts.hpp"
-#include "logs/mapping_file.cpp"  // the one source beside this one
-#include "logs/row_rules.hpp"
+#include "logs/mapping.hpp"
+#include "logs/row_checks.hpp"
 
 namespace {
 
@@ -21,8 +21,8 @@ using pinnquad_test::expect;
 pinnquad_test::Tally tally;
 
 /// Columns of a topic by which any of its quantities could be told, some with cells that are no number.
-programs::LogTopic topic(const std::string& name, std::size_t rows, double period_s) {
-  programs::LogTopic result;
+pinnquad::logs::LogTopic topic(const std::string& name, std::size_t rows, double period_s) {
+  pinnquad::logs::LogTopic result;
   result.name = name;
   result.file = "memory";
   const char* names[] = {"t", "a", "b", "c", "d", "e", "f"};
@@ -44,9 +44,9 @@ programs::LogTopic topic(const std::string& name, std::size_t rows, double perio
   return result;
 }
 
-const programs::FlightLog& log() {
-  static const programs::FlightLog made = [] {
-    programs::FlightLog result;
+const pinnquad::logs::FlightLog& log() {
+  static const pinnquad::logs::FlightLog made = [] {
+    pinnquad::logs::FlightLog result;
     result.source = "memory";
     result.topics.push_back(topic("", 80, 0.01));
     result.topics.push_back(topic("x", 30, 0.03));
@@ -55,15 +55,15 @@ const programs::FlightLog& log() {
   return made;
 }
 
-void use(const programs::Mapping& mapping) {
-  for (programs::LogPart& part : programs::parts_of(log(), "log", mapping)) {
-    programs::BoundLog bound = programs::bind_log(part.log, mapping, std::nullopt);
-    programs::CommonRows rows = programs::common_rows(bound, std::nullopt, mapping.file.empty());
+void use(const pinnquad::logs::Mapping& mapping) {
+  for (pinnquad::logs::LogPart& part : pinnquad::logs::parts_of(log(), "log", mapping)) {
+    pinnquad::logs::BoundLog bound = pinnquad::logs::bind_log(part.log, mapping, std::nullopt);
+    pinnquad::logs::CommonRows rows = pinnquad::logs::common_rows(bound, std::nullopt, mapping.file.empty());
     const double period_s = rows.period_s;
     const std::size_t all = rows.rows();
-    const programs::LogRows made = programs::rows_of_log(std::move(rows), bound, mapping, "log");
+    const pinnquad::logs::LogRows made = pinnquad::logs::rows_of_log(std::move(rows), bound, mapping, "log");
     expect(made.flight.size() + made.incomplete + made.window_ends == all, "every row is kept or counted");
-    const programs::RowMask out = programs::on_the_ground(made, mapping, period_s);
+    const pinnquad::logs::RowMask out = pinnquad::logs::on_the_ground(made, mapping, period_s);
     expect(out.size() == made.flight.size(), "a rule speaks of every row");
     for (const pinnquad::Sample& sample : made.flight) {
       for (const double u : sample.commands) expect(u >= 0 && u <= 1, "commands are 0 to 1");
@@ -79,8 +79,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
            "a refusal is one line");
   };
   try {
-    const programs::Mapping mapping =
-        programs::parse_mapping(std::string(reinterpret_cast<const char*>(data), size), "mapping.toml");
+    const pinnquad::logs::Mapping mapping =
+        pinnquad::logs::parse_mapping(std::string(reinterpret_cast<const char*>(data), size), "mapping.toml");
     ++tally.count["ok"];
     use(mapping);
     ++tally.count["used"];

@@ -15,9 +15,9 @@
 
 namespace {
 
+using pinnquad::logs::FlightLog;
+using pinnquad::logs::LogTopic;
 using pinnquad_test::expect;
-using programs::FlightLog;
-using programs::LogTopic;
 
 pinnquad_test::Tally tally;
 
@@ -42,9 +42,9 @@ void check(const FlightLog& log, std::size_t size) {
 
 /// A topic read alone is as it was among the others.
 void check_selection(const FlightLog& log, std::string_view bytes) {
-  programs::LogSelection selection;
+  pinnquad::logs::LogSelection selection;
   selection.topics = {log.topics.back().name};
-  const FlightLog alone = programs::parse_ulog(bytes, "x.ulg", selection);
+  const FlightLog alone = pinnquad::logs::parse_ulog(bytes, "x.ulg", selection);
   for (const LogTopic& topic : alone.topics) {
     const LogTopic* const same = log.topic(topic.name, topic.instance);
     expect(same != nullptr && same->place == topic.place && same->columns.size() == topic.columns.size(),
@@ -111,7 +111,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::vector<char> memory(data, data + size);  // of its own: the sanitizer sees a read past the end
   const std::string_view bytes(memory.data(), memory.size());
   try {
-    const FlightLog log = programs::parse_ulog(bytes, "x.ulg");
+    const FlightLog log = pinnquad::logs::parse_ulog(bytes, "x.ulg");
     check(log, size);
     if (!log.topics.empty()) check_selection(log, bytes);
     ++tally.count[log.topics.empty() ? "no row" : log.warnings.empty() ? "ok" : "with a warning"];

@@ -149,7 +149,7 @@ refused 'table.csv: expected radians per second in columns w_x, w_y, w_z, found 
 # the same flight twice, by whatever name: one would be judged on what it was trained on
 cp ned.csv copy.csv
 for copy in ned.csv ./ned.csv copy.csv; do
-  refused '^import: the flights A1_wave_rep1 and A1_wave_rep1 \(2\) are the same' ned.csv $copy $ned
+  refused '^import: A1_wave_rep1 and A1_wave_rep1 \(2\) hold the same flight' ned.csv $copy $ned
 done
 refused '--lag: expected auto, or seconds' ned.csv $ned --lag soon
 refused '--rate: expected a number from 1 to 2000' ned.csv $ned --rate 0

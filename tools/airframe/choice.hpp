@@ -3,33 +3,18 @@
 #pragma once
 
 #include <cstdio>
-#include <optional>
-#include <stdexcept>
-#include <string>
 
-#include "airframe/file.hpp"
 #include "airframe/names.hpp"
+#include "logs/airframe_file.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 
 namespace programs {
 
-/// The refusal of a name that is none.
-inline std::invalid_argument no_airframe(const std::string& name) {
-  return std::invalid_argument("no airframe named '" + name + "'; known: " + airframe_names() +
-                               ", or a file whose name ends in .toml");
-}
-
-/// The airframe of that name or file. Throws InputError (the file) and std::invalid_argument (no such name), one line.
-inline NamedAirframe chosen_airframe(const std::string& name_or_file) {
-  if (is_airframe_file(name_or_file)) return read_airframe_file(name_or_file);
-  std::optional<NamedAirframe> airframe;
-  with_airframe(name_or_file, [&airframe](auto tag) {
-    using Vehicle = typename decltype(tag)::type;
-    airframe = NamedAirframe{Vehicle::name, pinnquad::airframe_value<Vehicle, double>()};
-  });
-  if (!airframe) throw no_airframe(name_or_file);
-  return *airframe;
-}
+using pinnquad::logs::chosen_airframe;
+using pinnquad::logs::is_airframe_file;
+using pinnquad::logs::NamedAirframe;
+using pinnquad::logs::no_airframe;
+using pinnquad::logs::read_airframe_file;
 
 /// The airframes that the program knows, on standard output.
 inline void list_airframes() {

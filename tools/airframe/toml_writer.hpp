@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <string>
 
-#include "airframe/file.hpp"
+#include "airframe/choice.hpp"
 #include "pinnquad/dynamics/actuator.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace programs {
 

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -49,6 +50,19 @@ class ProgressLine {
   bool shown_{false};
   double next_s_{0};
   std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
+};
+
+/// Progress of one job after the other.
+class JobLine {
+ public:
+  void update(const std::string& job, double share) {
+    if (!line_ || job != job_) line_.emplace(job_ = job);
+    line_->update(share);
+  }
+
+ private:
+  std::optional<ProgressLine> line_;
+  std::string job_;
 };
 
 }  // namespace programs

@@ -12,19 +12,23 @@
 #include <string>
 #include <vector>
 
-#include "command_line/toml_file.hpp"
+#include "logs/toml_file.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace programs {
+
+namespace logs = pinnquad::logs;
 
 namespace detail {
 
 /// A value as it would stand on the command line. Throws InputError: a table, a date, a list in a list.
 inline std::string as_argument(const std::string& path, const toml::node& node) {
-  if (const auto* text = node.as_string()) return text_of_toml(path, *text);
+  if (const auto* text = node.as_string()) return logs::text_of_toml(path, *text);
   if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
   if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
-  if (node.is_floating_point()) return pinnquad::number_text(toml_number(node));
-  refuse_toml(path, node.source(), "a text, a number or a truth value", described(node));
+  if (node.is_floating_point()) return pinnquad::number_text(logs::toml_number(node));
+  logs::refuse_toml(path, node.source(), "a text, a number or a truth value", logs::described(node));
 }
 
 /// Gives an option its values, unless the command line has given it some.
@@ -37,8 +41,8 @@ inline void take_setting(const std::string& path, const toml::key& key, const to
   }
   const bool is_flag = option.get_expected_min() == 0;
   if (is_flag != node.is_boolean()) {
-    refuse_toml(path, node.source(), is_flag ? "true or false" : "a value of --" + std::string(key.str()),
-                described(node));
+    logs::refuse_toml(path, node.source(), is_flag ? "true or false" : "a value of --" + std::string(key.str()),
+                      logs::described(node));
   }
   if (!option.empty() || (is_flag && values.front() == "false")) return;
   try {
@@ -57,7 +61,8 @@ inline void take_table(const std::string& path, const toml::table& table, CLI::A
     if (const toml::table* part = node.as_table()) {
       const auto chosen = command.get_subcommands([&name](const CLI::App* c) { return c->get_name() == name; });
       if (chosen.empty()) {
-        refuse_toml(path, key.source(), "a command of " + command.get_name(), "`" + pinnquad::printable(name) + "`");
+        logs::refuse_toml(path, key.source(), "a command of " + command.get_name(),
+                          "`" + pinnquad::printable(name) + "`");
       }
       take_table(path, *part, *chosen.front());
       continue;
@@ -65,7 +70,8 @@ inline void take_table(const std::string& path, const toml::table& table, CLI::A
     CLI::Option* option = command.get_option_no_throw("--" + name);
     if (option == nullptr) option = command.get_option_no_throw(name);
     if (option == nullptr || !option->get_configurable()) {
-      refuse_toml(path, key.source(), "an option of " + command.get_name(), "`" + pinnquad::printable(name) + "`");
+      logs::refuse_toml(path, key.source(), "an option of " + command.get_name(),
+                        "`" + pinnquad::printable(name) + "`");
     }
     take_setting(path, key, node, *option);
   }
@@ -77,7 +83,7 @@ inline void take_table(const std::string& path, const toml::table& table, CLI::A
 /// std::invalid_argument, one line with line and column: no TOML, a command or option that there is not, a value that
 /// the option refuses.
 inline void take_settings(CLI::App& program, const std::string& path) {
-  detail::take_table(path, read_toml_file(path, "options"), program);
+  detail::take_table(path, logs::read_toml_file(path, "options"), program);
 }
 
 }  // namespace programs

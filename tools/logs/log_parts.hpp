@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The logs that are meant by what a command was given, and the flights that one table holds.
+// The logs that a path means, the flights that one table holds, and their names.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <filesystem>
-#include <map>
-#include <stdexcept>
 #include <string>
-#include <system_error>
-#include <utility>
+#include <string_view>
 #include <vector>
 
-#include "command_line/nearest_names.hpp"
-#include "logs/bound_log.hpp"
-#include "logs/flight_log.hpp"
 #include "logs/mapping.hpp"
-#include "logs/name_pattern.hpp"
-#include "logs/ulog2csv_folder.hpp"
-#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/logs/read_log.hpp"
 
-namespace programs {
+namespace pinnquad::logs {
+
+/// A trajectory's name out of a flight's: "*_(*)_*" makes lissajous of B10_lissajous_fast_rep1. One pair of brackets,
+/// and at most six stars: each may stand for any letters, as few as will do.
+bool is_name_pattern(std::string_view pattern);
 
 /// A log to read.
 struct LogPlace {
@@ -31,38 +25,7 @@ struct LogPlace {
 
 /// Files as they are; of a folder its ULog files, or its CSV tables where the mapping says which column is their clock,
 /// or the logs that ulog2csv wrote into it. Throws InputError: a folder without.
-inline std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  fs::path shown = path;
-  if (!shown.has_filename()) shown = shown.parent_path();
-  if (!fs::is_directory(path, error)) return {{path, "", pinnquad::printable(shown.stem().string())}};
-  std::vector<std::string> files, tables;
-  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
-    if (entry->path().extension() == ".ulg") files.push_back(entry->path().string());
-    if (entry->path().extension() == ".csv") tables.push_back(entry->path().string());
-  }
-  if (error) throw pinnquad::InputError(path, 0, 0, "a readable folder", "none (" + error.message() + ")");
-  std::sort(files.begin(), files.end());
-  std::vector<LogPlace> places;
-  for (const std::string& file : files)
-    places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
-  if (!places.empty()) return places;
-  std::sort(tables.begin(), tables.end());
-  if (tables_have_clock) {
-    for (const std::string& file : tables) {
-      places.push_back({file, "", pinnquad::printable(fs::path(file).stem().string())});
-    }
-    if (!places.empty()) return places;
-  }
-  for (const std::string& log : ulog2csv::logs_of(ulog2csv::files_of(path), selection)) {
-    places.push_back({path, log, pinnquad::printable(log)});
-  }
-  if (places.empty()) {
-    throw pinnquad::InputError(path, 0, 0, "a folder of .ulg files, or one that ulog2csv wrote", "neither");
-  }
-  return places;
-}
+std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock);
 
 /// A flight's log and what it is called.
 struct LogPart {
@@ -71,107 +34,10 @@ struct LogPart {
   std::string trajectory;
 };
 
-namespace detail {
-
-inline const LogText& labels_of(const LogTopic& topic, const NamedColumn& wanted, const Mapping& mapping) {
-  if (const LogText* text = topic.text(wanted.name)) return *text;
-  std::vector<std::string> known;
-  for (const LogText& text : topic.texts) known.push_back(text.name);
-  for (const LogColumn& column : topic.columns) known.push_back(column.name);
-  throw pinnquad::InputError(
-      mapping.file, wanted.place.line, wanted.place.column,
-      "a column of " + topic_words(topic.name, topic.instance) + " in " + topic.file,
-      "`" + pinnquad::printable(wanted.name) + "`, which it has not; " + nearest_names(wanted.name, known));
-}
-
-/// The topic's rows dealt to a topic each, column by column, which is let go then: the table is never there twice.
-inline std::vector<LogTopic> dealt(LogTopic topic, const std::vector<std::vector<std::size_t>>& rows) {
-  std::vector<LogTopic> parts(rows.size());
-  const auto deal = [&](auto& values, const auto& to) {
-    auto all = std::move(values);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      auto& part = to(parts[i]);
-      if (rows.size() == 1) {  // every row is its
-        part = std::move(all);
-        return;
-      }
-      part.reserve(rows[i].size());
-      for (const std::size_t row : rows[i]) part.push_back(std::move(all[row]));
-    }
-  };
-  for (LogTopic& part : parts) {
-    part.name = topic.name;
-    part.instance = topic.instance;
-    part.file = topic.file;
-    part.places_are_lines = topic.places_are_lines;
-  }
-  deal(
-      topic.time_s, [](LogTopic & part) -> auto& { return part.time_s; });
-  deal(
-      topic.place, [](LogTopic & part) -> auto& { return part.place; });
-  for (LogColumn& column : topic.columns) {
-    for (LogTopic& part : parts) part.columns.push_back({column.name, {}});
-    deal(
-        column.values, [](LogTopic & part) -> auto& { return part.columns.back().values; });
-  }
-  for (LogText& text : topic.texts) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const auto first =
-          std::find_if(rows[i].begin(), rows[i].end(), [&](std::size_t row) { return row >= text.first_text; });
-      const auto index = static_cast<std::size_t>(first - rows[i].begin());
-      parts[i].texts.push_back({text.name, {}, first == rows[i].end() ? 0 : index});
-    }
-    deal(
-        text.values, [](LogTopic & part) -> auto& { return part.texts.back().values; });
-  }
-  return parts;
-}
-
-}  // namespace detail
-
 /// A table by its labels, in the order in which they first occur; every other log is one flight.
-inline std::vector<LogPart> parts_of(FlightLog log, const std::string& name, const Mapping& mapping) {
-  std::vector<LogPart> parts;
-  const auto trajectory_of = [&mapping](const LogPart& part) {
-    if (!mapping.trajectory_column.name.empty() && !part.log.topics.empty()) {
-      const LogText& labels = detail::labels_of(part.log.topics[0], mapping.trajectory_column, mapping);
-      if (!labels.values.empty()) return pinnquad::printable(labels.values[0]);
-    }
-    return mapping.trajectory.empty() ? part.name : part_of_name(mapping.trajectory, part.name);
-  };
-  if (mapping.flight_column.name.empty() || log.topics.empty()) {
-    parts.push_back({std::move(log), name, ""});
-  } else {
-    const LogTopic& topic = log.topics[0];
-    const LogText& labels = detail::labels_of(topic, mapping.flight_column, mapping);
-    std::map<std::string, std::size_t> known;
-    std::vector<std::vector<std::size_t>> rows;
-    std::vector<std::string> names;
-    for (std::size_t row = 0; row < labels.values.size(); ++row) {
-      const auto [entry, is_new] = known.emplace(labels.values[row], rows.size());
-      if (is_new) {
-        constexpr std::size_t most_flights = 10000;
-        if (rows.size() == most_flights) {
-          throw pinnquad::InputError(mapping.file, mapping.flight_column.place.line, mapping.flight_column.place.column,
-                                     "a column with a label for each flight", "more than 10000 labels");
-        }
-        rows.emplace_back();
-        names.push_back(labels.values[row].empty() ? name : pinnquad::printable(labels.values[row]));
-      }
-      rows[entry->second].push_back(row);
-    }
-    std::vector<LogTopic> topics = detail::dealt(std::move(log.topics[0]), rows);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      LogPart part;
-      part.name = names[i];
-      part.log.source = log.source;
-      part.log.parameters = log.parameters;
-      part.log.topics.push_back(std::move(topics[i]));
-      parts.push_back(std::move(part));
-    }
-  }
-  for (LogPart& part : parts) part.trajectory = trajectory_of(part);
-  return parts;
-}
+std::vector<LogPart> parts_of(FlightLog log, const std::string& name, const Mapping& mapping);
 
-}  // namespace programs
+/// The name, or that with the part's number or a higher one where a flight of the dataset has it: "a.csv (2)".
+std::string free_name(const Dataset& dataset, const std::string& name, int part = 1);
+
+}  // namespace pinnquad::logs

@@ -1,22 +1,70 @@
 // SPDX-License-Identifier: MIT
-// The meaning of the columns of a log: which of them make which quantity, in which unit, frame and order.
+// The meaning of the columns of a log: which of them make which quantity of a flight's rows, in which unit, frame and
+// order.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "logs/motor_order.hpp"
-#include "logs/quantities.hpp"
 
-namespace programs {
+namespace pinnquad::logs {
+
+/// The quantities that a mapping may name. The order is that of a mapping's messages.
+enum class Quantity {
+  attitude,
+  body_rates,
+  angular_acceleration,
+  specific_force,
+  acceleration,
+  velocity,
+  position,
+  altitude,
+  motors,
+  torque_and_thrust,
+  landed,
+  extra  ///< any other column, for models that take it: not among `quantities`
+};
+
+/// The dimension of a unit.
+enum class Dimension { time, angle, turning, angular_acceleration, acceleration, speed, length, rotor_speed, none };
+
+struct QuantityFacts {
+  Quantity quantity;
+  const char* key;  ///< its table in a mapping
+  std::size_t columns;
+  Dimension dimension;
+  const char* words;
+};
+
+// clang-format off
+inline constexpr std::array<QuantityFacts, 11> quantities = {{
+    {Quantity::attitude, "attitude", 4, Dimension::angle, "quaternion or Euler angles"},
+    {Quantity::body_rates, "body_rates", 3, Dimension::turning, "angular velocity in the body's axes"},
+    {Quantity::angular_acceleration, "angular_acceleration", 3, Dimension::angular_acceleration, "its derivative"},
+    {Quantity::specific_force, "specific_force", 3, Dimension::acceleration,
+     "what an accelerometer measures: at rest -g along z down"},
+    {Quantity::acceleration, "acceleration", 3, Dimension::acceleration, "of the vehicle against the world: at rest 0"},
+    {Quantity::velocity, "velocity", 3, Dimension::speed, "against the ground"},
+    {Quantity::position, "position", 3, Dimension::length, "in the world"},
+    {Quantity::altitude, "altitude", 1, Dimension::length, "height, positive up"},
+    {Quantity::motors, "motors", 4, Dimension::none, "the command of each motor"},
+    {Quantity::torque_and_thrust, "torque_and_thrust", 4, Dimension::none,
+     "set points from which the motors' commands are rebuilt"},
+    {Quantity::landed, "landed", 1, Dimension::none, "1 on the ground, 0 in the air"}}};
+// clang-format on
+
+inline constexpr const QuantityFacts& facts_of(Quantity quantity) {
+  return quantities[static_cast<std::size_t>(quantity)];
+}
 
 enum class WorldFrame { ned, enu };
 enum class BodyFrame { frd, flu };
 enum class Axes { body, world };
+
 /// The meaning of the numbers of `motors`.
 enum class MotorNumbers {
   thrust,  ///< share of the greatest thrust, 0..1
@@ -57,7 +105,7 @@ struct Source {
   Axes axes = Axes::body;  ///< of accelerations and velocities
 
   MotorNumbers numbers = MotorNumbers::thrust;
-  std::array<MotorOrder::Corner, pinnquad::rotor_count> corners = px4_motor_order.corners;
+  std::array<MotorOrder::Corner, rotor_count> corners = px4_motor_order.corners;
   double least = 0, most = 1;          ///< of a motor's number: stopped or idle, and full
   double thrust_curve = 0;             ///< of a signal: thrust = s ((1 - k) + k s)
   std::string thrust_curve_parameter;  ///< that the log has it by
@@ -84,11 +132,10 @@ struct Mapping {
   std::string trajectory;  ///< pattern of a flight's name, "*_(*)_*": what stands in brackets is the trajectory's
   double split_gap_s = 5;  ///< a longer pause parts two flights
 
-  double ground_m = 0;           ///< height of the ground in the log's own heights
-  bool ground_from_log = false;  ///< that of the rows before the flight
-  double least_height_m = 0;     ///< rows lower than this above ground are on it; 0: no such test
-  bool ground_by_contact =
-      false;  ///< what bears the vehicle is told by forces and commands (tools/logs/row_checks.hpp)
+  double ground_m = 0;             ///< height of the ground in the log's own heights
+  bool ground_from_log = false;    ///< that of the rows before the flight
+  double least_height_m = 0;       ///< rows lower than this above ground are on it; 0: no such test
+  bool ground_by_contact = false;  ///< what bears the vehicle is told by forces and commands (row_checks.hpp)
 
   double lowest_command = 0, highest_command = 1;  ///< where a motor is at its limit
   double idle_below = 0.05;                        ///< all four commands lower than this: the motors idle
@@ -100,4 +147,11 @@ struct Mapping {
   std::vector<ExtraSource> extras;
 };
 
-}  // namespace programs
+/// The mapping of a TOML text, whose tables are the quantities; `path` is for messages. Throws InputError with line and
+/// column: no TOML, keys that are none, values of another kind.
+Mapping parse_mapping(const std::string& text, const std::string& path);
+
+/// The same of a file.
+Mapping read_mapping_file(const std::string& path);
+
+}  // namespace pinnquad::logs

@@ -10,7 +10,7 @@
 
 #include "pinnquad/dynamics/airframe.hpp"
 
-namespace programs {
+namespace pinnquad::logs {
 
 /// The corner of each command, first command first.
 struct MotorOrder {
@@ -18,7 +18,7 @@ struct MotorOrder {
   enum Corner : std::uint8_t { front_right, rear_left, front_left, rear_right };
 
   std::string_view name{};  ///< empty for an order that no convention has
-  std::array<Corner, pinnquad::rotor_count> corners{};
+  std::array<Corner, rotor_count> corners{};
 };
 
 /// PX4, "Quadrotor x" of its airframe reference: 1 front right, 2 rear left, 3 front left, 4 rear right. The paper's
@@ -34,46 +34,46 @@ inline constexpr std::array<MotorOrder, 3> motor_orders = {
     {"crazyflie", {MotorOrder::front_right, MotorOrder::rear_right, MotorOrder::rear_left, MotorOrder::front_left}}};
 
 /// True for an order in which each corner occurs once.
-constexpr bool is_motor_order(const std::array<MotorOrder::Corner, pinnquad::rotor_count>& corners) noexcept {
+constexpr bool is_motor_order(const std::array<MotorOrder::Corner, rotor_count>& corners) noexcept {
   unsigned seen = 0;
   for (const MotorOrder::Corner corner : corners) {
-    if (static_cast<unsigned>(corner) >= static_cast<unsigned>(pinnquad::rotor_count)) return false;
+    if (static_cast<unsigned>(corner) >= static_cast<unsigned>(rotor_count)) return false;
     seen |= 1u << static_cast<unsigned>(corner);
   }
-  return seen == (1u << pinnquad::rotor_count) - 1u;
+  return seen == (1u << rotor_count) - 1u;
 }
 
 /// The order of that name; `out_of_range`, and `order` untouched, if there is none.
-constexpr pinnquad::Status motor_order_named(std::string_view name, MotorOrder& order) noexcept {
+constexpr Status motor_order_named(std::string_view name, MotorOrder& order) noexcept {
   for (const MotorOrder& known : motor_orders) {
     if (known.name == name) {
       order = known;
-      return pinnquad::Status::ok;
+      return Status::ok;
     }
   }
-  return pinnquad::Status::out_of_range;
+  return Status::out_of_range;
 }
 
 /// The order of an airframe's commands by its rotors' places, with the name of the convention that has it.
 /// `out_of_range`, and `order` untouched, where the rotors don't sit one in each corner.
 template <class Scalar>
-constexpr pinnquad::Status motor_order_of(const pinnquad::Airframe<Scalar>& airframe, MotorOrder& order) noexcept {
+constexpr Status motor_order_of(const Airframe<Scalar>& airframe, MotorOrder& order) noexcept {
   MotorOrder found{};
-  for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
-    const pinnquad::RotorMount<Scalar>& r = airframe.rotors[i];
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    const RotorMount<Scalar>& r = airframe.rotors[i];
     const bool front = r.x_m > Scalar(0), right = r.y_m > Scalar(0);
-    if (!((front || r.x_m < Scalar(0)) && (right || r.y_m < Scalar(0)))) return pinnquad::Status::out_of_range;
+    if (!((front || r.x_m < Scalar(0)) && (right || r.y_m < Scalar(0)))) return Status::out_of_range;
     found.corners[i] = front ? (right ? MotorOrder::front_right : MotorOrder::front_left)
                              : (right ? MotorOrder::rear_right : MotorOrder::rear_left);
   }
-  if (!is_motor_order(found.corners)) return pinnquad::Status::out_of_range;
+  if (!is_motor_order(found.corners)) return Status::out_of_range;
   for (const MotorOrder& known : motor_orders) {
     bool same = true;
-    for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) same = same && known.corners[i] == found.corners[i];
+    for (std::size_t i = 0; i < rotor_count; ++i) same = same && known.corners[i] == found.corners[i];
     if (same) found.name = known.name;
   }
   order = found;
-  return pinnquad::Status::ok;
+  return Status::ok;
 }
 
-}  // namespace programs
+}  // namespace pinnquad::logs

@@ -3,6 +3,7 @@
 // large such a message is, and which numbers of it stand where.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -13,7 +14,7 @@
 #include "logs/ulog_types.hpp"
 #include "pinnquad/io/csv_table.hpp"
 
-namespace programs::ulog {
+namespace pinnquad::logs::ulog {
 
 struct Field {
   std::string type;
@@ -35,8 +36,6 @@ struct Leaf {
   std::size_t offset = 0;
   std::size_t length = 1;  ///< of a char array, which is one text
 };
-
-namespace detail {
 
 inline bool is_name(std::string_view text, std::string_view also) {
   constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
@@ -62,23 +61,21 @@ inline Field typed(std::string_view text) {
     if (sound) field.length = 10 * field.length + static_cast<std::size_t>(c - '0');
   }
   if (!sound || field.length == 0 || field.length > longest_message) {
-    throw BadMessage{"an array of 1 to 65535 elements, such as float[3]", pinnquad::quoted_cell(text)};
+    throw BadMessage{"an array of 1 to 65535 elements, such as float[3]", quoted_cell(text)};
   }
   return field;
 }
-
-}  // namespace detail
 
 /// "type name", as keys of parameters and information have it too.
 inline Field parse_field(std::string_view text) {
   const std::size_t blank = text.find(' ');
   if (blank == std::string_view::npos) {
-    throw BadMessage{"a field with type and name", pinnquad::quoted_cell(text)};
+    throw BadMessage{"a field with type and name", quoted_cell(text)};
   }
-  Field field = detail::typed(text.substr(0, blank));
+  Field field = typed(text.substr(0, blank));
   field.name = text.substr(blank + 1);
-  if (!detail::is_name(field.type, "-/") || !detail::is_name(field.name, "-/")) {
-    throw BadMessage{"a field whose type and name are of letters, digits and underscores", pinnquad::quoted_cell(text)};
+  if (!is_name(field.type, "-/") || !is_name(field.name, "-/")) {
+    throw BadMessage{"a field whose type and name are of letters, digits and underscores", quoted_cell(text)};
   }
   return field;
 }
@@ -86,9 +83,9 @@ inline Field parse_field(std::string_view text) {
 inline Format parse_format(std::string_view text) {
   Format format;
   const std::size_t colon = text.find(':');
-  if (colon == std::string_view::npos || !detail::is_name(text.substr(0, colon), "-/") ||
+  if (colon == std::string_view::npos || !is_name(text.substr(0, colon), "-/") ||
       basic_type(text.substr(0, colon)) != nullptr) {
-    throw BadMessage{"a format with a name before a colon", pinnquad::quoted_cell(text)};
+    throw BadMessage{"a format with a name before a colon", quoted_cell(text)};
   }
   format.name = text.substr(0, colon);
   text.remove_prefix(colon + 1);
@@ -208,4 +205,4 @@ class Formats {
   std::map<std::string, std::size_t> sizes_;
 };
 
-}  // namespace programs::ulog
+}  // namespace pinnquad::logs::ulog

@@ -2,7 +2,6 @@
 // A ULog file message by message: through its sections, on behind bytes that make no sense, up to where it was cut.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,7 +12,7 @@
 #include "logs/ulog_types.hpp"
 #include "pinnquad/io/file_error.hpp"
 
-namespace programs::ulog {
+namespace pinnquad::logs::ulog {
 
 struct Message {
   char type = 0;
@@ -71,21 +70,21 @@ class Messages {
  private:
   using Section = std::pair<std::uint64_t, std::uint64_t>;
 
-  std::string shown() const { return pinnquad::printable(name_); }
+  std::string shown() const { return printable(name_); }
 
   [[noreturn]] void refuse(std::uint64_t place, const std::string& expected, const std::string& found) const {
-    throw pinnquad::InputError(name_, 0, 0, expected + " at byte " + std::to_string(place), found);
+    throw InputError(name_, 0, 0, expected + " at byte " + std::to_string(place), found);
   }
 
   void check_header() {
     if (file_.substr(0, magic.size()) != magic) {
-      throw pinnquad::InputError(name_, 0, 0, "a ULog file, which begins with ULog 01 12 35 (hexadecimal)",
-                                 file_.size() < magic.size() && magic.substr(0, file_.size()) == file_
-                                     ? "only " + std::to_string(file_.size()) + " bytes"
-                                     : "other bytes");
+      throw InputError(name_, 0, 0, "a ULog file, which begins with ULog 01 12 35 (hexadecimal)",
+                       file_.size() < magic.size() && magic.substr(0, file_.size()) == file_
+                           ? "only " + std::to_string(file_.size()) + " bytes"
+                           : "other bytes");
     }
     if (file_.size() < file_header_size) {
-      throw pinnquad::InputError(name_, 0, 0, "a header of 16 bytes", "only " + std::to_string(file_.size()));
+      throw InputError(name_, 0, 0, "a header of 16 bytes", "only " + std::to_string(file_.size()));
     }
     const auto version = static_cast<std::uint8_t>(file_[version_place]);
     if (version > newest_known_version) {
@@ -186,4 +185,4 @@ class Messages {
   std::size_t unknown_ = 0, unsaid_ = 0;
 };
 
-}  // namespace programs::ulog
+}  // namespace pinnquad::logs::ulog

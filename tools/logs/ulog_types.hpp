@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace programs::ulog {
+namespace pinnquad::logs::ulog {
 
 inline constexpr std::string_view magic{"ULog\x01\x12\x35", 7};
 inline constexpr std::size_t version_place = 7, start_place = 8;
@@ -109,4 +109,4 @@ inline std::string_view text_of(std::string_view bytes) noexcept {
   return bytes.substr(0, std::min(bytes.find('\0'), bytes.size()));
 }
 
-}  // namespace programs::ulog
+}  // namespace pinnquad::logs::ulog

@@ -12,16 +12,18 @@
 #include <utility>
 #include <vector>
 
-#include "logs/flight_log.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/control/autopilot/core_record.hpp"
 #include "pinnquad/io/file_error.hpp"
+#include "pinnquad/logs/flight_log.hpp"
 
 namespace programs {
 
+namespace logs = pinnquad::logs;
+
 namespace detail {
 
-[[noreturn]] inline void refuse_core_number(const LogTopic& topic, std::size_t row, const std::string& expected,
+[[noreturn]] inline void refuse_core_number(const logs::LogTopic& topic, std::size_t row, const std::string& expected,
                                             double found) {
   const bool has_line = topic.places_are_lines && row < topic.place.size();
   throw pinnquad::InputError(
@@ -32,7 +34,7 @@ namespace detail {
 /// A column's number as a field has it: whole where the field is, within its range. NaN and infinity are numbers of a
 /// float.
 template <class Number>
-Number core_number(const LogTopic& topic, const LogColumn& column, std::size_t row) {
+Number core_number(const logs::LogTopic& topic, const logs::LogColumn& column, std::size_t row) {
   const double value = column.values[row];
   double least = static_cast<double>(std::numeric_limits<Number>::lowest());
   double most = static_cast<double>(std::numeric_limits<Number>::max());
@@ -51,8 +53,8 @@ Number core_number(const LogTopic& topic, const LogColumn& column, std::size_t r
 }
 
 /// Throws InputError where there is none.
-inline const LogColumn& core_column(const LogTopic& topic, const std::string& name) {
-  if (const LogColumn* column = topic.column(name)) return *column;
+inline const logs::LogColumn& core_column(const logs::LogTopic& topic, const std::string& name) {
+  if (const logs::LogColumn* column = topic.column(name)) return *column;
   throw pinnquad::InputError(topic.file, topic.places_are_lines ? 1 : 0, 0,
                              "a column " + name + " of numbers, as a core logs it",
                              topic.text(name) != nullptr ? "text in it" : "none of that name");
@@ -63,16 +65,16 @@ inline const LogColumn& core_column(const LogTopic& topic, const std::string& na
 /// A Crazyflie's events (examples/crazyflie_app/src/core_log.h) say times in ms, under names of their own, and leave
 /// out what it does not know: that is as a record is made, or 0 of its settings. Columns are added to the topic.
 template <class Record>
-void complete_core_topic(LogTopic& topic) {
+void complete_core_topic(logs::LogTopic& topic) {
   Record layout{};
   if constexpr (std::is_same_v<Record, pinnquad::autopilot::CoreSettings>) {  // a setting that is left out was none
     Record::each_number(layout, [](const char*, const char*, auto& number) { number = {}; });
   }
   const auto add = [&topic](const std::string& name, double value) {
     if (topic.column(name) != nullptr) return;
-    const bool is_time = name.size() > 3 && name.compare(name.size() - 3, 3, "_us") == 0;
-    const LogColumn* in_ms = topic.column((is_time ? name.substr(0, name.size() - 3) : name) + "_ms");
-    LogColumn column{name, std::vector<double>(topic.size(), value)};
+    const bool is_time = name.size() > 3 && name.rfind("_us") == name.size() - 3;
+    const logs::LogColumn* in_ms = topic.column((is_time ? name.substr(0, name.size() - 3) : name) + "_ms");
+    logs::LogColumn column{name, std::vector<double>(topic.size(), value)};
     if (in_ms != nullptr) {
       for (std::size_t row = 0; row < column.values.size(); ++row) column.values[row] = 1000 * in_ms->values[row];
     }
@@ -93,8 +95,8 @@ void complete_core_topic(LogTopic& topic) {
 /// The rows of a topic as records of a core. Throws InputError, one line: a column that is missing or holds text, a
 /// number that its field can't be.
 template <class Record>
-std::vector<Record> core_records(const LogTopic& topic) {
-  std::vector<const LogColumn*> columns;
+std::vector<Record> core_records(const logs::LogTopic& topic) {
+  std::vector<const logs::LogColumn*> columns;
   const Record layout{};
   Record::each_number(layout, [&](const char* name, const char*, const auto& value) {
     using Value = std::remove_reference_t<decltype(value)>;

@@ -17,11 +17,11 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
-#include "logs/training_flights.hpp"
 #include "model/given_model.hpp"
 #include "training/derivatives.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
+#include "training/training_flights.hpp"
 
 namespace {
 

@@ -13,13 +13,15 @@
 #include <utility>
 #include <vector>
 
-#include "logs/csv_log.hpp"
-#include "logs/dataset_folder.hpp"
-#include "logs/read_log.hpp"
+#include "command_line/progress_line.hpp"
 #include "model/core_log.hpp"
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/logs/dataset_folder.hpp"
+#include "pinnquad/logs/read_log.hpp"
 
 namespace programs {
+
+namespace logs = pinnquad::logs;
 
 /// Either flights or ticks of a core.
 struct ReplayInput {
@@ -37,15 +39,15 @@ namespace detail {
 /// A flight whose numbers may be NaN: why a model refuses a row is what the user asks. Throws InputError, one line: a
 /// column of every flight that is missing or holds text, time that is no number or does not increase.
 inline pinnquad::Flight read_flight_with_gaps(const std::string& path) {
-  LogSelection selection;
+  logs::LogSelection selection;
   ProgressLine progress("reading " + pinnquad::printable(std::filesystem::path(path).filename().string()));
   selection.on_progress = [&progress](double share) { progress.update(share); };
-  const LogTopic topic = read_csv_topic(path, selection);
-  std::vector<const LogColumn*> columns;
+  const logs::LogTopic topic = logs::read_csv_topic(path, selection);
+  std::vector<const logs::LogColumn*> columns;
   for (const std::string_view name : pinnquad::sample_field_names) {
     columns.push_back(topic.column(name));
     if (columns.back() != nullptr) continue;
-    if (const LogText* text = topic.text(name)) {
+    if (const logs::LogText* text = topic.text(name)) {
       throw pinnquad::InputError(path, static_cast<std::size_t>(topic.place[text->first_text]), 0,
                                  "a number in column " + std::string(name),
                                  pinnquad::quoted_cell(text->values[text->first_text]));
@@ -69,7 +71,7 @@ inline pinnquad::Flight read_flight_with_gaps(const std::string& path) {
     }
     flight.push_back(pinnquad::to_sample(values));
   }
-  for (const LogColumn& column : topic.columns) {
+  for (const logs::LogColumn& column : topic.columns) {
     const std::size_t unit = column.name.rfind(" [");
     if (unit == std::string::npos || unit == 0 || column.name.back() != ']') continue;
     flight.add_column(
@@ -80,7 +82,9 @@ inline pinnquad::Flight read_flight_with_gaps(const std::string& path) {
 }
 
 inline ReplayInput read_dataset(const std::string& path) {
-  const ImportedDataset dataset = read_dataset_folder(path);
+  JobLine progress;
+  const logs::ImportedDataset dataset = logs::read_dataset_folder(
+      path, [&progress](const std::string& job, double share) { progress.update(job, share); });
   ReplayInput input;
   input.flights.assign(dataset.flights.flights().begin(), dataset.flights.flights().end());
   for (const std::string& quantity : dataset.absent) {
@@ -90,7 +94,7 @@ inline ReplayInput read_dataset(const std::string& path) {
 }
 
 /// The settings that held when the core began.
-inline void take_settings(const LogTopic& topic, ReplayInput& input) {
+inline void take_settings(const logs::LogTopic& topic, ReplayInput& input) {
   const std::vector<pinnquad::autopilot::CoreSettings> all = core_records<pinnquad::autopilot::CoreSettings>(topic);
   if (all.empty()) return;
   input.settings = all.front();
@@ -100,8 +104,8 @@ inline void take_settings(const LogTopic& topic, ReplayInput& input) {
   input.has_settings = true;
 }
 
-inline ReplayInput read_core_topics(const std::string& path, const FlightLog& log) {
-  const LogTopic* ticks = log.topic(pinnquad::autopilot::CoreRecord::topic);
+inline ReplayInput read_core_topics(const std::string& path, const logs::FlightLog& log) {
+  const logs::LogTopic* ticks = log.topic(pinnquad::autopilot::CoreRecord::topic);
   if (ticks == nullptr || ticks->size() == 0) {
     throw pinnquad::InputError(path, 0, 0,
                                std::string("a topic ") + pinnquad::autopilot::CoreRecord::topic +
@@ -110,7 +114,8 @@ inline ReplayInput read_core_topics(const std::string& path, const FlightLog& lo
   }
   ReplayInput input;
   input.ticks = core_records<pinnquad::autopilot::CoreRecord>(*ticks);
-  if (const LogTopic* settings = log.topic(pinnquad::autopilot::CoreSettings::topic)) take_settings(*settings, input);
+  if (const logs::LogTopic* settings = log.topic(pinnquad::autopilot::CoreSettings::topic))
+    take_settings(*settings, input);
   for (const std::string& warning : log.warnings) input.notes.push_back(warning);
   if (!log.dropouts.empty()) {
     input.notes.push_back(in_words("the logger dropped out %zu times", log.dropouts.size()));
@@ -120,14 +125,14 @@ inline ReplayInput read_core_topics(const std::string& path, const FlightLog& lo
 
 /// A core's ticks as one table; its settings are those of the table beside it, NAME_pinnquad_settings_0.csv.
 inline ReplayInput read_core_table(const std::string& path) {
-  const LogSelection selection = [] {
-    LogSelection clock;
-    clock.clock_column = ulog2csv::clock_column;
-    clock.clock_ticks_per_s = ulog2csv::ticks_per_s;
+  const logs::LogSelection selection = [] {
+    logs::LogSelection clock;
+    clock.clock_column = logs::ulog2csv::clock_column;
+    clock.clock_ticks_per_s = logs::ulog2csv::ticks_per_s;
     return clock;
   }();
-  FlightLog log;
-  log.topics.push_back(read_csv_topic(path, selection));
+  logs::FlightLog log;
+  log.topics.push_back(logs::read_csv_topic(path, selection));
   log.topics.back().name = pinnquad::autopilot::CoreRecord::topic;
   std::string beside = path;
   const std::string name = pinnquad::autopilot::CoreRecord::topic;
@@ -136,7 +141,7 @@ inline ReplayInput read_core_table(const std::string& path) {
   if (at != std::string::npos) {
     beside.replace(at, name.size(), pinnquad::autopilot::CoreSettings::topic);
     if (std::filesystem::is_regular_file(beside, ignored)) {
-      log.topics.push_back(read_csv_topic(beside, selection));
+      log.topics.push_back(logs::read_csv_topic(beside, selection));
       log.topics.back().name = pinnquad::autopilot::CoreSettings::topic;
     }
   }
@@ -149,10 +154,10 @@ inline ReplayInput read_core_table(const std::string& path) {
 inline ReplayInput read_replay_input(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  if (fs::is_directory(path, ignored) && fs::exists(fs::path(path) / dataset_file_name, ignored)) {
+  if (fs::is_directory(path, ignored) && fs::exists(fs::path(path) / logs::dataset_file_name, ignored)) {
     return detail::read_dataset(path);
   }
-  if (kind_of_log(path) == LogKind::csv) {
+  if (logs::kind_of_log(path) == logs::LogKind::csv) {
     const std::vector<std::string> head = pinnquad::detail::csv_header(path);
     const auto has = [&head](const char* name) { return std::find(head.begin(), head.end(), name) != head.end(); };
     if (has("timestamp") && has("body_rates_us")) return detail::read_core_table(path);
@@ -160,11 +165,13 @@ inline ReplayInput read_replay_input(const std::string& path) {
     input.flights.push_back(detail::read_flight_with_gaps(path));
     return input;
   }
-  LogSelection selection;
+  logs::LogSelection selection;
   selection.topics = {pinnquad::autopilot::CoreRecord::topic, pinnquad::autopilot::CoreSettings::topic};
-  FlightLog log = read_log(path, selection);
-  if (kind_of_log(path) == LogKind::usd) {
-    for (LogTopic& topic : log.topics) {
+  ProgressLine progress("reading " + pinnquad::printable(fs::path(path).filename().string()));
+  selection.on_progress = [&progress](double share) { progress.update(share); };
+  logs::FlightLog log = logs::read_log(path, selection);
+  if (logs::kind_of_log(path) == logs::LogKind::usd) {
+    for (logs::LogTopic& topic : log.topics) {
       if (topic.name == pinnquad::autopilot::CoreRecord::topic)
         complete_core_topic<pinnquad::autopilot::CoreRecord>(topic);
       if (topic.name == pinnquad::autopilot::CoreSettings::topic)

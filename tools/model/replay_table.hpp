@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "logs/csv_line.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/decimal.hpp"
 
 namespace programs {
@@ -25,7 +25,7 @@ void write_replay_table(const std::string& path, const Replayed& replayed, const
     head.emplace_back(name);
   }
   if (replayed.of_core) head.push_back("differs");
-  file.stream() << csv_line(head);
+  file.stream() << pinnquad::csv_line(head);
   for (std::size_t i = 0; i < replayed.rows.size(); ++i) {
     const ReplayedRow& row = replayed.rows[i];
     std::vector<std::string> cells = {replayed.flights[row.flight],      std::to_string(row.row),
@@ -37,7 +37,7 @@ void write_replay_table(const std::string& path, const Replayed& replayed, const
     }
     cells.insert(cells.end(), {row.feature, pinnquad::number_text(row.excess), row.state, row.reason});
     if (replayed.of_core) cells.push_back(row.differs);
-    file.stream() << csv_line(cells);
+    file.stream() << pinnquad::csv_line(cells);
     if (i % rows_per_report == 0) go_on(static_cast<double>(i) / static_cast<double>(replayed.rows.size()));
   }
   file.commit();

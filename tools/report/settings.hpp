@@ -12,8 +12,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command_line/json_file.hpp"
 #include "command_line/listed.hpp"
+#include "logs/json_file.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "report/columns.hpp"
@@ -69,7 +69,7 @@ inline void read_planned_model(const nlohmann::json& model, StudySettings& setti
 /// Throws InputError with line and column where the file is no JSON object; where it is that of another kind of study.
 inline StudySettings read_study_settings(const std::string& path) {
   StudySettings settings;
-  settings.all = programs::read_json_file(path);
+  settings.all = pinnquad::logs::read_json_file(path);
   if (!settings.all.is_object()) throw pinnquad::InputError(path, 1, 1, "a JSON object", settings.all.type_name());
   const auto find = [&](const char* key) { return settings.all.value(key, nlohmann::json()); };
   if (find("kind").is_string() && find("kind") != "table 2") {

@@ -12,10 +12,10 @@
 
 #include "airframe/choice.hpp"
 #include "command_line/commands.hpp"
-#include "logs/training_flights.hpp"
 #include "study/beyond_picture.hpp"
 #include "study/beyond_summary.hpp"
 #include "study/campaign.hpp"
+#include "training/training_flights.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/build_facts.hpp"
-#include "command_line/json_file.hpp"
+#include "logs/json_file.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/version.hpp"
@@ -135,7 +135,7 @@ inline std::string difference(const nlohmann::json& there, const nlohmann::json&
 
 /// Reads DIR/study.json. Throws InputError if it is not one.
 inline nlohmann::json read_configuration(const std::string& path) {
-  const nlohmann::json read = programs::read_json_file(path);
+  const nlohmann::json read = pinnquad::logs::read_json_file(path);
   const auto facts_are_usual = [&read] {
     const auto fact = [&read](const char* name, const nlohmann::json& otherwise) {
       return read.value(name, otherwise);

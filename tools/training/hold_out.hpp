@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "command_line/nearest_names.hpp"
+#include "logs/nearest_names.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/io/file_error.hpp"
 
@@ -182,7 +182,8 @@ inline std::vector<Fold> folds_of(const pinnquad::Dataset& dataset, const HoldOu
           for (const pinnquad::Flight* flight : g.flights) known.push_back(flight->name);
         }
         throw std::invalid_argument("--hold-out " + pinnquad::printable(name) +
-                                    ": no flight and no trajectory of that name; " + nearest_names(name, known));
+                                    ": no flight and no trajectory of that name; " +
+                                    pinnquad::logs::nearest_names(name, known));
       }
       if (std::find(out.begin(), out.end(), &*group) == out.end()) out.push_back(&*group);
       add_to_list(all, name);

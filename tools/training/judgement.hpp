@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "logs/csv_line.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace programs {
 
@@ -228,12 +228,12 @@ inline void write_results(const std::string& path, const std::vector<Result>& re
   std::vector<std::string> cells = {"model", "seed"};
   for (const Figure& figure : list) cells.push_back(figure.name);
   cells.insert(cells.end(), {"validation_mae", "training_s"});
-  std::string text = csv_line(cells);
+  std::string text = pinnquad::csv_line(cells);
   for (const Result& result : results) {
     cells = {result.model, std::to_string(result.seed)};
     for (const Figure& figure : list) cells.push_back(number_text(figure.of(result.test, figure.index)));
     cells.insert(cells.end(), {number_text(result.validation_error), number_text(result.training_s)});
-    text += csv_line(cells);
+    text += pinnquad::csv_line(cells);
   }
   pinnquad::AtomicFile file(path);
   file.stream() << text;

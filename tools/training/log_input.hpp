@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "command_line/nearest_names.hpp"
 #include "command_line/progress_line.hpp"
-#include "logs/dataset_folder.hpp"
-#include "logs/import.hpp"
+#include "logs/nearest_names.hpp"
 #include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/logs/dataset_folder.hpp"
 #include "training/hold_out.hpp"
 #include "training/log_export.hpp"
 #include "training/log_model.hpp"
@@ -36,7 +35,8 @@ inline std::vector<LogModelKind> chosen_kinds(const std::vector<std::string>& ke
   }
   for (const std::string& key : keys) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    throw std::invalid_argument("--models " + key + ": no model of that name; " + nearest_names(key, known));
+    throw std::invalid_argument("--models " + key + ": no model of that name; " +
+                                pinnquad::logs::nearest_names(key, known));
   }
   return kinds;
 }
@@ -46,41 +46,39 @@ inline void require_known_export(const std::string& choice, const std::vector<Lo
   std::vector<std::string> known = {export_causal, export_centred};
   for (const LogModelKind& kind : kinds) known.emplace_back(kind.key);
   if (std::find(known.begin(), known.end(), choice) != known.end()) return;
-  throw std::invalid_argument("--export " + choice + ": no such model is compared; " + nearest_names(choice, known));
+  throw std::invalid_argument("--export " + choice + ": no such model is compared; " +
+                              pinnquad::logs::nearest_names(choice, known));
 }
 
 /// The dataset of the options, read or imported.
-inline ImportedDataset dataset_of(const LogTrainingOptions& options, const std::optional<NamedAirframe>& airframe) {
-  if (options.logs.empty()) return read_dataset_folder(options.dataset);
-  ImportRequest request;
-  request.logs = options.logs;
-  request.mapping = options.mapping;
-  request.airframe = airframe;
-  std::optional<ProgressLine> progress;
-  std::string job;
-  request.on_progress = [&](const std::string& now, double share) {
-    if (!progress || now != job) progress.emplace(job = now);
-    progress->update(share);
-  };
-  return import_logs(request);
+inline pinnquad::logs::ImportedDataset dataset_of(const LogTrainingOptions& options) {
+  JobLine progress;
+  const auto on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
+  if (options.logs.empty()) return pinnquad::logs::read_dataset_folder(options.dataset, on_progress);
+  pinnquad::logs::LogSettings settings;
+  settings.mapping = options.mapping;
+  settings.airframe = options.airframe;
+  settings.on_progress = on_progress;
+  return pinnquad::logs::read_dataset(options.logs, settings);
 }
 
 /// Throws InputError and std::invalid_argument for flights that no model should be fitted to, or judged on.
-inline void require_sound(const std::string& folder, const ImportedDataset& dataset, const std::vector<Fold>& folds) {
+inline void require_sound(const std::string& folder, const pinnquad::logs::ImportedDataset& dataset,
+                          const std::vector<Fold>& folds) {
   if (!pinnquad::is_clock_time(dataset.lag_removed_s)) {
-    throw pinnquad::InputError(folder + "/" + dataset_file_name, 0, 0,
+    throw pinnquad::InputError(folder + "/" + pinnquad::logs::dataset_file_name, 0, 0,
                                "a lag removed of 0 to " + pinnquad::number_text(pinnquad::longest_clock_s) +
                                    " s, as a model's header states it",
                                pinnquad::number_text(dataset.lag_removed_s) + " s");
   }
-  const std::vector<std::string> files = flight_files(dataset);
+  const std::vector<std::string> files = pinnquad::logs::flight_files(dataset);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const pinnquad::Flight& flight = dataset.flights[i];
     const std::string place = folder + "/" + files[i];
     pinnquad::require_plausible(place, flight);
     pinnquad::require_varied_commands(place, flight, {0, flight.size()}, "flight's");
   }
-  require_different_flights(dataset.flights);
+  pinnquad::logs::require_different_flights(dataset.flights);
   for (const Fold& fold : folds) {
     const auto require = [&](const pinnquad::RowSet& rows, std::size_t fewest, const char* what) {
       if (rows.size() >= fewest) return;
@@ -94,7 +92,7 @@ inline void require_sound(const std::string& folder, const ImportedDataset& data
   }
 }
 
-inline HoldOutChoice hold_out_of(const LogTrainingOptions& options, const ImportedDataset& dataset) {
+inline HoldOutChoice hold_out_of(const LogTrainingOptions& options, const pinnquad::logs::ImportedDataset& dataset) {
   HoldOutChoice choice;
   choice.names = options.hold_out;
   if (!options.hold_out_each.empty()) {

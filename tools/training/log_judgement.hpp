@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "logs/finding.hpp"
 #include "training/log_fits.hpp"
 
 namespace programs {
@@ -113,7 +112,8 @@ inline LogJudgement judge_fits(const LogPlan& plan, const LogFits& fits) {
     const double share = detail::answered_share(fit);
     std::string& reason = result.kinds[fit.kind].not_applicable;
     if (share < least_answered && reason.empty()) {
-      reason = "answers " + detail::percent(share) + " of the rows of " + plan.folds[fit.fold].name + " alone";
+      reason = "answers " + std::to_string(std::lround(100 * share)) + " %" + " of the rows of " +
+               plan.folds[fit.fold].name + " alone";
     }
   }
   for (const Fold& fold : plan.folds) {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "logs/imported_dataset.hpp"
 #include "pictures/numbers.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/data/row_set.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
 #include "training/hold_out.hpp"
 #include "training/log_errors.hpp"
 
@@ -130,7 +130,7 @@ inline std::vector<LogMoment> worst_moments(const std::vector<Fold>& folds,
 
 /// Everything unusual for that flight within half a second of the moment, in a few words; "nothing that stands out"
 /// else.
-inline std::string what_happened(const LogMoment& moment, const ImportedDataset& dataset) {
+inline std::string what_happened(const LogMoment& moment, const pinnquad::logs::ImportedDataset& dataset) {
   constexpr double unusual = 0.95, nearly_full = 0.97, nearly_idle = 0.03;
   const pinnquad::Flight& flight = *moment.flight;
   std::vector<MomentFacts> all;

@@ -21,7 +21,7 @@ namespace programs {
 /// Contents of a page.
 struct LogPageInput {
   const LogPlan& plan;
-  const ImportedDataset& dataset;
+  const pinnquad::logs::ImportedDataset& dataset;
   const LogFits& fits;
   const LogJudgement& judged;
   const std::vector<LogVerdict>& verdicts;
@@ -181,7 +181,7 @@ inline std::array<AxisSeries, 3> counted_series(const LogPageInput& in, std::siz
 }
 
 /// Speed and the rest at a moment, as far as the logs have it.
-inline std::string facts_of(const LogMoment& moment, const ImportedDataset& dataset) {
+inline std::string facts_of(const LogMoment& moment, const pinnquad::logs::ImportedDataset& dataset) {
   const MomentFacts facts = facts_at((*moment.flight)[moment.row]);
   const pinnquad::ExtraColumn* battery = moment.flight->column("battery_voltage");
   std::string text =
@@ -279,7 +279,7 @@ inline std::string log_page(const LogPageInput& in) {
     if (!kind.applicable())
       page["not_applicable"].push_back({{"title", kind.kind.title}, {"reason", kind.not_applicable}});
   }
-  for (const ImportStep& step : in.dataset.steps) {
+  for (const pinnquad::logs::ImportStep& step : in.dataset.steps) {
     page["steps"].push_back({{"step", step.name},
                              {"before", step.rows_before},
                              {"after", step.rows_after},

@@ -6,15 +6,16 @@
 #include <cstddef>
 #include <string>
 
-#include "logs/imported_dataset.hpp"
 #include "pinnquad/core/rotation.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
 #include "replay/page.hpp"
 
 namespace programs {
 
 /// Without a velocity the vehicle stays in its place and turns. Times are those of the flight: page.html#t=12.5 is its
 /// second 12.5.
-inline void write_log_replay(const std::string& path, const pinnquad::Flight& flight, const ImportedDataset& dataset,
+inline void write_log_replay(const std::string& path, const pinnquad::Flight& flight,
+                             const pinnquad::logs::ImportedDataset& dataset,
                              const pinnquad::Airframe<double>& airframe) {
   const bool has_altitude = !dataset.lacks("altitude");
   ReplayPage page(flight.name + ", path integrated from the velocity", airframe, 0);

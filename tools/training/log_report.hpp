@@ -11,10 +11,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "logs/imported_dataset.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/file_error.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/version.hpp"
 #include "training/log_figures.hpp"
@@ -101,7 +101,8 @@ inline nlohmann::json printable_names(const std::vector<std::string>& names) {
 /// Builds report.json; a training that fails later leaves what was written last.
 class LogReport {
  public:
-  LogReport(std::string path, const LogPlan& plan, const ImportedDataset& dataset) : path_(std::move(path)) {
+  LogReport(std::string path, const LogPlan& plan, const pinnquad::logs::ImportedDataset& dataset)
+      : path_(std::move(path)) {
     nlohmann::json flights = nlohmann::json::array(), folds = nlohmann::json::array();
     for (const pinnquad::Flight& flight : dataset.flights.flights()) {
       flights.push_back({{"flight", pinnquad::printable(flight.name)},

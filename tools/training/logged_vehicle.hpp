@@ -75,7 +75,7 @@ inline LoggedEffects logged_effects(const pinnquad::RowSet& rows,
   std::vector<double> thrusts;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const pinnquad::Sample& sample = rows[row];
-    const pinnquad::Vector3<double> force = specific_force_m_s2(sample);
+    const pinnquad::Vector3<double> force = pinnquad::logs::specific_force_m_s2(sample);
     double all = 0;
     for (const double u : sample.commands) all += u;
     thrusts.push_back(-all);

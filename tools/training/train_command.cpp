@@ -24,7 +24,6 @@
 #include "command_line/folder_lock.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
-#include "logs/training_flights.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/deploy/export_model.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
@@ -39,6 +38,7 @@
 #include "training/plots.hpp"
 #include "training/recipe.hpp"
 #include "training/train_logs.hpp"
+#include "training/training_flights.hpp"
 #include "training/training_report.hpp"
 
 namespace {

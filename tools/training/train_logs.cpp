@@ -59,7 +59,7 @@ std::string decimals(double value, int digits) {
 /// Fits, judges, exports: one run of the command.
 class LogTraining {
  public:
-  LogTraining(const LogTrainingOptions& options, const programs::ImportedDataset& dataset,
+  LogTraining(const LogTrainingOptions& options, const pinnquad::logs::ImportedDataset& dataset,
               const programs::NamedAirframe& airframe, std::vector<programs::Fold> folds)
       : options_(options),
         dataset_(dataset),
@@ -321,7 +321,7 @@ class LogTraining {
   }
 
   const LogTrainingOptions& options_;
-  const programs::ImportedDataset& dataset_;
+  const pinnquad::logs::ImportedDataset& dataset_;
   programs::LogPlan plan_;
   programs::LogReport report_;
   std::atomic<std::size_t> known_{0};
@@ -348,7 +348,7 @@ int programs::train_on_logs(const LogTrainingOptions& options) {
   end_at_interrupt();  // while nothing is worth keeping
   std::printf("[1/5] read\n");
   std::fflush(stdout);
-  const ImportedDataset dataset = dataset_of(options, given);
+  const pinnquad::logs::ImportedDataset dataset = dataset_of(options);
   const std::string folder = options.logs.empty() ? options.dataset : options.out + "/dataset";
   std::vector<Fold> folds = folds_of(dataset.flights, hold_out_of(options, dataset));
   require_sound(folder, dataset, folds);

@@ -10,7 +10,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "logs/training_flights.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/version.hpp"
 #include "training/certificate_words.hpp"
@@ -18,6 +17,7 @@
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
 #include "training/recipe.hpp"
+#include "training/training_flights.hpp"
 
 namespace programs {
 

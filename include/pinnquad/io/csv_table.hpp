@@ -342,6 +342,13 @@ class CsvWriter {
 
 }  // namespace detail
 
+/// The cells as a line with its end, in quotation marks where they need them (RFC 4180): of tables that hold text.
+inline std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) line += (i > 0 ? "," : "") + detail::csv_cell(cells[i]);
+  return line + "\n";
+}
+
 /// The rows of a table: the named columns, in the order asked for. In the file they may stand in any order; other
 /// columns are ignored and may hold text. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end,
 /// quotation marks as in RFC 4180: accepted. Throws InputError: no readable or an empty file, a missing or doubled

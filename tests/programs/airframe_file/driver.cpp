@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "airframe/file.hpp"
+#include "airframe/choice.hpp"
 #include "airframe/names.hpp"
 #include "model/header_airframe.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"

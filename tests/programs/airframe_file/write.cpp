@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "airframe/file.hpp"
+#include "airframe/choice.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "support/uneven_airframe.hpp"
 

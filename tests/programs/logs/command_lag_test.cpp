@@ -5,16 +5,14 @@
 
 #include <cmath>
 
-#include "logs/motor_lag.hpp"
 #include "programs/logs/synthetic_flight.hpp"
 
 using pinnquad::Flight;
+using pinnquad::logs::CommandLag;
+using pinnquad::logs::estimate_command_lag;
+using pinnquad::logs::remove_lag;
 using pinnquad::test::synthetic_flight;
 using pinnquad::test::SyntheticVehicle;
-using programs::CommandLag;
-using programs::estimate_command_lag;
-using programs::MotorLag;
-using programs::remove_lag;
 
 TEST_CASE("a pure delay is found to a fifth of a row, on each motion") {
   for (const double delay_s : {0.0, 0.02, 0.05, 0.12}) {
@@ -36,26 +34,6 @@ TEST_CASE("a pure delay is found to a fifth of a row, on each motion") {
   }
 }
 
-TEST_CASE("a motor's time constant and delay are told apart, and explain more than a delay alone") {
-  for (const double time_constant_s : {0.03, 0.05, 0.09}) {
-    CAPTURE(time_constant_s);
-    SyntheticVehicle vehicle;
-    vehicle.motor_time_constant_s = time_constant_s;
-    vehicle.delay_s = 0.01;
-    vehicle.acceleration_noise_rad_s2 = 0.5;
-    const std::vector<Flight> segments = {synthetic_flight(vehicle)};
-    const CommandLag pure = estimate_command_lag(segments, vehicle.period_s);
-    const MotorLag motor = fit_motor_lag(segments, vehicle.period_s, pure);
-    REQUIRE(motor.found);
-    CHECK(motor.warning == "");
-    CHECK(std::abs(motor.time_constant_s - time_constant_s) < 0.12 * time_constant_s);
-    CHECK(std::abs(motor.delay_s - (vehicle.delay_s + vehicle.period_s)) < 0.005);
-    CHECK(motor.explained > motor.explained_by_pure_delay + 0.002);
-    CHECK(pure.lag_s < motor.equivalent_delay_s() + 0.005);
-    CHECK(pure.lag_s > 0.4 * motor.equivalent_delay_s());
-  }
-}
-
 TEST_CASE("nothing is found where commands and motion have nothing to do with each other") {
   Flight flight = synthetic_flight({0.01, 300, 0.05, 0.01, 1, 0, 1});
   const Flight other = synthetic_flight({0.01, 300, 0.05, 0.01, 1, 0, 99});
@@ -64,7 +42,6 @@ TEST_CASE("nothing is found where commands and motion have nothing to do with ea
   CHECK_FALSE(lag.found);
   CHECK(lag.lag_s == 0);
   CHECK(lag.warning.find("no lag stands out") != std::string::npos);
-  CHECK_FALSE(fit_motor_lag({flight}, 0.01, lag).found);
   CHECK(estimate_command_lag({}, 0.01).warning.find("no stretch") != std::string::npos);
   CHECK_FALSE(estimate_command_lag({Flight(10)}, 0.01).found);
 }

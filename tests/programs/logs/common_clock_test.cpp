@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "logs/common_clock.hpp"
+#include "logs/clock.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,16 +7,15 @@
 #include <cmath>
 #include <random>
 
-#include "logs/clock_checks.hpp"
-#include "logs/resampling.hpp"
+#include "logs/log_checks.hpp"
 
-using programs::bridged_gap_s;
-using programs::clean_clock;
-using programs::CleanClock;
-using programs::common_clock;
-using programs::resample;
-using programs::Resampling;
-using programs::UniformClock;
+using pinnquad::logs::bridged_gap_s;
+using pinnquad::logs::clean_clock;
+using pinnquad::logs::CleanClock;
+using pinnquad::logs::common_clock;
+using pinnquad::logs::resample;
+using pinnquad::logs::Resampling;
+using pinnquad::logs::UniformClock;
 
 namespace {
 std::vector<double> ticks(int rows, double period_s, double begin_s = 0) {
@@ -24,10 +23,9 @@ std::vector<double> ticks(int rows, double period_s, double begin_s = 0) {
   for (int row = 0; row < rows; ++row) time_s.push_back(begin_s + row * period_s);
   return time_s;
 }
-template <class Findings>
-bool has(const Findings& findings, const std::string& check) {
+bool has(const std::vector<std::string>& findings, const std::string& words) {
   return std::any_of(findings.begin(), findings.end(),
-                     [&](const programs::Finding& one) { return one.check == check; });
+                     [&](const std::string& one) { return one.find(words) != std::string::npos; });
 }
 }  // namespace
 
@@ -69,9 +67,6 @@ TEST_CASE("first rows that were latched before the log began are stale") {
   CHECK(clock.report.stale_first == 1);
   CHECK(clock.time_s.front() == doctest::Approx(100));
   CHECK(clock.report.gaps == 0);
-  programs::ClockRules rules;
-  rules.log_begin_s = 100.1;
-  CHECK(clean_clock(time_s, rules).report.stale_first == 6);
 }
 
 TEST_CASE("a gap, a jump and a second recording are told apart") {
@@ -83,28 +78,28 @@ TEST_CASE("a gap, a jump and a second recording are told apart") {
   CHECK(clock.report.time_in_gaps_s == doctest::Approx(0.11));
   CHECK(check_clock("gyro", clock.report).empty());
   for (std::size_t row = 300; row < time_s.size(); ++row) time_s[row] += 1000;
-  CHECK(has(check_clock("gyro", clean_clock(time_s).report), "time_jump"));
+  CHECK(has(check_clock("gyro", clean_clock(time_s).report), "time jumps by"));
   for (std::size_t row = 300; row < time_s.size(); ++row) time_s[row] -= 1003.1;
   const auto again = check_clock("gyro", clean_clock(time_s).report);
-  CHECK(has(again, "time_restarts"));
+  CHECK(has(again, "time steps back by"));
   CHECK(clean_clock(time_s).report.largest_step_back_s == doctest::Approx(3.09).epsilon(0.02));
   std::vector<double> lossy;
   for (int row = 0; row < 1000; ++row) {
     if (row % 20 >= 5) lossy.push_back(0.01 * row);
   }
-  CHECK(has(check_clock("gyro", clean_clock(lossy).report), "gaps"));
+  CHECK(has(check_clock("gyro", clean_clock(lossy).report), " gaps, "));
   std::vector<double> twice = ticks(100, 0.01);
   twice.resize(110, 0.5);
-  CHECK(has(check_clock("gyro", clean_clock(twice).report), "repeated_times"));
+  CHECK(has(check_clock("gyro", clean_clock(twice).report), "a time that another row has"));
 }
 
 TEST_CASE("a log too slow for motors is told, with the profile that helps") {
-  const auto found = programs::check_log_rate("actuator_motors", 0.1, true);
+  const auto found = pinnquad::logs::check_log_rate("actuator_motors", 0.1, true);
   REQUIRE(found.has_value());
-  CHECK(found->number == doctest::Approx(10));
-  CHECK(found->sentence.find("SDLOG_PROFILE to 25") != std::string::npos);
-  CHECK(programs::check_log_rate("u", 0.1, false)->sentence.find("SDLOG") == std::string::npos);
-  CHECK_FALSE(programs::check_log_rate("u", 0.04, true).has_value());
+  CHECK(found->find("logged at 10 Hz") != std::string::npos);
+  CHECK(found->find("SDLOG_PROFILE to 25") != std::string::npos);
+  CHECK(pinnquad::logs::check_log_rate("u", 0.1, false)->find("SDLOG") == std::string::npos);
+  CHECK_FALSE(pinnquad::logs::check_log_rate("u", 0.04, true).has_value());
 }
 
 TEST_CASE("the common clock spans what all topics have, on multiples of its period") {
@@ -168,9 +163,9 @@ TEST_CASE("a fast signal is low-passed before its rows are thinned: what is abov
   }
   const CleanClock clock = clean_clock(time_s);
   const UniformClock to{1, 0.02, 900};
-  CHECK(programs::resampling_of(period_s, 0.02, false) == Resampling::low_pass);
-  CHECK(programs::resampling_of(0.02, 0.02, true) == Resampling::hold);
-  CHECK(programs::resampling_of(0.02, 0.004, false) == Resampling::linear);
+  CHECK(pinnquad::logs::resampling_of(period_s, 0.02, false) == Resampling::low_pass);
+  CHECK(pinnquad::logs::resampling_of(0.02, 0.02, true) == Resampling::hold);
+  CHECK(pinnquad::logs::resampling_of(0.02, 0.004, false) == Resampling::linear);
   const auto kept = resample(clock, slow, to, Resampling::low_pass, 0.02);
   const auto gone = resample(clock, fast, to, Resampling::low_pass, 0.02);
   const auto folded = resample(clock, fast, to, Resampling::linear, 0.02);
@@ -196,13 +191,13 @@ TEST_CASE("attitudes go along the arc at a constant rate, whatever the sign that
   q[0][20] = 0.1;  // no unit quaternion
   const CleanClock clock = clean_clock(time_s);
   const UniformClock to{0, 0.013, 299};
-  const auto got = programs::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.35);
+  const auto got = pinnquad::logs::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.35);
   for (std::size_t row = 0; row < to.rows; ++row) {
     const double half = 0.5 * 3.0 * to.at(row);
     CHECK(got[0][row] == doctest::Approx(std::cos(half)).epsilon(1e-9));
     CHECK(got[1][row] == doctest::Approx(0.6 * std::sin(half)).epsilon(1e-9));
     CHECK(got[3][row] == doctest::Approx(0.8 * std::sin(half)).epsilon(1e-9));
   }
-  const auto gap = programs::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.15);
+  const auto gap = pinnquad::logs::resample_attitude(clock, {&q[0], &q[1], &q[2], &q[3]}, to, 0.15);
   CHECK(std::isnan(gap[0][150]));
 }

@@ -12,10 +12,10 @@
 #include "logs/csv_log.hpp"
 #include "support/temporary_folder.hpp"
 
+using pinnquad::logs::LogSelection;
+using pinnquad::logs::LogTopic;
+using pinnquad::logs::read_csv_log;
 using pinnquad_test::TemporaryFolder;
-using programs::LogSelection;
-using programs::LogTopic;
-using programs::read_csv_log;
 
 namespace {
 

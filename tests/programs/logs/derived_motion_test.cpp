@@ -13,7 +13,7 @@ namespace {
 /// Stands at `start_m`, flies 10 m above it, lands on `end_m`; a cell without a number among the first. A row each
 /// second.
 double ground_of(double start_m, double end_m, bool says_landed) {
-  programs::CommonRows rows;
+  pinnquad::logs::CommonRows rows;
   rows.period_s = 1;
   std::vector<double> height;
   const auto add = [&](double height_m, double landed, int count) {
@@ -27,10 +27,10 @@ double ground_of(double start_m, double end_m, bool says_landed) {
   add(start_m, 1, 20);
   add(start_m + 10, 0, 100);
   add(end_m, 1, 60);
-  programs::Mapping mapping;
+  pinnquad::logs::Mapping mapping;
   mapping.ground_from_log = true;
-  programs::LogRows result;
-  const double ground_m = programs::detail::ground_height(rows, height, mapping, result);
+  pinnquad::logs::LogRows result;
+  const double ground_m = pinnquad::logs::ground_height(rows, height, mapping, result);
   CHECK(result.told.size() == 1);
   return ground_m;
 }
@@ -47,10 +47,10 @@ TEST_CASE("the ground is where it stood before take-off, also where it lands on 
 TEST_CASE("without a word of landing the ground is the lowest height; a mapping that says it is believed") {
   CHECK(ground_of(488, 503, false) == doctest::Approx(488));
   CHECK(ground_of(488, 480, false) == doctest::Approx(480));
-  programs::CommonRows rows;
+  pinnquad::logs::CommonRows rows;
   rows.time_s = {0, 1};
-  programs::Mapping mapping;
+  pinnquad::logs::Mapping mapping;
   mapping.ground_m = 12.5;
-  programs::LogRows result;
-  CHECK(programs::detail::ground_height(rows, {20, 30}, mapping, result) == doctest::Approx(12.5));
+  pinnquad::logs::LogRows result;
+  CHECK(pinnquad::logs::ground_height(rows, {20, 30}, mapping, result) == doctest::Approx(12.5));
 }

@@ -7,18 +7,18 @@
 #include <string>
 
 #include "complaint.hpp"
-#include "logs/read_log.hpp"
+#include "pinnquad/logs/read_log.hpp"
 #include "support/temporary_folder.hpp"
 #include "ulog_bytes.hpp"
 
+using pinnquad::logs::FlightLog;
+using pinnquad::logs::kind_of_log;
+using pinnquad::logs::LogKind;
+using pinnquad::logs::LogSelection;
+using pinnquad::logs::read_log;
 using pinnquad_test::Bytes;
 using pinnquad_test::TemporaryFolder;
 using pinnquad_test::UlogBytes;
-using programs::FlightLog;
-using programs::kind_of_log;
-using programs::LogKind;
-using programs::LogSelection;
-using programs::read_log;
 
 namespace {
 

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "logs/read_log.hpp"
+#include "pinnquad/logs/read_log.hpp"
 
-using programs::FlightLog;
-using programs::LogTopic;
-using programs::read_log;
+using pinnquad::logs::FlightLog;
+using pinnquad::logs::LogTopic;
+using pinnquad::logs::read_log;
 
 namespace {
 
@@ -128,7 +128,7 @@ TEST_CASE("its parameters and what was said, likewise") {
   while (std::getline(messages, line)) {
     INFO(line);
     REQUIRE(count < log.messages.size());
-    const programs::LogMessage& message = log.messages[count++];
+    const pinnquad::logs::LogMessage& message = log.messages[count++];
     std::ostringstream expected;
     expected << static_cast<long long>(std::llround(message.time_s * 1e6))
              << (message.level == 6 ? ",INFO,\"" : ",?,\"") << message.text << '"';
@@ -154,7 +154,7 @@ TEST_CASE("folders of ulog2csv of three generations, value by value") {
 
 TEST_CASE("tables of real flights: rows, labels, absent cells") {
   const std::string folder = reference_folder() + "/flight_logs/";
-  programs::LogSelection selection;
+  pinnquad::logs::LogSelection selection;
   selection.clock_column = "t";
   for (const std::string name : {"nanobench_subset_50hz.csv", "arpl_crazyflie.csv"}) {
     const Cells cells(folder + name);

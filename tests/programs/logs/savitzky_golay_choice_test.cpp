@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "logs/savitzky_golay_choice.hpp"
+#include "logs/savitzky_golay.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,9 +10,9 @@
 #include "pinnquad/core/random.hpp"
 
 using pinnquad::IndexRange;
-using programs::choose_savitzky_golay;
-using programs::savitzky_golay;
-using programs::SavitzkyGolay;
+using pinnquad::logs::choose_savitzky_golay;
+using pinnquad::logs::savitzky_golay;
+using pinnquad::logs::SavitzkyGolay;
 
 namespace {
 
@@ -112,7 +112,7 @@ TEST_CASE("noise behind a low-pass is not taken for signal") {
 
 TEST_CASE("the power of a spectrum is the variance, wave and noise where they are") {
   const Wave one = wave(5, 0.3, 0.02, 5, 0);
-  const auto spectrum = programs::power_spectrum(one.measured, {{0, one.measured.size()}}, 0.02, 256);
+  const auto spectrum = pinnquad::logs::power_spectrum(one.measured, {{0, one.measured.size()}}, 0.02, 256);
   double sum = 0, near_wave = 0;
   for (std::size_t bin = 0; bin < spectrum.power.size(); ++bin) {
     sum += spectrum.power[bin];

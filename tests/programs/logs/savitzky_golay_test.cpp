@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "logs/savitzky_golay.hpp"
+#include "programs/logs/finite_segments.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 using pinnquad::IndexRange;
-using programs::finite_segments;
-using programs::savitzky_golay;
-using programs::savitzky_golay_weights;
-using programs::SavitzkyGolay;
+using pinnquad::logs::savitzky_golay;
+using pinnquad::logs::savitzky_golay_weights;
+using pinnquad::logs::SavitzkyGolay;
+using pinnquad::test::finite_segments;
 
 namespace {
 void check_weights(const std::vector<double>& weights, const std::vector<double>& expected, double divisor) {
@@ -83,7 +84,7 @@ TEST_CASE("nothing is read across a gap: each side answers as if alone") {
   std::vector<double> with_gap = y;
   with_gap[30] = std::nan("");
   for (std::size_t row = 31; row < 60; ++row) with_gap[row] += 100;
-  const auto segments = finite_segments({&with_gap});
+  const auto segments = pinnquad::test::finite_segments({&with_gap});
   REQUIRE(segments.size() == 2);
   CHECK(segments[0].end == 30);
   CHECK(segments[1].begin == 31);
@@ -108,14 +109,14 @@ TEST_CASE("a segment shorter than the window is fitted by what it has") {
 TEST_CASE("runs without NaN, of all series together") {
   const double gap = std::nan("");
   const std::vector<double> a = {gap, 1, 2, 3, 4, gap, 1, 2}, b = {0, 1, 2, 3, HUGE_VAL, 5, 6, 7};
-  const auto both = finite_segments({&a, &b});
+  const auto both = pinnquad::test::finite_segments({&a, &b});
   REQUIRE(both.size() == 2);
   CHECK(both[0].begin == 1);
   CHECK(both[0].end == 4);
   CHECK(both[1].begin == 6);
   CHECK(both[1].end == 8);
-  CHECK(finite_segments({&a, &b}, 3).size() == 1);
-  CHECK(finite_segments({}).empty());
+  CHECK(pinnquad::test::finite_segments({&a, &b}, 3).size() == 1);
+  CHECK(pinnquad::test::finite_segments({}).empty());
 }
 
 TEST_CASE("what is no filter is refused") {

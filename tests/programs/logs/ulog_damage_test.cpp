@@ -12,11 +12,11 @@
 #include "logs/ulog.hpp"
 #include "ulog_bytes.hpp"
 
+using pinnquad::logs::FlightLog;
+using pinnquad::logs::parse_ulog;
 using pinnquad_test::Bytes;
 using pinnquad_test::counted_memory;
 using pinnquad_test::UlogBytes;
-using programs::FlightLog;
-using programs::parse_ulog;
 
 namespace {
 

@@ -10,12 +10,12 @@
 #include "logs/ulog.hpp"
 #include "ulog_bytes.hpp"
 
+using pinnquad::logs::FlightLog;
+using pinnquad::logs::LogSelection;
+using pinnquad::logs::LogTopic;
+using pinnquad::logs::parse_ulog;
 using pinnquad_test::Bytes;
 using pinnquad_test::UlogBytes;
-using programs::FlightLog;
-using programs::LogSelection;
-using programs::LogTopic;
-using programs::parse_ulog;
 using Limits32 = std::numeric_limits<float>;
 using Limits64 = std::numeric_limits<double>;
 

@@ -158,7 +158,7 @@ TEST_CASE(
                     pinnquad_test::needs_battery_kind()},
                    each_flight, 5);
   const pinnquad_test::TemporaryFolder folder;
-  programs::ImportedDataset imported;
+  pinnquad::logs::ImportedDataset imported;
   imported.flights = run.dataset;
   programs::LogReport report(folder.path("report.json"), run.plan, imported);
   report.judged(run.plan, run.judged, run.verdicts);

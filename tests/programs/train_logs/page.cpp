@@ -29,7 +29,7 @@ pinnquad::Dataset with_battery(const pinnquad::Dataset& flights) {
 }
 
 std::string page_of(Judged& run, const std::vector<std::string>& absent, bool with_replays) {
-  programs::ImportedDataset imported;
+  pinnquad::logs::ImportedDataset imported;
   imported.flights = run.dataset;
   imported.absent = absent;
   imported.sample_period_s = 0.05;
@@ -119,7 +119,7 @@ TEST_CASE("the worst moment is where a model was spoiled, and what happened ther
   CHECK(moments[0].row < 206);
   CHECK(moments[0].motor == 2);
   CHECK(moments[0].error == doctest::Approx(0.1).epsilon(0.15));  // one motor of four is off by 0.2
-  programs::ImportedDataset imported;
+  pinnquad::logs::ImportedDataset imported;
   imported.sample_period_s = 0.05;
   const std::string told = programs::what_happened(moments[0], imported);
   CHECK_MESSAGE(told.find("a motor at full (") == 0, told);

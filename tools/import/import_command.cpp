@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// Makes one dataset of flight logs, and says what each step cost.
+//   pinnquad import flight.ulg --mapping px4 --airframe mine.toml --out dataset
+#include "import/import_command.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "command_line/commands.hpp"
+#include "command_line/interrupt.hpp"
+#include "command_line/progress_line.hpp"
+#include "pinnquad/logs/dataset_folder.hpp"
+
+namespace {
+
+namespace logs = pinnquad::logs;
+
+struct ImportOptions {
+  std::vector<std::string> logs;
+  std::string mapping;
+  std::string airframe;
+  std::string out;
+  std::optional<double> rate_hz;
+  std::string lag = "auto";
+  bool hold = false;
+  bool json = false;
+  bool list = false;
+};
+
+/// Thrown out of an import by Ctrl-C; nothing is written then.
+struct Interrupted {};
+
+void list_mappings() {
+  for (const logs::ReadyMapping& ready : logs::ready_mappings()) {
+    std::printf("%-12s %s\n", ready.name.c_str(), ready.about.c_str());
+  }
+}
+
+/// As much of `text` as fits on one line of at most `width` letters.
+std::string shortened(const std::string& text, std::size_t width) {
+  return text.size() <= width ? text : text.substr(0, width - 3) + "...";
+}
+
+void print_steps(const logs::ImportedDataset& dataset) {
+  std::printf("%-34s %10s %10s %8s\n", "step", "rows", "left", "cost");
+  for (const logs::ImportStep& step : dataset.steps) {
+    const double cost =
+        step.rows_before > step.rows_after && step.rows_before > 0
+            ? 100.0 * static_cast<double>(step.rows_before - step.rows_after) / static_cast<double>(step.rows_before)
+            : 0.0;
+    std::printf("%-34s %10zu %10zu %7.2f%%  %s\n", shortened(step.name, 34).c_str(), step.rows_before, step.rows_after,
+                cost, step.told.c_str());
+  }
+}
+
+void print_text(const logs::ImportedDataset& dataset, const std::string& out) {
+  print_steps(dataset);
+  for (const std::string& note : dataset.notes) std::printf("%s\n", note.c_str());
+  for (const pinnquad::Flight& flight : dataset.flights.flights()) {
+    std::printf("%-34s %10zu rows, %.1f s, trajectory %s\n", flight.name.c_str(), flight.size(),
+                flight.back().time_s - flight.front().time_s, flight.trajectory.c_str());
+  }
+  for (const std::string& missing : dataset.absent)
+    std::printf("absent: %s (the logs lack it; filled with 0)\n", missing.c_str());
+  for (const std::string& warning : dataset.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("%zu rows of %zu flights, every %g s, lag of %g s removed: %s\n", dataset.flights.rows(),
+              dataset.flights.size(), dataset.sample_period_s, dataset.lag_removed_s, out.c_str());
+}
+
+logs::LogSettings settings_of(const ImportOptions& options) {
+  logs::LogSettings settings;
+  settings.mapping = options.mapping;
+  settings.airframe = options.airframe;
+  settings.rate_hz = options.rate_hz;
+  settings.hold_commands = options.hold;
+  if (options.lag != "auto") {
+    constexpr double longest_s = 1;
+    double lag_s = 0;
+    if (!programs::parse_decimal(options.lag, -longest_s, longest_s, lag_s)) {
+      throw std::invalid_argument("--lag: expected auto, or seconds from -1 to 1, found '" + options.lag + "'");
+    }
+    settings.lag_s = lag_s;
+  }
+  return settings;
+}
+
+int run(const ImportOptions& options) {
+  if (options.list) {
+    list_mappings();
+    return 0;
+  }
+  if (options.logs.empty())
+    throw std::invalid_argument("expected a log: a .ulg file, a .csv table, a folder of ulog2csv");
+  if (options.mapping.empty()) {
+    throw std::invalid_argument("expected --mapping: " + logs::mapping_names() + ", or a .toml file");
+  }
+  if (options.out.empty()) throw std::invalid_argument("expected --out DATASET: the folder to write");
+  programs::catch_interrupt();
+  logs::LogSettings settings = settings_of(options);
+  logs::require_dataset_place(options.out);
+  programs::ProgressLine progress("importing");
+  settings.on_progress = [&progress](const std::string&, double share) {
+    if (programs::interrupted()) throw Interrupted{};
+    progress.update(share / 2);
+  };
+  try {
+    const logs::ImportedDataset dataset = logs::read_dataset(options.logs, settings);
+    logs::write_dataset_folder(options.out, dataset, [&](double share) {
+      if (programs::interrupted()) throw Interrupted{};
+      progress.update(0.5 + share / 2);
+    });
+    progress.clear();
+    if (options.json) {
+      std::printf("%s\n", logs::dataset_json(dataset).c_str());
+    } else {
+      print_text(dataset, options.out);
+    }
+  } catch (const Interrupted&) {
+    progress.clear();
+    programs::complain("import", "interrupted; nothing was written");
+    return programs::exit_interrupted;
+  }
+  return 0;
+}
+
+}  // namespace
+
+programs::Command programs::import_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, ulog2csv, CSV");
+  const auto options = std::make_shared<ImportOptions>();
+  add_paths(*line, "logs", options->logs, "LOG", "ULog files, CSV tables, folders of ulog2csv or of ULog files");
+  line->add_option("--mapping", options->mapping,
+                   "what the columns mean: " + pinnquad::logs::mapping_names() + ", or a file")
+      ->type_name("NAME|FILE.toml");
+  add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
+           "gives rotor speeds and thrusts their commands; the mapping may name one");
+  add_path(*line, "--out", options->out, "DATASET", "the folder to write; a dataset that is there is replaced");
+  add_number(*line, "--rate", options->rate_hz, 1.0, 2000.0,
+             "rows per second; else as the slowest of commands, body rates and force, at most 100");
+  line->add_option("--lag", options->lag, "from command to motion, removed from the commands: estimated, or as given")
+      ->type_name("auto|SECONDS")
+      ->capture_default_str();
+  line->add_flag("--hold", options->hold, "commands hold until their next row, instead of lines between rows");
+  line->add_flag("--json", options->json, "rows per step, flights and warnings as JSON, and nothing else, on stdout");
+  line->add_flag("--list", options->list, "list the ready mappings");
+  line->footer(
+      "Examples:\n"
+      "  pinnquad import flight.ulg --mapping px4 --airframe mine.toml --out dataset\n"
+      "  pinnquad import logs/ --mapping px4 --rate 50 --out dataset      all .ulg files of a folder\n"
+      "  pinnquad import log.csv --mapping mine.toml --lag 0.03 --out dataset --json\n"
+      "Each flight becomes a CSV file of the folder; dataset.json says how they were made. The folder appears whole or "
+      "not "
+      "at all.\n"
+      "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted, nothing written.");
+  return {line, [options] { return run(*options); }};
+}

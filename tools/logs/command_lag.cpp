@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#include "logs/command_lag.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "logs/specific_force.hpp"
+
+namespace pinnquad::logs {
+namespace {
+
+/// y' = (x - y) / tau with x held over a period: a first-order lag, exactly.
+void apply_first_order_lag(std::vector<double>& series, double period_s, double time_constant_s) {
+  if (series.empty() || !(time_constant_s > 0)) return;
+  const double share = 1 - std::exp(-period_s / time_constant_s);
+  double state = series.front();
+  for (double& value : series) value = state += share * (value - state);
+}
+
+/// Twice forward, twice backward: no phase, half the amplitude at about 0.64 of the corner.
+void low_pass_without_phase(std::vector<double>& series, double period_s, double corner_Hz) {
+  constexpr double tau = 6.283185307179586;
+  for (int pass = 0; pass < 4; ++pass) {
+    apply_first_order_lag(series, period_s, 1 / (tau * corner_Hz));
+    std::reverse(series.begin(), series.end());
+  }
+}
+
+/// R^2 of each motion by the commands, beyond what a constant and the body rates explain.
+using Explained = std::array<double, lag_motions>;
+
+Explained explained_beyond_rates(LagMoments moments) {
+  constexpr double rank_threshold = 1e-9;
+  constexpr std::size_t first_rate = 1 + rotor_count, first_motion = first_rate + 3;
+  const LagMoments whole = moments;
+  take_out(moments, 0, rank_threshold * whole[0][0]);
+  const LagMoments centred = moments;
+  for (std::size_t k = first_rate; k < first_motion; ++k) take_out(moments, k, rank_threshold * centred[k][k]);
+  Explained before{}, result{};
+  for (std::size_t m = 0; m < lag_motions; ++m) before[m] = moments[first_motion + m][first_motion + m];
+  for (std::size_t k = 1; k < first_rate; ++k) take_out(moments, k, rank_threshold * centred[k][k]);
+  for (std::size_t m = 0; m < lag_motions; ++m) {
+    const double of = whole[first_motion + m][first_motion + m];
+    if (!(before[m] > 1e-12 * of)) continue;
+    result[m] = std::clamp(1 - moments[first_motion + m][first_motion + m] / before[m], 0.0, 1.0);
+  }
+  return result;
+}
+
+/// Lags in whole rows, a few milliseconds apart at most.
+struct LagGrid {
+  int first = 0, last = 0, stride = 1;
+  double period_s = 0;
+  explicit LagGrid(double period) : period_s(period) {
+    constexpr double step_s = 0.004;
+    constexpr double longest_s = 0.2;  // motors and links are faster
+    constexpr double shortest_s =
+        -0.06;  // motion before its command: what a clock that is wrong or feedback looks like
+    stride = std::max(1, static_cast<int>(step_s / period));
+    first = stride * static_cast<int>(std::floor(shortest_s / (period * stride)));
+    last = stride * static_cast<int>(std::ceil(longest_s / (period * stride)));
+  }
+  double lag_s(double index) const noexcept { return (first + index * stride) * period_s; }
+  double step_s() const noexcept { return stride * period_s; }
+};
+
+/// By lag, all over the same rows, at most about `most_rows` of them. `rows`: how many.
+std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, const LagGrid& grid, std::size_t& rows) {
+  constexpr std::size_t most_rows = 8000;
+  const auto ahead = static_cast<std::size_t>(grid.last), behind = static_cast<std::size_t>(-grid.first);
+  std::size_t whole = 0;
+  for (const LagSeries& one : all) whole += one.size() > ahead + behind ? one.size() - ahead - behind : 0;
+  const std::size_t step = std::max<std::size_t>(1, whole / most_rows);
+  std::vector<Explained> result;
+  for (int lag = grid.first; lag <= grid.last; lag += grid.stride) {
+    const LagMoments moments = lag_moments(all, ahead, behind, lag, step, rows);
+    result.push_back(rows > lag_columns ? explained_beyond_rates(moments) : Explained{});
+  }
+  return result;
+}
+
+constexpr double lag_away_s = 0.05;
+
+constexpr double least_explained = 0.05, least_sharpness = 0.1;
+
+/// -log(1 - R^2): log-likelihood per row, so that motions of different noise can be added.
+double say(double explained) noexcept { return -0.5 * std::log(std::max(1e-9, 1 - explained)); }
+
+/// Index of a curve's maximum with the fraction that a parabola through its neighbours adds.
+double peak_at(const std::vector<double>& curve) noexcept {
+  const auto top = static_cast<std::size_t>(std::max_element(curve.begin(), curve.end()) - curve.begin());
+  const auto at = static_cast<double>(top);
+  if (top == 0 || top + 1 >= curve.size()) return at;
+  const double bend = curve[top - 1] - 2 * curve[top] + curve[top + 1];
+  return bend < 0 ? at + 0.5 * (curve[top - 1] - curve[top + 1]) / bend : at;
+}
+
+double sharpness_of(const std::vector<double>& curve, double step_s) noexcept {
+  const auto top = std::max_element(curve.begin(), curve.end()) - curve.begin();
+  const auto size = static_cast<std::ptrdiff_t>(curve.size());
+  const auto away = static_cast<std::ptrdiff_t>(std::lround(lag_away_s / step_s));
+  const std::ptrdiff_t reach = std::max<std::ptrdiff_t>(1, away);
+  const double peak = curve[static_cast<std::size_t>(top)];
+  double better = 0;
+  if (top - reach >= 0) better = std::max(better, curve[static_cast<std::size_t>(top - reach)]);
+  if (top + reach < size) better = std::max(better, curve[static_cast<std::size_t>(top + reach)]);
+  return peak > 0 ? 1 - better / peak : 0;
+}
+
+std::string milliseconds(double seconds) { return std::to_string(std::lround(seconds * 1e3)) + " ms"; }
+
+CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& grid) {
+  CommandLag result;
+  const std::vector<Explained> explained = explained_by_lag(series, grid, result.rows);
+  std::vector<double> together(explained.size(), 0.0);
+  std::array<double, lag_motions> weight{};
+  for (std::size_t m = 0; m < lag_motions; ++m) {
+    MotionLag& motion = result.motions[m];
+    std::vector<double> curve;
+    for (const Explained& at : explained) curve.push_back(say(at[m]));
+    const double peak = peak_at(curve);
+    const auto top = static_cast<std::size_t>(std::lround(peak));
+    motion.lag_s = grid.lag_s(peak);
+    motion.explained = explained[top][m];
+    motion.sharpness = sharpness_of(curve, grid.step_s());
+    motion.found =
+        motion.explained >= least_explained && motion.sharpness >= least_sharpness && top > 0 && top + 1 < curve.size();
+    if (!motion.found) continue;
+    weight[m] = curve[top];
+    result.found = true;
+    for (std::size_t i = 0; i < curve.size(); ++i) together[i] += curve[i];
+  }
+  if (!result.found) return result;
+  result.lag_s = grid.lag_s(peak_at(together));
+  result.confidence = sharpness_of(together, grid.step_s());
+  const double most = *std::max_element(weight.begin(), weight.end());
+  for (std::size_t m = 0; m < lag_motions; ++m) {
+    if (weight[m] < 0.5 * most) continue;
+    result.spread_s = std::max(result.spread_s, std::abs(result.motions[m].lag_s - result.lag_s));
+  }
+  return result;
+}
+
+/// The weight of all motions found, at their best: it prefers one band to another.
+double total_say(const CommandLag& lag) noexcept {
+  double total = 0;
+  for (const MotionLag& motion : lag.motions) total += motion.found ? say(motion.explained) : 0;
+  return total;
+}
+
+}  // namespace
+
+std::vector<LagSeries> lag_series(const std::vector<Flight>& segments) {
+  std::vector<LagSeries> all(segments.size());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    for (const Sample& sample : segments[i]) {
+      LagSeries& one = all[i];
+      for (std::size_t k = 0; k < rotor_count; ++k) one.commands[k].push_back(sample.commands[k]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<Eigen::Index>(k);
+        one.rates[k].push_back(sample.body_rates_rad_s[axis]);
+        one.motions[k].push_back(sample.angular_acceleration_rad_s2[axis]);
+      }
+      one.motions[3].push_back(specific_force_m_s2(sample)[2]);
+    }
+  }
+  return all;
+}
+
+std::vector<LagSeries> low_passed(std::vector<LagSeries> all, double period_s, double corner_Hz) {
+  for (LagSeries& one : all) {
+    for (auto& series : one.commands) low_pass_without_phase(series, period_s, corner_Hz);
+    for (auto& series : one.rates) low_pass_without_phase(series, period_s, corner_Hz);
+    for (auto& series : one.motions) low_pass_without_phase(series, period_s, corner_Hz);
+  }
+  return all;
+}
+
+LagMoments lag_moments(const std::vector<LagSeries>& all, std::size_t ahead, std::size_t behind, int lag,
+                       std::size_t step, std::size_t& rows) {
+  LagMoments moments{};
+  rows = 0;
+  for (const LagSeries& one : all) {
+    for (std::size_t row = ahead; row + behind < one.size(); row += step) {
+      std::array<double, lag_columns> x{};
+      std::size_t column = 0;
+      x[column++] = 1;
+      const auto commanded = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row) - lag);
+      for (const auto& series : one.commands) x[column++] = series[commanded];
+      for (const auto& series : one.rates) x[column++] = series[row];
+      for (const auto& series : one.motions) x[column++] = series[row];
+      for (std::size_t i = 0; i < lag_columns; ++i) {
+        for (std::size_t j = i; j < lag_columns; ++j) moments[i][j] += x[i] * x[j];
+      }
+      rows += 1;
+    }
+  }
+  for (std::size_t i = 0; i < lag_columns; ++i) {
+    for (std::size_t j = 0; j < i; ++j) moments[i][j] = moments[j][i];
+  }
+  return moments;
+}
+
+void take_out(LagMoments& moments, std::size_t k, double least) {
+  const auto row = moments[k];
+  if (!(row[k] > least)) return;
+  for (auto& other : moments) {
+    const double factor = other[k] / row[k];
+    for (std::size_t j = 0; j < lag_columns; ++j) other[j] -= factor * row[j];
+  }
+}
+
+CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s) {
+  constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
+  const std::vector<LagSeries> series = lag_series(segments);
+  const LagGrid grid(period_s);
+  CommandLag best = command_lag_of(series, grid);
+  for (const double corner_Hz : {15.0, 8.0}) {
+    if (corner_Hz * period_s > 0.4) continue;
+    CommandLag other = command_lag_of(low_passed(series, period_s, corner_Hz), grid);
+    other.low_pass_Hz = corner_Hz;
+    if (total_say(other) > total_say(best)) best = other;
+  }
+  if (!best.found) {
+    best.lag_s = 0;
+    best.warning = best.rows == 0
+                       ? "no stretch of the flight is long enough to look for a lag"
+                       : "no lag stands out: the commands explain the motion alike whenever they act; fly more agile "
+                         "manoeuvres, or state the lag";
+  } else if (best.lag_s < -0.5 * grid.step_s()) {
+    best.warning = "the motion comes " + milliseconds(-best.lag_s) +
+                   " before the commands: the clocks of the two differ, or the commands are those of a later stage";
+  } else if (best.spread_s > spread_of_doubt_s) {
+    best.warning = "the motions disagree about the lag by " + milliseconds(best.spread_s);
+  } else if (best.confidence < confidence_of_doubt) {
+    best.warning =
+        "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well; fly more agile "
+        "manoeuvres, or state the lag";
+  }
+  return best;
+}
+
+std::vector<double> remove_lag(const std::vector<double>& series, double period_s, double lag_s) {
+  constexpr double rounding = 1e-6;  // of a period
+  std::vector<double> result(series.size(), std::nan(""));
+  const double rows = lag_s / period_s;
+  for (std::size_t row = 0; row < series.size(); ++row) {
+    const double at = static_cast<double>(row) - rows;
+    const double before = std::floor(at + rounding);
+    const double share = at - before > rounding ? at - before : 0;
+    if (!(before >= 0) || !(before + (share > 0 ? 1 : 0) < static_cast<double>(series.size()))) continue;
+    const auto index = static_cast<std::size_t>(before);
+    result[row] = share > 0 ? series[index] + share * (series[index + 1] - series[index]) : series[index];
+  }
+  return result;
+}
+
+Flight remove_lag(Flight segment, double period_s, double lag_s) {
+  std::vector<double> commands(segment.size());
+  for (std::size_t k = 0; k < rotor_count; ++k) {
+    for (std::size_t row = 0; row < segment.size(); ++row) commands[row] = segment[row].commands[k];
+    const std::vector<double> earlier = remove_lag(commands, period_s, lag_s);
+    for (std::size_t row = 0; row < segment.size(); ++row) segment[row].commands[k] = earlier[row];
+  }
+  segment.keep_rows([&segment](std::size_t row) { return !std::isnan(segment[row].commands[0]); });
+  return segment;
+}
+
+}  // namespace pinnquad::logs

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+#include "logs/mapping.hpp"
+
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include "logs/log_parts.hpp"
+#include "logs/nearest_names.hpp"
+#include "logs/toml_table.hpp"
+#include "pinnquad/core/rotation.hpp"
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/io/decimal.hpp"
+
+namespace pinnquad::logs {
+namespace {
+
+struct Unit {
+  Dimension dimension;
+  const char* name;
+  double in_si;
+};
+
+constexpr double g_m_s2 = 9.80665;  // standard gravity: what "g" means in a log
+
+constexpr std::array<Unit, 24> units = {{{Dimension::time, "s", 1},
+                                         {Dimension::time, "ms", 1e-3},
+                                         {Dimension::time, "us", 1e-6},
+                                         {Dimension::time, "ns", 1e-9},
+                                         {Dimension::angle, "rad", 1},
+                                         {Dimension::angle, "deg", 1 / degrees_per_radian},
+                                         {Dimension::turning, "rad/s", 1},
+                                         {Dimension::turning, "deg/s", 1 / degrees_per_radian},
+                                         {Dimension::angular_acceleration, "rad/s^2", 1},
+                                         {Dimension::angular_acceleration, "deg/s^2", 1 / degrees_per_radian},
+                                         {Dimension::acceleration, "m/s^2", 1},
+                                         {Dimension::acceleration, "g", g_m_s2},
+                                         {Dimension::acceleration, "mm/s^2", 1e-3},
+                                         {Dimension::speed, "m/s", 1},
+                                         {Dimension::speed, "mm/s", 1e-3},
+                                         {Dimension::speed, "cm/s", 1e-2},
+                                         {Dimension::speed, "km/h", 1 / 3.6},
+                                         {Dimension::length, "m", 1},
+                                         {Dimension::length, "mm", 1e-3},
+                                         {Dimension::length, "cm", 1e-2},
+                                         {Dimension::length, "ft", 0.3048},
+                                         {Dimension::rotor_speed, "rev/s", 1},
+                                         {Dimension::rotor_speed, "rpm", 1.0 / 60},
+                                         {Dimension::rotor_speed, "rad/s", 0.15915494309189535}}};
+
+/// Null if that dimension has no such unit.
+const Unit* unit_named(Dimension dimension, std::string_view name) {
+  for (const Unit& unit : units) {
+    if (unit.dimension == dimension && name == unit.name) return &unit;
+  }
+  return nullptr;
+}
+
+/// "\"rad\" or \"deg\"": for messages.
+std::string unit_names(Dimension dimension) {
+  std::string names;
+  for (const Unit& unit : units) {
+    if (unit.dimension == dimension) names += (names.empty() ? "\"" : ", \"") + std::string(unit.name) + "\"";
+  }
+  return names;
+}
+
+constexpr const char* mapping_key = "a key of a mapping";
+constexpr const char* a_name = "a name in quotation marks";
+
+MappingPlace place_of(const toml::node& node) { return {node.source().begin.line, node.source().begin.column}; }
+
+/// The frames of the whole mapping, which a source may say otherwise.
+struct Frames {
+  WorldFrame world = WorldFrame::ned;
+  BodyFrame body = BodyFrame::frd;
+};
+
+Frames frames_of(TomlTable& table, const Frames& otherwise) {
+  constexpr std::array<const char*, 2> worlds = {"ned", "enu"}, bodies = {"frd", "flu"};
+  Frames frames;
+  frames.world = static_cast<WorldFrame>(table.choice("world", worlds, static_cast<std::size_t>(otherwise.world)));
+  frames.body = static_cast<BodyFrame>(table.choice("body", bodies, static_cast<std::size_t>(otherwise.body)));
+  return frames;
+}
+
+double unit_of(TomlTable& table, const char* key, Dimension dimension) {
+  const toml::node* node = table.optional(key);
+  if (!node) return 1;
+  const std::string expected = "a unit: " + unit_names(dimension);
+  const Unit* unit = unit_named(dimension, table.as_text(*node, expected));
+  if (!unit) table.refuse(*node, expected, described(*node));
+  return unit->in_si;
+}
+
+double time_unit_of(TomlTable& table, const char* key, double otherwise) {
+  return table.optional(key) ? unit_of(table, key, Dimension::time) : otherwise;
+}
+
+std::vector<NamedColumn> columns_of(TomlTable& table, const char* key, std::size_t count, const std::string& what) {
+  const std::string expected =
+      std::to_string(count) + (count == 1 ? " column of " : " columns of ") + what + ", names in quotation marks";
+  const toml::node& node = table.required(key, expected);
+  std::vector<NamedColumn> columns;
+  if (count == 1 && node.is_string()) return {{node.as_string()->get(), place_of(node)}};
+  const toml::array* list = node.as_array();
+  if (!list || list->size() != count) table.refuse(node, expected, described(node));
+  for (const toml::node& name : *list) columns.push_back({table.as_text(name, a_name), place_of(name)});
+  return columns;
+}
+
+NamedColumn named(TomlTable& table, const char* key) {
+  const toml::node& node = table.required(key, a_name);
+  return {table.as_text(node, a_name), place_of(node)};
+}
+
+std::array<MotorOrder::Corner, rotor_count> motor_order_of(TomlTable& table) {
+  constexpr std::array<const char*, 4> corners = {"front_right", "rear_left", "front_left", "rear_right"};
+  const std::string expected =
+      "\"px4\", \"betaflight\", \"crazyflie\", or the four corners of an X quadrotor, \"front_right\" ...";
+  const toml::node& node = table.required("order", expected);
+  MotorOrder order;
+  if (const auto* name = node.as_string()) {
+    if (motor_order_named(name->get(), order) != Status::ok) {
+      table.refuse(node, expected, described(node));
+    }
+    return order.corners;
+  }
+  const toml::array* list = node.as_array();
+  if (!list || list->size() != rotor_count) table.refuse(node, expected, described(node));
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    const std::string name = table.as_text((*list)[i], expected);
+    std::size_t corner = 0;
+    while (corner < corners.size() && name != corners[corner]) ++corner;
+    if (corner == corners.size()) table.refuse((*list)[i], expected, described((*list)[i]));
+    order.corners[i] = static_cast<MotorOrder::Corner>(corner);
+  }
+  if (!is_motor_order(order.corners)) table.refuse(node, "each corner once", "one of them twice");
+  return order.corners;
+}
+
+void read_motors(TomlTable& table, Source& source) {
+  constexpr std::array<const char*, 3> kinds = {"thrust", "signal", "speed"};
+  source.corners = motor_order_of(table);
+  source.numbers = static_cast<MotorNumbers>(table.choice("numbers", kinds, 0));
+  source.least = table.number("least", of_either_sign, 0);
+  source.most = table.number("most", of_either_sign, 1);
+  if (!(source.most > source.least)) {
+    const toml::node* node = table.optional("most");
+    if (!node) node = table.optional("least");
+    if (node) table.refuse(*node, "`most` above `least`", number_text(source.most));
+  }
+  if (source.numbers == MotorNumbers::speed) source.in_si = unit_of(table, "unit", Dimension::rotor_speed);
+  const toml::node* curve = table.optional("thrust_curve");
+  if (curve && curve->is_string()) {
+    source.thrust_curve_parameter = curve->as_string()->get();
+  } else if (curve) {
+    source.thrust_curve = table.as_number(*curve, zero_to_one);
+  }
+}
+
+void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) {
+  if (facts.quantity == Quantity::attitude) {
+    constexpr std::array<const char*, 2> orders = {"wxyz", "xyzw"}, directions = {"body_to_world", "world_to_body"};
+    source.euler = table.optional("euler") != nullptr;
+    source.columns = source.euler ? columns_of(table, "euler", 3, "roll, pitch and yaw")
+                                  : columns_of(table, "quaternion", 4, "a quaternion");
+    if (source.euler) source.in_si = unit_of(table, "unit", facts.dimension);
+    if (!source.euler) source.scalar_last = table.choice("order", orders, 0) == 1;
+    source.world_to_body = table.choice("direction", directions, 0) == 1;
+  } else if (facts.quantity == Quantity::torque_and_thrust) {
+    constexpr std::array<const char*, 2> ways = {"down", "up"};
+    source.columns = columns_of(table, "torque", 3, "torque about x, y and z");
+    source.columns.push_back(columns_of(table, "thrust", 1, "thrust along z").front());
+    source.thrust_topic = table.text("thrust_topic", a_name, source.topic);
+    source.thrust_is_up = table.choice("thrust_is", ways, 0) == 1;
+  } else {
+    source.columns = columns_of(table, "columns", facts.columns, facts.words);
+    if (facts.quantity == Quantity::motors) read_motors(table, source);
+    if (facts.dimension != Dimension::none) source.in_si = unit_of(table, "unit", facts.dimension);
+  }
+  if (facts.quantity == Quantity::acceleration || facts.quantity == Quantity::velocity) {
+    constexpr std::array<const char*, 2> axes = {"body", "world"};
+    source.axes = static_cast<Axes>(table.choice("axes", axes, facts.quantity == Quantity::velocity ? 1 : 0));
+  }
+}
+
+/// Keys of every source.
+void read_place(TomlTable& table, const toml::table& node, Source& source) {
+  constexpr double most_instances = 255;
+  source.place = place_of(node);
+  source.topic = table.text("topic", a_name, "");
+  source.instance = static_cast<int>(table.number("instance", {0, most_instances, "a value from 0 to 255"}, 0));
+  source.optional = table.truth("optional", false);
+  source.held = table.truth("held", false);
+  source.time_column = table.text("time", a_name, "");
+  source.time_in_s = time_unit_of(table, "time_unit", source.time_in_s);
+}
+
+Source source_of(const std::string& path, const toml::table& node, const QuantityFacts& facts, const Frames& frames) {
+  TomlTable table(path, node, mapping_key);
+  Source source;
+  source.quantity = facts.quantity;
+  read_place(table, node, source);
+  const Frames own = frames_of(table, frames);
+  source.world = own.world;
+  source.body = own.body;
+  read_columns(table, source, facts);
+  table.require_no_more();
+  return source;
+}
+
+/// A table, or the several of an array of them.
+std::vector<const toml::table*> tables_of(TomlTable& root, const char* key) {
+  const toml::node* node = root.optional(key);
+  if (!node) return {};
+  if (const toml::table* one = node->as_table()) return {one};
+  const toml::array* list = node->as_array();
+  const std::string expected = std::string("a table [") + key + "], or several [[" + key + "]]";
+  if (!list || list->empty() || !list->is_homogeneous<toml::table>()) root.refuse(*node, expected, described(*node));
+  std::vector<const toml::table*> tables;
+  for (const toml::node& each : *list) tables.push_back(each.as_table());
+  return tables;
+}
+
+/// Calls `read(table)` for a table that may be missing.
+template <class Read>
+void with_table(const std::string& path, TomlTable& root, const char* key, const Read& read) {
+  const toml::node* node = root.optional(key);
+  if (!node) return;
+  if (!node->is_table()) root.refuse(*node, std::string("a table [") + key + "]", described(*node));
+  TomlTable table(path, *node->as_table(), mapping_key);
+  read(table);
+  table.require_no_more();
+}
+
+void read_extras(const std::string& path, TomlTable& root, Mapping& mapping) {
+  for (const toml::table* node : tables_of(root, "extra")) {
+    TomlTable table(path, *node, mapping_key);
+    ExtraSource extra;
+    extra.source.quantity = Quantity::extra;
+    read_place(table, *node, extra.source);
+    extra.name = table.text("name", a_name);
+    extra.unit = table.text("unit", a_name);
+    const auto plain = [](const std::string& text) {
+      return !text.empty() && text.size() < 64 && text == printable(text) &&
+             text.find_first_of("[]\"',\\") == std::string::npos;
+    };
+    for (const char* key : {"name", "unit"}) {
+      const toml::node& said = table.required(key, a_name);
+      if (!plain(said.as_string()->get()))
+        table.refuse(said, "plain text without brackets, commas and quotes", described(said));
+    }
+    for (const std::string_view taken : sample_field_names) {
+      if (extra.name == taken)
+        table.refuse(table.required("name", a_name), "a name that no column of every flight has",
+                     "\"" + extra.name + "\"");
+    }
+    for (const ExtraSource& other : mapping.extras) {
+      if (other.name == extra.name && other.unit != extra.unit) {
+        table.refuse(table.required("unit", a_name), "the unit \"" + other.unit + "\" as before",
+                     "\"" + extra.unit + "\"");
+      }
+    }
+    extra.source.columns = columns_of(table, "column", 1, extra.name);
+    extra.source.in_si = table.number("scale", of_either_sign, 1);
+    table.require_no_more();
+    mapping.extras.push_back(std::move(extra));
+  }
+}
+
+void read_rules(const std::string& path, TomlTable& root, Mapping& mapping) {
+  with_table(path, root, "time", [&](TomlTable& table) {
+    mapping.time_column = named(table, "column");
+    mapping.time_in_s = unit_of(table, "unit", Dimension::time);
+  });
+  with_table(path, root, "flights", [&](TomlTable& table) {
+    if (table.optional("column")) mapping.flight_column = named(table, "column");
+    if (table.optional("trajectory_column")) mapping.trajectory_column = named(table, "trajectory_column");
+    mapping.trajectory = table.text("trajectory", "a pattern such as \"*_(*)_*\"", "");
+    if (!mapping.trajectory.empty() && !is_name_pattern(mapping.trajectory)) {
+      const toml::node& node = table.required("trajectory", "");
+      table.refuse(node, "a pattern with one pair of brackets and at most six stars, such as \"*_(*)_*\"",
+                   described(node));
+    }
+    mapping.split_gap_s = table.number("split_gap_s", above_zero, mapping.split_gap_s);
+  });
+  with_table(path, root, "ground", [&](TomlTable& table) {
+    const toml::node* height = table.optional("height_m");
+    mapping.ground_from_log = height && height->is_string() && height->as_string()->get() == "before_flight";
+    if (height && !height->is_number() && !mapping.ground_from_log) {
+      table.refuse(*height, "a number or \"before_flight\"", described(*height));
+    }
+    if (height && height->is_number()) mapping.ground_m = table.as_number(*height, of_either_sign);
+    mapping.least_height_m = table.number("least_height_m", from_zero, mapping.least_height_m);
+    mapping.ground_by_contact = table.truth("by_contact", false);
+  });
+  with_table(path, root, "commands", [&](TomlTable& table) {
+    mapping.lowest_command = table.number("lowest", zero_to_one, mapping.lowest_command);
+    mapping.highest_command = table.number("highest", zero_to_one, mapping.highest_command);
+    mapping.idle_below = table.number("idle_below", of_either_sign, mapping.idle_below);
+    if (const toml::node* lag = table.optional("lag_s")) {
+      mapping.lag_s = table.as_number(*lag, {-1, 1, "a value from -1 to 1"});
+    }
+  });
+}
+
+Mapping mapping_of(const toml::table& tables, const std::string& path) {
+  TomlTable root(path, tables, mapping_key);
+  Mapping mapping;
+  mapping.file = path;
+  mapping.name = root.text("name", a_name, path);
+  mapping.about = root.text("about", "a text", "");
+  mapping.airframe = root.text("airframe", a_name, "");
+  mapping.least_rate_hz = root.number("least_rate_hz", from_zero, 0);
+  const Frames frames = frames_of(root, {});
+  read_rules(path, root, mapping);
+  for (const QuantityFacts& facts : quantities) {
+    for (const toml::table* node : tables_of(root, facts.key)) {
+      mapping.sources.push_back(source_of(path, *node, facts, frames));
+    }
+  }
+  read_extras(path, root, mapping);
+  root.require_no_more();
+  const auto has = [&](std::initializer_list<Quantity> any) {
+    for (const Source& source : mapping.sources) {
+      for (const Quantity quantity : any) {
+        if (source.quantity == quantity) return true;
+      }
+    }
+    return false;
+  };
+  const auto need = [&](std::initializer_list<Quantity> any, const char* expected) {
+    if (!has(any)) throw InputError(path, 1, 1, expected, "none");
+  };
+  need({Quantity::attitude}, "a table [attitude]");
+  need({Quantity::body_rates}, "a table [body_rates]");
+  need({Quantity::motors, Quantity::torque_and_thrust}, "a table [motors] or [torque_and_thrust]");
+  need({Quantity::specific_force, Quantity::acceleration, Quantity::velocity, Quantity::position},
+       "a table [specific_force], [acceleration], [velocity] or [position]");
+  return mapping;
+}
+
+}  // namespace
+
+Mapping parse_mapping(const std::string& text, const std::string& path) {
+  return mapping_of(parse_toml(text, path), path);
+}
+
+Mapping read_mapping_file(const std::string& path) { return mapping_of(read_toml_file(path, "a mapping"), path); }
+
+}  // namespace pinnquad::logs

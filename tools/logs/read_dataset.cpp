@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/logs/read_dataset.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "logs/attitude_convention.hpp"
+#include "logs/bound_log.hpp"
+#include "logs/clock.hpp"
+#include "logs/command_lag.hpp"
+#include "logs/common_rows.hpp"
+#include "logs/derived_motion.hpp"
+#include "logs/log_checks.hpp"
+#include "logs/log_parts.hpp"
+#include "logs/mapping.hpp"
+#include "logs/mapping_texts.hpp"
+#include "logs/motor_order_check.hpp"
+#include "logs/row_checks.hpp"
+#include "logs/specific_force.hpp"
+#include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/logs/read_log.hpp"
+
+namespace pinnquad::logs {
+namespace {
+
+/// The mapping of that name or file. Throws InputError (the file) and std::invalid_argument (no such name), one line.
+Mapping chosen_mapping(const std::string& name_or_file) {
+  if (std::filesystem::path(name_or_file).extension() == ".toml") return read_mapping_file(name_or_file);
+  for (const MappingText& ready : mapping_texts) {
+    if (name_or_file != ready.name) continue;
+    Mapping mapping = parse_mapping(ready.toml, name_or_file + ".toml");
+    mapping.name = ready.name;
+    return mapping;
+  }
+  throw std::invalid_argument("no mapping named '" + printable(name_or_file) + "'; known: " + mapping_names() +
+                              ", or a file whose name ends in .toml");
+}
+
+/// Fewest rows of a flight: a batch of training.
+constexpr std::size_t minimum_rows = 64;
+
+/// Rows that the steps cost, summed over logs.
+class Steps {
+ public:
+  explicit Steps(std::vector<ImportStep>& steps) : steps_(steps) {}
+
+  void add(const std::string& name, std::size_t before, std::size_t after, const std::string& told) {
+    for (ImportStep& step : steps_) {
+      if (step.name != name) continue;
+      step.rows_before += before;
+      step.rows_after += after;
+      return;
+    }
+    steps_.push_back({name, before, after, told});
+  }
+
+ private:
+  std::vector<ImportStep>& steps_;
+};
+
+/// A flight on its way: segments of rows without a gap.
+struct Passage {
+  std::string name, trajectory, source;
+  std::vector<Flight> segments;
+
+  std::size_t rows() const {
+    std::size_t sum = 0;
+    for (const Flight& segment : segments) sum += segment.size();
+    return sum;
+  }
+};
+
+std::size_t rows_in(const std::vector<Passage>& passages) {
+  std::size_t sum = 0;
+  for (const Passage& passage : passages) sum += passage.rows();
+  return sum;
+}
+
+class Import {
+ public:
+  Import(const std::vector<std::string>& logs, const LogSettings& settings)
+      : logs_(logs), settings_(settings), mapping_(chosen_mapping(settings.mapping)), steps_(dataset_.steps) {
+    if (settings.rate_hz) period_s_ = 1 / *settings.rate_hz;
+    const std::string& name = settings.airframe.empty() ? mapping_.airframe : settings.airframe;
+    if (!name.empty()) airframe_ = chosen_airframe(name);
+    dataset_.mapping = mapping_.name;
+    dataset_.airframe = airframe_ ? airframe_->name : "";
+  }
+
+  ImportedDataset run() {
+    LogSelection selection;
+    selection.topics = mapped_topics(mapping_);
+    if (!mapping_.flight_column.name.empty()) selection.label_columns.push_back(mapping_.flight_column.name);
+    if (!mapping_.trajectory_column.name.empty()) selection.label_columns.push_back(mapping_.trajectory_column.name);
+    std::vector<LogPlace> places;
+    for (const std::string& path : logs_) {
+      for (LogPlace& place : logs_at(path, selection, !mapping_.time_column.name.empty()))
+        places.push_back(std::move(place));
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double done = static_cast<double>(i), all = static_cast<double>(places.size());
+      selection.prefix = places[i].prefix;
+      selection.on_progress = [&](double share) { report("reading " + places[i].name, (done + share) / all); };
+      FlightLog log = read_log(places[i].path, selection);
+      dataset_.warnings.insert(dataset_.warnings.end(), log.warnings.begin(), log.warnings.end());
+      for (LogPart& part : parts_of(std::move(log), places[i].name, mapping_)) {
+        take(part, places[i]);
+        part.log = {};
+      }
+    }
+    settle_absent();
+    remove_lag();
+    check_motors();
+    drop_rows();
+    make_flights();
+    return std::move(dataset_);
+  }
+
+ private:
+  void report(const std::string& job, double share) const {
+    if (settings_.on_progress) settings_.on_progress(job, share);
+  }
+  /// Each sentence once.
+  static void add(std::vector<std::string>& sentences, const std::string& one) {
+    if (std::find(sentences.begin(), sentences.end(), one) == sentences.end()) sentences.push_back(one);
+  }
+  void warn(const std::string& what) { add(dataset_.warnings, what); }
+  void warn(const std::string& of, const std::optional<std::string>& finding) {
+    if (finding) warn(of + ": " + *finding);
+  }
+
+  void count_topics(const BoundLog& bound, const std::string& name) {
+    std::vector<const LogTopic*> counted;
+    const auto count = [&](const Signal& signal) {
+      if (!signal.present() || std::find(counted.begin(), counted.end(), signal.topic) != counted.end()) return;
+      counted.push_back(signal.topic);
+      const ClockReport& report = signal.clock->report;
+      steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
+                 "one time a row: no time, a second row of one time and stale first rows are left out");
+      const std::string topic = name + ", " + topic_words(signal.topic->name, signal.topic->instance);
+      if (report.out_of_order > 0) {
+        warn(topic + ": " + std::to_string(report.out_of_order) + " rows were not in time's order and were sorted");
+      }
+      if (report.same_time > 0) {
+        warn(topic + ": " + std::to_string(report.same_time) +
+             " rows had the time of another; the last of the file stays");
+      }
+      for (const std::string& finding : check_clock(topic, report)) warn(finding);
+      if (report.restarts > 0) refuse_restart(signal);
+    };
+    for (const Signal& signal : bound.signals) count(signal);
+    for (const BoundExtra& extra : bound.extras) count(extra.signal);
+  }
+
+  /// Two recordings in one table would be mixed by sorting.
+  void refuse_restart(const Signal& signal) const {
+    const LogTopic& topic = *signal.topic;
+    const std::vector<double> time_s = times_of(topic, *signal.source, mapping_);
+    for (std::size_t row = 1; row < time_s.size(); ++row) {
+      const double step_s = time_s[row] - time_s[row - 1];
+      if (!(step_s < -restart_step_s)) continue;
+      throw wrong_cell(topic, row, mapping_.time_column.name,
+                       "time that goes on (a mapping's [flights] column parts a table of several flights)",
+                       "a step back of " + number_text(std::round(-step_s * 1000) / 1000) + " s");
+    }
+  }
+
+  /// The part's columns are gone afterwards.
+  void take(LogPart& part, const LogPlace& place) {
+    BoundLog bound = bind_log(part.log, mapping_, airframe_);
+    count_topics(bound, part.name);
+    const std::size_t base = bound.of(Quantity::body_rates).clock->size();
+    CommonRows rows = common_rows(bound, period_s_, settings_.hold_commands);
+    if (!period_s_) period_s_ = rows.period_s;
+    check_signals(bound, rows, part.name);
+    const std::size_t all = rows.rows();
+    steps_.add("one clock", base, all,
+               rows.own_rows ? "the table's own rows, every " + number_text(rows.period_s) + " s"
+                             : "all topics at " + number_text(std::round(1e3 / rows.period_s) / 1e3) + " Hz");
+    let_go(part.log, bound);
+    LogRows log_rows = rows_of_log(std::move(rows), bound, mapping_, part.log.source);
+    for (const std::string& told : log_rows.told) add(dataset_.notes, told);
+    const std::size_t whole = all - log_rows.incomplete;
+    steps_.add("incomplete rows", all, whole,
+               "a cell without a number, a gap in a topic, rebuilt commands beyond 0..1");
+    steps_.add("ends of derivatives", whole, log_rows.flight.size(),
+               "Savitzky-Golay windows that reach beyond the rows");
+    const RowMask out = on_the_ground(log_rows, mapping_, *period_s_);
+    const std::size_t before = log_rows.flight.size();
+    Passage passage;
+    passage.name = part.name;
+    passage.trajectory = part.trajectory;
+    passage.source = place.path;
+    Flight airborne = without(std::move(log_rows.flight), out);
+    steps_.add("on the ground", before, airborne.size(),
+               "landed by the log, lower than the mapping's [ground] says, borne by something");
+    passage.segments = split_at_gaps(std::move(airborne), 1.5 * *period_s_);
+    has_velocity_.push_back(log_rows.has_velocity);
+    has_altitude_.push_back(log_rows.has_altitude);
+    check_motion(passage);
+    passages_.push_back(std::move(passage));
+  }
+
+  /// The contents of the common rows: of a long log nothing is held twice.
+  static void let_go(FlightLog& log, BoundLog& bound) {
+    for (LogTopic& topic : log.topics) {
+      topic.time_s = std::vector<double>();
+      topic.place = std::vector<std::uint64_t>();
+      for (LogColumn& column : topic.columns) column.values = std::vector<double>();
+      for (LogText& text : topic.texts) text.values = std::vector<std::string>();
+    }
+    const auto forget = [](Signal& signal) {
+      signal.values = std::vector<std::vector<double>>();
+      signal.clock.reset();
+    };
+    for (Signal& signal : bound.signals) forget(signal);
+    for (BoundExtra& extra : bound.extras) forget(extra.signal);
+  }
+
+  /// Calls `use` with the segments of all flights in one list.
+  template <class Use>
+  void with_all_segments(const Use& use) {
+    std::vector<Flight> segments;
+    for (Passage& passage : passages_) {
+      std::move(passage.segments.begin(), passage.segments.end(), std::back_inserter(segments));
+    }
+    use(std::as_const(segments));
+    auto segment = segments.begin();
+    for (Passage& passage : passages_) {
+      for (Flight& own : passage.segments) own = std::move(*segment++);
+    }
+  }
+
+  void check_signals(const BoundLog& bound, const CommonRows& rows, const std::string& name) {
+    const bool px4 = mapping_.name == "px4";
+    for (const Quantity quantity : {Quantity::motors, Quantity::body_rates}) {
+      const Signal& signal = bound.of(quantity);
+      if (const auto slow = check_log_rate(signal.told, signal.period_s(), px4)) warn(name, slow);
+    }
+    if (!rows.specific_force[0].empty()) {
+      const auto& q = rows.attitude;
+      const auto& w = rows.body_rates;
+      const auto& f = rows.specific_force;
+      warn(name, check_thrust_direction(f[2]));
+      warn(name, check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
+                                {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]}));
+    }
+  }
+
+  /// Of what is in the air, before the commands are moved.
+  void check_motion(const Passage& passage) {
+    warn(passage.name, check_rate_frame(passage.segments));
+    constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+    const auto series = [&passage](const auto& value_of) {
+      std::vector<double> values;
+      values.reserve(passage.rows());
+      for (const Flight& segment : passage.segments) {
+        for (const Sample& sample : segment) values.push_back(value_of(sample));
+      }
+      return values;
+    };
+    const std::vector<double> time_s = series([](const Sample& sample) { return sample.time_s; });
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const std::vector<double> rate = series([axis](const Sample& sample) { return sample.body_rates_rad_s[axis]; });
+      warn(passage.name, check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
+    }
+  }
+
+  void check_motors() {
+    const Airframe<double> airframe = airframe_ ? airframe_->value : airframe_value<PaperQuadrotor, double>();
+    with_all_segments(
+        [&](const std::vector<Flight>& segments) { warn("motors", check_motor_order(segments, airframe).finding); });
+  }
+
+  void settle_absent() {
+    const auto lacks = [](const std::vector<bool>& has) {
+      return std::find(has.begin(), has.end(), false) != has.end();
+    };
+    if (lacks(has_velocity_)) dataset_.absent.push_back("velocity");
+    if (lacks(has_altitude_)) dataset_.absent.push_back("altitude");
+    for (Passage& passage : passages_) {
+      for (Flight& segment : passage.segments) {
+        for (Sample& sample : segment) {
+          if (dataset_.lacks("altitude")) sample.altitude_m = 0;
+          if (!dataset_.lacks("velocity")) continue;
+          sample.linear_acceleration_m_s2 += cross<double>(sample.body_rates_rad_s, sample.velocity_m_s);
+          sample.velocity_m_s.setZero();
+        }
+      }
+    }
+  }
+
+  void remove_lag() {
+    std::optional<double> lag_s = settings_.lag_s ? settings_.lag_s : mapping_.lag_s;
+    std::string told = lag_s ? "as given" : "";
+    const std::size_t before = rows_in(passages_);
+    if (!lag_s) {
+      report("estimating the lag", 0);
+      CommandLag lag;
+      with_all_segments([&](const std::vector<Flight>& segments) { lag = estimate_command_lag(segments, *period_s_); });
+      if (!lag.warning.empty()) dataset_.warnings.push_back("lag: " + lag.warning);
+      lag_s = lag.found ? lag.lag_s : 0;
+      told = lag.found ? "estimated, confidence " + number_text(std::round(lag.confidence * 100) / 100) : "none found";
+    }
+    dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
+    for (Passage& passage : passages_) {
+      for (Flight& segment : passage.segments) {
+        segment = logs::remove_lag(std::move(segment), *period_s_, dataset_.lag_removed_s);
+      }
+    }
+    steps_.add(
+        "lag", before, rows_in(passages_),
+        number_text(std::round(dataset_.lag_removed_s * 1e4) / 10) + " ms from command to motion removed, " + told);
+  }
+
+  /// Rows by `mask(flight)` of each flight as a whole.
+  template <class Mask>
+  void drop(const std::string& name, const std::string& told, const Mask& mask) {
+    const std::size_t before = rows_in(passages_);
+    for (Passage& passage : passages_) {
+      Flight whole = joined(std::move(passage.segments));
+      const RowMask out = mask(whole);
+      passage.segments.clear();
+      passage.segments.push_back(without(std::move(whole), out));
+    }
+    steps_.add(name, before, rows_in(passages_), told);
+  }
+
+  void drop_rows() {
+    const auto text = [](double value) { return number_text(value); };
+    drop("idle", "all four commands below " + text(mapping_.idle_below), [this](const Flight& flight) {
+      RowMask out;
+      for (const Sample& sample : flight) out.push_back(is_idle(sample, mapping_));
+      return out;
+    });
+    drop("saturated",
+         "a command at its limit, " + text(mapping_.lowest_command) + " or " + text(mapping_.highest_command) +
+             " or one it is held at",
+         [this](const Flight& flight) {
+           return saturated_rows(flight, mapping_.lowest_command, mapping_.highest_command);
+         });
+    drop("outliers", "a value like none of its neighbours", [](const Flight& flight) { return outlier_rows(flight); });
+  }
+
+  void make_flights() {
+    const std::size_t before = rows_in(passages_);
+    std::size_t longest = 0;
+    for (Passage& passage : passages_) {
+      int part = 0;
+      for (Flight& flight : split_at_gaps(joined(std::move(passage.segments)), mapping_.split_gap_s)) {
+        longest = std::max(longest, flight.size());
+        if (flight.size() < minimum_rows) continue;
+        flight.trajectory = passage.trajectory;
+        flight.name = free_name(dataset_.flights, passage.name, ++part);
+        require_plausible_flight(flight, passage.source);
+        dataset_.flights.add(std::move(flight));
+        dataset_.sources.push_back(passage.source);
+      }
+    }
+    steps_.add("short flights", before, dataset_.flights.rows(),
+               "fewer than " + std::to_string(minimum_rows) + " rows");
+    dataset_.sample_period_s = *period_s_;
+    if (dataset_.flights.size() == 0) refuse_without_flight(longest);
+    require_different_flights(dataset_.flights);
+  }
+
+  /// The step of the rows on one clock that cost most; fewer rows for a slower clock are no loss.
+  [[noreturn]] void refuse_without_flight(std::size_t longest) const {
+    const auto lost = [](const ImportStep& step) {
+      return step.rows_before - std::min(step.rows_before, step.rows_after);
+    };
+    const auto first = std::find_if(dataset_.steps.begin(), dataset_.steps.end(),
+                                    [](const ImportStep& step) { return step.name == "incomplete rows"; });
+    const auto worst = std::max_element(
+        first, dataset_.steps.end(), [&lost](const ImportStep& a, const ImportStep& b) { return lost(a) < lost(b); });
+    std::string found = std::to_string(longest);
+    if (worst != dataset_.steps.end()) found += "; most were lost to '" + worst->name + "' (" + worst->told + ")";
+    for (const std::string& warning : dataset_.warnings) found += "; " + warning;
+    throw InputError(logs_.front(), 0, 0, "a flight of at least " + std::to_string(minimum_rows) + " rows", found);
+  }
+
+  /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no
+  /// velocity.
+  void require_plausible_flight(const Flight& flight, const std::string& source) const {
+    const auto found = find_implausible(flight);
+    if (!found) return;
+    std::string causes;
+    for (const std::string& warning : dataset_.warnings) causes += "; " + warning;
+    throw InputError(
+        source, 0, 0, found->expected,
+        found->found + " at " + number_text(flight[found->row].time_s) + " s of flight " + flight.name + causes);
+  }
+
+  const std::vector<std::string>& logs_;
+  const LogSettings& settings_;
+  Mapping mapping_;
+  std::optional<NamedAirframe> airframe_;
+  ImportedDataset dataset_;
+  Steps steps_;
+  std::optional<double> period_s_;
+  std::vector<Passage> passages_;
+  std::vector<bool> has_velocity_, has_altitude_;
+};
+
+}  // namespace
+
+std::vector<ReadyMapping> ready_mappings() {
+  std::vector<ReadyMapping> ready;
+  for (const MappingText& one : mapping_texts) ready.push_back({one.name, chosen_mapping(one.name).about});
+  return ready;
+}
+
+std::string mapping_names() {
+  std::string names;
+  for (const MappingText& one : mapping_texts) names += (names.empty() ? "" : ", ") + std::string(one.name);
+  return names;
+}
+
+ImportedDataset read_dataset(const std::vector<std::string>& logs, const LogSettings& settings) {
+  if (logs.empty()) throw std::invalid_argument("expected a log: a .ulg file, a .csv table, a folder of ulog2csv");
+  if (settings.mapping.empty()) {
+    throw std::invalid_argument("expected a mapping of the log's columns: " + mapping_names() + ", or a .toml file");
+  }
+  return Import(logs, settings).run();
+}
+
+}  // namespace pinnquad::logs

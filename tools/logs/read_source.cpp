@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "logs/log_parts.hpp"
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/logs/dataset_folder.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
+#include "pinnquad/logs/read_log.hpp"
+
+namespace pinnquad::logs {
+namespace {
+
+/// The extra columns that all the files have.
+std::vector<ColumnName> shared_columns(const std::vector<std::string>& paths) {
+  std::vector<ColumnName> shared = extra_columns_in(paths.front());
+  for (const std::string& path : paths) {
+    const std::vector<ColumnName> own = extra_columns_in(path);
+    const auto lacks = [&own](const ColumnName& column) {
+      return std::none_of(own.begin(), own.end(), [&column](const ColumnName& other) {
+        return other.name == column.name && other.unit == column.unit;
+      });
+    };
+    shared.erase(std::remove_if(shared.begin(), shared.end(), lacks), shared.end());
+  }
+  return shared;
+}
+
+}  // namespace
+
+void require_different_flights(const Dataset& dataset, const std::vector<std::string>& places) {
+  std::map<std::uint64_t, std::size_t> known;
+  const auto place = [&](std::size_t i) { return printable(places.empty() ? dataset[i].name : places[i]); };
+  for (std::size_t i = 0; i < dataset.size(); ++i) {
+    const auto [first, is_new] = known.emplace(content_hash(dataset[i]), i);
+    if (is_new) continue;
+    throw std::invalid_argument(place(first->second) + " and " + place(i) +
+                                " hold the same flight: it would be judged on rows that it was trained on");
+  }
+}
+
+Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows,
+                     const std::vector<ColumnName>& extra, const OnProgress& on_progress) {
+  const bool one = paths.size() == 1;
+  const auto bytes_of = [](const std::string& path) {  // of what is no file, or a pipe: none
+    std::error_code ignored;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, ignored);
+    return ignored ? 0.0 : static_cast<double>(bytes);
+  };
+  double all_bytes = 0, bytes_read = 0;
+  for (const std::string& path : paths) all_bytes += bytes_of(path);
+  Dataset dataset;
+  for (const std::string& path : paths) {
+    if (on_progress) on_progress("reading flights", all_bytes > 0 ? bytes_read / all_bytes : 0);
+    bytes_read += bytes_of(path);
+    Flight flight = read_flight_csv(path, one ? minimum_rows : minimum_flight_rows, extra);
+    require_plausible(path, flight);
+    flight.name = free_name(dataset, printable(std::filesystem::path(path).filename().string()));
+    dataset.add(std::move(flight));
+  }
+  require_different_flights(dataset, paths);
+  if (dataset.rows() < minimum_rows) {
+    throw std::invalid_argument("expected at least " + std::to_string(minimum_rows) + " rows in " +
+                                std::to_string(dataset.size()) + " flights, found " + std::to_string(dataset.rows()));
+  }
+  return dataset;
+}
+
+SourceKind kind_of_source(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::path(path) / dataset_file_name, ignored)) return SourceKind::dataset;
+  if (kind_of_log(path) != LogKind::csv) return SourceKind::logs;
+  std::size_t of_a_flight = 0;
+  for (const std::string& head : detail::csv_header(path)) {
+    if (std::find(sample_field_names.begin(), sample_field_names.end(), head) != sample_field_names.end())
+      ++of_a_flight;
+  }
+  return 2 * of_a_flight > sample_field_names.size() ? SourceKind::flights : SourceKind::logs;
+}
+
+ImportedDataset read_source(const std::vector<std::string>& paths, const LogSettings& settings) {
+  if (paths.empty()) throw std::invalid_argument("expected a source: flights, a dataset, or logs with a mapping");
+  if (!settings.mapping.empty()) return read_dataset(paths, settings);
+  const SourceKind kind = kind_of_source(paths.front());
+  for (const std::string& path : paths) {
+    if (kind_of_source(path) == kind && (kind != SourceKind::dataset || paths.size() == 1)) continue;
+    throw std::invalid_argument("expected flights, one dataset, or logs, found " + printable(paths.front()) + " and " +
+                                printable(path) + ": import them into one dataset first");
+  }
+  if (kind == SourceKind::logs) {
+    throw InputError(paths.front(), 0, 0,
+                     "a flight, a dataset, or a mapping of its columns (" + mapping_names() + ", or a .toml file)",
+                     "a log without a mapping");
+  }
+  if (kind == SourceKind::dataset) return read_dataset_folder(paths.front(), settings.on_progress);
+  ImportedDataset dataset;
+  dataset.flights = read_flights(paths, minimum_flight_rows, shared_columns(paths), settings.on_progress);
+  dataset.sources = paths;
+  RowSet all;
+  for (const Flight& flight : dataset.flights.flights()) all.add(flight, {0, flight.size()});
+  dataset.sample_period_s = sample_period_s(all);
+  return dataset;
+}
+
+}  // namespace pinnquad::logs

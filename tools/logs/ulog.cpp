@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+#include "logs/ulog.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "logs/ulog_format.hpp"
+#include "logs/ulog_messages.hpp"
+#include "logs/ulog_types.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/text_file.hpp"
+#include "pinnquad/logs/flight_log.hpp"
+
+namespace pinnquad::logs {
+namespace ulog {
+
+constexpr double ticks_per_s = 1e6;
+
+/// Makes a FlightLog of messages.
+class Reader {
+ public:
+  Reader(std::string_view file, const std::string& name, const LogSelection& selection)
+      : selection_(selection), file_(file), messages_(file, name, log_.warnings) {
+    log_.source = name;
+  }
+
+  FlightLog read() {
+    messages_.walk(*this);
+    log_.start_s = number(Basic::uint64, file_.data() + start_place) / ticks_per_s;
+    return std::move(log_);
+  }
+
+  bool in_data() const noexcept { return rows_ > 0; }
+
+  void progress(std::uint64_t bytes) {
+    if (bytes < next_progress_) return;
+    next_progress_ = bytes + progress_step;
+    selection_.report(static_cast<double>(bytes) / static_cast<double>(file_.size()));
+  }
+
+  bool fits(const Message& message) const {
+    switch (message.type) {
+      case 'S': return message.content == sync_message.substr(message_header_size);
+      case 'O':
+      case 'R': return message.content.size() == 2;
+      case 'D': {
+        const Subscription* const topic = subscription(message);
+        return topic != nullptr && topic->takes(message.content.size() - 2);
+      }
+      case 'A': return message.content.size() > 3;
+      case 'L': return message.content.size() >= 9;
+      case 'C': return message.content.size() >= 11;
+      case 'F':
+      case 'I':
+      case 'M':
+      case 'P':
+      case 'Q': return message.content.size() > 3;
+      default: return false;
+    }
+  }
+
+  Taken take(const Message& message) {
+    constexpr std::string_view known = "SORDALCFIMPQ";
+    if (known.find(message.type) == std::string_view::npos) {
+      const bool letter = (message.type >= 'A' && message.type <= 'Z') || (message.type >= 'a' && message.type <= 'z');
+      if (letter && message.type != 'B' && !message.content.empty()) return Taken::unknown;
+      throw BadMessage{"a message with a letter for its type", "none"};
+    }
+    if (message.type == 'D' && message.content.size() >= 2 && subscription(message) == nullptr) return Taken::unknown;
+    if (!fits(message)) {
+      throw BadMessage{std::string("a message of type ") + message.type + " as long as that type demands",
+                       std::to_string(message.content.size()) + " bytes"};
+    }
+    switch (message.type) {
+      case 'D': row(message); break;
+      case 'A': subscribe(message); break;
+      case 'R': topics_.erase(little_endian<std::uint16_t>(message.content.data())); break;
+      case 'F': formats_.add(parse_format(message.content)); break;
+      case 'P': if_sound(message, [&] { parameter(message); }); break;
+      case 'I': if_sound(message, [&] { fact(message); }); break;
+      case 'L': said(message, 1); break;
+      case 'C': said(message, 3); break;
+      case 'O':
+        log_.dropouts.push_back({last_time_s_, little_endian<std::uint16_t>(message.content.data()) / 1000.0});
+        break;
+      default: break;
+    }
+    return Taken::yes;
+  }
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  static constexpr std::uint64_t progress_step = std::uint64_t{1} << 20;
+
+  /// A topic under the number that its rows carry.
+  struct Subscription {
+    bool wanted = false;
+    std::string name;
+    int instance = 0;
+    std::size_t size = 0;
+    std::size_t last_padding = 0;
+    std::size_t clock = none;  ///< offset of its time stamp
+    std::size_t topic = none;  ///< in the log, from its first row on
+    std::vector<Leaf> numbers, texts;
+
+    bool takes(std::size_t bytes) const noexcept { return bytes <= size && bytes >= size - last_padding; }
+  };
+
+  const Subscription* subscription(const Message& message) const {
+    if (message.content.size() < 2) return nullptr;
+    const auto found = topics_.find(little_endian<std::uint16_t>(message.content.data()));
+    return found == topics_.end() ? nullptr : &found->second;
+  }
+
+  void subscribe(const Message& message) {
+    is_running_ = true;
+    Subscription topic;
+    topic.instance = little_endian<std::uint8_t>(message.content.data());
+    const auto id = little_endian<std::uint16_t>(message.content.data() + 1);
+    topic.name = message.content.substr(3);
+    if (!formats_.has(topic.name)) {
+      throw BadMessage{"a topic whose format stands before it", quoted_cell(topic.name)};
+    }
+    const auto known = topics_.find(id);
+    if (known != topics_.end()) {
+      if (known->second.name == topic.name && known->second.instance == topic.instance) return;
+      throw BadMessage{"one topic with the number " + std::to_string(id), known->second.name + " and " + topic.name};
+    }
+    topic.size = formats_.size(topic.name);
+    topic.last_padding = formats_.last_padding(topic.name);
+    topic.wanted = selection_.wants(topic.name);
+    topic.clock = formats_.offset(topic.name, "uint64_t", "timestamp");
+    if (topic.clock + 8 > topic.size) {
+      topic.clock = none;
+      if (topic.wanted) messages_.warn(message.place, topic.name + " has no timestamp of type uint64_t: left out");
+      topic.wanted = false;
+    }
+    topics_.emplace(id, std::move(topic));
+  }
+
+  void row(const Message& message) {
+    Subscription& from = topics_.at(little_endian<std::uint16_t>(message.content.data()));
+    if (from.wanted && from.topic == none) open(from);
+    ++rows_;
+    if (from.clock == none) return;
+    // a logger may leave out padding at the end, which is behind the last number
+    const char* const data = message.content.data() + 2;
+    const double time_s = number(Basic::uint64, data + from.clock) / ticks_per_s;
+    last_time_s_ = std::max(last_time_s_, time_s);
+    if (!from.wanted) return;
+    LogTopic& topic = log_.topics[from.topic];
+    topic.time_s.push_back(time_s);
+    topic.place.push_back(message.place);
+    for (std::size_t i = 0; i < from.numbers.size(); ++i) {
+      topic.columns[i].values.push_back(number(from.numbers[i].type, data + from.numbers[i].offset));
+    }
+    for (std::size_t i = 0; i < from.texts.size(); ++i) {
+      topic.texts[i].values.emplace_back(text_of({data + from.texts[i].offset, from.texts[i].length}));
+    }
+  }
+
+  /// Columns, which a hostile format can have many of, only for a topic that has a row.
+  void open(Subscription& from) {
+    for (Leaf& leaf : formats_.leaves(from.name)) {
+      (leaf.type == Basic::character ? from.texts : from.numbers).push_back(std::move(leaf));
+    }
+    const auto [known, is_new] = opened_.emplace(std::make_pair(from.name, from.instance), log_.topics.size());
+    from.topic = known->second;
+    if (!is_new) return;
+    LogTopic topic;
+    topic.name = from.name;
+    topic.instance = from.instance;
+    topic.file = log_.source;
+    topic.places_are_lines = false;
+    for (const Leaf& leaf : from.numbers) topic.columns.push_back({leaf.column, {}});
+    for (const Leaf& leaf : from.texts) topic.texts.push_back({leaf.column, {}});
+    log_.topics.push_back(std::move(topic));
+  }
+
+  /// Key and value of a message that begins with the key's length.
+  static Field key_of(std::string_view content, std::string_view& value) {
+    const std::size_t length = little_endian<std::uint8_t>(content.data());
+    if (length + 1 > content.size()) throw BadMessage{"a key that ends before its message", "a longer one"};
+    value = content.substr(1 + length);
+    return parse_field(content.substr(1, length));
+  }
+
+  void parameter(const Message& message) {
+    std::string_view value;
+    const Field key = key_of(message.content, value);
+    const BasicType* const type = basic_type(key.type);
+    const bool known = type != nullptr && (type->type == Basic::int32 || type->type == Basic::float32);
+    if (!known || key.is_array || value.size() != 4) {
+      throw BadMessage{"a parameter of type int32_t or float", quoted_cell(message.content.substr(1))};
+    }
+    const double set_to = number(type->type, value.data());
+    if (is_running_) {
+      log_.parameter_changes.push_back({last_time_s_, key.name, set_to});
+    } else {
+      log_.parameters[key.name] = set_to;
+    }
+  }
+
+  void fact(const Message& message) {
+    std::string_view value;
+    const Field key = key_of(message.content, value);
+    const BasicType* const type = basic_type(key.type);
+    if (type == nullptr || value.size() != key.length * type->size) {
+      throw BadMessage{"information as long as its type", quoted_cell(message.content.substr(1))};
+    }
+    if (type->type == Basic::character) {
+      log_.facts[key.name] = text_of(value);
+    } else if (!key.is_array) {
+      log_.facts[key.name] = number_text(number(type->type, value.data()));
+    }
+  }
+
+  /// For what no row depends on: said, and left out.
+  template <class Take>
+  void if_sound(const Message& message, Take take) {
+    try {
+      take();
+    } catch (const BadMessage& bad) {
+      messages_.warn(message.place, "expected " + bad.expected + ", found " + bad.found + ": left out");
+    }
+  }
+
+  void said(const Message& message, std::size_t clock) {
+    is_running_ = true;
+    const char level = message.content[0];
+    const double time_s = number(Basic::uint64, message.content.data() + clock) / ticks_per_s;
+    log_.messages.push_back({time_s, level >= '0' && level <= '7' ? level - '0' : 6,
+                             std::string(text_of(message.content.substr(clock + 8)))});
+  }
+
+  const LogSelection& selection_;
+  std::string_view file_;
+  FlightLog log_;
+  Messages messages_;
+  Formats formats_;
+  std::unordered_map<std::uint16_t, Subscription> topics_;  ///< by number
+  std::map<std::pair<std::string, int>, std::size_t> opened_;
+  bool is_running_ = false;  ///< the log's definitions are over
+  std::size_t rows_ = 0;
+  double last_time_s_ = 0;
+  std::uint64_t next_progress_ = 0;
+};
+
+}  // namespace ulog
+
+FlightLog parse_ulog(std::string_view file, const std::string& name, const LogSelection& selection) {
+  return ulog::Reader(file, name, selection).read();
+}
+
+FlightLog read_ulog(const std::string& path, const LogSelection& selection) {
+  const std::string file = file_text(path);
+  return parse_ulog(file, path, selection);
+}
+
+}  // namespace pinnquad::logs
