@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/evaluation/block_model.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/training_sets.hpp"
@@ -63,9 +64,13 @@ TEST_CASE("header, block and limits of trust are of one model") {
   std::ostringstream header;
   write_model(header, "SomeModel", made.model, golden, made.from);
   CHECK(text_of(out / "model.hpp") == header.str());
-  const auto block = model_block(made.model, golden, made.from);
+  const auto limits = fit_trust(made.model, made.split.train, made.split.validation);
+  const auto block = model_block(made.model, golden, made.from, "SomeModel", &limits);
   CHECK(text_of(out / "model.block") == std::string(block.begin(), block.end()));
   CHECK(exported.block_bytes == block.size());
+  const BlockModel opened((out / "model.block").string());
+  CHECK(opened.name() == "SomeModel");
+  CHECK(header.str().find("contents_hash = " + hexadecimal(opened.contents_hash())) != std::string::npos);
   const std::string trust = text_of(out / "trust.hpp");
   const std::string hash = hexadecimal(content_hash(made.flights));
   CHECK(trust.find("struct SomeModelTrust") != std::string::npos);

@@ -173,7 +173,7 @@ TEST_CASE("provenance is told, and no text can break out of its string") {
 TEST_CASE("what the model was trained for is told as data") {
   const std::string header = written(some_model(1), {Model::FeatureVector{}});
   for (const char* line :
-       {"int format_version = 3;", "frame = \"body FRD, world NED\";",
+       {"int format_version = 4;", "frame = \"body FRD, world NED\";",
         "output_names = {{\"u1\", \"u2\", \"u3\", \"u4\"}};", "output_units = {{\"1\", \"1\", \"1\", \"1\"}};",
         "vehicle_name = \"paper_quadrotor\";", "\"sin_yaw\", \"cos_yaw\"}};", "\"rad\", \"1\", \"1\"}};",
         "motor_torque_signs = {{\n    {{-1, 1, 1}},\n    {{1, -1, 1}},\n    {{1, 1, -1}},\n    {{-1, -1, -1}}}};"}) {
