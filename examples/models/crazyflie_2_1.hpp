@@ -1,4 +1,4 @@
-// Inverse-dynamics model, exported by pinnquad 0.1.0. Generated: export again rather than edit.
+// Inverse-dynamics model, exported by pinnquad 0.2.0. Generated: export again rather than edit.
 // SI units, rad. Commands in the order of the airframe's rotors.
 #pragma once
 
@@ -12,7 +12,7 @@ struct CrazyflieModel {
   using Vehicle = pinnquad::Crazyflie;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 2;
+  static constexpr int format_version = 4;
   static constexpr const char* name = "CrazyflieModel";
 
   // provenance
@@ -38,7 +38,7 @@ struct CrazyflieModel {
       "m/s^2", "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "m/s", "m/s",
       "m/s", "rad/s", "rad/s", "rad/s", "rad", "rad", "1", "1"}};
   static constexpr std::array<const char*, 4> output_names = {{"u1", "u2", "u3", "u4"}};
-  static constexpr const char* output_unit = "1";
+  static constexpr std::array<const char*, 4> output_units = {{"1", "1", "1", "1"}};
   static constexpr const char* vehicle_name = "crazyflie_2_1";
   // rotor by rotor: signs of its torque about x, y, z
   static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {{
@@ -46,6 +46,26 @@ struct CrazyflieModel {
     {{1, -1, 1}},
     {{1, 1, -1}},
     {{-1, -1, -1}}}};
+
+  // records: a reader that does not know one of them must not fly the model (exported/model_records.hpp)
+  static constexpr std::array<const char*, 7> records = {{"answer", "commands", "clock", "window", "columns", "allocation", "base"}};
+  static constexpr const char* answer = "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4>>";
+  static constexpr auto command_meaning = pinnquad::CommandMeaning::thrust;
+  static constexpr double command_lower = 0.0;
+  static constexpr double command_upper = 1.0;
+  static constexpr double sample_period_s = 0.0;
+  static constexpr double lag_removed_s = 0.0;
+  static constexpr int window_taps = 1;
+  static constexpr bool causal = true;
+  static constexpr std::array<const char*, 0> column_names = {};
+  static constexpr std::array<const char*, 0> column_units = {};
+  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density
+  static constexpr std::array<std::array<double, 4>, 4> allocation = {{
+    {{0.14892469519600002, 0.14892469519600002, 0.14892469519600002, 0.14892469519600002}},
+    {{-0.004844060445524638, 0.004844060445524638, 0.004844060445524638, -0.004844060445524638}},
+    {{0.004844060445524638, -0.004844060445524638, 0.004844060445524638, -0.004844060445524638}},
+    {{0.003741968607140001, 0.003741968607140001, -0.003741968607140001, -0.003741968607140001}}}};
+  static constexpr const char* base = "";
 
   // standardisation: (value - mean) / spread
   static constexpr pinnquad::Scaler<float, 16> input = {{{
@@ -899,6 +919,9 @@ struct CrazyflieModel {
       -0.26817593f, 0.0f, 0.14613545f, -0.2725858f, 0.22136353f, 0.0f, 0.0f, -0.23268518f,
       0.35971934f, 0.017417606f, 0.38566175f, 0.0f, 0.0f, 0.007366561f, 0.0f, 0.07300846f,
       -0.06333551f, -0.045490004f, 0.22579788f}};
+
+  // over all of this: what was edited does not compile (exported/contents_hash.hpp)
+  static constexpr std::uint64_t contents_hash = 0x939025e8281a3a72;
 };
 
 static_assert(pinnquad::require_model<CrazyflieModel>());

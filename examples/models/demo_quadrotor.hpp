@@ -1,4 +1,4 @@
-// Inverse-dynamics model, exported by pinnquad 0.1.0. Generated: export again rather than edit.
+// Inverse-dynamics model, exported by pinnquad 0.2.0. Generated: export again rather than edit.
 // SI units, rad. Commands in the order of the airframe's rotors.
 #pragma once
 
@@ -12,7 +12,7 @@ struct DemoQuadModel {
   using Vehicle = pinnquad::PaperQuadrotor;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 2;
+  static constexpr int format_version = 4;
   static constexpr const char* name = "DemoQuadModel";
 
   // provenance
@@ -38,7 +38,7 @@ struct DemoQuadModel {
       "m/s^2", "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "m/s", "m/s",
       "m/s", "rad/s", "rad/s", "rad/s", "rad", "rad", "1", "1"}};
   static constexpr std::array<const char*, 4> output_names = {{"u1", "u2", "u3", "u4"}};
-  static constexpr const char* output_unit = "1";
+  static constexpr std::array<const char*, 4> output_units = {{"1", "1", "1", "1"}};
   static constexpr const char* vehicle_name = "paper_quadrotor";
   // rotor by rotor: signs of its torque about x, y, z
   static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {{
@@ -46,6 +46,26 @@ struct DemoQuadModel {
     {{1, -1, 1}},
     {{1, 1, -1}},
     {{-1, -1, -1}}}};
+
+  // records: a reader that does not know one of them must not fly the model (exported/model_records.hpp)
+  static constexpr std::array<const char*, 7> records = {{"answer", "commands", "clock", "window", "columns", "allocation", "base"}};
+  static constexpr const char* answer = "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4>>";
+  static constexpr auto command_meaning = pinnquad::CommandMeaning::thrust;
+  static constexpr double command_lower = 0.0;
+  static constexpr double command_upper = 1.0;
+  static constexpr double sample_period_s = 0.0;
+  static constexpr double lag_removed_s = 0.0;
+  static constexpr int window_taps = 1;
+  static constexpr bool causal = true;
+  static constexpr std::array<const char*, 0> column_names = {};
+  static constexpr std::array<const char*, 0> column_units = {};
+  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density
+  static constexpr std::array<std::array<double, 4>, 4> allocation = {{
+    {{7.378601163836665, 7.378601163836665, 7.378601163836665, 7.378601163836665}},
+    {{-1.8000245111202822, 1.8000245111202822, 1.8000245111202822, -1.8000245111202822}},
+    {{1.8000245111202822, -1.8000245111202822, 1.8000245111202822, -1.8000245111202822}},
+    {{0.09809941226552932, 0.09809941226552932, -0.09809941226552932, -0.09809941226552932}}}};
+  static constexpr const char* base = "";
 
   // standardisation: (value - mean) / spread
   static constexpr pinnquad::Scaler<float, 16> input = {{{
@@ -899,6 +919,9 @@ struct DemoQuadModel {
       -0.1459791f, 0.0f, 0.020698562f, 0.10831059f, 0.33351076f, 0.0f, 0.0f, -0.32246757f,
       0.0f, 0.0f, 0.4269728f, 0.0f, 0.0f, 0.16152465f, 0.0f, 0.10861764f,
       0.03573501f, 0.0067172563f, -0.08579251f}};
+
+  // over all of this: what was edited does not compile (exported/contents_hash.hpp)
+  static constexpr std::uint64_t contents_hash = 0x8927a6426e423207;
 };
 
 static_assert(pinnquad::require_model<DemoQuadModel>());

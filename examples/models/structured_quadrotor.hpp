@@ -31,11 +31,11 @@ struct StructuredQuadModel {
   using Scalar = float;
   using Network = pinnquad::AxisAligned<float, 19, 1>;
   using Features = pinnquad::InverseFeatures;
-  using Outputs = pinnquad::SignedSumOutputs;
+  using Outputs = pinnquad::AxisCommandOutputs;
   using Vehicle = StructuredQuadModelAirframe;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 3;
+  static constexpr int format_version = 4;
   static constexpr const char* name = "StructuredQuadModel";
 
   // provenance
@@ -176,7 +176,7 @@ struct StructuredQuadModel {
       0.002819453f, 1.5425916e-05f, 0.0039976374f, 9.024931e-15f, -5.67402e-17f, -1.1402832e-18f, -4.709057e-18f}};
 
   // over all of this: what was edited does not compile (exported/contents_hash.hpp)
-  static constexpr std::uint64_t contents_hash = 0xc7e20f1eb7ef2bfd;
+  static constexpr std::uint64_t contents_hash = 0xc7e2161eb7ef37e2;
 };
 
 static_assert(pinnquad::require_model<StructuredQuadModel>());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every format that was ever exported still flies: archived headers compile, pass their self test and answer as they
-// did.
+// did. So do archived blocks.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -12,20 +12,21 @@
 #include "models/known_predictions.hpp"
 #include "models/v1/demo_quadrotor.hpp"
 #include "models/v2/crazyflie_tanh.hpp"
-#include "models/v2/demo_quadrotor.hpp"
-#include "models/v3/demo_quadrotor.hpp"
 #include "models/v3/near_ground_quadrotor.hpp"
 #include "models/v3/own_racer.hpp"
+#include "models/v4/own_racer.hpp"
+#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
 namespace {
 
 using namespace pinnquad;
 
-/// Headers included above, by path below tests/models.
+/// Headers included above and blocks opened below, by path below tests/models.
 const std::vector<std::string> archived = {"v1/demo_quadrotor.hpp",        "v2/crazyflie_tanh.hpp",
-                                           "v2/demo_quadrotor.hpp",        "v3/demo_quadrotor.hpp",
-                                           "v3/near_ground_quadrotor.hpp", "v3/own_racer.hpp"};
+                                           "v3/near_ground_quadrotor.hpp", "v3/own_racer.hpp",
+                                           "v4/own_racer.block",           "v4/own_racer.hpp"};
 
 template <class Model, class Known>
 void replay() {
@@ -52,32 +53,45 @@ TEST_CASE("format 1: the demonstration's quadrotor") {
   replay<DemoQuadrotorV1, test::KnownDemoQuadrotorV1>();
 }
 
-TEST_CASE("format 2: the demonstration's quadrotor; another vehicle, feature set, scalar, activation and output") {
-  static_assert(DemoQuadrotorV2::format_version == 2 && CrazyflieTanhV2::format_version == 2);
-  replay<DemoQuadrotorV2, test::KnownDemoQuadrotorV2>();
+TEST_CASE("format 2: another vehicle, feature set, scalar, activation and output") {
+  static_assert(CrazyflieTanhV2::format_version == 2);
   replay<CrazyflieTanhV2, test::KnownCrazyflieTanhV2>();
 }
 
-TEST_CASE(
-    "format 3: the demonstration's quadrotor; a vehicle of the header's own, a window, a column, optional records") {
-  static_assert(DemoQuadrotorV3::format_version == 3 && OwnRacerV3::format_version == 3);
-  replay<DemoQuadrotorV3, test::KnownDemoQuadrotorV3>();
+TEST_CASE("format 3: a vehicle of the header's own, a window, a column, optional records") {
+  static_assert(OwnRacerV3::format_version == 3);
   replay<OwnRacerV3, test::KnownOwnRacerV3>();
-  CHECK(self_test(InverseDynamics<OwnRacerV3>{}) == Status::ok);
   // one that is monotone, and is shown the altitude
   static_assert(NearGroundQuadModel::format_version == 3);
   CHECK(self_test(InverseDynamics<NearGroundQuadModel>{}) == Status::ok);
 }
 
-TEST_CASE("the weights of a header are those it had in the format before") {
-  CHECK(DemoQuadrotorV3::parameters == DemoQuadrotorV2::parameters);
-  CHECK(DemoQuadrotorV3::golden_features == DemoQuadrotorV2::golden_features);
-  CHECK(DemoQuadrotorV2::parameters == DemoQuadrotorV1::parameters);
-  CHECK(DemoQuadrotorV2::golden_commands == DemoQuadrotorV1::golden_commands);
-  CHECK(DemoQuadrotorV2::training_data_hash == DemoQuadrotorV1::training_data_hash);
+TEST_CASE("format 4: the same racer, and its block, which describes itself") {
+  static_assert(OwnRacerV4::format_version == 4);
+  using Known = test::KnownOwnRacerV4;
+  replay<OwnRacerV4, Known>();
+  CHECK(OwnRacerV4::parameters == OwnRacerV3::parameters);
+  CHECK(OwnRacerV4::envelope_lower == OwnRacerV3::envelope_lower);
+  const BlockModel block(std::string(PINNQUAD_TESTS_DIR) + "/models/v4/own_racer.block");
+  CHECK(block.contents_hash() == OwnRacerV4::contents_hash);
+  CHECK(block.name() == "OwnRacerV4");
+  CHECK(block.is_double());
+  CHECK(block.airframe_name() == "own_racer");
+  CHECK(block.features().window().taps == 2);
+  REQUIRE(block.columns().size() == 1);
+  CHECK(block.columns()[0].name == "battery_voltage");
+  for (std::size_t i = 0; i < Known::features.size(); ++i) {
+    const auto commands = block.commands({Known::features[i].begin(), Known::features[i].end()});
+    for (std::size_t k = 0; k < commands.size(); ++k) {
+      CHECK(std::abs(commands[k] - Known::commands[i][k]) <= golden_tolerance);
+    }
+  }
+  ModelView<OwnRacerV4> view;
+  REQUIRE(ModelView<OwnRacerV4>::open(block.data(), block.size(), view) == Status::ok);
+  CHECK(self_test(InverseDynamics<ModelView<OwnRacerV4>>(view)) == Status::ok);
 }
 
-TEST_CASE("no header of the archive is left out, and each format has one") {
+TEST_CASE("no header or block of the archive is left out, and each format has one") {
   const std::filesystem::path folder = std::filesystem::path(PINNQUAD_TESTS_DIR) / "models";
   std::vector<std::string> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

@@ -76,6 +76,8 @@ def main():
     draw = random.Random(42)
     for path in sorted(FOLDER.glob("v*/*.hpp")):
         text = path.read_text()
+        if "using Network = pinnquad::Network<" not in text:
+            continue  # a sum of predictors: its own golden vectors are enough
         name = re.findall(r"struct (\w+) \{", text)[-1]  # an airframe of its own stands before the model
         lower, upper = numbers(text, "envelope_lower"), numbers(text, "envelope_upper")
         predict = predictor(text)

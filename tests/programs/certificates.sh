@@ -10,10 +10,9 @@ models=(
   "0 examples/models/structured_quadrotor.hpp"
   "2 tests/models/v1/demo_quadrotor.hpp"
   "1 tests/models/v2/crazyflie_tanh.hpp"
-  "1 tests/models/v2/demo_quadrotor.hpp"
-  "1 tests/models/v3/demo_quadrotor.hpp"
   "0 tests/models/v3/near_ground_quadrotor.hpp"
   "2 tests/models/v3/own_racer.hpp"
+  "2 tests/models/v4/own_racer.hpp"
   "2 tests/support/small_model.hpp"
 )
 within_s=1 # of the processor, to refute one

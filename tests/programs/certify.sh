@@ -9,8 +9,7 @@ exit_code() { local code=0; "$@" >stdout.txt 2>stderr.txt || code=$?; echo "$cod
 # the paper's networks: a counterexample inside the envelope, in less than a second of an optimised build
 seconds=1
 case "$compiler_flags" in *sanitize*) seconds=30 ;; esac
-for header in examples/models/demo_quadrotor.hpp examples/models/crazyflie_2_1.hpp tests/models/v2/demo_quadrotor.hpp \
-  tests/models/v3/demo_quadrotor.hpp; do
+for header in examples/models/demo_quadrotor.hpp examples/models/crazyflie_2_1.hpp; do
   [ "$(exit_code "$pinnquad" certify "$source_dir/$header" --json)" -eq 1 ] || fail "$header: $(cat stdout.txt stderr.txt)"
   python3 "$source_dir/tests/programs/judgement/counterexample.py" "$source_dir/$header" stdout.txt "$seconds" ||
     fail "$header: the counterexample is none"

@@ -8,7 +8,6 @@
 #include "../../../examples/models/crazyflie_2_1.hpp"
 #include "../../../examples/models/demo_quadrotor.hpp"
 #include "models/v2/crazyflie_tanh.hpp"
-#include "models/v3/demo_quadrotor.hpp"
 #include "models/v3/own_racer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 
@@ -22,7 +21,6 @@ int main(int argument_count, char** arguments) {
     write("demo_quadrotor", pinnquad::model_block<DemoQuadModel>());
     write("crazyflie_2_1", pinnquad::model_block<CrazyflieModel>());
     write("crazyflie_tanh", pinnquad::model_block<CrazyflieTanhV2>());
-    write("v3_demo_quadrotor", pinnquad::model_block<DemoQuadrotorV3>());
     write("v3_own_racer", pinnquad::model_block<OwnRacerV3>());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "block_driver: %s\n", error.what());
