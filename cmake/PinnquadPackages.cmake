@@ -12,6 +12,18 @@ macro(pinnquad_require_package name)
   endif()
 endmacro()
 
+# pinnquad_require_pytest(): sets PINNQUAD_TEST_PYTHON, the Python that has pytest; Debian's before another of the PATH.
+macro(pinnquad_require_pytest)
+  find_program(PINNQUAD_TEST_PYTHON python3 HINTS /usr/bin DOC "Runs the tests of the programs; has pytest")
+  mark_as_advanced(PINNQUAD_TEST_PYTHON)
+  execute_process(COMMAND "${PINNQUAD_TEST_PYTHON}" -c "import pytest" RESULT_VARIABLE _pytest_missing ERROR_QUIET)
+  if(_pytest_missing)
+    message(FATAL_ERROR
+      "pinnquad: the tests (PINNQUAD_BUILD_TESTS) need pytest, which ${PINNQUAD_TEST_PYTHON} does not have. "
+      "On Debian or Ubuntu, as root: apt-get install python3-pytest")
+  endif()
+endmacro()
+
 # pinnquad_part(<option> <what> [<package>...]): a part that ON demands and OFF leaves out. AUTO, the default, builds it
 # where pinnquad is the top-level project and the packages are there.
 macro(pinnquad_part option what)

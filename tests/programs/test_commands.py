@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""The command line itself: commands and their help, --version, completion, manual page, options from a file by --config."""
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, Program, needed, same_bytes
+
+
+def names_below(commands, command):
+    """Of the commands one level below this one."""
+    size = len(command.words)
+    return [one.words[-1] for one, _ in commands if one.words[:-1] == command.words and len(one.words) == size + 1]
+
+
+def test_help_and_version(commands, study):
+    version = (SOURCE / "include/pinnquad/version.hpp").read_text()
+    numbers = re.findall(r"^#define PINNQUAD_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)$", version, re.M)
+    assert len(commands) >= 18, [command.name for command, _ in commands]
+    for command, text in commands:
+        assert re.search(r"^Exit codes: 0", text, re.M), command.name
+        assert re.search(r"[^0-9]2 bad input", text.replace("\n", " ")), command.name
+        # an example is as wide as it is
+        wide = [line for line in text.split("\n") if len(line) > 80 and not re.match(r" {1,19}\S", line)]
+        assert not wide, command.name
+        assert not command("--help").err, command.name
+        assert command("--version").out == f"pinnquad {'.'.join(numbers)}\n"
+    shown = {command.name: bool(re.search(r"^Examples:\n  (pinnquad|cmake) ", text, re.M)) for command, text in commands}
+    of_study = {name for name in shown if name.startswith(study.name)}
+    assert any(shown[name] for name in of_study)
+    assert all(shown[name] for name in shown.keys() - of_study), shown
+    (train,) = [text for command, text in commands if command.words[-1] == "train"]
+    assert re.search(r"^  --flight FILE\.csv \.\.\.( |$)", train, re.M)
+
+
+@pytest.mark.parametrize("words, become", [
+    ("f", "fly"), ("n", "new"), ("new x --air", "--airframe"), ("study p", "paper"), ("fly d1 --sam", "--samples"),
+    ("study paper --mo", "--models"), ("train --seeds 3 --conf", "--config"), ("fly d1 --out fi", "")])
+def test_completion(pinnquad, words, become):
+    script = f"""source {SOURCE}/tools/command_line/completion.bash
+        COMP_WORDS=({pinnquad} {words}) COMP_CWORD={len(words.split())} COMPREPLY=()
+        _pinnquad
+        echo "${{COMPREPLY[*]}}" """
+    assert subprocess.run(["bash", "-euc", script], capture_output=True, text=True).stdout == become + "\n"
+
+
+def test_completion_has_every_command(pinnquad, commands):
+    script = f"""source {SOURCE}/tools/command_line/completion.bash
+        COMP_WORDS=({pinnquad} '') COMP_CWORD=1 COMPREPLY=()
+        _pinnquad
+        echo "${{COMPREPLY[*]}}" """
+    completed = subprocess.run(["bash", "-euc", script], capture_output=True, text=True).stdout
+    assert completed.split() == names_below(commands, pinnquad)
+
+
+def test_manual_page(pinnquad, commands):
+    needed("help2man")
+    Program("bash")("", SOURCE / "tools/command_line/manual_page.sh", pinnquad, "pinnquad.1")
+    page = Path("pinnquad.1").read_text()
+    for section in "NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "COMMANDS", "OPTIONS FROM A FILE", "FILES", "EXIT STATUS":
+        assert re.search(rf'^\.SH "?{section}"?$', page, re.M), section
+    assert not re.search(r"^(Usage|Commands|Arguments|Options):|^Subcommands", page, re.M), "pieces of --help"
+    for command, text in commands[1:]:
+        part = re.search(rf'^\.SS "{command.name}"\n(.*?)(?=^\.S[HS])', page + "\n.SH", re.M | re.S)
+        part = part.group(1).replace(r"\-", "-")
+        for option in set(re.findall(r"^  (--[a-z-]+)", text, re.M)) - {"--version"}:
+            assert len(re.findall(rf"^\.B {option}( |$)", part, re.M)) == 1, (command.name, option)
+        assert re.search("^Exit codes: 0", part, re.M), command.name
+    if shutil.which("man"):
+        shown = Program("man")("--warnings -l pinnquad.1", env={"PATH": "/usr/bin:/bin", "LC_ALL": "C", "MANWIDTH": "80"})
+        assert not shown.err
+
+
+@pytest.mark.parametrize("words, keyword", [
+    ("", "expected a command"), ("land --seed 1", "'land'"), ("--seed 1", "before --seed"),
+    ("study", "expected a command"), ("study news", "'news'"), ("airframe", "expected a command"),
+    ("fly d1 train --out f.csv", "train"), ("fly d1 --out f.csv --epochs", "--epochs"),
+    ("study paper --out o ablation", "ablation"), ("airframe list check", "check"),
+    ("train --seeds 1", "--flight"), ("report", "dir is required")])
+def test_refused(pinnquad, commands, words, keyword):
+    line = pinnquad.refused(words, keyword=keyword).lines[0]
+    if "expected a command" in line or "known" in line:  # it lists what there is
+        group = Program(pinnquad, *[word for word in words.split()[:1] if word in ("study", "airframe")])
+        listed = re.search(r"(?:known|: expected a command[^:]*): (.*?)( \(|$)", line).group(1)
+        assert listed.split(", ") == names_below(commands, group)
+    assert not Path("o").exists()
+
+
+OPTIONS = """[fly]
+flight = "d3"
+seed = 4
+samples = 50
+max-speed = 5.5
+
+[train]
+flight = ["a.csv", "b.csv"]
+allow-poor = true
+
+[study.paper]
+models = "2,4"
+"""
+
+
+def test_options_from_a_file(pinnquad):
+    """They fly the same flight; the command line goes first; --config may stand before the command or behind."""
+    Path("options.toml").write_text(OPTIONS)
+    pinnquad("fly d3 --seed 4 --samples 50 --max-speed 5.5 --out words.csv")
+    pinnquad("fly --config options.toml --out behind.csv")
+    pinnquad("--config options.toml fly --out before.csv")
+    same_bytes("words.csv", "behind.csv")
+    same_bytes("words.csv", "before.csv")
+    pinnquad("fly d3 --seed 5 --samples 50 --max-speed 5.5 --out words.csv")
+    pinnquad("fly --seed 5 --config options.toml --out both.csv")
+    same_bytes("words.csv", "both.csv")
+    pinnquad.refused("train --config options.toml --out o", at="a.csv", keyword="found none")
+    pinnquad.refused("fly --config none.toml --out w.csv", at="none.toml", keyword="found none")
+
+
+@pytest.mark.parametrize("place, keyword, text", [
+    ("2:8", "--seed", "[fly]\nseed = -1"), ("2:13", "--max-speed", "[fly]\nmax-speed = 20"),
+    ("2:1", "`sed`", "[fly]\nsed = 1"), ("2:1", "`help`", "[fly]\nhelp = true"), ("1:2", "`land`", "[land]\nseed = 1"),
+    ("2:8", "truth value", "[fly]\nseed = true"), ("2:18", "true or false", "[fly]\nlist-airframes = 1"),
+    ("2:9", "array", "[fly]\nseed = [[]]"), ("2:6", "TOML", "[fly]\nseed 3"), ("2:10", "--epochs", "[train]\nepochs = 0")])
+def test_wrong_file(pinnquad, place, keyword, text):
+    Path("wrong.toml").write_text(text + "\n")
+    pinnquad.refused("fly --config wrong.toml --samples 20 --out w.csv", at=f"wrong.toml:{place}", keyword=keyword)
+    assert not Path("w.csv").exists()

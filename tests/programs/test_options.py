@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""Hostile values for every number and every text that a command takes, by what its --help says: one line that names the
+option, exit code 2, no work begun."""
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+SHARES = ["nan", "0", "-1", "0/1", "2/1", "1/0x10", "1/-1", "1/1e400"]
+LAGS = ["nan", "inf", "1e400", "0x10", "-2", " "]
+
+
+def hostile_values(kind):
+    """Of what the help says that an option takes."""
+    span = re.search(r"\d\.\.(\d.*)", kind)
+    if span:
+        values = ["nan", "-nan", "inf", "-1", "1e400", "0x10", " ", "1 2", "1,5", f"1{span.group(1)}0"]
+        return values if kind.startswith("0") else values + ["0"]
+    return ["nan", "inf", "-1", "1e400", "0x10", "1.5", "18446744073709551616"] if kind == "N" else []
+
+
+def test_by_help(commands):
+    tried = 0
+    for command, text in commands[1:]:
+        assert not re.search(r"^  --[a-z-]+ (FLOAT|INT|UINT|NUMBER)", text, re.M), f"{command.name}: a number without its range"
+        for option, kind in re.findall(r"^  (--[a-z-]+) (\S+)", text, re.M):
+            for value in ["", *hostile_values(kind.split("=")[0])]:
+                line = command.refused(option, value, keyword=option, timeout=20).lines[0]
+                assert re.match(rf"[a-z]+: {option}\b", line), line
+                assert not os.listdir(), (command.name, option, value)
+                tried += 1
+    assert tried >= 300
+
+
+@pytest.mark.parametrize("kind", ["paper", "ablation", "beyond"])
+def test_shard(study, kind):
+    """Read when the command runs, as the next two."""
+    for value in SHARES:
+        study.refused(f"{kind} --out o --shard", value, keyword="--shard", timeout=20)
+    assert not os.listdir()
+
+
+def test_lag_and_models(pinnquad, study):
+    for value in LAGS:
+        pinnquad.refused("import x.csv --mapping px4 --out o --lag", value, keyword="--lag", timeout=20)
+    study.refused("paper --models", "", "--out", "o", keyword="--models", timeout=20)
+    assert not os.listdir()
+
+
+@pytest.mark.parametrize("entry", ["seconds = nan", 'seconds = "nan"', "seconds = inf", "seconds = 0", "seed = -1", 'seed = ""',
+                                   "seed = 1e400"])
+def test_entries_of_a_file(pinnquad, entry):
+    Path("wrong.toml").write_text(f"[certify]\n{entry}\n")
+    pinnquad.refused("certify model.hpp --config wrong.toml", at="wrong.toml:2:*", timeout=20)
+
+
+def test_nul_would_cut_a_path(pinnquad):
+    Path("wrong.toml").write_text('[fly]\nout = "o.csv\\u0000.txt"\n')
+    pinnquad.refused("fly --samples 20 --config wrong.toml", at="wrong.toml:2:7", keyword="NUL", timeout=20)
+    assert os.listdir() == ["wrong.toml"]
