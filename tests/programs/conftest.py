@@ -96,8 +96,14 @@ class Program:
         """Runs it in the background, in a session of its own; ended() waits for it."""
         with open("stdout.txt", "wb") as out, open("stderr.txt", "wb") as err:
             process = subprocess.Popen(self._command(words), stdout=out, stderr=err, stdin=subprocess.DEVNULL,
-                                       start_new_session=True, **how)
+                                       start_new_session=True, preexec_fn=deaf_to_nothing, **how)
         return process
+
+
+def deaf_to_nothing():
+    """As from a terminal: whoever runs the tests may ignore signals, which is inherited."""
+    for number in signal.SIGINT, signal.SIGHUP, signal.SIGTERM:
+        signal.signal(number, signal.SIG_DFL)
 
 
 def until(condition, process, seconds=240):

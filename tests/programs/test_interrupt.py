@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""Ctrl-C in training keeps what is finished: the results are whole, the exit code says that it was interrupted."""
+import os
+import re
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from conftest import Program, ended, no_partial_files, said, until
+
+
+@pytest.fixture(scope="module")
+def flight(flown):
+    return flown("--seed 1 --samples 2400")
+
+
+def finished(done, of):
+    """How many trainings the one line says were finished."""
+    (line,) = [line for line in done.lines if not line.startswith("train: warning: ")]
+    assert done.code == 130, done
+    return int(re.search(rf"interrupted\b.* (\d+) of {of} trainings", line).group(1))
+
+
+def test_train(pinnquad, flight):
+    """More work than any machine does before the first line of progress (5 s), in pieces small enough for any."""
+    process = pinnquad.start("train --out out --seeds 500 --epochs 30 --threads 2 --flight", flight)
+    # one percent is ten trainings' worth of epochs on two threads: some are finished then
+    until(lambda: re.search("[1-9][0-9]* %", said()), process)
+    kept = finished(ended(process), 1500)
+    assert kept > 0
+    assert len(Path("out/results.csv").read_text().splitlines()) == kept + 2
+    assert Path("out/model.hpp").stat().st_size, "nothing was exported although trainings were finished"
+    no_partial_files("out")
+
+
+def test_hangup(study):
+    """The terminal that closes is no other: a first signal keeps what is finished; under nohup it is none."""
+    words = "paper --models 2 --flights 1 --seeds 500 --epochs 30 --threads 2 --out"
+    process = study.start(words, "hung")
+    until(lambda: " %" in said(), process)
+    finished(ended(process, signal.SIGHUP), 500)
+    no_partial_files("hung")
+    process = Program("nohup", *study.words).start(words, "hung_nohup")
+    until(lambda: " %" in said(), process)
+    process.send_signal(signal.SIGHUP)
+    time.sleep(0.5)
+    assert process.poll() is None, said()
+    finished(ended(process), 500)
+
+
+def test_while_gnuplot_draws(pinnquad, flight, monkeypatch):
+    """One that never ends: what is finished is kept, one line, the code of an interrupt."""
+    for folder in "tools", "pictures", "exported":
+        Path(folder).mkdir()
+    Path("tools/gnuplot").write_text(f'#!/bin/sh\n: >"{os.getcwd()}/drawing"\nexec sleep 300\n')
+    Path("tools/gnuplot").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{os.getcwd()}/tools:{os.environ['PATH']}")
+
+    def interrupted(*words):
+        process = pinnquad.start(*words)
+        until(Path("drawing").exists, process)
+        Path("drawing").unlink()
+        return ended(process, whole_group=True)
+
+    done = interrupted("fly --samples 40 --out drawn.csv --pictures pictures")
+    assert done.code == 130 and len(done.lines) == 1 and "pictures are missing" in done.lines[0], done
+    assert len(Path("drawn.csv").read_text().splitlines()) == 41
+    done = interrupted("train --out exported --seeds 1 --epochs 4 --block exported/model.block --allow-poor --flight", flight)
+    assert finished(done, 3) == 3
+    for file in "results.csv", "report.json", "model.hpp", "replay.txt", "model.block":
+        assert Path("exported", file).stat().st_size, f"{file} was lost to a picture"
+    no_partial_files()
+
+
+def test_evaluate(pinnquad, made, flight):
+    """It writes nothing that could be half there: it ends at once, however long the flight."""
+    exported = made(f"train --flight {flight} --out . --seeds 1 --epochs 4 --block model.block --allow-poor")
+    header, *rows = flight.read_text().splitlines()
+    step = float(rows[1].split(",")[0]) - float(rows[0].split(",")[0])
+    with open("long.csv", "w") as long:
+        long.write(header + "\n")
+        for i in range(80 * len(rows)):
+            long.write(f"{step * i:.6g},{rows[i % len(rows)].split(',', 1)[1]}\n")
+    process = pinnquad.start("evaluate", exported / "model.hpp", "--flight", "long.csv", "--json")
+    time.sleep(0.5)
+    for _ in range(20):  # a signal that comes before the program listens is lost
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.1)
+    done = ended(process)
+    assert done.code == 130 and not done.out, done
