@@ -23,10 +23,12 @@ PROGRESS = re.compile(r"[^:]+: [ \d]{3} %(, \d+ s left)?")
 
 def pytest_addoption(parser):
     group = parser.getgroup("pinnquad")
-    group.addoption("--program", action="append", default=[], metavar="PATH", help="a program that was built; its name finds it")
+    group.addoption("--program", action="append", default=[], metavar="PATH",
+                    help="a program that was built; its name finds it")
     group.addoption("--compiler", default="c++", help="what compiles exports (default: c++)")
     group.addoption("--flags", default="", help="with these flags, as the build")
-    group.addoption("--reference", default=SOURCE.parent / "shared/reference", type=Path, help="logs that others recorded")
+    group.addoption("--reference", default=SOURCE.parent / "shared/reference", type=Path,
+                    help="logs that others recorded")
 
 
 def pytest_sessionfinish(session, exitstatus):
@@ -72,7 +74,8 @@ class Program:
 
     def run(self, *words, timeout=PATIENCE_S, stdout=subprocess.PIPE, **how):
         command = self._command(words)
-        done = subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=timeout, **how)
+        done = subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=timeout,
+                              **how)
         return Done(command, done.returncode, done.stdout or b"", done.stderr)
 
     def __call__(self, *words, code=0, **how):
@@ -183,7 +186,8 @@ def work(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="session")
 def made(pinnquad, tmp_path_factory):
-    """made(words...): the folder in which that command of the program has worked, once for all topics. Nobody writes there."""
+    """made(words...): the folder in which that command of the program has worked, once for all topics. Nobody writes
+    there."""
     facts = os.stat(str(pinnquad))
     home = tmp_path_factory.getbasetemp().parent / "products"
     shelf = home / f"{facts.st_mtime_ns}-{facts.st_size}"
@@ -222,7 +226,8 @@ def compiler(request):
     """The compiler of exports, which finds library and Eigen."""
     name = needed(request.config.getoption("--compiler"))
     try:
-        found = subprocess.run(["pkg-config", "--variable=includedir", "eigen3"], capture_output=True, text=True).stdout.strip()
+        found = subprocess.run(["pkg-config", "--variable=includedir", "eigen3"], capture_output=True,
+                               text=True).stdout.strip()
     except FileNotFoundError:
         found = ""
     eigen = next((path for path in (f"{found}/eigen3", "/usr/include/eigen3") if os.path.isdir(f"{path}/Eigen")), None)
@@ -260,8 +265,8 @@ def needed(name):
 
 
 def edited(source, target, change, separator=","):
-    """Writes a table with other rows. change(line, cells) edits the cells of that line, from 1, or returns those to write:
-    False for none of it."""
+    """Writes a table with other rows. change(line, cells) edits the cells of that line, from 1, or returns those to
+    write: False for none of it."""
     with open(source) as rows, open(target, "w") as out:
         for line, row in enumerate(rows, start=1):
             cells = row.rstrip("\n").split(",")

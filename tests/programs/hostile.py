@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Hostile invocations: each has its exit code, at most one line on stderr, leaves no partial file, and what it was given is
-untouched. All of a list are tried, some at a time; a failure names those that went wrong."""
+"""Hostile invocations: each has its exit code, at most one line on stderr, leaves no partial file, and what it was
+given is untouched. All of a list are tried, some at a time; a failure names those that went wrong."""
 import hashlib
 import os
 import re
@@ -36,10 +36,12 @@ PLACED = {"hard", "flight_hard", "large.csv", "mine.partial-1"}  # before the pr
 
 
 class Case:
-    """Words of an invocation; the first is split at its blanks and begins with a program's name. `leaves` whether files may stay
-    in run/; `places` whether run/ holds a folder, a pipe, links; before(run) prepares it, after(run) looks at it."""
+    """Words of an invocation; the first is split at its blanks and begins with a program's name. `leaves` whether files
+    may stay in run/; `places` whether run/ holds a folder, a pipe, links; before(run) prepares it, after(run) looks at
+    it."""
 
-    def __init__(self, *words, code=2, leaves=False, places=False, around="", blocks=1, env=None, before=None, after=None):
+    def __init__(self, *words, code=2, leaves=False, places=False, around="", blocks=1, env=None, before=None,
+                 after=None):
         self.program, *first = words[0].split()
         self.words = [*first, *words[1:]]
         self.code, self.leaves, self.places, self.env = code, leaves, places, env or {}
@@ -62,7 +64,8 @@ def accepted(*words, **how):
 def make_places(run):
     (run / "folder").mkdir()
     os.mkfifo(run / "fifo")
-    for name, target in ("dangling", "nowhere"), ("loop", "loop"), ("link", "../in/sticks.csv"), ("flight_link", "../in/flight.csv"):
+    for name, target in ("dangling", "nowhere"), ("loop", "loop"), ("link", "../in/sticks.csv"), ("flight_link",
+                                                                                                  "../in/flight.csv"):
         os.symlink(target, run / name)
     for name, target in ("hard", "sticks.csv"), ("flight_hard", "flight.csv"):
         if (run / "../in" / target).exists():
@@ -96,8 +99,8 @@ class Sandbox:
         if reading:
             os.close(reading)
         try:
-            done = subprocess.run(command, cwd=self.folder, env={**os.environ, **case.env}, stdin=subprocess.DEVNULL, stdout=out,
-                                  stderr=subprocess.PIPE, timeout=20)
+            done = subprocess.run(command, cwd=self.folder, env={**os.environ, **case.env}, stdin=subprocess.DEVNULL,
+                                  stdout=out, stderr=subprocess.PIPE, timeout=20)
         except subprocess.TimeoutExpired:
             return f"{words}: nobody waits for ever"
         finally:
@@ -116,7 +119,8 @@ class Sandbox:
             yield f"{len(lines)} lines on stderr"
         if STEERS.search(done.err.replace("\n", "")):
             yield "steers the terminal"
-        left = [path for path in self.run.rglob("*") if path.is_file() and not path.is_symlink() and path.name not in PLACED]
+        left = [path for path in self.run.rglob("*") if path.is_file() and not path.is_symlink()
+                and path.name not in PLACED]
         if left and not case.leaves:
             yield f"left {left}"
         if case.code == 0 and not left:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Airframes listed, checked and converted: a converted one flies the same flight, bit for bit, from its file and from its
-struct."""
+"""Airframes listed, checked and converted: a converted one flies the same flight, bit for bit, from its file and from
+its struct."""
 import re
 from pathlib import Path
 
@@ -70,7 +70,8 @@ def test_tilted(pinnquad, tilted, compiler):
 
 @pytest.mark.parametrize("words, at, keyword", [
     ("check zeppelin", "", "'zeppelin'"), ("check none.toml", "none.toml", "found none"),
-    ("convert tilted.toml --out third.hpp --name 3rd", "", "'3rd'"), ("convert tilted.toml --out tilted.txt", "", ".hpp"),
+    ("convert tilted.toml --out third.hpp --name 3rd", "", "'3rd'"), ("convert tilted.toml --out tilted.txt", "",
+                                                                      ".hpp"),
     ("convert tilted.toml --out ./tilted.toml", "", "same file"),
     ("convert tilted.toml --out absent/a.toml", "absent/a.toml", "cannot write"), ("", "", "expected a command"),
     ("check broken.toml", "broken.toml:2:11", "above 0")])

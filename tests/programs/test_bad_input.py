@@ -38,8 +38,9 @@ def still_gyro(line, cells):
 @pytest.mark.parametrize("place, keyword, change", [
     ("1", "wdot_x", cell(1, 5, "wrong")), ("7:3", "fast", cell(7, 3, "fast")), ("9:4", "nan", cell(9, 4, "nan")),
     ("9:4", "", cell(9, 4, "")), ("11:*", "", lambda line, cells: cells[:-1] if line == 11 else None),
-    ("12:*", "", lambda line, cells: [*cells, "1"] if line == 12 else None), ("1", "", first(0)), ("*", "rows", first(1)),
-    ("*", "rows", first(500)), ("3:1", "milliseconds", column(1, to=lambda t: 1000 * t)), ("2:11", "w_x", still_gyro)])
+    ("12:*", "", lambda line, cells: [*cells, "1"] if line == 12 else None), ("1", "", first(0)),
+    ("*", "rows", first(1)), ("*", "rows", first(500)), ("3:1", "milliseconds", column(1, to=lambda t: 1000 * t)),
+    ("2:11", "w_x", still_gyro)])
 def test_flight(pinnquad, good, place, keyword, change):
     edited(good, "bad.csv", change)
     pinnquad.refused(TRAIN, "bad.csv", at=f"bad.csv:{place}", keyword=keyword)
@@ -51,8 +52,9 @@ def test_separators(pinnquad, good, separator, name):
     pinnquad.refused(TRAIN, "bad.csv", at="bad.csv:1", keyword=name)
 
 
-@pytest.mark.parametrize("begin, each, end", [("a", ".a", " = 1"), ("[a", ".a", "]"), ("a = ", "[", ""), ("a = ", "{a = ", ""),
-                                              ("", "['x'.", ""), ('a = "x" # .\n"b"', '."b"', " = 1")])
+@pytest.mark.parametrize("begin, each, end", [("a", ".a", " = 1"), ("[a", ".a", "]"), ("a = ", "[", ""),
+                                              ("a = ", "{a = ", ""), ("", "['x'.", ""),
+                                              ('a = "x" # .\n"b"', '."b"', " = 1")])
 def test_deep_toml(pinnquad, good, begin, each, end):
     """Nested deeper than any parser's stack: TOML of every kind; JSON of a study is in programs.report."""
     Path("deep.toml").write_text(begin + 50000 * each + end + "\n")
@@ -64,11 +66,13 @@ def test_deep_toml(pinnquad, good, begin, each, end):
 def test_json(pinnquad):
     Path("nested").mkdir()
     Path("nested/dataset.json").write_text('{"format": 1, "x": ' + 100000 * '{"a": ')
-    pinnquad.refused("train --dataset nested --hold-out x --out out/d", at="nested/dataset.json:1:*", keyword="64 levels")
+    pinnquad.refused("train --dataset nested --hold-out x --out out/d", at="nested/dataset.json:1:*",
+                     keyword="64 levels")
     flight = {"file": "good.csv\0.csv", "name": "", "rows": 1}
     dataset = {"format": 1, "sample_period_s": 0.05, "lag_removed_s": 0, "flights": [flight]}
     Path("nested/dataset.json").write_text(json.dumps(dataset))
-    pinnquad.refused("train --dataset nested --hold-out x --out out/d", at="nested/dataset.json", keyword="name of a file")
+    pinnquad.refused("train --dataset nested --hold-out x --out out/d", at="nested/dataset.json",
+                     keyword="name of a file")
 
 
 @pytest.mark.parametrize("output", ["out/f.csv", "out/results.csv", "out/model.hpp"])

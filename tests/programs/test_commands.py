@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The command line itself: commands and their help, --version, completion, manual page, options from a file by --config."""
+"""The command line itself: commands and their help, --version, completion, manual page, options from a file by
+--config."""
 import re
 import shutil
 import subprocess
@@ -27,7 +28,8 @@ def test_help_and_version(commands, study):
         assert not wide, command.name
         assert not command("--help").err, command.name
         assert command("--version").out == f"pinnquad {'.'.join(numbers)}\n"
-    shown = {command.name: bool(re.search(r"^Examples:\n  (pinnquad|cmake) ", text, re.M)) for command, text in commands}
+    shown = {command.name: bool(re.search(r"^Examples:\n  (pinnquad|cmake) ", text, re.M)) for command,
+             text in commands}
     of_study = {name for name in shown if name.startswith(study.name)}
     assert any(shown[name] for name in of_study)
     assert all(shown[name] for name in shown.keys() - of_study), shown
@@ -59,8 +61,9 @@ def test_manual_page(pinnquad, commands):
     needed("help2man")
     Program("bash")("", SOURCE / "tools/command_line/manual_page.sh", pinnquad, "pinnquad.1")
     page = Path("pinnquad.1").read_text()
-    for section in "NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "COMMANDS", "OPTIONS FROM A FILE", "FILES", "EXIT STATUS":
-        assert re.search(rf'^\.SH "?{section}"?$', page, re.M), section
+    sections = re.findall(r'^\.SH "?(.*?)"?$', page, re.M)
+    assert {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "COMMANDS", "OPTIONS FROM A FILE", "FILES",
+            "EXIT STATUS"} <= set(sections), sections
     assert not re.search(r"^(Usage|Commands|Arguments|Options):|^Subcommands", page, re.M), "pieces of --help"
     for command, text in commands[1:]:
         part = re.search(rf'^\.SS "{command.name}"\n(.*?)(?=^\.S[HS])', page + "\n.SH", re.M | re.S)
@@ -69,7 +72,8 @@ def test_manual_page(pinnquad, commands):
             assert len(re.findall(rf"^\.B {option}( |$)", part, re.M)) == 1, (command.name, option)
         assert re.search("^Exit codes: 0", part, re.M), command.name
     if shutil.which("man"):
-        shown = Program("man")("--warnings -l pinnquad.1", env={"PATH": "/usr/bin:/bin", "LC_ALL": "C", "MANWIDTH": "80"})
+        shown = Program("man")("--warnings -l pinnquad.1", env={"PATH": "/usr/bin:/bin", "LC_ALL": "C",
+                                                                "MANWIDTH": "80"})
         assert not shown.err
 
 
@@ -122,7 +126,8 @@ def test_options_from_a_file(pinnquad):
     ("2:8", "--seed", "[fly]\nseed = -1"), ("2:13", "--max-speed", "[fly]\nmax-speed = 20"),
     ("2:1", "`sed`", "[fly]\nsed = 1"), ("2:1", "`help`", "[fly]\nhelp = true"), ("1:2", "`land`", "[land]\nseed = 1"),
     ("2:8", "truth value", "[fly]\nseed = true"), ("2:18", "true or false", "[fly]\nlist-airframes = 1"),
-    ("2:9", "array", "[fly]\nseed = [[]]"), ("2:6", "TOML", "[fly]\nseed 3"), ("2:10", "--epochs", "[train]\nepochs = 0")])
+    ("2:9", "array", "[fly]\nseed = [[]]"), ("2:6", "TOML", "[fly]\nseed 3"),
+    ("2:10", "--epochs", "[train]\nepochs = 0")])
 def test_wrong_file(pinnquad, place, keyword, text):
     Path("wrong.toml").write_text(text + "\n")
     pinnquad.refused("fly --config wrong.toml --samples 20 --out w.csv", at=f"wrong.toml:{place}", keyword=keyword)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The paper's flights: bounds by --statistics, stick recordings flown again, recorder errors, pictures, bad input, Ctrl-C."""
+"""The paper's flights: bounds by --statistics, stick recordings flown again, recorder errors, pictures, bad input,
+Ctrl-C."""
 import os
 import re
 import time
@@ -33,7 +34,8 @@ def test_default_flight(pinnquad):
 def test_rows_and_bounds(pinnquad, flight, samples):
     pinnquad(f"fly {flight} --out flight.csv")
     assert rows("flight.csv") == samples
-    assert re.search("^  mean ", pinnquad(f"fly {flight} --statistics 3 --out table.csv").out, re.M), "the table has no means"
+    assert re.search("^  mean ", pinnquad(f"fly {flight} --statistics 3 --out table.csv").out,
+                     re.M), "the table has no means"
     seeds = [{name: float(value) for name, value in row.items()} for row in table("table.csv")]
     assert len(seeds) == 3
     for seed in seeds:
@@ -96,7 +98,8 @@ def test_without_gnuplot(pinnquad):
 
 
 @pytest.mark.parametrize("words, at, keyword", [
-    ("--sticks bad.csv --out out/f.csv", "bad.csv:4:3", "fast"), ("--sticks absent.csv --out out/f.csv", "absent.csv", ""),
+    ("--sticks bad.csv --out out/f.csv", "bad.csv:4:3", "fast"), ("--sticks absent.csv --out out/f.csv", "absent.csv",
+                                                                  ""),
     ("d4 --out out/f.csv", "", "'d4'"), ("d2 --ground-effect some --out out/f.csv", "", "'some'"), ("d1", "", "--out"),
     ("d1 --statistics 2 --sticks STICKS", "", "--statistics"), ("d1 --statistics 2 --pictures out", "", "--statistics"),
     ("d1 --max-speed 3 --sticks STICKS --out out/f.csv", "", "--max-speed"),
@@ -130,7 +133,8 @@ def test_progress_on_a_terminal(pinnquad):
         needed(name)
     if os.system("script -qec true /dev/null >/dev/null 2>&1 </dev/null"):
         pytest.skip("no pseudo-terminal here")
-    os.system(f"script -qec \"'{pinnquad}' fly --samples 400 --out f.csv --pictures .\" terminal.txt >/dev/null </dev/null")
+    words = f"'{pinnquad}' fly --samples 400 --out f.csv --pictures ."
+    os.system(f'script -qec "{words}" terminal.txt >/dev/null </dev/null')
     seen = Path("terminal.txt").read_text()
     for part in "flying:", "writing f.csv:", "drawing 2 pictures:":
         assert re.search(rf"{part} +[0-9]+ %, [0-9]+ s left", seen), (part, seen)

@@ -9,17 +9,20 @@ import pytest
 from conftest import SOURCE, WATCH, Program
 from hostile import DEEP, HERE, LONG, Case, accepted, left_alone, no_cut_pictures, refused, try_all
 
-WHOLE_NUMBERS = ["", " ", "-1", "+1", "1.5", "0x10", "010", "1e3", "nan", "9" * 23, "many", "1 2", "\u0663", "\udcff", "1\n", "1;2",
-                 "9" * 3000]
-NUMBERS = ["", " ", "nan", "-nan", "inf", "-inf", "1e999", "0x10", "1,5", "much", "0 1", "\u0663", "\udcff", "0\n", "-1e-9", "+0.5",
-           "1e-9999x"]
-UNWRITABLE = [".", "/", "..", "/dev/null", "/dev/full", "/dev/stdout", "/proc/f.csv", "/dev/null/f.csv", "run/absent/f.csv",
-              "in/short.csv/f.csv", "run/absent/", "run/folder", "run/fifo", "run/dangling", "run/loop", "", f"run/{LONG}", DEEP]
-UNREADABLE = ["", ".", "/", "/dev/null", "/dev/zero", "/dev/random", "/proc/self/mem", "run/fifo", "run/folder", "run/dangling",
-              "run/loop", "run/absent", "in/empty.csv", "in/binary.csv", "in/nul.csv", "in/one_line.csv", "in/short.csv/x", LONG,
-              DEEP, "\udcff", "a\nb"]
-NO_FOLDER = ["", "in/short.csv", "in/short.csv/x", "/dev/null", "/proc/x", "run/fifo", "run/dangling", "run/loop", f"run/{LONG}"]
-NAMES = [" ", "a b", "it's", '"', "*", "$(touch x)", ";", "flüg ✈", "\udcff\udcfe", "line\nend", "\033[31m", "%s%n", "\\"]
+WHOLE_NUMBERS = ["", " ", "-1", "+1", "1.5", "0x10", "010", "1e3", "nan", "9" * 23, "many", "1 2", "\u0663", "\udcff",
+                 "1\n", "1;2", "9" * 3000]
+NUMBERS = ["", " ", "nan", "-nan", "inf", "-inf", "1e999", "0x10", "1,5", "much", "0 1", "\u0663", "\udcff", "0\n",
+           "-1e-9", "+0.5", "1e-9999x"]
+UNWRITABLE = [".", "/", "..", "/dev/null", "/dev/full", "/dev/stdout", "/proc/f.csv", "/dev/null/f.csv",
+              "run/absent/f.csv", "in/short.csv/f.csv", "run/absent/", "run/folder", "run/fifo", "run/dangling",
+              "run/loop", "", f"run/{LONG}", DEEP]
+UNREADABLE = ["", ".", "/", "/dev/null", "/dev/zero", "/dev/random", "/proc/self/mem", "run/fifo", "run/folder",
+              "run/dangling", "run/loop", "run/absent", "in/empty.csv", "in/binary.csv", "in/nul.csv",
+              "in/one_line.csv", "in/short.csv/x", LONG, DEEP, "\udcff", "a\nb"]
+NO_FOLDER = ["", "in/short.csv", "in/short.csv/x", "/dev/null", "/proc/x", "run/fifo", "run/dangling", "run/loop",
+             f"run/{LONG}"]
+NAMES = [" ", "a b", "it's", '"', "*", "$(touch x)", ";", "flüg ✈", "\udcff\udcfe", "line\nend", "\033[31m", "%s%n",
+         "\\"]
 NO_IDENTIFIER = ["", " ", "3rd", "\x9b31m", "a b", "a;b", "ü", "a\nb", "a::b", "9" * 3000]
 DISKS = ["full_disk", "full_disk_signal"]
 FEW = "fly --samples 20"
@@ -63,8 +66,9 @@ def fly_cases():
         for value in WHOLE_NUMBERS if option == "--seed" else NUMBERS:
             yield refused(f"{FEW} --out run/f.csv", option, value)
     for words in ["--samples 0", "--samples 10000001", "--statistics 100001", "--latency 1000.001", "--max-speed 0.4",
-                  "--seed 1 --seed 2", "--no-such-option", "-x", "d1 d2", "D1", "--airframe", "--seed", "--ground-effect ?",
-                  "--seed 18446744073709551616", "--seed 18446744073709551615", "--latency 5ms", "--out run/g.csv"]:
+                  "--seed 1 --seed 2", "--no-such-option", "-x", "d1 d2", "D1", "--airframe", "--seed",
+                  "--ground-effect ?", "--seed 18446744073709551616", "--seed 18446744073709551615", "--latency 5ms",
+                  "--out run/g.csv"]:
         yield refused(f"{FEW} --out run/f.csv {words}")
     for text in ["", " ", "d1\n", "\udcff", "\x9b31m", "\u202e1d", "D1", "d1,d2", "d" * 5000]:
         yield refused(FEW, text, "--out", "run/f.csv")
@@ -78,9 +82,11 @@ def fly_cases():
         yield left_alone(f"{FEW} --record-sticks", path)
         yield left_alone("fly --statistics 1 --samples 5 --out", path)
         yield left_alone(f"{FEW} --out run/x.csv {WATCH}", path)
-    for path in ["", "/dev/null", "in/short.csv", "/proc/pictures", "run/absent/pictures", "run/fifo", "run/dangling", "run/loop"]:
+    for path in ["", "/dev/null", "in/short.csv", "/proc/pictures", "run/absent/pictures", "run/fifo", "run/dangling",
+                 "run/loop"]:
         yield left_alone(f"{FEW} --pictures", path)
-    for path in ["in/sticks.csv", "./in/sticks.csv", f"{HERE}/in/sticks.csv", "in/../in//sticks.csv", "run/link", "run/hard"]:
+    for path in ["in/sticks.csv", "./in/sticks.csv", f"{HERE}/in/sticks.csv", "in/../in//sticks.csv", "run/link",
+                 "run/hard"]:
         yield left_alone(f"{FEW} --sticks in/sticks.csv --out", path)
         yield left_alone(f"{FEW} --sticks in/sticks.csv --record-sticks", path)
         yield left_alone(f"{FEW} --sticks {path} --out in/sticks.csv")
@@ -89,11 +95,13 @@ def fly_cases():
                   "--out run/trajectory.svg --pictures run", "--record-sticks run/wind.svg --pictures run",
                   "--out run/x --pictures run/x", f"--out run/x {WATCH} run/../run/x"]:
         yield refused(f"{FEW} {words}")
-    yield Case(f"{FEW} --sticks run/mine.partial-1 --out run/mine", leaves=True, after=unchanged("sticks.csv", "mine.partial-1"),
-               before=lambda run: shutil.copy(run / "../in/sticks.csv", run / "mine.partial-1"))
+    yield Case(f"{FEW} --sticks run/mine.partial-1 --out run/mine", leaves=True,
+               after=unchanged("sticks.csv", "mine.partial-1"), before=lambda run: shutil.copy(run / "../in/sticks.csv",
+                                                                                               run / "mine.partial-1"))
     yield from (left_alone(f"{FEW} --sticks", path, "--out", "run/f.csv") for path in UNREADABLE)
     yield refused(f"{FEW} --sticks run/large.csv --out run/f.csv",
-                  before=lambda run: (os.close(os.open(run / "large.csv", os.O_CREAT)), os.truncate(run / "large.csv", 9 << 30)))
+                  before=lambda run: (os.close(os.open(run / "large.csv", os.O_CREAT)),
+                                      os.truncate(run / "large.csv", 9 << 30)))
     yield from (accepted(FEW, f"--out=run/{name}") for name in [*NAMES, "-x.csv", "n" * 240])
     yield accepted(f"{FEW} --out run/f.csv --record-sticks run/s.csv")
 
@@ -101,9 +109,9 @@ def fly_cases():
         assert not (run / "said.txt").read_bytes(), "an output took the place of standard output"
 
     yield Case(f"{FEW} --out run/said.txt", around="into_a_file", leaves=True, after=said_nothing)
-    for how in [{"around": "closed_stdin"}, {"around": "no_threads"}, {"around": "one_thread"}, {"env": {"LC_ALL": "garbage"}},
-                {"env": {"LC_ALL": "tr_TR.UTF-8", "LANG": "xx"}}, {"env": {"TERM": "x", "COLUMNS": "0"}}, {"env": BLANK},
-                {"env": {"HOME": ""}}]:
+    for how in [{"around": "closed_stdin"}, {"around": "no_threads"}, {"around": "one_thread"},
+                {"env": {"LC_ALL": "garbage"}}, {"env": {"LC_ALL": "tr_TR.UTF-8", "LANG": "xx"}},
+                {"env": {"TERM": "x", "COLUMNS": "0"}}, {"env": BLANK}, {"env": {"HOME": ""}}]:
         yield accepted(f"{FEW} --out run/f.csv", **how)
         yield accepted("fly --statistics 3 --samples 5 --out run/t.csv", **how)
 
@@ -113,8 +121,8 @@ def fly_cases():
             assert path.read_text().startswith(("t,vdot", "seed,rows")), "what is printed is in the file"
 
     for around in "closed_stdout", "full_stdout":
-        for words in [f"{FEW} --out run/f.csv", "fly --statistics 2 --samples 5 --out run/f.csv", "fly --help", "fly --version",
-                      "fly --list-airframes"]:
+        for words in [f"{FEW} --out run/f.csv", "fly --statistics 2 --samples 5 --out run/f.csv", "fly --help",
+                      "fly --version", "fly --list-airframes"]:
             yield Case(words, around=around, leaves=True, after=whole)
     yield Case("fly --statistics 100 --samples 2 --out run/f.csv", around="reader_left", leaves=True)
     yield accepted(f"{FEW} --out run/f.csv", around="closed_stderr")
@@ -126,26 +134,31 @@ def fly_cases():
         yield refused("fly --samples 40 --record-sticks run/s.csv", around=disk)
         for blocks in 1, 20, 40, 60:  # each picture is larger than the one before it
             if shutil.which("gnuplot"):
-                yield Case("fly d2 --samples 400 --pictures run", around=disk, blocks=blocks, leaves=True, after=no_cut_pictures)
+                yield Case("fly d2 --samples 400 --pictures run", around=disk, blocks=blocks, leaves=True,
+                           after=no_cut_pictures)
     yield Case("fly --samples 40 --pictures run", code=1, env={"PATH": "/nonexistent:/usr/nowhere"})
     yield refused(f"{FEW} --out run/f.csv", around="few_files")
 
 
 def train_cases():
-    yield from (refused("train --flight in/flight.csv --out run/o --epochs 1 --seeds", value) for value in WHOLE_NUMBERS)
-    yield from (refused("train --flight in/flight.csv --out run/o --seeds 1 --epochs", value) for value in WHOLE_NUMBERS)
+    yield from (refused("train --flight in/flight.csv --out run/o --epochs 1 --seeds", value)
+                for value in WHOLE_NUMBERS)
+    yield from (refused("train --flight in/flight.csv --out run/o --seeds 1 --epochs", value)
+                for value in WHOLE_NUMBERS)
     for option in "--seed", "--threads":
         yield from (refused(f"{ONE} --out run/o {option}", value) for value in WHOLE_NUMBERS)
-    for words in ["--epochs 0", "--epochs 100001", "--seeds 0", "--threads 0", "--threads 1025", "--no-such-option", "x",
-                  "--flight in/short.csv", "--airframe", "--seed 18446744073709551615"]:
+    for words in ["--epochs 0", "--epochs 100001", "--seeds 0", "--threads 0", "--threads 1025", "--no-such-option",
+                  "x", "--flight in/short.csv", "--airframe", "--seed 18446744073709551615"]:
         yield refused(f"train --flight in/flight.csv --out run/o {words}")
     yield from (refused(f"{ONE} --out run/o --name", text) for text in [*NO_IDENTIFIER, "\u202emodel"])
-    yield from (left_alone("train --flight", path, *SHORT.split(), "--out", "run/o") for path in [*UNREADABLE, "in/sticks.csv"])
+    yield from (left_alone("train --flight", path, *SHORT.split(), "--out", "run/o")
+                for path in [*UNREADABLE, "in/sticks.csv"])
     yield from (left_alone(f"{ONE} --out", path) for path in [*NO_FOLDER, "/dev/null/x"])
-    for path in [*UNWRITABLE, "in/flight.csv", "./in/flight.csv", f"{HERE}/in/flight.csv", "run/flight_link", "run/flight_hard",
-                 "run/o/results.csv", "run/o/model.hpp", "run/./o/../o/replay.txt", "run/o"]:
+    for path in [*UNWRITABLE, "in/flight.csv", "./in/flight.csv", f"{HERE}/in/flight.csv", "run/flight_link",
+                 "run/flight_hard", "run/o/results.csv", "run/o/model.hpp", "run/./o/../o/replay.txt", "run/o"]:
         yield left_alone(f"{ONE} --out run/o --block", path)
-    for name in ["results.csv", "report.json", "ellipses.svg", "errors.svg", "prediction.svg", "model.hpp", "replay.txt"]:
+    for name in ["results.csv", "report.json", "ellipses.svg", "errors.svg", "prediction.svg", "model.hpp",
+                 "replay.txt"]:
         yield Case(f"train --flight run/{name} {SHORT} --out run", leaves=True, after=unchanged("flight.csv", name),
                    before=lambda run, name=name: shutil.copy(run / "../in/flight.csv", run / name))
         yield refused(f"{ONE} --out run", before=lambda run, name=name: os.symlink("../in/flight.csv", run / name))
@@ -153,8 +166,8 @@ def train_cases():
     for name in ["it's *.csv", '"quoted".csv', "flüg ✈.csv", "\udcff\udcfe.csv", "line\nend.csv", "\\"]:
         yield accepted("train --flight", f"run/{name}", *SHORT.split(), "--out", f"run/out of {name}",
                        before=lambda run, name=name: shutil.copy(run / "../in/flight.csv", run / name))
-    for how in [{"around": "closed_stdin"}, {"around": "no_threads"}, {"around": "one_thread"}, {"env": {"LC_ALL": "garbage"}},
-                {"env": BLANK}]:
+    for how in [{"around": "closed_stdin"}, {"around": "no_threads"}, {"around": "one_thread"},
+                {"env": {"LC_ALL": "garbage"}}, {"env": BLANK}]:
         yield accepted(f"{ONE} --out run/o", **how)
 
     def exported(run):
@@ -181,13 +194,15 @@ def study_cases():
     yield from (refused("study paper --models 1 --epochs 1 --out run/o --seeds", value) for value in WHOLE_NUMBERS)
     yield from (refused("study paper --models 1 --seeds 1 --out run/o --epochs", value) for value in WHOLE_NUMBERS)
     for option in "--flights", "--flight-seed", "--patience", "--threads":
-        yield from (refused(f"study paper --models 1 --shard 2/2 {SHORT} --out run/o {option}", value) for value in WHOLE_NUMBERS)
-    for words in ["--models 0", "--models 15", "--models 1,", "--models 1-", "--models 010", "--models +1", "--shard 0/1",
-                  "--shard 2", "--shard 3/2", "--shard 1/2/3", "--weights worst", "--seeds 0", "--flights 0", "--flights 1001",
-                  "--epochs 0", "x", "ablation", "--no-such-option"]:
+        yield from (refused(f"study paper --models 1 --shard 2/2 {SHORT} --out run/o {option}", value)
+                    for value in WHOLE_NUMBERS)
+    for words in ["--models 0", "--models 15", "--models 1,", "--models 1-", "--models 010", "--models +1",
+                  "--shard 0/1", "--shard 2", "--shard 3/2", "--shard 1/2/3", "--weights worst", "--seeds 0",
+                  "--flights 0", "--flights 1001", "--epochs 0", "x", "ablation", "--no-such-option"]:
         yield refused(f"study paper --out run/o {words}")
-    for words in ["", "x", "--seeds 1", "paper", "merge", "merge in", "ablation", "ablation --out run/o --variants none",
-                  "merge absent --out run/o", "--out run/o paper", "--out run/o merge absent"]:
+    for words in ["", "x", "--seeds 1", "paper", "merge", "merge in", "ablation",
+                  "ablation --out run/o --variants none", "merge absent --out run/o", "--out run/o paper",
+                  "--out run/o merge absent"]:
         yield refused(f"study {words}")
     yield from (refused(f"report {words}") for words in ["", "absent", "in/short.csv", "in x", "--out in"])
     for path in NO_FOLDER:
@@ -213,7 +228,8 @@ def new_cases():
     def written(run):
         assert (run / "o/main.cpp").stat().st_size, "nothing was written"
 
-    yield from (Case("new run/o", around=around, leaves=True, after=written) for around in ("closed_stdout", "full_stdout"))
+    yield from (Case("new run/o", around=around, leaves=True, after=written)
+                for around in ("closed_stdout", "full_stdout"))
     yield refused("new run/o", around="few_files")
 
 

@@ -66,7 +66,8 @@ def test_while_gnuplot_draws(pinnquad, flight, monkeypatch):
     done = interrupted("fly --samples 40 --out drawn.csv --pictures pictures")
     assert done.code == 130 and len(done.lines) == 1 and "pictures are missing" in done.lines[0], done
     assert len(Path("drawn.csv").read_text().splitlines()) == 41
-    done = interrupted("train --out exported --seeds 1 --epochs 4 --block exported/model.block --allow-poor --flight", flight)
+    done = interrupted("train --out exported --seeds 1 --epochs 4 --block exported/model.block --allow-poor --flight",
+                       flight)
     assert finished(done, 3) == 3
     for file in "results.csv", "report.json", "model.hpp", "replay.txt", "model.block":
         assert Path("exported", file).stat().st_size, f"{file} was lost to a picture"

@@ -23,7 +23,8 @@ def hostile_values(kind):
 def test_by_help(commands):
     tried = 0
     for command, text in commands[1:]:
-        assert not re.search(r"^  --[a-z-]+ (FLOAT|INT|UINT|NUMBER)", text, re.M), f"{command.name}: a number without its range"
+        assert not re.search(r"^  --[a-z-]+ (FLOAT|INT|UINT|NUMBER)", text,
+                             re.M), f"{command.name}: a number without its range"
         for option, kind in re.findall(r"^  (--[a-z-]+) (\S+)", text, re.M):
             for value in ["", *hostile_values(kind.split("=")[0])]:
                 line = command.refused(option, value, keyword=option, timeout=20).lines[0]
@@ -48,8 +49,8 @@ def test_lag_and_models(pinnquad, study):
     assert not os.listdir()
 
 
-@pytest.mark.parametrize("entry", ["seconds = nan", 'seconds = "nan"', "seconds = inf", "seconds = 0", "seed = -1", 'seed = ""',
-                                   "seed = 1e400"])
+@pytest.mark.parametrize("entry", ["seconds = nan", 'seconds = "nan"', "seconds = inf", "seconds = 0", "seed = -1",
+                                   'seed = ""', "seed = 1e400"])
 def test_entries_of_a_file(pinnquad, entry):
     Path("wrong.toml").write_text(f"[certify]\n{entry}\n")
     pinnquad.refused("certify model.hpp --config wrong.toml", at="wrong.toml:2:*", timeout=20)

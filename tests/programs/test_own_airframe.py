@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""An airframe that no library knows: from its file to a flight, a training, and a header that flies without file or trainer."""
+"""An airframe that no library knows: from its file to a flight, a training, and a header that flies without file or
+trainer."""
 from pathlib import Path
 
 from conftest import SOURCE, Program, replaced
@@ -8,8 +9,8 @@ TRAIN = "train --flight flight.csv --seeds 1 --epochs 2 --threads 1 --allow-poor
 
 
 def test_own_airframe(pinnquad, compiler, flags):
-    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml", ("^name = .*", r'name = "my \\"own\\" quad"'),
-             ("^mass_kg = .*", "mass_kg = 1.31"))
+    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml",
+             ("^name = .*", r'name = "my \\"own\\" quad"'), ("^mass_kg = .*", "mass_kg = 1.31"))
     pinnquad("fly --airframe mine.toml --seed 3 --samples 2500 --out flight.csv")
     pinnquad(f"{TRAIN} --airframe mine.toml --out a --block a/model.block")
     header = Path("a/model.hpp").read_text()
@@ -25,5 +26,6 @@ def test_own_airframe(pinnquad, compiler, flags):
     assert "block: block_incompatible" in Program("./replay")("a/replay.txt b/model.block", code=1).out
 
     replaced("mine.toml", "broken.toml", ("^mass_kg = .*", "mass_kg = -1"))
-    pinnquad.refused("train --flight flight.csv --airframe broken.toml --out c", at="broken.toml:*:*", keyword="above 0")
+    pinnquad.refused("train --flight flight.csv --airframe broken.toml --out c", at="broken.toml:*:*",
+                     keyword="above 0")
     pinnquad.refused("train --flight flight.csv --airframe none.toml --out c", at="none.toml", keyword="found none")
