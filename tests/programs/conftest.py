@@ -5,6 +5,7 @@
 Tests pin exit codes, places (file:line:column) and one word of a complaint, not its sentence."""
 import csv
 import hashlib
+import json
 import os
 import re
 import shutil
@@ -200,7 +201,7 @@ def made(pinnquad, tmp_path_factory):
         if not folder.exists():
             making = shelf / f"{folder.name}-{os.getpid()}"
             making.mkdir(parents=True)
-            pinnquad(*words, cwd=making)
+            (making / "stderr.txt").write_text(pinnquad(*words, cwd=making).err, errors="surrogateescape")
             try:
                 making.rename(folder)
             except OSError:  # another topic was faster
@@ -214,6 +215,23 @@ def made(pinnquad, tmp_path_factory):
 def flown(made):
     """flown(words of fly): a flight's CSV."""
     return lambda words: made(f"fly {words} --out flight.csv") / "flight.csv"
+
+
+@pytest.fixture
+def dataset():
+    """dataset(folder, {name: CSV}): flights of the simulator as import would leave them."""
+
+    def write(folder, flights):
+        listed = []
+        Path(folder).mkdir()
+        for name, path in flights.items():
+            shutil.copy(path, Path(folder, f"{name}.csv"))
+            rows = len(Path(path).read_text().splitlines()) - 1
+            listed.append({"name": name, "file": f"{name}.csv", "trajectory": "", "rows": rows, "source": "simulator"})
+        facts = {"format": 1, "sample_period_s": 0.05, "lag_removed_s": 0, "absent": [], "flights": listed, "steps": []}
+        Path(folder, "dataset.json").write_text(json.dumps(facts))
+
+    return write
 
 
 @pytest.fixture(scope="session")
@@ -310,6 +328,10 @@ def table(path):
     """The rows of a CSV, each a dict."""
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def report_of(folder):
+    return json.loads(Path(folder, "report.json").read_text())
 
 
 def no_partial_files(folder="."):

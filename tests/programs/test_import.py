@@ -222,7 +222,8 @@ def test_memory(pinnquad):
 
     def peak(log):  # kB
         measure = "import resource, subprocess, sys; " \
-            "subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
+            "subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); " \
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
         command = [sys.executable, "-c", measure, pinnquad, "import", log, *NED_LAG, "--out", "peak"]
         return int(subprocess.run(command, check=True, capture_output=True,
                                   env={**os.environ, "MALLOC_MMAP_THRESHOLD_": "131072"}).stdout)

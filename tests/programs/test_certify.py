@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: MIT
+"""certify proves a structured model, refutes the paper's networks by motions that another program finds to be such, and
+says so where it can do neither."""
+import json
+import re
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, report_of
+from exported import AXES, Header
+
+DEMO = SOURCE / "examples/models/demo_quadrotor.hpp"
+STRUCTURED = SOURCE / "examples/models/structured_quadrotor.hpp"
+PARAMETER = r"[-+.\de]+f"
+
+
+def but_the_time(text, key="seconds"):
+    return [line for line in text.splitlines() if key not in line]
+
+
+@pytest.mark.parametrize("model", ["examples/models/demo_quadrotor.hpp", "examples/models/crazyflie_2_1.hpp",
+                                   "tests/models/v2/demo_quadrotor.hpp", "tests/models/v3/demo_quadrotor.hpp"])
+def test_counterexample(pinnquad, flags, model):
+    """Two motions inside the envelope differ in one angular acceleration, and the signed sum falls from the first to
+    the second: by the network of the header's text, in double."""
+    report = json.loads(pinnquad("certify --json", SOURCE / model, code=1).out)
+    assert report["verdict"] == "counterexample"
+    assert report["seconds"] < (30 if any("sanitize" in flag for flag in flags) else 1)
+    header, example = Header(SOURCE / model), report["counterexample"]
+    axis, names = AXES.index(example["axis"]), header.names()
+    x = [example["features"][name] for name in names]
+    more = list(x)
+    assert example["moved"][0] == names[3 + axis] == "wdot_" + "xyz"[axis] and example["step"] > 0
+    for name in example["moved"]:
+        more[names.index(name)] += example["step"]
+    for motion in x, more:
+        for low, value, high in zip(header.numbers("envelope_lower"), motion, header.numbers("envelope_upper")):
+            assert low <= value <= high
+    commands, signed_sum = header.commands(), header.sums()
+    before, after = (signed_sum(commands(motion), axis) for motion in (x, more))
+    assert after < before - 5e-6
+    assert abs(before - example["signed_sum"]) < 1e-5 and abs(after - example["signed_sum_after_step"]) < 1e-5
+
+
+def test_text_and_seed(pinnquad):
+    assert "\nrefuted " in pinnquad("certify", DEMO, code=1).out
+    one, other = (pinnquad("certify --json --seed 7", DEMO, code=1).out for _ in range(2))
+    assert but_the_time(one) == but_the_time(other)
+    # no time to find anything: neither
+    pinnquad("certify --seconds 0.01", SOURCE / "tests/models/v2/crazyflie_tanh.hpp", code=(1, 3))
+
+
+@pytest.fixture(scope="module")
+def flight(flown):
+    return flown("--seed 3 --samples 3000")
+
+
+@pytest.fixture(scope="module")
+def trained(made, flight):
+    return made(f"train --flight {flight} --seeds 1 --epochs 6 --out . --block model.block --allow-poor")
+
+
+def test_structured(pinnquad, trained, flight):
+    """Proven, header and block; its judgement beside the paper's two."""
+    for file in "model.hpp", "model.block":
+        assert "\nproven " in pinnquad("certify", trained / file).out
+    of_header, of_block = (pinnquad("certify --json", trained / file).out for file in ("model.hpp", "model.block"))
+    assert but_the_time(of_header, '"model":') == but_the_time(of_block, '"model":')
+    assert "require_certificate<" in (trained / "model.hpp").read_text()
+    report = report_of(trained)
+    judged = json.loads(pinnquad("evaluate", trained / "model.hpp", "--flight", flight, "--rows", "test", "--json").out)
+    models = report["models"]
+    assert sorted(models) == ["linearized", "physics_informed", "structured", "vanilla"]
+    assert report["verdict"]["model"] == "structured"
+    error = {name: model["mean_absolute_error"]["mean"] for name, model in models.items()}
+    assert error["structured"] < 0.7 * error["physics_informed"]
+    assert abs(error["structured"] - judged["mean_absolute_error"]) < 1e-6
+    for axis in AXES:
+        wrong = models["structured"]["wrong_derivative_share"][axis]["mean"]
+        assert wrong == 0 == judged["wrong_derivative_share"][axis]
+
+
+def parameters(text):
+    """Where their list begins, and each."""
+    at = text.index("{", text.index(" parameters = ")) + 1
+    return at, list(re.finditer(PARAMETER, text[at : at + 2000]))
+
+
+def test_edited(pinnquad, trained):
+    """The proof is of these numbers: with a slope turned there is none."""
+    text = (trained / "model.hpp").read_text()
+    at, found = parameters(text)
+    Path("turned.hpp").write_text(text[: at + found[0].start()] + "-" + text[at + found[0].start() :])
+    pinnquad.refused("certify turned.hpp", at="turned.hpp:*", keyword="edited")
+    Path("turned.hpp").write_text(re.sub(".* contents_hash = .*\n", "", Path("turned.hpp").read_text()))
+    pinnquad.refused("certify turned.hpp", at="turned.hpp", keyword="golden commands")
+
+
+def scaled(index, share, output, feature, signs):
+    """The weight of one feature in one sum, and the golden commands that follow from it; without the hash."""
+    text = STRUCTURED.read_text()
+    at, found = parameters(text)
+
+    def numbers(name):
+        return [float(n[:-1]) for n in re.findall(PARAMETER, re.search(f" {name} = (.*?);", text, re.S).group(1))]
+
+    old = float(found[index].group()[:-1])
+    mean, spread = numbers("input")[feature], numbers("input")[19 + feature]
+    unit = (share - 1) * old * numbers("output")[4 + output] / 4
+    features = numbers("golden_features")[feature::19]
+    golden = [u + signs[i % 4] * unit * (features[i // 4] - mean) / spread
+              for i, u in enumerate(numbers("golden_commands"))]
+    result = text[: at + found[index].start()] + f"{share * old!r}f" + text[at + found[index].end() :]
+    rows = ",".join("{{" + ",".join(f"{u!r}f" for u in golden[i : i + 4]) + "}}" for i in range(0, len(golden), 4))
+    result = re.sub("( golden_commands = ).*?;", lambda m: m.group(1) + "{{" + rows + "}};", result, flags=re.S)
+    return re.sub(".* contents_hash = .*\n", "", result)
+
+
+def test_slopes_that_no_vehicle_would_feel(pinnquad):
+    """Above 0 they prove nothing; of a thrust that hardly follows certify warns."""
+    Path("hardly.hpp").write_text(scaled(0, 1e-45, 1, 1, [-1, 1, 1, -1]))
+    pinnquad.refused("certify hardly.hpp", at="hardly.hpp", keyword="slopes")
+    Path("sinks.hpp").write_text(scaled(3, 0.4, 0, 0, [1, 1, 1, 1]))
+    said = pinnquad("certify sinks.hpp").out
+    assert re.search(r"^thrust .* 0\.41 of the airframe", said, re.M) and re.search("^warning .*sinks", said,
+                                                                                    re.M), said
+    said = pinnquad("certify", STRUCTURED).out
+    assert "\nwarning" not in said and re.search("a sum rises for sure from a step of ", said), said
+
+
+def test_near_ground(pinnquad):
+    near = json.loads(pinnquad("certify --json", SOURCE / "tests/models/v3/near_ground_quadrotor.hpp").out)
+    assert 0.5 * near["airframe_thrust_slope"] < near["least_thrust_slope"] < near["held_thrust_slope"]
+    assert near["thrust_slope"] == near["held_thrust_slope"] and "held_slope_with_body_rates" not in near
+    assert all(step > 0 for step in near["sure_step"].values()) and near["rounding"] > 0
+
+
+def judge_export(pinnquad, model, code, flights, words):
+    """A model that train fits to logs: certify ends with that code, evaluate judges the flight that was held out as
+    train did. What certify says."""
+    pinnquad(f"train {words} --models constant,{model} --export {model} --seeds 1 --epochs 2 --out {model} "
+             f"--block {model}/model.block --allow-poor")
+    certified = pinnquad(f"certify {model}/model.hpp --seconds 0.5", code=code).out
+    judged = json.loads(pinnquad(f"evaluate {model}/model.hpp --json --flight", *flights, code=(0, 1)).out)
+    trained = report_of(model)["models"][model]
+    assert judged["golden_difference"] <= 1e-5
+    for figure in "r2", "rmse", "mean_absolute_error":
+        said = trained[figure]["mean"]
+        assert abs(said - judged[figure]) <= 2e-3 * abs(said), figure
+    for figure in "pair_violations", "large_step_violations", "large_step_violations_flown":
+        for axis, share in trained["pairs"][figure].items():
+            assert abs(share - judged[figure][axis]) <= 1e-6, (figure, axis)
+    for axis, least in trained["slopes"]["least_derivative_over_nominal"].items():
+        # train moves by a step, evaluate differentiates: the same of an affine model
+        difference = abs(least - judged["least_derivative_over_nominal"][axis])
+        assert code or difference <= 1e-3 * abs(least) + 2e-3, axis
+    return certified
+
+
+@pytest.mark.parametrize("model, code", [("linearized", 0), ("ridge", 0), ("vanilla", 1), ("structured", 0)])
+def test_models_of_logs(pinnquad, flown, dataset, model, code):
+    """A formula under the outputs, affine maps, structured ones."""
+    dataset("logs", {f"flight{seed}": flown(f"--seed {seed} --samples 600") for seed in (1, 2, 3)})
+    judge_export(pinnquad, model, code, ["logs/flight3.csv"],
+                 "--dataset logs --airframe paper_quadrotor --hold-out flight3")
+
+
+@pytest.mark.parametrize("model", ["ridge_causal", "ridge_centred", "structured_causal"])
+def test_windows(pinnquad, recorded, made, model):
+    """Of logs that have a row every 20 ms: proven by what the weights of all instants sum to."""
+    log = recorded("flight_logs/nanobench_subset_50hz.csv")
+    nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
+    held = "B9_trefoil_fast_rep1"  # and with it the other flight of that trajectory
+    said = judge_export(pinnquad, model, 0, [nano / f"{held}.csv", nano / "B9_trefoil_medium_rep1.csv"],
+                        f"--dataset {nano} --airframe crazyflie_2_1 --hold-out {held}")
+    assert "of one that is held; of the present alone" in said
+    assert model != "structured_causal" or re.search("^with rates ", said, re.M), said
+    if model != "ridge_causal":
+        return
+    # the weights by hand: of the present instant, and summed over all
+    header = Header(f"{model}/model.hpp")
+    names, scale, signs = header.names(), header.numbers("output"), header.numbers("motor_torque_signs")
+    n, weights, spread = len(names), header.numbers("parameters"), header.numbers("input")
+    for axis, name in enumerate(AXES):
+        places = [i for i, feature in enumerate(names) if feature.startswith("wdot_" + "xyz"[axis])]
+        slopes = [sum(signs[3 * u + axis] * scale[4 + u] * weights[u * n + i] for u in range(4)) / spread[n + i]
+                  for i in places]
+        held, present = map(float, re.search(name + r" +(\S+) s.2/rad.*alone (\S+)", said).groups())
+        assert len(places) == 9 and abs(held - sum(slopes)) < 2e-6 and abs(present - slopes[0]) < 2e-6, name
+
+
+def test_refused(pinnquad, flight):
+    pinnquad.refused("certify none.hpp", at="none.hpp", keyword="readable file")
+    pinnquad.refused("certify", flight, at="flight.csv", keyword="model block")

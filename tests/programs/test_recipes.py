@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: MIT
+"""Recipes and losses by name: what is trained is what the report says, and what it was trained with is exported and
+judged."""
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, Program, edited, report_of, same_bytes
+from exported import AXES
+
+TRAIN = "--seeds 1 --epochs 3 --threads 1 --allow-poor"
+
+
+@pytest.fixture(scope="module")
+def flight(flown):
+    return flown("--seed 3 --samples 2500")
+
+
+@pytest.fixture(scope="module")
+def trained(made, flight):
+    """trained(options): the folder that they write, once."""
+    return lambda words="", of=flight: made(f"train --flight {of} {TRAIN} --out . {words}")
+
+
+def figures(folder, but=""):
+    """Of each model; the last column is a time."""
+    rows = [line.rsplit(",", 1)[0] for line in (folder / "results.csv").read_text().splitlines()]
+    return [row for row in rows if not but or not row.startswith(f"{but},")]
+
+
+def test_defaults_and_order(trained):
+    default, structured = trained(), trained("--recipe structured")
+    paper = trained("--recipe paper --loss physics_informed --loss vanilla")
+    assert figures(default) == figures(structured)
+    same_bytes(default / "model.hpp", structured / "model.hpp")
+    assert figures(default, but="structured") == figures(paper), "a structured model changes the networks beside it"
+    assert figures(paper) != figures(trained("--recipe best"))
+    same_bytes(trained("--recipe paper --loss vanilla,physics_informed") / "model.hpp", paper / "model.hpp")
+    one = trained("--loss vanilla")
+    same_bytes(one / "model.hpp", default / "model.hpp")
+    assert [row.split(",")[0] for row in figures(one)] == ["model", "linearized", "vanilla", "structured"]
+
+
+def test_reports(pinnquad, trained, flight):
+    default, best = report_of(trained()), report_of(trained("--recipe best"))
+    paper = report_of(trained("--recipe paper --loss physics_informed --loss vanilla"))
+    folder = trained("--recipe small --loss pearson,constant_weight --block model.block")
+    small = report_of(folder)
+    assert default["settings"]["recipe"] == "structured" == default["verdict"]["model"]
+    assert sorted(default["models"]) == ["linearized", "physics_informed", "structured", "vanilla"]
+    # the default's signs are proven, whatever it was trained for
+    certificate = default["certificate"]
+    assert certificate["proven"] is True and paper["certificate"] is None
+    said = pinnquad("certify", trained() / "model.hpp").out
+    assert "\nproven " in said
+    for axis in AXES:
+        slope, own = certificate["slope"][axis], certificate["airframe_slope"][axis]
+        assert f"{axis:5} {slope:.6f} s^2/rad, {slope / own:.2f} of the airframe's own" in said, axis
+        assert default["models"]["structured"]["wrong_derivative_share"][axis]["mean"] == 0, axis
+    assert default["settings"]["structured"]["slopes"] == "learned"
+
+    assert [report["settings"]["recipe"] for report in (paper, best, small)] == ["paper", "best", "small"]
+    assert paper["settings"]["network"] == best["settings"]["network"] == "10 x 25 ReLU"
+    assert paper["settings"]["learning_rate"] == 1e-3 and paper["settings"]["learning_rate_schedule"] == "constant"
+    for settings in best["settings"], small["settings"]:
+        assert settings["learning_rate"] == 3e-3 and "cosine" in settings["learning_rate_schedule"], settings
+        assert settings["weight_decay"] == {"vanilla": 1e-4, "physics_informed": 3e-4}, settings
+    assert small["settings"]["network"] == "2 x 32 ReLU"
+    assert sorted(small["models"]) == ["constant_weight", "linearized", "pearson"]
+    assert sorted(small["settings"]["losses"]) == ["constant_weight", "pearson"]
+    assert sorted(paper["models"]) == sorted(best["models"]) == ["linearized", "physics_informed", "vanilla"]
+    # the loss named first in the list of losses is the one that is exported where physics_informed was not asked for
+    assert small["verdict"]["model"] == "constant weight"
+    assert "constant weight" in (folder / "model.hpp").read_text()
+    header, block = (pinnquad("evaluate", folder / name, "--flight", flight, "--rows", "test", "--json",
+                              code=(0, 1)).out
+                     for name in ("model.hpp", "model.block"))
+    judged, of_block = json.loads(header), json.loads(block)
+    assert {**judged, "model": ""} == {**of_block, "model": ""}, "header and block are judged otherwise"
+    assert "Dense<32>" in judged["answer"] and judged["answer"].count("Dense<") == 3
+    model = small["models"]["constant_weight"]
+    assert abs(model["rmse"]["mean"] - judged["rmse"]) <= 1e-6
+    for axis in AXES:
+        assert abs(model["wrong_derivative_share"][axis]["mean"] - judged["wrong_derivative_share"][axis]) <= 1e-6, axis
+
+
+def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
+    """The altitude is not shown far from the ground, shown where the commands depend on it, or as asked; pinned slopes
+    are the airframe's."""
+
+    def near_ground(line, cells):
+        if line > 1:
+            cells[17:21] = [0.2 + 0.6 * float(u) + 0.004 * (float(cells[16]) - 20) for u in cells[17:21]]
+
+    edited(flight, "near.csv", near_ground)
+    said = pinnquad(f"train --flight near.csv {TRAIN} --out near --loss vanilla --block near/model.block").out
+    assert re.search(r"shown the altitude: .* with it [0-9.]*e-3, without [0-9.]*e-3$", said, re.M), said
+    assert "pinnquad::InverseFeaturesWithAltitude;" in Path("near/model.hpp").read_text()
+    for model in "model.hpp", "model.block":
+        pinnquad(f"certify near/{model}")
+    judged = json.loads(pinnquad("evaluate near/model.hpp --flight near.csv --rows test --json").out)
+    assert Path("near/replay.txt").read_text().startswith("pinnquad-replay 1 500 25\n")
+    compiler("-fsyntax-only -Wall -Wextra -Werror -I near -I", SOURCE / "tools",
+             SOURCE / "tools/fly_export/fly_export.cpp")
+    pinnquad(f"train --flight near.csv {TRAIN} --out near_no --loss vanilla --altitude no")
+    assert "pinnquad::InverseFeatures;" in Path("near_no/model.hpp").read_text()
+    far = trained("--loss vanilla --altitude yes --slopes pinned")
+    assert "pinnquad::InverseFeaturesWithAltitude;" in (far / "model.hpp").read_text()
+    assert "slope is not the airframe's" not in (far / "stderr.txt").read_text(), "pinned slopes are doubted"
+
+    near, near_no, far_yes, default = (report_of(folder) for folder in ("near", "near_no", far, trained()))
+    choice, other = near["altitude"], default["altitude"]
+    assert choice["asked"] == "auto" and choice["taken"] is True
+    assert choice["validation_mae"] < 0.8 * choice["validation_mae_without"]
+    assert other["taken"] is False and other["validation_mae"] > 0.8 * other["validation_mae_without"] > 0
+    assert near_no["altitude"]["taken"] is False and far_yes["altitude"]["taken"] is True
+    assert report_of(trained("--recipe best"))["altitude"] is None
+    error, error_no = (report["models"]["structured"]["mean_absolute_error"]["mean"] for report in (near, near_no))
+    assert abs(error - judged["mean_absolute_error"]) < 1e-6 and error < 0.5 * error_no
+    assert far_yes["settings"]["structured"]["slopes"] == "pinned"
+    for axis, own in far_yes["certificate"]["airframe_slope"].items():
+        assert abs(far_yes["certificate"]["slope"][axis] / own - 1) < 1e-6, axis
+
+
+def test_limits_of_trust(pinnquad, flight, flown, compiler, flags):
+    """In a header beside the model, of 80 s of validation rows and more; nothing that stays."""
+    assert re.search("^  no limits .* 80 s",
+                     pinnquad(f"train --flight {flight} {TRAIN} --out short --loss vanilla").out, re.M)
+    long = flown("--seed 3 --samples 9000")
+    said = pinnquad(f"train --flight {long} {TRAIN} --out trusted --loss vanilla").out
+    assert "  trusted/trust.hpp: struct TrainedQuadModelTrust" in said
+    compiler(*flags, "-O1", "-Wall", "-Wextra", "-Werror", "-I", "trusted", SOURCE / "tests/programs/trust/guarded.cpp",
+             "-o", "guarded")
+    Program("./guarded")("trusted/replay.txt")
+    pinnquad(f"train --flight {flight} {TRAIN} --out trusted --recipe paper")
+    assert not Path("trusted/trust.hpp").exists(), "limits of an earlier training stay beside another model"
+
+
+@pytest.mark.parametrize("words, keyword", [("--recipe worst", "'worst'"), ("--loss vanilla,mse", "'mse'"),
+                                            ("--recipe paper --slopes pinned", "--slopes")])
+def test_refused(pinnquad, flight, commands, words, keyword):
+    Path("out").mkdir()
+    line = pinnquad.refused(f"train --flight {flight} --out out --epochs 1 --seeds 1 {words}", keyword=keyword).lines[0]
+    assert not os.listdir("out")
+    (text,) = [text for command, text in commands if command.words[-1] == "train"]
+    for name in line.split("known: ")[1].split(", ") if "known: " in line else ["altitude", "slopes", "pinned", "130"]:
+        assert name in text, f"help does not name {name}"
