@@ -25,7 +25,8 @@ def flight(flown):
 @pytest.fixture(scope="module")
 def trained(made, flight):
     """A folder with a/: a network of the paper's recipe."""
-    return made(f"train --flight {flight} --recipe paper --out a --block a/model.block --seeds 2 --epochs 8 --allow-poor")
+    words = "--recipe paper --seeds 2 --epochs 8 --allow-poor --out a --block a/model.block"
+    return made(f"train --flight {flight} {words}")
 
 
 @pytest.fixture(scope="module")

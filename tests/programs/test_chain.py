@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""fly -> train -> judge -> export -> fly the export, small; and the same seed gives the same bits."""
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, same_bytes
+from hostile import Case, left_alone, refused, try_all
+from test_hostile import UNREADABLE
+
+PARTS = "--flight part_1.csv part_2.csv --flight part_3.csv"
+
+
+@pytest.fixture(scope="module")
+def flight(flown):
+    return flown("--seed 3 --samples 3000")
+
+
+@pytest.fixture(scope="module")
+def other(flown):
+    return flown("--seed 4 --samples 3000")
+
+
+@pytest.fixture(scope="module")
+def trained(pinnquad, flight, tmp_path_factory):
+    """A folder, and what train said of it."""
+    folder = tmp_path_factory.mktemp("trained")
+    return folder, pinnquad(f"train --flight {flight} --seeds 2 --epochs 8 --threads 2 --block model.block --out .",
+                            cwd=folder).out
+
+
+@pytest.fixture(scope="module")
+def exported(trained, fly_export, tmp_path_factory):
+    """The program that flies the export: a project of its own, from a folder of any name."""
+    folder = tmp_path_factory.mktemp("exported")
+    odd = folder / 'a @place@ "of"; its own'
+    odd.mkdir()
+    shutil.copy(trained[0] / "model.hpp", odd)
+    program = fly_export(odd / "model.hpp", folder / "fly_export")
+    same_bytes(trained[0] / "model.hpp", folder / "fly_export/include/model.hpp")
+    return program
+
+
+@pytest.fixture(scope="module")
+def later(made, other):
+    """Weights of a later training, of another flight."""
+    return made(f"train --flight {other} --out . --seeds 1 --epochs 6 --block model.block")
+
+
+def test_trained(pinnquad, trained):
+    folder, said = trained
+    for model in "linearized", "vanilla", "physics-informed", "structured":
+        assert re.search(f"^  test flight, .* {model}", said, re.M), said
+    rows = re.search("^  test flight, .*?^  least derivative over nominal, yaw.*?$", said,
+                     re.M | re.S).group().split("\n")
+    assert len({len(row) for row in rows}) == 1 and len(rows) >= 40, "the table's columns do not stand below each other"
+    assert "\n  proven: each signed sum" in said
+    pinnquad("certify", folder / "model.hpp")
+    for file in ["results.csv", "report.json", "model.hpp", "model.block", "replay.txt", "ellipses.svg", "errors.svg",
+                 "prediction.svg"]:
+        assert (folder / file).stat().st_size, file
+    # a header, the linearized model, 4 networks and 2 structured models
+    assert len((folder / "results.csv").read_text().splitlines()) == 8
+
+
+def test_same_bits(pinnquad, flight, other, trained):
+    """Whatever the number of threads."""
+    assert len(flight.read_text().splitlines()) == 3001
+    pinnquad("fly --seed 3 --samples 3000 --out again.csv")
+    same_bytes(flight, "again.csv")
+    assert flight.read_bytes() != other.read_bytes(), "another seed flew the same flight"
+    pinnquad(f"train --flight {flight} --out b --seeds 2 --epochs 8 --threads 1 --block b/model.block")
+    for file in "model.hpp", "model.block":
+        same_bytes(trained[0] / file, f"b/{file}")
+
+
+def test_several_flights(pinnquad, flight, other):
+    """Whole ones train, validate and test."""
+    header, *rows = flight.read_text().splitlines(True)
+    for part in 1, 2, 3:
+        Path(f"part_{part}.csv").write_text(header + "".join(rows[1000 * (part - 1) : 1000 * part]))
+    said = pinnquad(f"train {PARTS} --out d --seeds 1 --epochs 2 --allow-poor").out
+    assert "3000 rows: 1000 train, 1000 validate, 1000 test, in whole flights" in said, said
+    assert "test: part_3.csv" in said, said
+    assert 'training_data = "part_1.csv, part_2.csv, part_3.csv"' in Path("d/model.hpp").read_text()
+    assert Path("d/replay.txt").read_text().startswith("pinnquad-replay 1 1000 24\n")
+    assert '"block": "validation"' in Path("d/report.json").read_text()
+    pinnquad.refused(f"train --out e --flight part_1.csv {other}", keyword="3 flights")
+    pinnquad.refused("train --out e --flight part_1.csv part_1.csv part_2.csv", keyword="same flight")
+    pinnquad.refused("train --out e --flight part_1.csv part_2.csv", keyword="2200 rows")
+
+
+def test_flown(exported, trained):
+    """8 epochs need not fly well."""
+    said = exported("--replay", trained[0] / "replay.txt", code=(0, 1)).out
+    assert re.search("self test .*: ok", said) and ": agrees" in said and "weights zeroed" in said, said
+    # what the demo says of such files in the end
+    Path("flown.txt").write_text(said)
+    shutil.copy(trained[0] / "report.json", ".")
+    shutil.copy(trained[0] / "results.csv", ".")
+    script = f"""out=.
+        eval "$(sed -n '/^errors() {{$/,/^rmse() /p' "{SOURCE}/scripts/demo")"
+        errors; echo; rmse export; rmse 'analytic inverse'; rmse 'none \\(hover trim\\)'"""
+    demo = subprocess.run(["bash", "-euc", script], capture_output=True, text=True)
+    number = "[0-9]+[.][0-9]+"
+    assert re.fullmatch(rf"linearized {number}, vanilla {number}, physics-informed {number}, structured {number}\n"
+                        rf"({number}\n){{3}}", demo.stdout), demo
+
+
+def test_replay_files(exported, trained, flight):
+    exported.refused("--replay", flight, at="flight.csv:1", keyword="pinnquad-replay")
+    Path("truncated.txt").write_bytes((trained[0] / "replay.txt").read_bytes()[:5000])
+    exported.refused("--replay truncated.txt", at="truncated.txt:*:*", keyword="number")
+
+
+def test_later_weights(exported, trained, later, flight):
+    """As a block, flown by the program that was built for the first."""
+    assert (trained[0] / "model.block").read_bytes() != (later / "model.block").read_bytes()
+    said = exported("--replay", later / "replay.txt", "--block", later / "model.block", code=(0, 1)).out
+    assert re.search("block .*model.block, .* bytes", said), said
+    assert re.search("self test .*: ok", said) and ": agrees" in said, said
+    assert ": DISAGREES" in exported("--replay", later / "replay.txt", code=(0, 1)).out
+    Path("cut.block").write_bytes((later / "model.block").read_bytes()[:1000])
+    for block, why in ("cut.block", "block_truncated"), (flight, "block_incompatible"), ("none.block",
+                                                                                         "no such readable file"):
+        exported.refused("--replay", later / "replay.txt", "--block", block, at=Path(block).name, keyword=why)
+
+
+def export_cases():
+    for path in [*UNREADABLE, "in/sticks.csv", "in/model.block"]:
+        yield left_alone("fly_export --replay", path)
+        if path != "in/model.block":
+            yield left_alone("fly_export --replay in/replay.txt --block", path)
+    for words in "", "--block in/model.block", "--replay in/replay.txt x", "--replay", "--no-such-option":
+        yield refused(f"fly_export {words}")
+    yield Case("fly_export --help", around="closed_stdout")
+    yield Case("fly_export --version", around="full_stdout")
+
+
+def test_hostile(exported, later, flight, pinnquad, work):
+    given = work / "given"
+    given.mkdir()
+    pinnquad("fly --samples 40 --record-sticks sticks.csv --out short.csv", cwd=given)
+    (given / "empty.csv").touch()
+    (given / "nul.csv").write_bytes(b"time_s\0,v_north_m_s\n")
+    (given / "binary.csv").write_bytes(Path(pinnquad).read_bytes()[:3000])
+    (given / "one_line.csv").write_text((given / "sticks.csv").read_text().replace("\n", " "))
+    for file in later / "replay.txt", later / "model.block", flight:
+        shutil.copy(file, given)
+    assert try_all(export_cases(), {"fly_export": exported}, given, work) >= 50
