@@ -30,10 +30,16 @@ Trained<Model> trained_model() {
   return model;
 }
 
+/// Limits of trust that go with a model, or void (trusting_stacks.hpp).
+template <class Model>
+struct TrustOf {
+  using type = void;
+};
+
 /// The exported model.
 template <class Model>
 Block sound_block() {
-  return pinnquad::model_block<Model>();
+  return pinnquad::model_block<Model, typename TrustOf<Model>::type>();
 }
 
 /// The model after a training that went on: its weights moved by a thousandth each.

@@ -9,6 +9,11 @@
 
 namespace pinnquad::autopilot::test {
 
+template <>
+struct TrustOf<StructuredQuadModel> {
+  using type = StructuredQuadModelTrust;
+};
+
 using TrustingController =
     NeuralController<StructuredQuadModel, pinnquad::ModelView<StructuredQuadModel>,
                      pinnquad::Quadrotor<float, pinnquad::LinearDamping, pinnquad::QuadraticDrag>,

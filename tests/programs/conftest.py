@@ -89,8 +89,9 @@ class Program:
         """Runs it; it says one line, of that place and with that word. A * in the place is any number."""
         done = self(*words, code=code, **how)
         assert len(done.lines) == 1, done
-        if Path(done.words[0]).name == "pinnquad":
-            assert done.lines[0].split(":")[0] in ("pinnquad", *done.words[1:2]), done
+        name = Path(done.words[0]).name
+        if name in ("pinnquad", "pinnquad-study"):
+            assert done.lines[0].split(":")[0] in (name, *done.words[1:2]), done
         place = re.escape(at).replace(r"\*", r"\d+")
         assert re.search(rf"(^|[ /]){place}(?![\w.])" if at else "", done.lines[0]), (at, done)
         assert keyword in done.lines[0], (keyword, done)
@@ -151,19 +152,23 @@ def pinnquad(program):
 
 
 @pytest.fixture(scope="session")
-def study(pinnquad):
-    return Program(pinnquad, "study")
+def study(program):
+    return program("pinnquad-study")
 
 
 @pytest.fixture(scope="session")
-def report(pinnquad):
-    return Program(pinnquad, "report")
+def report(study):
+    return Program(study, "report")
 
 
 @pytest.fixture(scope="session")
 def commands(pinnquad):
-    """Every command, and its help: the program itself first, then what its help names, and what theirs does."""
+    """Every command of the program, and its help: the program itself first, then what its help names, and what theirs
+    does."""
+    return commands_of(pinnquad)
 
+
+def commands_of(program):
     def below(command):
         text = command("--help").out
         names = re.search(r"^Commands:\n(.*?)\n\n", text, re.M | re.S)
@@ -172,7 +177,7 @@ def commands(pinnquad):
             found += below(Program(*command.words, name))
         return found
 
-    return below(pinnquad)
+    return below(program)
 
 
 WATCH = "--replay"  # the option of fly that writes a page

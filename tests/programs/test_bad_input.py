@@ -95,7 +95,6 @@ def test_write_protected(pinnquad, good, output):
     ("fly --airframe no.toml --out out/f.csv", "no.toml", "found none"),
     ("fly --airframe folder.toml --out out/f.csv", "folder.toml", "folder"),
     ("fly --airframe heavy.toml --out out/f.csv", "heavy.toml:4:11", "truth value"),
-    (f"{TRAIN} FLIGHT --block a_file/model.block", "a_file/model.block", ""),
     ("train --flight FLIGHT --epochs 0", "", "--epochs"), ("train --flight FLIGHT --name 3rd", "", "--name"),
     ("train --flight FLIGHT --seeds many", "", "--seeds")])
 def test_files_and_options(pinnquad, good, words, at, keyword):

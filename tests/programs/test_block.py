@@ -1,75 +1,63 @@
 # SPDX-License-Identifier: MIT
-"""block writes from a header's text what the library writes from its types, byte by byte; evaluate then judges it."""
-import re
+"""block says what a model block holds; what is none, or contradicts itself, is refused."""
+import json
 import shutil
+import zlib
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, replaced, same_bytes
+from conftest import SOURCE
 
-HEADERS = {
-    "demo_quadrotor": "examples/models/demo_quadrotor.hpp",
-    "crazyflie_2_1": "examples/models/crazyflie_2_1.hpp",
-    "crazyflie_tanh": "tests/models/v2/crazyflie_tanh.hpp",
-    "v3_demo_quadrotor": "tests/models/v3/demo_quadrotor.hpp",
-    "v3_own_racer": "tests/models/v3/own_racer.hpp",
-}
+SHIPPED = SOURCE / "examples/models/structured_quadrotor.block"
+RACER = SOURCE / "tests/models/v4/own_racer.block"
 
 
-@pytest.fixture(scope="module")
-def library(program, tmp_path_factory):
-    """Blocks that the library writes from the headers' types."""
-    folder = tmp_path_factory.mktemp("library")
-    program("block_driver")("", folder)
-    return folder
+def described(pinnquad, block):
+    return json.loads(pinnquad("block --json", block).out)
 
 
-@pytest.mark.parametrize("name", HEADERS)
-def test_same_bytes(pinnquad, library, name):
-    said = pinnquad("block", SOURCE / HEADERS[name], "--out", "text.block").out
-    same_bytes(library / f"{name}.block", "text.block")
-    assert f"{Path('text.block').stat().st_size} bytes" in said, said
+def test_described(pinnquad):
+    """Of the shipped model: as its header says."""
+    said, header = described(pinnquad, SHIPPED), SHIPPED.with_suffix(".hpp").read_text()
+    assert said["contents_hash"] in header and f'name = "{said["name"]}"' in header
+    assert said["network"].replace(" ", "") in header.replace(" ", "").replace("Masked", "Withheld")
+    assert said["features"][0] == {**said["features"][0], "name": "s_z", "unit": "m/s^2"}
+    assert [output["name"] for output in said["outputs"]] == ["sum", "roll_sum", "pitch_sum", "yaw_sum"]
+    assert said["proven"] is True and said["golden_difference"] <= 1e-5
+    assert said == {**described(pinnquad, SHIPPED.with_suffix(".hpp")), "model": said["model"]}
+    text = pinnquad("block", SHIPPED).out
+    assert said["contents_hash"] in text and "s_z [m/s^2]" in text
 
 
-def test_evaluated(pinnquad, library, flown):
-    flight = flown("--seed 9 --samples 500")
-    judged = pinnquad("evaluate --json", library / "demo_quadrotor.block", "--flight", flight, code=(0, 1)).out
-    assert '"airframe": "paper_quadrotor"' in judged
-    tanh = library / "crazyflie_tanh.block"
-    pinnquad.refused("evaluate", tanh, "--flight", flight, at="crazyflie_tanh.block", keyword="167 parameters")
-    answer = re.search("using Network = (.*);", (SOURCE / HEADERS["crazyflie_tanh"]).read_text()).group(1)
-    assert "pinnquad::Tanh" in pinnquad("evaluate", tanh, "--flight", flight, "--answer", answer, code=(0, 1)).out
-    pinnquad.refused("evaluate", library / "v3_own_racer.block", "--flight", flight, keyword="shape is unknown")
+def test_window_and_column(pinnquad):
+    """A model in double, of an airframe of its own, with a window and a column."""
+    said = described(pinnquad, RACER)
+    assert said["scalar"] == "double" and said["window"]["taps"] > 1 and said["window"]["causal"] is True
+    assert [column["name"] for column in said["columns"]] == ["battery_voltage"]
+    assert any(feature["name"].endswith("[-1]") for feature in said["features"])
 
 
-@pytest.mark.parametrize("place, keyword, pattern, new", [
-    (":*", "found 4", "format_version = 3", "format_version = 4"), (":*", "`moon`", '"answer", "commands"',
-                                                                    '"moon", "commands"'),
-    (":49", "`low`", "command_lower = 0.0", "command_lower = low"), ("", "`answer`", ".* answer = .*\n", ""),
-    (":*", "`body FLU", "body FRD, world NED", "body FLU, world ENU"),
-    (":*", "found -3", "lag_removed_s = .*;", "lag_removed_s = -3.0;"),
-    (":*", "found 12", ".*7.378601163836665.*\n", "")])
-def test_refused(pinnquad, place, keyword, pattern, new):
-    """What is no longer a header, and what open() or the self test would refuse (test_lies.py has many): nothing is
-    written."""
-    replaced(SOURCE / HEADERS["v3_demo_quadrotor"], "changed.hpp", (pattern, new))
-    pinnquad.refused("block changed.hpp --out changed.block", at=f"changed.hpp{place}", keyword=keyword)
-    assert not Path("changed.block").exists()
+def sealed(block):
+    return bytes(block[:-4]) + zlib.crc32(bytes(block[:-4])).to_bytes(4, "little")
 
 
-def test_no_header(pinnquad, flown):
-    shutil.copy(SOURCE / HEADERS["v3_demo_quadrotor"], "model.hpp")
-    pinnquad.refused("block none.hpp --out changed.block", at="none.hpp", keyword="found none")
-    pinnquad.refused("block --out changed.block", flown("--seed 9 --samples 500"), at="flight.csv", keyword="header")
-    pinnquad.refused("block model.hpp --out ./model.hpp", keyword="same file")
-    assert not Path("changed.block").exists()
+@pytest.mark.parametrize("offset, value, keyword", [
+    (0, b"X", "version"), (8, b"\x05", "version"), (8, b"\x02", "describes itself"), (12, b"\xff", "cut short"),
+    (16, b"\x03", "scalar"), (20, b"\x11", ""), (28, b"\x01", ""), (40, b"\x00", "hash")])
+def test_changed(pinnquad, offset, value, keyword):
+    """With its checksum made right again."""
+    block = bytearray(SHIPPED.read_bytes())
+    block[offset : offset + len(value)] = value
+    Path("changed.block").write_bytes(sealed(block))
+    pinnquad.refused("block changed.block", at="changed.block", keyword=keyword)
 
 
-def test_ends_of_lines(pinnquad):
-    """A checkout that made them CRLF: the same block."""
-    text = (SOURCE / HEADERS["v3_demo_quadrotor"]).read_bytes()
-    Path("given.hpp").write_bytes(text)
-    Path("changed.hpp").write_bytes(text.replace(b"\n", b"\r\n"))
-    for name in "given", "changed":
-        pinnquad(f"block {name}.hpp --out {name}.block")
-    same_bytes("given.block", "changed.block")
+def test_refused(pinnquad, flown):
+    whole = SHIPPED.read_bytes()
+    Path("cut.block").write_bytes(whole[: len(whole) // 2])
+    Path("empty.block").touch()
+    Path("weight.block").write_bytes(sealed(bytearray(whole[:-8] + b"\x00\x00\x80\x7f" + whole[-4:])))
+    shutil.copy(flown("--seed 9 --samples 500"), "flight.csv")
+    for name, keyword in (("cut.block", "cut short"), ("empty.block", "cut short"), ("weight.block", "NaN"),
+                          ("flight.csv", "model block"), ("none.block", "found none")):
+        pinnquad.refused("block", name, at=name, keyword=keyword)

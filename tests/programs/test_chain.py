@@ -27,7 +27,7 @@ def other(flown):
 def trained(pinnquad, flight, tmp_path_factory):
     """A folder, and what train said of it."""
     folder = tmp_path_factory.mktemp("trained")
-    return folder, pinnquad(f"train --flight {flight} --seeds 2 --epochs 8 --threads 2 --block model.block --out .",
+    return folder, pinnquad(f"train --flight {flight} --seeds 2 --epochs 8 --threads 2 --out .",
                             cwd=folder).out
 
 
@@ -46,7 +46,7 @@ def exported(trained, fly_export, tmp_path_factory):
 @pytest.fixture(scope="module")
 def later(made, other):
     """Weights of a later training, of another flight."""
-    return made(f"train --flight {other} --out . --seeds 1 --epochs 6 --block model.block")
+    return made(f"train --flight {other} --out . --seeds 1 --epochs 6")
 
 
 def test_trained(pinnquad, trained):
@@ -71,7 +71,7 @@ def test_same_bits(pinnquad, flight, other, trained):
     pinnquad("fly --seed 3 --samples 3000 --out again.csv")
     same_bytes(flight, "again.csv")
     assert flight.read_bytes() != other.read_bytes(), "another seed flew the same flight"
-    pinnquad(f"train --flight {flight} --out b --seeds 2 --epochs 8 --threads 1 --block b/model.block")
+    pinnquad(f"train --flight {flight} --out b --seeds 2 --epochs 8 --threads 1")
     for file in "model.hpp", "model.block":
         same_bytes(trained[0] / file, f"b/{file}")
 

@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, Program, needed, same_bytes
+from conftest import SOURCE, Program, commands_of, needed, same_bytes
 
 
 def names_below(commands, command):
@@ -16,10 +16,11 @@ def names_below(commands, command):
     return [one.words[-1] for one, _ in commands if one.words[:-1] == command.words and len(one.words) == size + 1]
 
 
-def test_help_and_version(commands, study):
+def check_help(commands):
+    """Of every command; the names of those without an example."""
     version = (SOURCE / "include/pinnquad/version.hpp").read_text()
     numbers = re.findall(r"^#define PINNQUAD_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)$", version, re.M)
-    assert len(commands) >= 18, [command.name for command, _ in commands]
+    program = Path(commands[0][0].words[0]).name
     for command, text in commands:
         assert re.search(r"^Exit codes: 0", text, re.M), command.name
         assert re.search(r"[^0-9]2 bad input", text.replace("\n", " ")), command.name
@@ -27,25 +28,40 @@ def test_help_and_version(commands, study):
         wide = [line for line in text.split("\n") if len(line) > 80 and not re.match(r" {1,19}\S", line)]
         assert not wide, command.name
         assert not command("--help").err, command.name
-        assert command("--version").out == f"pinnquad {'.'.join(numbers)}\n"
-    shown = {command.name: bool(re.search(r"^Examples:\n  (pinnquad|cmake) ", text, re.M)) for command,
-             text in commands}
-    of_study = {name for name in shown if name.startswith(study.name)}
-    assert any(shown[name] for name in of_study)
-    assert all(shown[name] for name in shown.keys() - of_study), shown
+        assert command("--version").out == f"{program} {'.'.join(numbers)}\n"
+    shown = rf"^Examples:\n  ({program}|cmake) "
+    return [command.name for command, text in commands if not re.search(shown, text, re.M)]
+
+
+def test_help_and_version_of_the_study(study):
+    of_study = commands_of(study)
+    assert names_below(of_study, study) == ["paper", "ablation", "beyond", "merge", "report"]
+    assert len(check_help(of_study)) <= 3
+
+
+def test_help_and_version(commands):
+    assert len(commands) >= 13, [command.name for command, _ in commands]
+    assert check_help(commands) == []
     (train,) = [text for command, text in commands if command.words[-1] == "train"]
     assert re.search(r"^  --flight FILE\.csv \.\.\.( |$)", train, re.M)
 
 
 @pytest.mark.parametrize("words, become", [
-    ("f", "fly"), ("n", "new"), ("new x --air", "--airframe"), ("study p", "paper"), ("fly d1 --sam", "--samples"),
-    ("study paper --mo", "--models"), ("train --seeds 3 --conf", "--config"), ("fly d1 --out fi", "")])
+    ("f", "fly"), ("n", "new"), ("new x --air", "--airframe"), ("fly d1 --sam", "--samples"), ("train --seeds 3 --conf", "--config"), ("fly d1 --out fi", "")])
 def test_completion(pinnquad, words, become):
     script = f"""source {SOURCE}/tools/command_line/completion.bash
         COMP_WORDS=({pinnquad} {words}) COMP_CWORD={len(words.split())} COMPREPLY=()
         _pinnquad
         echo "${{COMPREPLY[*]}}" """
     assert subprocess.run(["bash", "-euc", script], capture_output=True, text=True).stdout == become + "\n"
+
+
+def test_completion_of_the_study(study):
+    script = f"""source {SOURCE}/tools/command_line/completion.bash
+        COMP_WORDS=({study} paper --mo) COMP_CWORD=2 COMPREPLY=()
+        _pinnquad
+        echo "${{COMPREPLY[*]}}" """
+    assert subprocess.run(["bash", "-euc", script], capture_output=True, text=True).stdout == "--models\n"
 
 
 def test_completion_has_every_command(pinnquad, commands):
@@ -57,16 +73,24 @@ def test_completion_has_every_command(pinnquad, commands):
     assert completed.split() == names_below(commands, pinnquad)
 
 
-def test_manual_page(pinnquad, commands):
+def test_manual_page(commands):
+    check_manual_page(commands)
+
+
+def test_manual_page_of_the_study(study):
+    check_manual_page(commands_of(study))
+
+
+def check_manual_page(commands):
     needed("help2man")
-    Program("bash")("", SOURCE / "tools/command_line/manual_page.sh", pinnquad, "pinnquad.1")
-    page = Path("pinnquad.1").read_text()
+    Program("bash")("", SOURCE / "tools/command_line/manual_page.sh", commands[0][0], "pinnquad.1")
+    page = re.sub(r'^(\.SS ".*)', lambda line: line.group(1).replace(r"\-", "-"), Path("pinnquad.1").read_text(), flags=re.M)
     sections = re.findall(r'^\.SH "?(.*?)"?$', page, re.M)
-    assert {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "COMMANDS", "OPTIONS FROM A FILE", "FILES",
+    assert {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "COMMANDS", "OPTIONS FROM A FILE",
             "EXIT STATUS"} <= set(sections), sections
     assert not re.search(r"^(Usage|Commands|Arguments|Options):|^Subcommands", page, re.M), "pieces of --help"
     for command, text in commands[1:]:
-        part = re.search(rf'^\.SS "{command.name}"\n(.*?)(?=^\.S[HS])', page + "\n.SH", re.M | re.S)
+        part = re.search(rf'^\.SS "{re.escape(command.name)}"\n(.*?)(?=^\.S[HS])', page + "\n.SH", re.M | re.S)
         part = part.group(1).replace(r"\-", "-")
         for option in set(re.findall(r"^  (--[a-z-]+)", text, re.M)) - {"--version"}:
             assert len(re.findall(rf"^\.B {option}( |$)", part, re.M)) == 1, (command.name, option)
@@ -79,14 +103,25 @@ def test_manual_page(pinnquad, commands):
 
 @pytest.mark.parametrize("words, keyword", [
     ("", "expected a command"), ("land --seed 1", "'land'"), ("--seed 1", "before --seed"),
-    ("study", "expected a command"), ("study news", "'news'"), ("airframe", "expected a command"),
+    ("study", "'study'"), ("airframe", "expected a command"),
     ("fly d1 train --out f.csv", "train"), ("fly d1 --out f.csv --epochs", "--epochs"),
-    ("study paper --out o ablation", "ablation"), ("airframe list check", "check"),
-    ("train --seeds 1", "--flight"), ("report", "dir is required")])
+    ("airframe list check", "check"),
+    ("train --seeds 1", "--flight")])
 def test_refused(pinnquad, commands, words, keyword):
-    line = pinnquad.refused(words, keyword=keyword).lines[0]
+    check_refused(pinnquad, commands, words, keyword)
+
+
+@pytest.mark.parametrize("words, keyword", [
+    ("", "expected a command"), ("news", "'news'"), ("paper --out o ablation", "ablation"),
+    ("report", "dir is required")])
+def test_refused_by_the_study(study, words, keyword):
+    check_refused(study, commands_of(study), words, keyword)
+
+
+def check_refused(program, commands, words, keyword):
+    line = program.refused(words, keyword=keyword).lines[0]
     if "expected a command" in line or "known" in line:  # it lists what there is
-        group = Program(pinnquad, *[word for word in words.split()[:1] if word in ("study", "airframe")])
+        group = Program(program, *[word for word in words.split()[:1] if word == "airframe"])
         listed = re.search(r"(?:known|: expected a command[^:]*): (.*?)( \(|$)", line).group(1)
         assert listed.split(", ") == names_below(commands, group)
     assert not Path("o").exists()
@@ -102,8 +137,6 @@ max-speed = 5.5
 flight = ["a.csv", "b.csv"]
 allow-poor = true
 
-[study.paper]
-models = "2,4"
 """
 
 

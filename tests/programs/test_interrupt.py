@@ -66,7 +66,7 @@ def test_while_gnuplot_draws(pinnquad, flight, monkeypatch):
     done = interrupted("fly --samples 40 --out drawn.csv --pictures pictures")
     assert done.code == 130 and len(done.lines) == 1 and "pictures are missing" in done.lines[0], done
     assert len(Path("drawn.csv").read_text().splitlines()) == 41
-    done = interrupted("train --out exported --seeds 1 --epochs 4 --block exported/model.block --allow-poor --flight",
+    done = interrupted("train --out exported --seeds 1 --epochs 4 --allow-poor --flight",
                        flight)
     assert finished(done, 3) == 3
     for file in "results.csv", "report.json", "model.hpp", "replay.txt", "model.block":
@@ -76,7 +76,7 @@ def test_while_gnuplot_draws(pinnquad, flight, monkeypatch):
 
 def test_evaluate(pinnquad, made, flight):
     """It writes nothing that could be half there: it ends at once, however long the flight."""
-    exported = made(f"train --flight {flight} --out . --seeds 1 --epochs 4 --block model.block --allow-poor")
+    exported = made(f"train --flight {flight} --out . --seeds 1 --epochs 4 --allow-poor")
     header, *rows = flight.read_text().splitlines()
     step = float(rows[1].split(",")[0]) - float(rows[0].split(",")[0])
     with open("long.csv", "w") as long:

@@ -42,8 +42,7 @@ def test_refused(pinnquad, good, place, keyword, change, folder):
     assert not os.listdir("there") and not Path("made").exists()
 
 
-def test_refused_block_and_names(pinnquad, good):
-    pinnquad.refused(f"train --out made {TRAIN} --block absent/m.block --flight", good, at="absent/m.block")
+def test_refused_names(pinnquad, good):
     for name in "class", "NULL", "_Model", "my__model", "errno", "3rd", "a b":
         pinnquad.refused(f"train --out made {TRAIN} --flight", good, "--name", name, keyword="--name")
     assert not Path("made").exists(), "a refused training left its folder"
@@ -64,7 +63,7 @@ def test_worse_than_the_mean(pinnquad, good):
                 cells[i - 1] = (0.2 if line < 2400 else 0.8) + 0.1 * math.sin(line * i)
 
     edited(good, "noise.csv", noise)
-    train = "train --flight noise.csv --out {0} --epochs 2 --seeds 1 --block {0}/model.block"
+    train = "train --flight noise.csv --out {0} --epochs 2 --seeds 1"
     pinnquad.refused(train.format("poor"), code=1, keyword="worse than the mean")
     assert {"results.csv", "report.json"} <= set(os.listdir("poor"))
     assert not {"model.hpp", "model.block", "replay.txt"} & set(os.listdir("poor"))
@@ -128,7 +127,7 @@ def test_still_flight(pinnquad, good, compiler):
     name = 'yaw\udcff* "0";\n\\\n#error?\\?.csv'
     edited(good, name, still)
     for folder, words, flat in (("still_structured", "", "wdot_z, v_bz, w_z, sin_yaw, cos_yaw, w_yz, w_zx, vv_bz"),
-                                ("still", "--recipe paper --block still/model.block",
+                                ("still", "--recipe paper",
                                  "wdot_z, v_bz, w_z, sin_yaw, cos_yaw")):
         err = pinnquad(f"train --out {folder} --epochs 4 --seeds 1 --allow-poor {words} --flight", name).err
         assert f"train: warning: {flat}: " in err, err

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from conftest import commands_of
 
 SHARES = ["nan", "0", "-1", "0/1", "2/1", "1/0x10", "1/-1", "1/1e400"]
 LAGS = ["nan", "inf", "1e400", "0x10", "-2", " "]
@@ -21,6 +22,14 @@ def hostile_values(kind):
 
 
 def test_by_help(commands):
+    assert check_options(commands) >= 200
+
+
+def test_of_the_study_by_help(study):
+    assert check_options(commands_of(study)) >= 60
+
+
+def check_options(commands):
     tried = 0
     for command, text in commands[1:]:
         assert not re.search(r"^  --[a-z-]+ (FLOAT|INT|UINT|NUMBER)", text,
@@ -31,7 +40,7 @@ def test_by_help(commands):
                 assert re.match(rf"[a-z]+: {option}\b", line), line
                 assert not os.listdir(), (command.name, option, value)
                 tried += 1
-    assert tried >= 300
+    return tried
 
 
 @pytest.mark.parametrize("kind", ["paper", "ablation", "beyond"])
@@ -42,10 +51,14 @@ def test_shard(study, kind):
     assert not os.listdir()
 
 
-def test_lag_and_models(pinnquad, study):
+def test_models_of_the_study(study):
+    study.refused("paper --models", "", "--out", "o", keyword="--models", timeout=20)
+    assert not os.listdir()
+
+
+def test_lag(pinnquad):
     for value in LAGS:
         pinnquad.refused("import x.csv --mapping px4 --out o --lag", value, keyword="--lag", timeout=20)
-    study.refused("paper --models", "", "--out", "o", keyword="--models", timeout=20)
     assert not os.listdir()
 
 

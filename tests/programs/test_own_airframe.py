@@ -12,7 +12,7 @@ def test_own_airframe(pinnquad, compiler, flags):
     replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml",
              ("^name = .*", r'name = "my \\"own\\" quad"'), ("^mass_kg = .*", "mass_kg = 1.31"))
     pinnquad("fly --airframe mine.toml --seed 3 --samples 2500 --out flight.csv")
-    pinnquad(f"{TRAIN} --airframe mine.toml --out a --block a/model.block")
+    pinnquad(f"{TRAIN} --airframe mine.toml --out a")
     header = Path("a/model.hpp").read_text()
     assert "using Vehicle = TrainedQuadModelAirframe;" in header
     assert 'vehicle_name = "my \\"own\\" quad";' in header
@@ -22,7 +22,7 @@ def test_own_airframe(pinnquad, compiler, flags):
              SOURCE / "tests/programs/own_airframe/replay.cpp", "-o", "replay")
     Program("./replay")("a/replay.txt a/model.block")
     # the weights of the same training for the library's airframe are those of another vehicle
-    pinnquad(f"{TRAIN} --airframe paper_quadrotor --out b --block b/model.block")
+    pinnquad(f"{TRAIN} --airframe paper_quadrotor --out b")
     assert "block: block_incompatible" in Program("./replay")("a/replay.txt b/model.block", code=1).out
 
     replaced("mine.toml", "broken.toml", ("^mass_kg = .*", "mass_kg = -1"))

@@ -46,7 +46,7 @@ def test_defaults_and_order(trained):
 def test_reports(pinnquad, trained, flight):
     default, best = report_of(trained()), report_of(trained("--recipe best"))
     paper = report_of(trained("--recipe paper --loss physics_informed --loss vanilla"))
-    folder = trained("--recipe small --loss pearson,constant_weight --block model.block")
+    folder = trained("--recipe small --loss pearson,constant_weight")
     small = report_of(folder)
     assert default["settings"]["recipe"] == "structured" == default["verdict"]["model"]
     assert sorted(default["models"]) == ["linearized", "physics_informed", "structured", "vanilla"]
@@ -95,7 +95,7 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
             cells[17:21] = [0.2 + 0.6 * float(u) + 0.004 * (float(cells[16]) - 20) for u in cells[17:21]]
 
     edited(flight, "near.csv", near_ground)
-    said = pinnquad(f"train --flight near.csv {TRAIN} --out near --loss vanilla --block near/model.block").out
+    said = pinnquad(f"train --flight near.csv {TRAIN} --out near --loss vanilla").out
     assert re.search(r"shown the altitude: .* with it [0-9.]*e-3, without [0-9.]*e-3$", said, re.M), said
     assert "pinnquad::InverseFeaturesWithAltitude;" in Path("near/model.hpp").read_text()
     for model in "model.hpp", "model.block":

@@ -10,6 +10,7 @@
 #include "pinnquad/deploy/block_writer.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/exported/renamed.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/training/structured/trust_limits.hpp"
 #include "pinnquad/training/trained_model.hpp"
@@ -73,15 +74,27 @@ std::vector<unsigned char> model_block(
                                  provenance.training_data_hash, provenance.training_rows);
 }
 
-/// The block of an exported header, of format 2 or later: the bytes that its training would have written as a block,
-/// but for the limits of trust, which stand in a header of their own.
-template <class Model>
+/// The block of an exported header, of format 2 or later: the bytes that its training would have written as a block.
+/// `Trust`: the struct of trust.hpp beside it; void: none.
+template <class Model, class Trust = void>
 std::vector<unsigned char> model_block() {
   static_assert(require_model<Model>());
   static_assert(Model::format_version >= 2,
                 "pinnquad: a header of format 1 does not check its own names; export it again");
-  return detail::block_of<Model>(Model{}, Model::golden_features, Model::golden_commands, Model::parameters,
-                                 detail::records_of_header<Model>(), shape_hash<Model>, Model::training_data_hash,
+  auto records = detail::records_of_header<Model>();
+  if constexpr (!std::is_void_v<Trust>) {
+    using Distance = detail::DistanceTrust<Trust>;
+    using Residual = detail::ResidualTrust<Trust>;
+    records.trust = {Distance::squared_distance_limit,
+                     Residual::command_residual_factor,
+                     Residual::command_residual_limit,
+                     Residual::command_residual_cleared,
+                     Trust::update_period_s,
+                     detail::converted<double>(Trust::distribution_mean),
+                     detail::converted<double>(Trust::whitening)};
+  }
+  return detail::block_of<Model>(Model{}, Model::golden_features, Model::golden_commands, Model::parameters, records,
+                                 shape_hash<Model>, Model::training_data_hash,
                                  static_cast<std::uint64_t>(Model::training_rows));
 }
 

@@ -204,6 +204,5 @@ int main(int count, char** arguments) {
   if (WindowView::open(windowed.data(), windowed.size(), looks_back) != Status::ok) return 1;
   judge_windows(rows, InverseDynamics<WindowView>(looks_back), folder + "physics_training.txt");
   judge_windows(rows, InverseDynamics<WindowView, FallingBack>(looks_back, guard), folder + "physics_flight_stack.txt");
-  std::ofstream(folder + "physics.answer") << detail::description_text<Physics::Network>();
   return 0;
 }
