@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/training_sets.hpp"

@@ -18,7 +18,7 @@
 #include "models/v4/own_racer.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "support/block_bytes.hpp"
 
 namespace {

@@ -23,54 +23,15 @@
 using namespace pinnquad;
 using pinnquad::test::BlockBytes;
 using pinnquad::test::DescribedModel;
+using pinnquad::test::find;
+using pinnquad::test::Record;
 using pinnquad::test::RecordedModel;
+using pinnquad::test::records_of;
+using pinnquad::test::with_records;
 
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-/// One record as it stands in a block.
-struct Record {
-  unsigned type;  ///< with bit 15
-  Bytes bytes;
-};
-
-void add_u32(Bytes& to, std::uint32_t value) {
-  for (int byte = 0; byte < 4; ++byte) to.push_back(static_cast<unsigned char>(value >> (8 * byte) & 0xffu));
-}
-
-std::vector<Record> records_of(const Bytes& block) {
-  std::vector<Record> records;
-  const unsigned char* at = block.data() + ModelBlockHeader::size;
-  std::uint32_t count = detail::read_u32(at);
-  for (at += 8; count > 0; --count) {
-    const std::uint32_t length = detail::read_u32(at + 4);
-    records.push_back({detail::read_u32(at), Bytes(at + 8, at + 8 + length)});
-    at += 8 + (length + 7) / 8 * 8;
-  }
-  return records;
-}
-
-/// The block with other records, its lengths and checksum right.
-BlockBytes with_records(const Bytes& block, const std::vector<Record>& records) {
-  Bytes all;
-  for (const Record& record : records) {
-    add_u32(all, record.type);
-    add_u32(all, static_cast<std::uint32_t>(record.bytes.size()));
-    all.insert(all.end(), record.bytes.begin(), record.bytes.end());
-    all.resize((all.size() + 7) / 8 * 8, 0);
-  }
-  Bytes result(block.begin(), block.begin() + ModelBlockHeader::size);
-  add_u32(result, static_cast<std::uint32_t>(records.size()));
-  add_u32(result, static_cast<std::uint32_t>(all.size()));
-  result.insert(result.end(), all.begin(), all.end());
-  const auto scalars = static_cast<std::ptrdiff_t>(BlockBytes(block).scalars());
-  result.insert(result.end(), block.begin() + scalars, block.end());
-  BlockBytes made(result);
-  made.set_u32(ModelBlockHeader::length, static_cast<std::uint32_t>(result.size()));
-  made.seal();
-  return made;
-}
 
 /// As the first version had it: without records.
 BlockBytes first_version(const Bytes& block) {
@@ -124,14 +85,6 @@ struct BareShape {
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;
 };
-
-Record& find(std::vector<Record>& records, BlockRecord type) {
-  for (Record& record : records) {
-    if ((record.type & 0x7fffu) == static_cast<unsigned>(type)) return record;
-  }
-  FAIL("no such record");
-  return records.front();
-}
 
 }  // namespace
 

@@ -15,7 +15,7 @@
 #include "models/v3/near_ground_quadrotor.hpp"
 #include "models/v3/own_racer.hpp"
 #include "models/v4/own_racer.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A model block whose bytes a test may change: aligned as a block must be, and exactly as long as it says, so that a
-// sanitizer sees a read past its end.
+// A model block whose bytes and records a test may change: aligned as a block must be, and exactly as long as it says,
+// so that a sanitizer sees a read past its end.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "pinnquad/exported/model_block.hpp"
@@ -58,5 +59,55 @@ class BlockBytes {
   std::size_t size_;
   std::unique_ptr<unsigned char[]> bytes_;
 };
+
+/// One record as it stands in a block.
+struct Record {
+  unsigned type;  ///< with bit 15
+  std::vector<unsigned char> bytes;
+};
+
+inline std::vector<Record> records_of(const std::vector<unsigned char>& block) {
+  std::vector<Record> records;
+  const unsigned char* at = block.data() + ModelBlockHeader::size;
+  std::uint32_t count = detail::read_u32(at);
+  for (at += 8; count > 0; --count) {
+    const std::uint32_t length = detail::read_u32(at + 4);
+    records.push_back({detail::read_u32(at), {at + 8, at + 8 + length}});
+    at += 8 + (length + 7) / 8 * 8;
+  }
+  return records;
+}
+
+/// Throws std::out_of_range for a type that is not there.
+inline Record& find(std::vector<Record>& records, BlockRecord type) {
+  for (Record& record : records) {
+    if ((record.type & 0x7fffu) == static_cast<unsigned>(type)) return record;
+  }
+  throw std::out_of_range("no such record");
+}
+
+/// The block with other records, its lengths and checksum right.
+inline BlockBytes with_records(const std::vector<unsigned char>& block, const std::vector<Record>& records) {
+  std::vector<unsigned char> all;
+  const auto add_u32 = [](std::vector<unsigned char>& to, std::size_t value) {
+    for (int byte = 0; byte < 4; ++byte) to.push_back(static_cast<unsigned char>(value >> (8 * byte) & 0xffu));
+  };
+  for (const Record& record : records) {
+    add_u32(all, record.type);
+    add_u32(all, record.bytes.size());
+    all.insert(all.end(), record.bytes.begin(), record.bytes.end());
+    all.resize((all.size() + 7) / 8 * 8, 0);
+  }
+  std::vector<unsigned char> result(block.begin(), block.begin() + ModelBlockHeader::size);
+  add_u32(result, records.size());
+  add_u32(result, all.size());
+  result.insert(result.end(), all.begin(), all.end());
+  const auto scalars = static_cast<std::ptrdiff_t>(BlockBytes(block).scalars());
+  result.insert(result.end(), block.begin() + scalars, block.end());
+  BlockBytes made(result);
+  made.set_u32(ModelBlockHeader::length, static_cast<std::uint32_t>(result.size()));
+  made.seal();
+  return made;
+}
 
 }  // namespace pinnquad::test

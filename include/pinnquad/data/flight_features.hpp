@@ -65,8 +65,7 @@ namespace detail {
 inline const std::vector<double>& column_values(const Flight& flight, const std::string& name,
                                                 const std::string& unit) {
   const ExtraColumn* column = flight.column(name);
-  const std::string expected =
-      "flight '" + flight.name + "': expected a column " + name + " in " + unit + ", found ";
+  const std::string expected = "flight '" + flight.name + "': expected a column " + name + " in " + unit + ", found ";
   if (column == nullptr) throw std::invalid_argument(expected + "none of that name");
   if (column->unit != unit) throw std::invalid_argument(expected + "it in " + column->unit);
   return column->values;
@@ -79,7 +78,8 @@ class FlightInputs<detail::InputsWithColumns<Base, Scalar, Column...>> {
  public:
   using Inputs = detail::InputsWithColumns<Base, Scalar, Column...>;
 
-  explicit FlightInputs(const FlightRows& rows) : base_(rows), columns_{&detail::column_values(*rows.flight, Column::name, Column::unit)...} {}
+  explicit FlightInputs(const FlightRows& rows)
+      : base_(rows), columns_{&detail::column_values(*rows.flight, Column::name, Column::unit)...} {}
 
   bool read(std::size_t row, Inputs& inputs) const {
     Inputs read;
@@ -126,8 +126,7 @@ class FlightInputs<detail::WindowInputs<Tap, Scalar, Window>> {
     Inputs read;
     if (!taps_.read(row, read)) return false;
     read.complete = detail::read_window<Scalar>(
-        Window{}, rows_, row, [this](std::size_t i, Tap& tap) { return taps_.read(i, tap); },
-        read.others.data());
+        Window{}, rows_, row, [this](std::size_t i, Tap& tap) { return taps_.read(i, tap); }, read.others.data());
     if (!read.complete) return false;
     inputs = read;
     return true;

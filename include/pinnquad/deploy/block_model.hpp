@@ -100,15 +100,16 @@ class BlockModel {
   }
   bool is_double() const noexcept { return model_.index() == 1; }
 
+  // words of the block, fit for a terminal
   std::string name() const { return provenance("name"); }
   std::string provenance(const char* word) const {
-    return with([&](const auto& model) { return std::string(model.provenance(word)); });
+    return with([&](const auto& model) { return printable(model.provenance(word)); });
   }
   std::string answer() const {
-    return with([](const auto& model) { return std::string(model.records().answer); });
+    return with([](const auto& model) { return printable(model.records().answer); });
   }
   std::string schema() const {
-    return with([](const auto& model) { return std::string(model.schema()); });
+    return with([](const auto& model) { return printable(model.schema()); });
   }
   const RunTimeNetwork& network() const {
     return with([](const auto& model) -> const RunTimeNetwork& { return model.network(); });
@@ -117,7 +118,7 @@ class BlockModel {
     return with([](const auto& model) -> const RunTimeFeatures& { return model.features(); });
   }
   std::string airframe_name() const {
-    return with([](const auto& model) { return std::string(model.records().vehicle_name); });
+    return with([](const auto& model) { return printable(model.records().vehicle_name); });
   }
   const Airframe<double>& airframe() const {
     return with([](const auto& model) -> const Airframe<double>& { return model.airframe(); });

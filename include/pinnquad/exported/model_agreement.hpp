@@ -70,14 +70,15 @@ inline constexpr bool has_bounded_residual = false;
 template <class Answer>
 inline constexpr bool has_bounded_residual<Answer, std::void_t<typename StatedStructure<Answer>::Inner>> = true;
 
-/// A stated bound of a residual against the standardised one among the parameters. The writer rounds outward to a
-/// Scalar.
+/// A stated bound of a residual against the standardised one among the parameters. The writer takes it from the
+/// certificate, which rounds outward by 64 roundings of a double, and rounds outward to a Scalar.
 template <class Scalar>
 constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar deviation) noexcept {
   using Limits = std::numeric_limits<Scalar>;
   const double bound = static_cast<double>(standardised) * static_cast<double>(deviation);
   const double difference = static_cast<double>(stated) - bound;
-  const double rounding = 8 * static_cast<double>(Limits::epsilon()) * (bound < 0 ? -bound : bound);
+  constexpr double share = 8 * static_cast<double>(Limits::epsilon()) + 128 * std::numeric_limits<double>::epsilon();
+  const double rounding = share * (bound < 0 ? -bound : bound);
   return (difference < 0 ? -difference : difference) <= rounding + 2 * static_cast<double>(Limits::denorm_min());
 }
 

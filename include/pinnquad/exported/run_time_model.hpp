@@ -13,7 +13,6 @@
 #include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/exported/run_time_network.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
-#include "pinnquad/nn/packed_network.hpp"
 
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
@@ -129,7 +128,7 @@ class RunTimeModel {
                     "an earlier one: write it again from its header (docs/blocks.md)");
     }
     if (detail::read_u32(block + Layout::scalar_bytes) != sizeof(Scalar)) {
-      return refuse(fault, Status::block_incompatible, "another scalar type", "this one");
+      return refuse(fault, Status::block_incompatible, "numbers of the size that is asked for", "others");
     }
     const std::size_t inputs = detail::read_u32(block + Layout::inputs);
     const std::size_t outputs = detail::read_u32(block + Layout::outputs);
@@ -149,8 +148,9 @@ class RunTimeModel {
         detail::read_records<Scalar>(block + Layout::size, behind, inputs, outputs, records_, record_bytes);
     if (read == Status::block_incompatible) return refuse(fault, read, "records that are known", "a newer one");
     if (read != Status::ok) return refuse(fault, read, "records that fit, with numbers", "others");
-    const std::size_t scalars = 4 * inputs + 2 * outputs + golden * (inputs + rotor_count) + parameters;
-    if ((behind - record_bytes) != scalars * sizeof(Scalar)) {
+    const std::uint64_t scalars =
+        4 * inputs + 2 * outputs + std::uint64_t{golden} * (inputs + rotor_count) + parameters;  // must not wrap around
+    if (behind - record_bytes != scalars * sizeof(Scalar)) {
       return refuse(fault, Status::block_corrupt, "counts that fit its length", "others");
     }
     place(static_cast<const Scalar*>(static_cast<const void*>(block + Layout::size + record_bytes)), inputs, outputs,
@@ -160,7 +160,7 @@ class RunTimeModel {
     training_data_hash_ = detail::read_u64(block + Layout::training_data_hash);
     const Status described = describe(inputs, outputs, parameters, fault);
     if (described != Status::ok) return described;
-    return sound(scalars, fault);
+    return sound(static_cast<std::size_t>(scalars), fault);
   }
 
   static Status refuse(BlockFault& fault, Status status, const char* expected, const char* found) noexcept {
@@ -203,14 +203,15 @@ class RunTimeModel {
       return corrupt("a description of its inputs, outputs and parameters", "one of others");
     }
     const RunTimeWindow window(static_cast<int>(records_.window_taps < 65 ? records_.window_taps : 65),
-                               records_.causal != 0, 1e-9 * records_.sample_period_ns);
+                               records_.causal != 0, records_.sample_period_ns / 1e9);
     if (!features_.read(records_.features, int(inputs), window)) {
       return corrupt("names and units of its features", "others, or some that its window has not");
     }
+    if (!asks_for_columns()) return incompatible("columns by names that are no feature's of the library", "another");
     if (window.taps > 1 && records_.sample_period_ns == 0) return corrupt("the period of its window", "none");
     if (window.taps > 1 && !window.causal && window.taps % 2 == 0)
       return corrupt("an odd centred window", "an even one");
-    if (!take_vehicle()) return corrupt("an airframe that can fly", "another");
+    if (!take_vehicle()) return corrupt("an airframe that can fly, said twice alike", "another");
     if (!take_outputs(int(outputs))) return incompatible("an output schema that is known, or linear", "another");
     const auto own = allocation(flown_);
     const auto expected = [&own](std::size_t row, std::size_t column) { return own[row][column]; };
@@ -221,18 +222,25 @@ class RunTimeModel {
                                            : corrupt("a description that its shape's hash is of", "another");
   }
 
+  /// True where each column that it says is one: a column may have the name of what is worked out from the motion.
+  bool asks_for_columns() const noexcept {
+    std::string_view rest = records_.columns;
+    bool asked = true;
+    while (asked && !rest.empty()) {
+      RunTimeFeatures::Named said;
+      asked = RunTimeFeatures::take_text(rest, said.name) && RunTimeFeatures::take_text(rest, said.unit);
+      int column = 0;
+      while (column < features_.column_count() && features_.column(column).name != said.name) ++column;
+      asked = asked && column < features_.column_count() && features_.column(column).unit == said.unit;
+    }
+    return asked;
+  }
+
   bool take_vehicle() noexcept {
     const unsigned char* exact = records_.airframe;
-    const auto next = [&exact] {
-      double value = 0;
-      std::memcpy(&value, exact, sizeof value);
-      exact += sizeof value;
-      return value;
-    };
     const Scalar* flown = records_.flown_airframe;
     bool sound = true;
     const auto take = [&sound](auto& number, auto value) {
-      sound &= is_finite(value);
       if constexpr (std::is_same_v<std::decay_t<decltype(number)>, Spin>) {
         sound &= detail::equal(detail::absolute(value), decltype(value)(1));
         number = value < 0 ? Spin::clockwise : Spin::counter_clockwise;
@@ -240,7 +248,15 @@ class RunTimeModel {
         number = value;
       }
     };
-    each_number(airframe_, [&](auto& number) { take(number, next()); });
+    each_number(airframe_, [&](auto& number) {
+      double value = 0;
+      std::memcpy(&value, exact, sizeof value);
+      exact += sizeof value;
+      const double rounding = detail::absolute(value - static_cast<double>(*flown++));  // NaN where one is none
+      sound &= rounding <= 1e-5 * detail::absolute(value);
+      take(number, value);
+    });
+    flown = records_.flown_airframe;
     each_number(flown_, [&](auto& number) { take(number, *flown++); });
     return sound && check_airframe(airframe_) == Status::ok && Rotors<double>(airframe_).status() == Status::ok &&
            check_airframe(flown_) == Status::ok && Rotors<Scalar>(flown_).status() == Status::ok;
@@ -254,6 +270,7 @@ class RunTimeModel {
       if (records_.affine == nullptr) return false;
       outputs_.take_affine(records_.affine, count);
     }
+    if (outputs_.size() != count) return false;
     for (int k = 0; k < count; ++k) {
       RunTimeFeatures::Named named;
       if (!RunTimeFeatures::take_text(rest, named.name) || !RunTimeFeatures::take_text(rest, named.unit)) return false;
@@ -264,7 +281,7 @@ class RunTimeModel {
     const bool reads = outputs_.reads_its_features(
         features_.size(), [this](int i) { return features_[i].name; }, [this](int i) { return features_[i].unit; });
     outputs_.prepare(flown_);
-    return rest.empty() && outputs_.size() == count && same_base && reads;
+    return rest.empty() && same_base && reads;
   }
 
   /// As detail::hash_of_shape().

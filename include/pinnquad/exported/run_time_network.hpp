@@ -12,6 +12,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/nn/activations.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 
