@@ -6,6 +6,7 @@
 
 #include "airframe/airframe_command.hpp"
 #include "command_line/commands.hpp"
+#include "command_line/interrupt.hpp"
 #include "flight/fly_command.hpp"
 #include "import/import_command.hpp"
 #include "model/block_command.hpp"
@@ -42,6 +43,7 @@ int run(int argument_count, char** arguments, std::string& name) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
+  programs::catch_interrupt();
   std::string name = "pinnquad";
   return programs::run_program(name, [&] { return run(argument_count, arguments, name); });
 }

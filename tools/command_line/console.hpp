@@ -14,6 +14,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "command_line/interrupt.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/version.hpp"
 
@@ -64,6 +65,9 @@ int run_program(const std::string& program, const Body& body) {
   };
   try {
     code = body();
+  } catch (const Interrupted& interrupt) {
+    complain(program.c_str(), "interrupted; " + interrupt.kept);
+    code = exit_interrupted;
   } catch (const std::bad_alloc&) {
     complain(program.c_str(), "out of memory");
   } catch (const std::exception& error) {

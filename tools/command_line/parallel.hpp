@@ -12,14 +12,15 @@
 #include <thread>
 #include <vector>
 
+#include "command_line/interrupt.hpp"
 #include "command_line/progress_line.hpp"
 
 namespace programs {
 
 /// Calls `work(0)` to `work(count - 1)` on up to `threads` threads, in the order of the indices but not one after the
 /// other, and on fewer threads where the system gives no more; `job` and `share_done()`, 0..1, are for the progress
-/// line (no name: none). Once a call returned false or threw, no further index is started; the first exception is
-/// thrown again when all threads are back. The time that it took, s.
+/// line (no name: none). Once a call threw, no further index is started; the first exception is thrown again when all
+/// threads are back, but for Interrupted: what was finished before is the caller's to keep. The time that it took, s.
 template <class Work, class ShareDone>
 double run_parallel(const std::string& job, std::size_t count, std::size_t threads, const ShareDone& share_done,
                     const Work& work) {
@@ -28,9 +29,9 @@ double run_parallel(const std::string& job, std::size_t count, std::size_t threa
   std::atomic<std::size_t> next{0}, running{0};
   const auto take_turns = [&] {
     try {
-      for (std::size_t i = next.fetch_add(1); i < count; i = next.fetch_add(1)) {
-        if (!work(i)) next.store(count);
-      }
+      for (std::size_t i = next.fetch_add(1); i < count; i = next.fetch_add(1)) work(i);
+    } catch (const Interrupted&) {
+      next.store(count);
     } catch (...) {
       next.store(count);
       const std::lock_guard<std::mutex> lock(mutex);
@@ -52,7 +53,7 @@ double run_parallel(const std::string& job, std::size_t count, std::size_t threa
     if (workers.empty()) take_turns();
   }
   while (running.load() > 0) {
-    if (!job.empty()) progress.update(share_done());
+    if (!job.empty()) progress.show(share_done());
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   for (std::thread& worker : workers) worker.join();

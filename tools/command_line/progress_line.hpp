@@ -10,6 +10,8 @@
 
 #include <unistd.h>
 
+#include "command_line/interrupt.hpp"
+
 namespace programs {
 
 /// Shows how much of one job is done. update() may be called as often as one likes; what is shown is limited.
@@ -20,8 +22,14 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() { clear(); }
 
-  /// `share` of the job done, 0..1.
+  /// `share` of the job done, 0..1. Throws Interrupted after Ctrl-C.
   void update(double share) {
+    stop_if_interrupted();
+    show(share);
+  }
+
+  /// The same, interrupted or not.
+  void show(double share) {
     constexpr double terminal_interval_s = 0.1, plain_interval_s = 5.0;
     const double now_s = elapsed_s();
     if (share < 1 && now_s < next_s_) return;

@@ -53,9 +53,6 @@ struct FlyOptions {
   bool list_airframes = false;
 };
 
-/// Thrown out of a flight by Ctrl-C; nothing is written then.
-struct Interrupted {};
-
 /// No output takes the place of the sticks or of another output.
 void require_separate_files(const FlyOptions& options) {
   programs::FileRoles roles;
@@ -131,13 +128,13 @@ class ChosenFlight {
     if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
     if (!options_.replay.empty()) replay.write(options_.replay);
     print_summary(recorded);
-    const bool drawn =
-        options_.pictures.empty() || programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_,
-                                                           ground_effect_, std::is_same_v<PaperFlight, WindyFlight>);
-    if (drawn) return 0;
-    if (!programs::interrupted()) return programs::exit_failed;
-    programs::complain("fly", "interrupted; the flight is written, pictures are missing");
-    return programs::exit_interrupted;
+    if (options_.pictures.empty()) return 0;
+    return programs::keeping("the flight is written, pictures are missing", [&] {
+      return programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_, ground_effect_,
+                                   std::is_same_v<PaperFlight, WindyFlight>)
+                 ? 0
+                 : programs::exit_failed;
+    });
   }
 
  private:
@@ -146,10 +143,8 @@ class ChosenFlight {
     if (options_.out.empty()) return;
     programs::ProgressLine progress("writing " + printable(options_.out));
     const auto rows = static_cast<double>(flight.size());
-    write_flight_csv(options_.out, flight, [&](std::size_t written) {
-      if (programs::interrupted()) throw Interrupted{};
-      progress.update(static_cast<double>(written) / rows);
-    });
+    write_flight_csv(options_.out, flight,
+                     [&](std::size_t written) { progress.update(static_cast<double>(written) / rows); });
   }
 
   /// An airframe that the controller can't hold up here is refused before it flies.
@@ -183,7 +178,7 @@ class ChosenFlight {
   template <class Observer>
   RecordedFlight flown(std::uint64_t seed, const programs::AnyPilot& pilot, const Observer& observer) const {
     const auto watched = [&observer](const auto& simulator) {
-      if (programs::interrupted()) throw Interrupted{};
+      programs::stop_if_interrupted();
       observer(simulator);
     };
     if (exact()) return fly(vehicle_, pilot, plan_, watched);
@@ -213,7 +208,7 @@ class ChosenFlight {
     };
     const std::vector<programs::FlightFigures> figures =
         programs::fly_seeds(PaperFlight::name, options_.seed, options_.statistics, plan_.samples, one);
-    if (programs::interrupted()) throw Interrupted{};
+    programs::stop_if_interrupted();
     if (!options_.out.empty()) programs::write_flight_table(options_.out, figures);
     programs::print_flight_table(figures);
     for (const programs::FlightFigures& f : figures) {
@@ -300,7 +295,6 @@ int fly_chosen(const FlyOptions& options) {
     for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_writable(file);
     if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);
     if (!options.pictures.empty()) make_folder(options.pictures);
-    programs::catch_interrupt();
     code = chosen.run();
   });
   return code;
@@ -360,12 +354,7 @@ int run(const FlyOptions& options) {
     programs::list_airframes();
     return 0;
   }
-  try {
-    return fly_chosen(options);
-  } catch (const Interrupted&) {
-    programs::complain("fly", "interrupted; nothing was written");
-    return programs::exit_interrupted;
-  }
+  return fly_chosen(options);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/interrupt.hpp"
 #include "command_line/progress_line.hpp"
 #include "flight/axis_motion.hpp"
 #include "flight/trace.hpp"
@@ -327,7 +328,7 @@ inline constexpr std::array<const char*, 4> flight_picture_names = {"trajectory.
 
 /// All of them into a folder that is there: trajectory.svg, correlation.svg, ground_effect.svg where there is one,
 /// wind.svg if `windy`. False, after one line on stderr, where gnuplot is missing or
-/// failed; without that line after Ctrl-C.
+/// failed.
 inline bool draw_flight(const std::string& folder, const pinnquad::Flight& flight, const std::vector<TraceRow>& trace,
                         const pinnquad::Airframe<double>& airframe, pinnquad::GroundEffectModel ground_effect,
                         bool windy) {
@@ -341,8 +342,9 @@ inline bool draw_flight(const std::string& folder, const pinnquad::Flight& fligh
   if (windy) pictures.emplace_back([&] { return plot_wind(start + "wind.svg", trace); });
   ProgressLine progress("drawing " + std::to_string(pictures.size()) + " pictures");
   for (std::size_t drawn = 0; drawn < pictures.size();) {
-    if (interrupted() || !pictures[drawn]()) return false;
-    progress.update(static_cast<double>(++drawn) / static_cast<double>(pictures.size()));
+    stop_if_interrupted();
+    if (!pictures[drawn]()) return false;
+    progress.show(static_cast<double>(++drawn) / static_cast<double>(pictures.size()));
   }
   return true;
 }

@@ -49,10 +49,7 @@ std::vector<FlightFigures> fly_seeds(const std::string& name, std::uint64_t firs
   run_parallel(
       "flying " + std::to_string(seeds) + " seeds of " + name, seeds, std::max(1U, std::thread::hardware_concurrency()),
       [&] { return static_cast<double>(rows_done.load()) / all_rows; },
-      [&](std::size_t i) {
-        figures[i] = fly_seed(first_seed + i, rows_done);
-        return true;
-      });
+      [&](std::size_t i) { figures[i] = fly_seed(first_seed + i, rows_done); });
   return figures;
 }
 

@@ -15,6 +15,7 @@
 #include <random>
 #include <vector>
 
+#include "command_line/interrupt.hpp"
 #include "pinnquad/core/random.hpp"
 
 namespace programs {
@@ -88,7 +89,10 @@ class CounterexampleSearch {
  private:
   /// Seconds of the processor: what else runs does not shorten the search.
   double spent() const { return static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC; }
-  bool over() const { return search_.found || spent() > seconds_; }
+  bool over() const {
+    stop_if_interrupted();
+    return search_.found || spent() > seconds_;
+  }
   std::vector<double> anywhere() {
     std::vector<double> x(model_.lower.size());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = pinnquad::uniform(engine_, model_.lower[i], model_.upper[i]);

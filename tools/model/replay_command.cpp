@@ -19,7 +19,6 @@
 
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
-#include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
@@ -191,7 +190,6 @@ void print_head(const ReplayOptions& options, const Replayed& replayed, const st
 }
 
 int replay(const ReplayOptions& options) {
-  programs::end_at_interrupt();
   programs::FileRoles roles;
   roles.reads("LOG", options.log);
   for (const std::string& model : options.models) roles.reads("--model", model);

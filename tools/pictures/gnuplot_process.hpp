@@ -101,7 +101,7 @@ inline std::string exchange(Pipe& script, Pipe& picture, const std::string& text
 }  // namespace detail
 
 /// The SVG that gnuplot draws from a script that sets an SVG terminal. Nothing, after one line on stderr, if gnuplot is
-/// missing or fails, or if what it drew is not whole; without that line after Ctrl-C.
+/// missing or fails, or if what it drew is not whole. Throws Interrupted where Ctrl-C ended it.
 inline std::optional<std::string> run_gnuplot(const std::string& script_text) {
   detail::Pipe script, picture;
   pid_t process = 0;
@@ -119,7 +119,7 @@ inline std::optional<std::string> run_gnuplot(const std::string& script_text) {
   const bool whole =
       last != std::string::npos && last + 1 >= end.size() && drawn.compare(last + 1 - end.size(), end.size(), end) == 0;
   if (code == 0 && whole) return drawn;
-  if (interrupted()) return {};  // gnuplot gets the Ctrl-C too; who called says what is kept
+  stop_if_interrupted();  // gnuplot gets the Ctrl-C too
   std::fprintf(stderr, "plots: gnuplot is missing or failed (Debian: gnuplot-nox)\n");
   return {};
 }

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "command_line/console.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/progress_line.hpp"
 #include "pinnquad/io/atomic_file.hpp"
@@ -21,7 +20,7 @@
 
 namespace programs {
 
-bool write_study_report(const std::string& folder) {
+void report_study(const std::string& folder) {
   const detail::ReportInput input = detail::read_report_input(folder);
   const std::size_t steps =
       (compared_pairs.size() + 1) * table3_measures.size() + compared_pairs.size() - 1 + paper_claims().size();
@@ -32,7 +31,6 @@ bool write_study_report(const std::string& folder) {
   const std::vector<FlightsComparison> flights = main_comparisons(input.study, step);
   const JudgedClaims claims = judge_claims(input.study, step);
   progress.clear();
-  if (interrupted()) return false;
   const nlohmann::json figures = report_figures(input, comparisons, flights, claims);
   const std::vector<std::pair<std::string, std::string>> files = {
       {"report.html", report_page(input, comparisons, figures)},
@@ -46,18 +44,9 @@ bool write_study_report(const std::string& folder) {
     open.back()->stream() << text;
     open.back()->close();
   }
-  if (interrupted()) return false;
+  stop_if_interrupted();
   for (const auto& file : open) file->commit();
-  return true;
-}
-
-int report_study(const std::string& folder) {
-  if (!write_study_report(folder)) {
-    complain("report", "interrupted; nothing was written, the rows are in " + folder + "/rows.csv");
-    return exit_interrupted;
-  }
   std::printf("report      %s/report.html\n", folder.c_str());
-  return 0;
 }
 
 }  // namespace programs

@@ -7,11 +7,8 @@
 
 namespace programs {
 
-/// Writes all files of the report from DIR/rows.csv, DIR/study.json and DIR/series/, or none: where input is refused,
-/// one can't be written, or Ctrl-C came before all were ready (false). Throws InputError, OutputError: one line each.
-bool write_study_report(const std::string& folder);
-
-/// The same, and says where it is. Exit code: 0 or that of an interrupt.
-int report_study(const std::string& folder);
+/// Writes all files of the report from DIR/rows.csv, DIR/study.json and DIR/series/, and says where it is. None is
+/// written where it throws: InputError, OutputError, one line each; Interrupted.
+void report_study(const std::string& folder);
 
 }  // namespace programs

@@ -12,10 +12,11 @@
 
 #include "airframe/choice.hpp"
 #include "command_line/commands.hpp"
+#include "command_line/interrupt.hpp"
+#include "logs/training_flights.hpp"
 #include "study/beyond_picture.hpp"
 #include "study/beyond_summary.hpp"
 #include "study/campaign.hpp"
-#include "training/training_flights.hpp"
 
 namespace {
 
@@ -55,7 +56,7 @@ study::Contender contender_of(const study::BeyondModel& model, const study::Cond
     const auto start = std::chrono::steady_clock::now();
     const study::BeyondTraining done = model.train(
         {split, condition.airframe, assignment.seed, assignment.epochs, [&workshop] { return !workshop.stopped(); }});
-    if (!done.model) return false;
+    if (!done.model) throw programs::Interrupted{};
     outcome.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     outcome.test = programs::judge(condition.airframe, split.test, done.model->predictions(split.test));
     outcome.test.derivatives = done.model->derivatives(split.test);
@@ -72,7 +73,6 @@ study::Contender contender_of(const study::BeyondModel& model, const study::Cond
                              *condition.in_loop, condition.airframe.airframe<double>());
     }
     workshop.count(assignment.epochs);
-    return true;
   };
   return result;
 }
@@ -198,17 +198,16 @@ int run(const BeyondOptions& options) {
       }
     }
   }
-  programs::catch_interrupt();
   study::Campaign campaign(plan, options.out,
                            options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()));
-  const int code = campaign.run();
-  if (code != 0 || plan.shard.count > 1) return code;
+  campaign.run();
+  if (plan.shard.count > 1) return 0;
   const nlohmann::json found = study::beyond_json(campaign.rows());
   print_found(conditions, models, found);
   write_found(options.out, plan, conditions, models, found);
   // without gnuplot the picture is left out, with a line
   static_cast<void>(study::draw_found(options.out + "/beyond.svg", found, conditions));
-  return code;
+  return 0;
 }
 
 }  // namespace

@@ -75,9 +75,8 @@ inline Flights fly_all(const Plan& plan) {
   programs::ProgressLine progress("flying " + std::to_string(flights.size()) + " flights");
   double done = 0;
   for (auto& [id, flight] : flights) {
-    if (programs::interrupted()) break;
+    progress.update(done++ / static_cast<double>(flights.size()));
     flight = plan.fly(id);
-    progress.update(++done / static_cast<double>(flights.size()));
   }
   return flights;
 }
@@ -135,29 +134,25 @@ class Campaign {
   Campaign(const Plan& plan, const std::string& out, unsigned threads)
       : plan_(plan), folder_(out), threads_(threads), jobs_(jobs_of_shard(all_jobs(plan), plan.shard)) {}
 
-  /// Exit code: 0, or that of an interrupt. Throws InputError, OutputError, std::invalid_argument; finished rows are kept.
-  int run() {
-    Workshop workshop(fly_all(plan_));
-    if (programs::interrupted()) return told_interrupted(0);
+  /// Throws InputError, OutputError, std::invalid_argument, programs::Interrupted; finished rows are kept.
+  void run() {
+    Workshop workshop(programs::keeping(kept(), [this] { return fly_all(plan_); }));
     open(workshop.flights());
     const std::size_t found = stored_.rows.size();
     train(workshop);
     settle();
     const std::size_t finished = stored_.rows.size();
-    if (finished < jobs_.size()) return told_interrupted(finished);
+    if (finished < jobs_.size()) throw programs::Interrupted{kept()};
     std::printf("%zu of %zu trainings are in %s, %zu of them from before; %.1f s on %u threads\n", finished,
                 jobs_.size(), folder_.rows().c_str(), found, progress_s_, threads_);
-    return 0;
   }
 
   const StoredRows& rows() const { return stored_; }
 
  private:
-  int told_interrupted(std::size_t finished) const {
-    programs::complain("pinnquad-study", "interrupted; " + std::to_string(finished) + " of " +
-                                             std::to_string(jobs_.size()) + " trainings are in " + folder_.rows() +
-                                             "; the same command goes on");
-    return programs::exit_interrupted;
+  std::string kept() const {
+    return std::to_string(stored_.rows.size()) + " of " + std::to_string(jobs_.size()) + " trainings are in " +
+           folder_.rows() + "; the same command goes on";
   }
 
   /// Compares the folder with this plan, takes its rows over, and leaves rows.csv ready for more.
@@ -234,10 +229,9 @@ class Campaign {
                      workshop.flights().at({job.contender->flight, job.assignment.flight_seed}), outcome);
       }
       const std::lock_guard<std::mutex> lock(mutex);
-      if (failed) return false;
+      if (failed) return;
       appender.append(row);
       stored_.rows[job.id()] = row;
-      return true;
     };
     progress_s_ = programs::run_parallel(
         "training " + std::to_string(missing.size()) + " networks", missing.size(), threads_,
@@ -245,7 +239,10 @@ class Campaign {
         [&](std::size_t i) {
           try {
             Outcome outcome;
-            return missing[i].contender->run(workshop, missing[i].assignment, outcome) && finish(missing[i], outcome);
+            missing[i].contender->run(workshop, missing[i].assignment, outcome);
+            finish(missing[i], outcome);
+          } catch (const programs::Interrupted&) {
+            throw;
           } catch (...) {
             const std::lock_guard<std::mutex> lock(mutex);
             failed = true;

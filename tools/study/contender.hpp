@@ -122,8 +122,8 @@ struct Contender {
   nlohmann::json description;
   /// Of a seed; empty: the one of that name.
   std::function<std::vector<programs::StudyFlight>(std::uint64_t flight_seed)> flights{};
-  /// False if it was stopped.
-  std::function<bool(Workshop&, const Assignment&, Outcome&)> run;
+  /// Throws programs::Interrupted where it was stopped.
+  std::function<void(Workshop&, const Assignment&, Outcome&)> run;
 };
 
 template <class DataSet>
@@ -172,7 +172,6 @@ Contender linear_contender(const std::string& id, nlohmann::json description) {
           return programs::linear_predictions(pinnquad::airframe_value<Airframe, double>(), {material.flight, range});
         },
         outcome);
-    return true;
   };
   return result;
 }
@@ -194,7 +193,7 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
     const auto best = std::make_unique<pinnquad::Checkpoint<Network>>();
     const int patience = chooses ? assignment.patience : 0;
     for (int epoch = 0; epoch < assignment.epochs && !best->is_stale(epoch, patience); ++epoch) {
-      if (workshop.stopped()) return false;
+      if (workshop.stopped()) throw programs::Interrupted{};
       trainer->epoch(material.data, {epoch, assignment.epochs}, engine);
       if (chooses) best->offer(epoch, trainer->validate(material.validation).mean_absolute, *trainer);
       workshop.count(material.data.size());
@@ -209,7 +208,6 @@ Contender trained_contender(const std::string& id, nlohmann::json description, c
           return pinnquad::predicted_commands(model, {material.flight, range});
         },
         outcome);
-    return true;
   };
   return result;
 }

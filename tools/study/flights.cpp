@@ -28,7 +28,7 @@ pinnquad::Flight study::flown(const programs::StudyFlight& id) {
   return std::move(recorded.flight);
 }
 
-bool study::draw_flights(const std::string& folder, std::uint64_t seed) {
+void study::draw_flights(const std::string& folder, std::uint64_t seed) {
   using namespace pinnquad;
   const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();
   bool drawn = true;
@@ -37,6 +37,7 @@ bool study::draw_flights(const std::string& folder, std::uint64_t seed) {
   programs::each_flight([&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
     if (!drawn) return;
+    progress.update(done++ / 3);
     const auto vehicle = flight_vehicle<PaperFlight>(airframe, PaperFlight::ground_effect);
     const auto without = flight_vehicle<PaperFlight>(airframe, GroundEffectModel::none);
     std::vector<programs::TraceRow> trace;
@@ -47,7 +48,5 @@ bool study::draw_flights(const std::string& folder, std::uint64_t seed) {
     programs::make_folders(into);
     drawn = programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
                                   std::is_same_v<PaperFlight, WindyFlight>);
-    progress.update(++done / 3);
   });
-  return drawn;
 }

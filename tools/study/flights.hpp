@@ -19,9 +19,9 @@ using Airframe = pinnquad::PaperQuadrotor;
 pinnquad::Flight flown(const programs::StudyFlight& id);
 
 /// Flies d1, d2 and d3 of one seed again, forces taken apart, and draws `folder`/flights/{d1,d2,d3}/*.svg as
-/// `fly NAME --pictures` does. False, after one line on stderr, where gnuplot is missing or failed; the report then
-/// leaves them out.
-bool draw_flights(const std::string& folder, std::uint64_t seed);
+/// `fly NAME --pictures` does. Where gnuplot is missing or failed, one line on stderr says so, and the
+/// report leaves them out.
+void draw_flights(const std::string& folder, std::uint64_t seed);
 
 /// All flights of a study.
 using Flights = std::map<programs::StudyFlight, pinnquad::Flight>;

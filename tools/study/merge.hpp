@@ -129,8 +129,8 @@ inline nlohmann::json joined_configuration(const std::vector<Part>& parts) {
 }  // namespace detail
 
 /// Joins the parts `paths` with what `out` holds already; `out` itself may be among them. Exit code: 0, 1 if trainings
-/// are missing, or that of an interrupt, which leaves `out` as it was. Throws InputError, OutputError;
-/// std::invalid_argument for parts of different studies and for two different rows of one training.
+/// are missing. Throws InputError, OutputError; Interrupted, which leaves `out` as it was; std::invalid_argument for
+/// parts of different studies and for two different rows of one training.
 inline int merge(const std::vector<std::string>& paths, const std::string& out) {
   std::vector<detail::Part> parts;
   std::map<RowId, std::string> rows;
@@ -184,10 +184,7 @@ inline int merge(const std::vector<std::string>& paths, const std::string& out) 
       missing = &id;
     }
   }
-  if (programs::interrupted()) {
-    programs::complain("merge", "interrupted; nothing was written");
-    return programs::exit_interrupted;
-  }
+  programs::stop_if_interrupted();
   for (std::size_t i = 0; i < named; ++i) {
     for (const auto& entry : std::filesystem::directory_iterator(parts[i].path + "/series", error)) {
       if (entry.path().extension() != ".csv") continue;

@@ -15,6 +15,7 @@
 
 #include "command_line/commands.hpp"
 #include "command_line/console.hpp"
+#include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "report/paper.hpp"
@@ -77,21 +78,18 @@ int run_campaign(const StudyOptions& options, const char* kind, std::vector<stud
   plan.patience = options.patience;
   plan.flight_seed = options.flight_seed;
   plan.shard = study::parse_shard(options.shard);
-  programs::catch_interrupt();
   study::Campaign campaign(plan, options.out,
                            options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()));
-  const int code = campaign.run();
-  if (code == 0) study::print_summary(plan, campaign.rows());
+  campaign.run();
+  study::print_summary(plan, campaign.rows());
   // a shard's rows are for merge; an ablation is no Table 3
-  if (code == 0 && plan.kind == "table 2" && options.shard == "1/1") {
-    if (!study::draw_flights(options.out, options.flight_seed) && programs::interrupted()) {
-      programs::complain("paper", "interrupted; all trainings are in " + options.out +
-                                      "/rows.csv, the report is missing; the same command goes on");
-      return programs::exit_interrupted;
-    }
-    return programs::report_study(options.out);
-  }
-  return code;
+  if (plan.kind != "table 2" || options.shard != "1/1") return 0;
+  programs::keeping(
+      "all trainings are in " + options.out + "/rows.csv, the report is missing; the same command goes on", [&] {
+        study::draw_flights(options.out, options.flight_seed);
+        programs::report_study(options.out);
+      });
+  return 0;
 }
 
 /// Options of a command that trains; `flights` is how many flights it takes.
@@ -139,10 +137,7 @@ programs::Command merge_command(CLI::App& program) {
   line->footer(
       "Exit codes: 0 all trainings are there; 1 some are missing; 2 bad input, parts of different studies, or a file "
       "that can't be read or written; 130 interrupted, nothing written.");
-  return {line, [options] {
-            programs::catch_interrupt();
-            return study::merge(options->parts, options->out);
-          }};
+  return {line, [options] { return study::merge(options->parts, options->out); }};
 }
 
 int run(int argument_count, char** arguments, std::string& name) {
@@ -164,6 +159,7 @@ int run(int argument_count, char** arguments, std::string& name) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
+  programs::catch_interrupt();
   std::string name = "pinnquad-study";
   return programs::run_program(name, [&] { return run(argument_count, arguments, name); });
 }

@@ -31,9 +31,9 @@ using TrainingContext = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::Giv
 using TrainingRows =
     pinnquad::TrainingData<float, pinnquad::PaperFeatures::size, pinnquad::OutputMap<pinnquad::CommandOutputs>::size>;
 
-/// One network, start to end. A seed gives initialisation and batch order, alike for all losses. False if interrupted.
+/// One network, start to end. A seed gives initialisation and batch order, alike for all losses.
 template <class Network, class Loss, class Optimizer>
-bool train_one(const TrainingContext& context, const TrainingRows& data, const Loss& loss, const Optimizer& optimizer,
+void train_one(const TrainingContext& context, const TrainingRows& data, const Loss& loss, const Optimizer& optimizer,
                int epochs, std::atomic<long>& epochs_done, Training& training, Network& trained) {
   using Trainer = pinnquad::Trainer<Network, Loss, Optimizer, TrainingContext, pinnquad::ShuffledBatches, batch_size>;
   const auto start = std::chrono::steady_clock::now();
@@ -41,13 +41,12 @@ bool train_one(const TrainingContext& context, const TrainingRows& data, const L
   const auto network = pinnquad::initialised<Network>(engine);
   const auto trainer = std::make_unique<Trainer>(network, loss, optimizer, context);
   for (int epoch = 0; epoch < epochs; ++epoch) {
-    if (interrupted()) return false;
+    stop_if_interrupted();
     trainer->epoch(data, {epoch, epochs}, engine);
     epochs_done.fetch_add(1);
   }
   trained = trainer->network();
   training.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return true;
 }
 
 template <class Axis>
@@ -77,19 +76,17 @@ std::vector<Training> train_all(const TrainingPlan& plan) {
         Training& job = jobs[i];
         const auto network = std::make_unique<Network>();
         const auto trained = [&](const auto& loss, const auto& optimizer) {
-          return train_one(context, data, loss, optimizer, plan.epochs, epochs_done, job, *network);
+          train_one(context, data, loss, optimizer, plan.epochs, epochs_done, job, *network);
         };
         const std::string key = job.loss.key;
-        const bool done = key == "vanilla"            ? trained(pinnquad::Mse{}, Parts::vanilla_optimizer())
-                          : key == "physics_informed" ? trained(Parts::annealed(), Parts::informed_optimizer())
-                          : key == "constant_weight"  ? trained(Parts::constant(), Parts::informed_optimizer())
-                          : key == "pearson"          ? trained(Parts::pearson(), Parts::informed_optimizer())
-                                                      : throw std::logic_error("no such loss: " + key);
-        if (!done) return false;
+        key == "vanilla"            ? trained(pinnquad::Mse{}, Parts::vanilla_optimizer())
+        : key == "physics_informed" ? trained(Parts::annealed(), Parts::informed_optimizer())
+        : key == "constant_weight"  ? trained(Parts::constant(), Parts::informed_optimizer())
+        : key == "pearson"          ? trained(Parts::pearson(), Parts::informed_optimizer())
+                                    : throw std::logic_error("no such loss: " + key);
         const auto model = pinnquad::make_trained_model(*network, context, plan.split.train);
         using Model = std::decay_t<decltype(model)>;
         job.network = std::make_shared<NetworkOfModel<Model>>(model, plan.library_airframe);
-        return true;
       });
 
   std::vector<Training> done;

@@ -40,7 +40,7 @@ inline std::vector<Result> judge_all(const TrainingPlan& plan, const std::vector
               [&](const pinnquad::RowSet& rows) {
                 return derivative_figures(rows, linear_derivatives(plan.airframe));
               });
-          return true;
+          return;
         }
         const Training& training = trainings[i - 1];
         results[i].model = training.loss.title;
@@ -49,7 +49,6 @@ inline std::vector<Result> judge_all(const TrainingPlan& plan, const std::vector
         judge_one(
             i, [&](const pinnquad::RowSet& rows) { return training.network->predictions(rows); },
             [&](const pinnquad::RowSet& rows) { return training.network->derivatives(rows); });
-        return true;
       });
   return results;
 }

@@ -97,8 +97,8 @@ inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const
 
 /// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose
 /// flights held out have no say), one that takes the validation rows for fitting is fitted without them too, from the
-/// first seed. False if interrupted. Throws what the kind's fit() throws.
-inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
+/// first seed. Throws what the kind's fit() throws.
+inline void fit_one(const LogPlan& plan, FinishedFit& job) {
   const LogModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];
   const auto error_of = [&](const TrainedNetwork& model) {
@@ -107,7 +107,6 @@ inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
   const auto start = std::chrono::steady_clock::now();
   const LogFit fit = plan.fit_of(fold, job.seed);
   job.model = kind.fit(fit);
-  if (!job.model) return false;
   job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!kind.takes_validation) {
     job.validation_error = error_of(*job.model);
@@ -115,13 +114,11 @@ inline bool fit_one(const LogPlan& plan, FinishedFit& job) {
     const pinnquad::RowSet none;
     const auto without =
         kind.fit({plan.airframe, fold.split.train, none, plan.absent, plan.sample_period_s, job.seed, plan.epochs});
-    if (!without) return false;
     job.validation_error = error_of(*without);
   }
-  if (fold.split.test.empty()) return true;  // to be exported
+  if (fold.split.test.empty()) return;  // to be exported
   job.held_out = detail::predictions_of(kind, *job.model, fold.split.test);
   job.slopes = log_slopes(*job.model, fold.split.test, axis_signs(plan.airframe));
-  return true;
 }
 
 /// All of a plan. `known(job)` fills a fit that an earlier run has finished, true if it did; `keep(job)` is told of
@@ -156,12 +153,12 @@ LogFits fit_all(const LogPlan& plan, const Known& known, const Keep& keep) {
       "fitting " + std::to_string(jobs.size()) + " models", jobs.size(), plan.threads,
       [&] { return static_cast<double>(finished.load()) / static_cast<double>(jobs.size()); },
       [&](std::size_t i) {
-        if (interrupted()) return false;
+        stop_if_interrupted();
         if (known(jobs[i])) {
           done[i] = 1;
         } else {
           try {
-            if (!fit_one(plan, jobs[i])) return false;
+            fit_one(plan, jobs[i]);
             keep(jobs[i]);
             done[i] = 1;
           } catch (const std::invalid_argument& without_answer) {
@@ -169,7 +166,6 @@ LogFits fit_all(const LogPlan& plan, const Known& known, const Keep& keep) {
           }
         }
         finished.fetch_add(1);
-        return true;
       });
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (!refused[i].empty()) fits.not_applicable[jobs[i].kind][jobs[i].fold] = refused[i];

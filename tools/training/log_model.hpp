@@ -36,7 +36,7 @@ struct LogModelKind {
   bool seeded = false;  ///< false: closed form, one fit whatever the seed
   /// Why it can't be fitted to these rows ("needs velocity, which the logs lack"); empty if it can.
   std::string (*not_applicable)(const LogFit&);
-  /// Throws std::invalid_argument, one line, where the data leave it without an answer. Null if interrupted.
+  /// Throws std::invalid_argument, one line, where the data leave it without an answer.
   std::shared_ptr<const TrainedNetwork> (*fit)(const LogFit&);
   /// fit() is fitted to the validation rows too: what it says of them is no measure of it. Without them it does as
   /// well.

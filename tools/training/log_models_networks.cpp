@@ -35,7 +35,7 @@ std::shared_ptr<const TrainedNetwork> trained(const LogFit& fit, const Loss& los
   pinnquad::Checkpoint<Network> kept;
   const int epochs = fit.epochs > 0 ? fit.epochs : network_epochs;
   for (int epoch = 0; epoch < epochs; ++epoch) {
-    if (interrupted()) return nullptr;
+    stop_if_interrupted();
     trainer->epoch(data, {epoch, epochs}, engine);
     kept.offer(epoch, trainer->validate(validation).mean_squared, *trainer);
   }

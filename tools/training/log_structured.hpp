@@ -50,7 +50,6 @@ class LogStructured {
         context_(log_context<Context>(fit, rows_)),
         epochs_(fit.epochs > 0 ? fit.epochs : residual_epochs) {}
 
-  /// Null if interrupted.
   std::shared_ptr<const TrainedNetwork> model() const {
     std::vector<pinnquad::RowSet> groups;
     std::vector<pinnquad::RegressionSums> sums;
@@ -62,7 +61,7 @@ class LogStructured {
     }
     std::vector<Agreement> by_epoch(static_cast<std::size_t>(epochs_));
     for (std::size_t out = 0; out < groups.size() && groups.size() > 1; ++out) {
-      if (!judge_without(groups, sums, out, by_epoch)) return nullptr;
+      judge_without(groups, sums, out, by_epoch);
     }
     std::size_t best = 0;
     for (std::size_t epoch = 1; epoch < by_epoch.size(); ++epoch) {
@@ -72,9 +71,7 @@ class LogStructured {
     const Data data = what_is_left(ridge, rows_);
     Network network{};
     if (by_epoch[best].gain() > 0) {
-      const bool done =
-          train(data, static_cast<int>(best) + 1, [&network](const Network& averaged, int) { network = averaged; });
-      if (!done) return nullptr;
+      train(data, static_cast<int>(best) + 1, [&network](const Network& averaged, int) { network = averaged; });
       for (int output = 0; output < Network::outputs; ++output) {
         const auto share = static_cast<float>(by_epoch[best].share(output));
         const auto row = network.parameters.end() - last_layer + std::ptrdiff_t{last_width} * output;
@@ -155,7 +152,7 @@ class LogStructured {
 
   /// A network from the seed, `epochs` of the schedule's; after each of them `visit(averaged network, epoch)`.
   template <class Visit>
-  bool train(const Data& data, int epochs, const Visit& visit) const {
+  void train(const Data& data, int epochs, const Visit& visit) const {
     std::mt19937_64 engine(fit_.seed);
     auto network = pinnquad::initialised<Network>(engine);
     std::fill(network.parameters.end() - last_layer, network.parameters.end(), 0.0F);  // begins as the ridge alone
@@ -166,15 +163,14 @@ class LogStructured {
         std::make_unique<Trainer>(network, pinnquad::Mse{}, optimizer, pinnquad::residual_context(context_));
     const auto average = std::make_unique<pinnquad::WeightAverage<Network>>();
     for (int epoch = 0; epoch < epochs; ++epoch) {
-      if (interrupted()) return false;
+      stop_if_interrupted();
       trainer->epoch(data, {epoch, epochs_}, engine, [&](const Trainer& now) { average->add(now.network()); });
       visit(average->network(), epoch);
     }
-    return true;
   }
 
-  /// Trains without a group and asks the network of it. False if interrupted.
-  bool judge_without(const std::vector<pinnquad::RowSet>& groups, const std::vector<pinnquad::RegressionSums>& sums,
+  /// Trains without a group and asks the network of it.
+  void judge_without(const std::vector<pinnquad::RowSet>& groups, const std::vector<pinnquad::RegressionSums>& sums,
                      std::size_t out, std::vector<Agreement>& by_epoch) const {
     std::vector<pinnquad::RegressionSums> others;
     pinnquad::RowSet left;
@@ -185,7 +181,7 @@ class LogStructured {
     }
     const pinnquad::AffineMap ridge = solved_monotone_ridge(pinnquad::monotone_shape(context_), others);
     const Data unseen = what_is_left(ridge, groups[out]);
-    return train(what_is_left(ridge, left), epochs_, [&](const Network& averaged, int epoch) {
+    train(what_is_left(ridge, left), epochs_, [&](const Network& averaged, int epoch) {
       Agreement& agreement = by_epoch[static_cast<std::size_t>(epoch)];
       agreement.begin_group();
       for (int row = 0; row < unseen.size(); ++row) {

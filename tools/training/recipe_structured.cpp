@@ -36,7 +36,6 @@ class SideBySide {
 
   template <class Job>
   void run(std::size_t count, const Job& job) {
-    if (interrupted()) return;
     const std::string what =
         std::to_string(count) + " structured models" + (chosen_ ? "" : ", with the altitude and without");
     const double all_epochs = static_cast<double>(count) * plan_.epochs;
@@ -45,9 +44,8 @@ class SideBySide {
         plan_.silent ? "" : "training " + what, count, plan_.threads,
         [&] { return static_cast<double>(epochs_done_.load()) / all_epochs; },
         [&](std::size_t i) {
-          const bool done = job(i);
+          if (!job(i)) throw Interrupted{};
           epochs_done_.fetch_add(1);
-          return done;
         });
   }
   bool goes_on(int epoch) {
@@ -111,7 +109,7 @@ std::vector<Training> train_all_and_structured(const TrainingPlan& plan) {
   }
   std::vector<Training> own, all;
   if (of_paper.losses.size() < plan.losses.size()) own = train_structured(plan);
-  if (!of_paper.losses.empty() && !interrupted()) all = paper_recipe().train(of_paper);
+  if (!of_paper.losses.empty()) all = paper_recipe().train(of_paper);
   for (Training& training : own) all.push_back(std::move(training));
   return all;
 }

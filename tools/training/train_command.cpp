@@ -22,6 +22,7 @@
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
+#include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/data/csv.hpp"
@@ -248,8 +249,10 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
   if (!recipe.besides_in_words.empty()) std::printf("      %s\n", recipe.besides_in_words.c_str());
   std::fflush(stdout);
 
-  programs::catch_interrupt();
   const std::vector<programs::Training> trainings = recipe.train(plan);
+  const std::string kept = std::to_string(trainings.size()) + " of " +
+                           std::to_string(plan.losses.size() * static_cast<std::size_t>(options.seeds)) +
+                           " trainings were finished and kept";
 
   std::printf("[3/5] judge\n");
   std::fflush(stdout);
@@ -279,8 +282,9 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
   if (!best) {
     const std::string reason = programs::reason_of_none(chosen.loss, results);
     report.write_not_exported(reason);
+    if (programs::interrupted()) throw programs::Interrupted{kept};
     programs::complain("train", reason + "; nothing to export" + earlier_export(options));
-    return programs::interrupted() ? programs::exit_interrupted : programs::exit_failed;
+    return programs::exit_failed;
   }
   const std::string reason = reason_against_export(options, chosen, report);
   // before the export: a disk that is full then costs the export alone
@@ -304,12 +308,10 @@ int train_judge_export(const TrainOptions& options, const programs::Recipe& reci
     const std::optional<std::size_t> best_of_loss = programs::best_of(results, loss.title);
     if (best_of_loss) shown.push_back(*best_of_loss);
   }
-  draw(plan.airframe, folder, split.test, results, predictions, shown, kinds);
-  if (programs::interrupted()) {
-    std::fprintf(stderr, "train: interrupted; %zu of %zu trainings were finished and kept\n", trainings.size(),
-                 plan.losses.size() * static_cast<std::size_t>(options.seeds));
-    return programs::exit_interrupted;
-  }
+  programs::keeping(kept, [&] {
+    draw(plan.airframe, folder, split.test, results, predictions, shown, kinds);
+    programs::stop_if_interrupted();
+  });
   return reason.empty() ? 0 : programs::exit_failed;
 }
 
@@ -357,7 +359,6 @@ int train_chosen(const TrainOptions& options) {
   losses.insert(losses.end(), recipe.besides.begin(), recipe.besides.end());
   const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   require_separate_files(options);
-  programs::end_at_interrupt();  // while nothing is worth keeping
   const Dataset dataset = programs::read_flights(options.flights, minimum_rows);
   const RowSplit split = split_for_training(dataset);
   programs::require_varied_commands(options.flights, dataset, split.train, "training");

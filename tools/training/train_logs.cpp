@@ -22,6 +22,7 @@
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
+#include "command_line/interrupt.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "training/log_export.hpp"
 #include "training/log_fit_store.hpp"
@@ -78,8 +79,24 @@ class LogTraining {
     warn_of_the_setting();
     std::printf("[2/5] fit %zu kinds of models, %d seeds\n", plan_.kinds.size(), plan_.seeds);
     std::fflush(stdout);
-    programs::catch_interrupt();
     const programs::LogFitStore store(options_.out + "/fits", plan_);
+    int code = 0;
+    try {
+      fit(store);
+      code = judge_and_export();
+    } catch (const programs::Interrupted&) {
+      report_.write_not_exported("interrupted");
+      throw programs::Interrupted{kept()};
+    }
+    std::printf("[5/5] report\n");
+    std::fflush(stdout);
+    programs::keeping(kept(), [&] { write_page(); });
+    store.clear();
+    return code;
+  }
+
+ private:
+  void fit(const programs::LogFitStore& store) {
     fits_ = programs::fit_all(
         plan_,
         [&](programs::FinishedFit& job) {
@@ -92,23 +109,19 @@ class LogTraining {
       std::printf("      %zu of %zu fits were finished by an earlier run\n", known_.load(), fits_.wanted);
     }
     report_.interrupted_after(fits_.finished.size(), fits_.wanted);
-    if (programs::interrupted() && fits_.finished.size() < fits_.wanted) return tell_interrupted();
+    if (fits_.finished.size() < fits_.wanted) programs::stop_if_interrupted();
+  }
+
+  int judge_and_export() {
     std::printf("[3/5] judge\n");
     judged_ = programs::judge_fits(plan_, fits_);
     verdicts_ = programs::verdicts_on(judged_);
     programs::print_log_table(plan_, judged_, verdicts_);
     std::fflush(stdout);
     report_.judged(plan_, judged_, verdicts_);
-    const int code = export_best();
-    if (code == programs::exit_interrupted) return code;
-    std::printf("[5/5] report\n");
-    std::fflush(stdout);
-    write_page();
-    store.clear();
-    return code;
+    return export_best();
   }
 
- private:
   bool rotated() const { return !options_.hold_out_each.empty(); }
 
   void warn_of_the_setting() {
@@ -134,13 +147,9 @@ class LogTraining {
     return flights;
   }
 
-  int tell_interrupted() {
-    report_.write_not_exported("interrupted");
-    std::fprintf(
-        stderr,
-        "train: interrupted; %zu of %zu fits are finished and kept in %s/fits: the same command goes on from there\n",
-        fits_.finished.size(), fits_.wanted, options_.out.c_str());
-    return programs::exit_interrupted;
+  std::string kept() const {
+    return std::to_string(fits_.finished.size()) + " of " + std::to_string(fits_.wanted) +
+           " fits are finished and kept in " + options_.out + "/fits: the same command goes on from there";
   }
 
   int refuse(const std::string& reason, int code) {
@@ -180,13 +189,12 @@ class LogTraining {
     std::optional<Exported> made;
     for (const std::size_t k : order) {
       if (k != order.front() && programs::exported_verdict(judged_, k).worse_than_mean()) continue;
-      std::optional<Exported> next = exported(k);
-      if (!next) return tell_interrupted();
-      next->flown = fly(*next, judged_.kinds[k].kind);
-      const bool lost = programs::lost_vehicle(next->flown);
+      Exported next = exported(k);
+      next.flown = fly(next, judged_.kinds[k].kind);
+      const bool lost = programs::lost_vehicle(next.flown);
       if (lost) {
         report_.warn(std::string(judged_.kinds[k].kind.title) + " loses the vehicle in the closed loop (" +
-                     decimals(next->flown["model"]["largest_error_m"], 1) + " m off): not fit to fly" +
+                     decimals(next.flown["model"]["largest_error_m"], 1) + " m off): not fit to fly" +
                      (k != order.back() ? "; the next best is tried" : ""));
       }
       if (!lost || !made) {
@@ -223,8 +231,8 @@ class LogTraining {
     write(made, kind.kind, verdict);
   }
 
-  /// The model to write: after a rotation fitted to all flights, else that of the best seed. None if interrupted.
-  std::optional<Exported> exported(std::size_t kind) {
+  /// The model to write: after a rotation fitted to all flights, else that of the best seed.
+  Exported exported(std::size_t kind) {
     if (rotated()) {
       all_ = programs::fold_of_all(dataset_.flights);
       programs::LogPlan once = plan_;
@@ -233,7 +241,7 @@ class LogTraining {
       if (once.kinds.front().takes_validation) once.seeds = 1;
       all_fits_ = programs::fit_all(
           once, [](programs::FinishedFit&) { return false; }, [](const programs::FinishedFit&) {});
-      if (programs::interrupted() && all_fits_.finished.size() < all_fits_.wanted) return {};
+      if (all_fits_.finished.size() < all_fits_.wanted) programs::stop_if_interrupted();
       const programs::FinishedFit* best =
           programs::best_fit(all_fits_.finished, 0, once.kinds.front().takes_validation);
       if (best == nullptr)
@@ -243,7 +251,7 @@ class LogTraining {
     const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation);
     if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
     programs::FinishedFit again = *best;
-    if (!again.model && !programs::fit_one(plan_, again)) return {};  // known from an earlier run: the same once more
+    if (!again.model) programs::fit_one(plan_, again);  // known from an earlier run: the same once more
     return Exported{again.model, again.seed, &plan_.folds[again.fold], {}};
   }
 
@@ -345,7 +353,6 @@ int programs::train_on_logs(const LogTrainingOptions& options) {
   std::optional<NamedAirframe> given;
   if (!options.airframe.empty()) given = chosen_airframe(options.airframe);
   const NamedAirframe airframe = given ? *given : chosen_airframe(PaperQuadrotor::name);
-  end_at_interrupt();  // while nothing is worth keeping
   std::printf("[1/5] read\n");
   std::fflush(stdout);
   const pinnquad::logs::ImportedDataset dataset = dataset_of(options);

@@ -2,6 +2,8 @@
 // What a program makes of an exception: a refusal is its user's to mend, anything else is a fault of ours.
 #include <doctest/doctest.h>
 
+#include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -16,6 +18,9 @@
 #include <unistd.h>
 
 #include "command_line/console.hpp"
+#include "command_line/interrupt.hpp"
+#include "command_line/parallel.hpp"
+#include "command_line/progress_line.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace {
@@ -74,6 +79,39 @@ TEST_CASE("a refusal is one line of the command, exit code 2") {
   const std::filesystem::filesystem_error denied("reading", std::make_error_code(std::errc::permission_denied));
   check_refused(ended_by(denied), denied.what());
   check_refused(ended_by(std::bad_alloc()), "out of memory");
+}
+
+TEST_CASE("an interruption says what is kept, exit code 130") {
+  const Ended end = ended([]() -> int { throw programs::Interrupted{"2 of 3 are kept"}; });
+  CHECK(end.code == 130);
+  CHECK(end.said == "land: interrupted; 2 of 3 are kept\n");
+  CHECK(ended_by(programs::Interrupted{}).said == "land: interrupted; nothing was written\n");
+}
+
+TEST_CASE("Ctrl-C stops what reports its progress; of work side by side the finished is kept") {
+  programs::catch_interrupt();
+  programs::ProgressLine progress("landing");
+  progress.update(0.1);
+  std::atomic<int> finished{0};
+  programs::run_parallel(
+      "", 100, 2, [] { return 0.0; },
+      [&](std::size_t i) {
+        programs::stop_if_interrupted();
+        finished.fetch_add(1);
+        if (i == 10) std::raise(SIGINT);
+      });
+  CHECK(programs::interrupted());
+  CHECK(finished >= 1);
+  CHECK(finished < 100);
+  CHECK_THROWS_AS(progress.update(0.2), programs::Interrupted);
+  const Ended end = ended([&]() -> int {
+    programs::keeping("ten landings are kept", [&] { progress.update(0.3); });
+    return 0;
+  });
+  CHECK(end.code == 130);
+  CHECK(end.said == "land: interrupted; ten landings are kept\n");
+  programs::detail::interrupt_wanted.store(false);
+  std::signal(SIGINT, SIG_DFL);
 }
 
 TEST_CASE("any other exception is a fault of the program, exit code 70") {
