@@ -21,7 +21,7 @@ endmacro()
 
 run("configuring with Eigen alone" "${CMAKE_COMMAND}" -S "${SOURCE_DIR}" -B "${TREES}/eigen_alone" -G "${GENERATOR}"
   "-DCMAKE_CXX_COMPILER=${COMPILER}" ${hidden})
-if(NOT said MATCHES "\n-- pinnquad: not built: the tests \\(no doctest\\), the program pinnquad \\(no CLI11, nlohmann_json, tomlplusplus, kainjow_mustache\\), the benchmarks \\(no benchmark\\);[^\n]*\n")
+if(NOT said MATCHES "\n-- pinnquad: not built: the tests \\(no doctest\\), the program pinnquad \\(no CLI11, nlohmann_json, tomlplusplus, kainjow_mustache\\), the library pinnquad::logs \\(no nlohmann_json, tomlplusplus\\), the benchmarks \\(no benchmark\\);[^\n]*\n")
   message(FATAL_ERROR "configured without doctest, CLI11, nlohmann_json, tomlplusplus, kainjow_mustache and benchmark, and no line says what is off:\n${said}")
 endif()
 run("the installation" "${CMAKE_COMMAND}" --install "${TREES}/eigen_alone" --prefix "${PREFIX}")
