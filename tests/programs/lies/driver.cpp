@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Blocks that lie under a right checksum, a row each: open() or the self test refuses each. They are written into a
 // folder, for the program to refuse too.
-//   lies_driver FOLDER        prints the hash over the header that lies.py edits
+//   lies_driver FOLDER        prints the hash over the header that test_lies.py edits
 #include <cstdio>
 #include <cstring>
 #include <exception>

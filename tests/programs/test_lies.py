@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Headers that lie, a row each: edits of a structured model with a residual and of one with a window. The compiler, certify,
-evaluate and block refuse each; block writes nothing. With a hash over all of it (exported/contents_hash.hpp) every edit is
-refused; without one, as in headers of before, whatever contradicts itself.
-    lies.py SOURCE_DIR PINNQUAD HASH FLIGHT COMPILER [FLAG]..."""
+"""Headers and blocks that lie are refused: headers, edits of a structured model with a residual and of one with a
+window, a row each, by compiler, certify, evaluate and block, which writes nothing; blocks by open(), self test, certify
+and evaluate. With a hash over all of a header (exported/contents_hash.hpp) every edit is refused; without one, as in
+headers of before, whatever contradicts itself."""
 import os
 import re
-import subprocess
-import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
-source, pinnquad, contents_hash, flight, *compiler = sys.argv[1:]
+import pytest
+from conftest import SOURCE, Program
 
 
 def constant(name):
@@ -114,7 +115,8 @@ residual_lies = [
     ("output names swapped", edited("output_names", swapped('"roll_sum"', '"yaw_sum"')), "has other outputs"),
     ("window taps", edited("window_taps", lambda _: "3"), "has another window"),
     ("command range swapped", exchanged("command_lower", "command_upper"), "range of the model's commands is none"),
-    ("sample period", edited("sample_period_s", lambda _: "0.01"), ""),  # of a model without window: nothing else says it
+    ("sample period", edited("sample_period_s", lambda _: "0.01"), ""),
+    # of a model without window: nothing else says it
     ("judgement", edited("beats_linear_regression", lambda _: "false"), ""),
 ]
 window_lies = [
@@ -126,78 +128,104 @@ window_lies = [
      "statistics of a distance"),
     ("distance limit negative", edited("distance_limit", lambda _: "-8.5"), "statistics of a distance"),
     ("distance mean outside", edited("distance_mean", number(0, "1000000.0")), "statistics of a distance"),
-    ("distance diagonal negative", edited("distance_inverse_cholesky", number(0, scaled(-1))), "statistics of a distance"),
+    ("distance diagonal negative", edited("distance_inverse_cholesky", number(0, scaled(-1))),
+     "statistics of a distance"),
 ]
 airframe_lies = [
     ("mass", lambda text: text.replace("a.mass_kg = Scalar(1.5)", "a.mass_kg = Scalar(1.6)")),
     ("inertia", lambda text: text.replace("Scalar(0.01469)", "Scalar(0.01470)")),
     ("rotor", lambda text: text.replace("{Scalar(0.243952), Scalar(0.243952)", "{Scalar(0.25), Scalar(0.243952)")),
 ]
-believed = 0
-
-
-def run(command):
-    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
-    return done.returncode, done.stdout + done.stderr
-
-
-def expect(right, what, said):
-    global believed
-    if right:
-        return
-    believed += 1
-    print("BELIEVED: %s\n%s" % (what, said))
-
-
-def tell(what, text, message, by_program=True, compiled=True):
-    with open("lie.hpp", "w") as file:
-        file.write(text)
-    if compiled:
-        code, said = run([*compiler, "lie.hpp"])
-        errors = "\n".join(line for line in said.split("\n") if "error" in line)
-        expect(code != 0 and message in errors, what + ": compiler", said)
-    if not by_program:
-        return
-    commands = [["block", "lie.hpp", "--out", "lie.block"], ["certify", "lie.hpp"], ["evaluate", "lie.hpp", "--flight", flight]]
-    for command in commands:
-        code, said = run([pinnquad, *command])
-        expect(code == 2 and said.count("\n") == 1, what + ": " + command[0], said)
-    expect(not os.path.exists("lie.block"), what + ": a block was written", "")
-    if os.path.exists("lie.block"):
-        os.remove("lie.block")
-
-
-def header(path):
-    return open(os.path.join(source, path)).read()
-
-
-# every header includes what flies: compiled once for all of them
-with open("precompiled.hpp", "w") as file:
-    file.write("#include <pinnquad/flight.hpp>\n")
-code, said = run([*compiler, "-x", "c++-header", "precompiled.hpp", "-o", "precompiled.hpp.gch"])
-expect(code == 0, "what flies", said)
-compiler += ["-fsyntax-only", "-include", "precompiled.hpp", "-x", "c++"]
 
 EDITED = "was edited since it was exported"
-ends = [text for text in (header("tests/models/v3/near_ground_quadrotor.hpp"), header("tests/models/v3/own_racer.hpp"))]
-bare, window = ends
-hash_line = "  static constexpr std::uint64_t contents_hash = %s;\n" % contents_hash
-hashed = bare.replace("};\n\nstatic_assert(pinnquad::require_model<", hash_line + "};\n\nstatic_assert(pinnquad::require_model<")
-for name, text in ("without a hash", bare), ("with it", hashed), ("with a window", window):
-    with open("truth.hpp", "w") as file:
-        file.write(text)
-    for command in [[*compiler, "truth.hpp"], [pinnquad, "block", "truth.hpp", "--out", "truth.block"]]:
-        code, said = run(command)
-        expect(code == 0, "the truth, " + name, said)
-for name, edit, message in residual_lies:
-    tell(name, edit(hashed), EDITED)
-    if message != "":
-        tell(name + ", no hash", edit(bare), message or "", compiled=message is not None)
-for name, edit, message in window_lies:
-    # its features are of no kind that the program knows: it can't tell what their window is
-    tell(name + ", no hash", edit(window), message, by_program=name.startswith("distance"))
-for name, edit in airframe_lies:
-    assert edit(hashed) != hashed
-    tell("airframe: " + name, edit(hashed), EDITED)
-print("%d lies believed" % believed)
-sys.exit(believed != 0)
+PRECOMPILED = "precompiled.hpp"  # what flies, which every header includes
+
+
+@pytest.fixture(scope="module")
+def lies(program, tmp_path_factory):
+    """The folder with blocks that lie, and the hash over the header that is edited here."""
+    folder = tmp_path_factory.mktemp("lies")
+    (folder / "blocks").mkdir()
+    return folder, program("lies_driver")("blocks", cwd=folder).out.strip()
+
+
+@pytest.fixture(scope="module")
+def flight(flown):
+    return flown("--seed 3 --samples 300")
+
+
+@pytest.fixture(scope="module")
+def checked(compiler, tmp_path_factory):
+    """checked(header, code): the errors of a compiler that has what flies."""
+    folder = tmp_path_factory.mktemp("precompiled")
+    (folder / PRECOMPILED).write_text("#include <pinnquad/flight.hpp>\n")
+    compiler(f"-x c++-header {PRECOMPILED} -o {PRECOMPILED}.gch", cwd=folder)
+    whole = Program(*compiler.words, "-fsyntax-only", "-include", folder / PRECOMPILED, "-x", "c++")
+
+    def errors(header, code):
+        said = whole("", header, code=code, env={**os.environ, "LC_ALL": "C"}).err
+        return "\n".join(line for line in said.split("\n") if "error" in line)
+
+    return errors
+
+
+BARE = (SOURCE / "tests/models/v3/near_ground_quadrotor.hpp").read_text()
+WINDOW = (SOURCE / "tests/models/v3/own_racer.hpp").read_text()
+
+
+def with_hash(number):
+    line = f"  static constexpr std::uint64_t contents_hash = {number};\n"
+    return BARE.replace("};\n\nstatic_assert(pinnquad::require_model<",
+                        line + "};\n\nstatic_assert(pinnquad::require_model<")
+
+
+def headers(number):
+    """Each lie: its name, the header, the compiler's word (None: not compiled), and whether the program knows its
+    features."""
+    hashed = with_hash(number)
+    for name, edit, message in residual_lies:
+        yield name, edit(hashed), EDITED, True
+        if message != "":
+            yield f"{name}, no hash", edit(BARE), message, True
+    for name, edit, message in window_lies:
+        # its features are of no kind that the program knows: it can't tell what their window is
+        yield f"{name}, of a window", edit(WINDOW), message, name.startswith("distance")
+    for name, edit in airframe_lies:
+        assert edit(hashed) != hashed
+        yield f"airframe: {name}", edit(hashed), EDITED, True
+
+
+def test_truth(pinnquad, lies, checked):
+    for text in BARE, with_hash(lies[1]), WINDOW:
+        Path("truth.hpp").write_text(text)
+        checked("truth.hpp", 0)
+        pinnquad("block truth.hpp --out truth.block")
+
+
+def test_headers(pinnquad, lies, checked, flight, work):
+    def believed(number, lie):
+        name, text, message, by_program = lie
+        file, block = work / f"lie{number}.hpp", work / f"lie{number}.block"
+        file.write_text(text)
+        try:
+            assert message is None or message in checked(file, 1)
+            for words in ("block", file, "--out", block), ("certify", file), ("evaluate", file, "--flight", flight):
+                if by_program:
+                    pinnquad.refused(*words, keyword=file.name)
+            assert not block.exists()
+        except AssertionError as fault:
+            return f"{name}: {fault}"
+
+    told = list(headers(lies[1]))
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = [fault for fault in pool.map(believed, range(len(told)), told) if fault]
+    assert len(told) >= 60 and not found, "\n".join(found)
+
+
+def test_blocks(pinnquad, lies, flight):
+    blocks = sorted((lies[0] / "blocks").iterdir())
+    assert len(blocks) >= 20
+    for block in blocks:
+        for words in ("certify", block), ("evaluate", block, "--flight", flight):
+            line = pinnquad.refused(*words).lines[0]
+            assert f"{block.name}: " in line or "shape is unknown" in line, line

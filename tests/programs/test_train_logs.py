@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""train on a dataset of logged flights, from folder to header: what is held out, refused, written, interrupted and
+taken up again."""
+import re
+from pathlib import Path
+
+import pytest
+from conftest import column, edited, ended, listing, no_partial_files, replaced, until
+
+FLIGHTS = [f"flight{seed}" for seed in range(1, 8)]
+TRAIN = "train --dataset logs --airframe paper_quadrotor"
+
+
+@pytest.fixture
+def write(dataset, flown):
+    """write(folder, names): flights of the simulator, whose truth is known."""
+    return lambda folder, names: dataset(folder, {name: flown(f"--seed {name[-1]} --samples 500") for name in names})
+
+
+@pytest.fixture
+def logs(write):
+    write("logs", FLIGHTS)
+
+
+HELD = "--hold-out flight3"
+
+
+@pytest.mark.parametrize("words, at, keyword", [
+    ("--dataset logs", "", "--hold-out"), ("--dataset logs --hold-out fligth3", "", "nearest: flight"),
+    (f"--dataset logs {HELD} --models rigde", "", "nearest: ridge"),
+    (f"--dataset logs {HELD} --export rigde", "", "nearest: ridge"), (f"--dataset no {HELD}", "no/dataset.json", ""),
+    ("--dataset logs --flight logs/flight1.csv", "", "--flight and --dataset"),
+    ("--dataset logs --hold-out flight1 --hold-out-each flight", "", "--hold-out-each"),
+    ("--hold-out flight1", "", "is required"), ("--dataset logs --hold-out flight1 --recipe best", "", "--recipe"),
+    ("--flight logs/flight1.csv --hold-out flight1", "", "--hold-out"), (f"--log logs {HELD}", "", "--mapping"),
+    ("--dataset logs --hold-out-each row", "", "hold-out-each"),
+    # a lag or a clock that no header can state, a command that stands still: found before the folder and the training
+    (f"--dataset late {HELD}", "late/dataset.json", "-0.02 s"), (f"--dataset slow {HELD}", "slow/flight2.csv:3:1",
+                                                                 "milliseconds"),
+    (f"--dataset still {HELD}", "still/flight2.csv:2:19", "u2"),
+    # the same flight under another name: it would train and judge
+    ("--dataset leak --hold-out copy", "", "held-out flight copy")])
+def test_refused(pinnquad, dataset, write, logs, words, at, keyword):
+    """In one line, before anything is written."""
+    three = {name: f"logs/{name}.csv" for name in FLIGHTS[:3]}
+    dataset("late", three)
+    replaced("late/dataset.json", "late/dataset.json", ('"lag_removed_s": 0', '"lag_removed_s": -0.02'))
+    for folder, change in ("slow", column(1, to=lambda t: 1000 * t)), ("still", column(19, to=0.5)):
+        dataset(folder, {**three, "flight2": edited("logs/flight2.csv", "changed.csv", change)})
+    dataset("leak", {**three, "copy": "logs/flight1.csv"})
+    before = listing(".")
+    pinnquad.refused(f"train {words} --out refused", at=at, keyword=keyword)
+    assert listing(".") == before
+
+
+def test_each_flight_in_turn(pinnquad, logs, fly_export):
+    """A table, a report, a header that compiles and agrees, a closed loop."""
+    said = pinnquad(f"{TRAIN} --hold-out-each flight --models constant,linear,ridge --seeds 2 --out each "
+                    "--block each/model.block").out
+    assert "what the others are compared with" in said
+    assert {"report.json", "report.html", "model.hpp", "model.block", "replay.txt"} <= set(listing("each"))
+    assert "fits" not in listing("each"), "the fits of a whole training were left behind"
+    report, page = Path("each/report.json").read_text(), Path("each/report.html").read_text()
+    for text in ['"exported": true', '"exported_model": "(ridge|linear)"', '"r2_flight_bias_removed"', '"per_seed"',
+                 '"by_fold"', '"held_out"', '"standing": "success"', '"closed_loop"']:
+        assert re.search(text, report), text
+    assert not re.search('"worse_than_mean": *true', report)
+    assert all(flight in page for flight in FLIGHTS)
+    flown = fly_export("each/model.hpp")("--replay each/replay.txt", code=None)
+    assert re.search("self test .*: ok", flown.out) and ": agrees" in flown.out, flown
+
+
+def test_one_flight_cannot_decide(pinnquad, logs):
+    """Nothing is called a success."""
+    said = pinnquad(f"{TRAIN} --hold-out flight2 --models constant,linear --seeds 1 --out one").out
+    assert "1 held-out flight can't tell" in said
+    assert '"success": true' not in Path("one/report.json").read_text()
+
+
+def test_interrupted(pinnquad, logs):
+    """Ctrl-C keeps the finished fits, and the same command goes on from there."""
+    words = f"{TRAIN} --hold-out-each flight --models constant,vanilla --threads 1 --out cut"
+    process = pinnquad.start(f"{words} --seeds 20")
+    until(lambda: len(list(Path("cut").glob("fits/*.fit"))) >= 8, process)
+    done = ended(process)
+    assert done.code == 130 and re.search("interrupted; [1-9][0-9]* of 147 fits .* cut/fits", done.err), done
+    assert not Path("cut/model.hpp").exists()
+    no_partial_files("cut")
+    said = pinnquad(f"{words} --seeds 1 --epochs 1 --allow-poor").out
+    assert "finished by an earlier run" not in said, "fits of other epochs were taken"
+
+
+def test_real_vehicle(pinnquad, recorded, made):
+    log = recorded("flight_logs/nanobench_subset_50hz.csv")
+    nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
+    said = pinnquad(f"train --dataset {nano} --airframe crazyflie_2_1 --hold-out-each trajectory --seeds 1 --out nano "
+                    "--models constant,physics,linear,ridge,ridge_centred").out
+    assert "looking ahead: for planned trajectories only" in said, "no centred model was ranked apart"
