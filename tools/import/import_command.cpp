@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Makes one dataset of flight logs, and says what each step cost.
 //   pinnquad import flight.ulg --mapping px4 --airframe mine.toml --out dataset
-#include "logs/import_command.hpp"
+#include "import/import_command.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,14 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "airframe/choice.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/progress_line.hpp"
-#include "logs/dataset_folder.hpp"
-#include "logs/import.hpp"
-#include "logs/mapping_choice.hpp"
+#include "pinnquad/logs/dataset_folder.hpp"
 
 namespace {
+
+namespace logs = pinnquad::logs;
 
 struct ImportOptions {
   std::vector<std::string> logs;
@@ -34,8 +33,8 @@ struct ImportOptions {
 };
 
 void list_mappings() {
-  for (const programs::ReadyMapping& ready : programs::ready_mappings) {
-    std::printf("%-12s %s\n", ready.name, programs::chosen_mapping(ready.name).about.c_str());
+  for (const logs::ReadyMapping& ready : logs::ready_mappings()) {
+    std::printf("%-12s %s\n", ready.name.c_str(), ready.about.c_str());
   }
 }
 
@@ -44,9 +43,9 @@ std::string shortened(const std::string& text, std::size_t width) {
   return text.size() <= width ? text : text.substr(0, width - 3) + "...";
 }
 
-void print_steps(const programs::ImportedDataset& dataset) {
+void print_steps(const logs::ImportedDataset& dataset) {
   std::printf("%-34s %10s %10s %8s\n", "step", "rows", "left", "cost");
-  for (const programs::ImportStep& step : dataset.steps) {
+  for (const logs::ImportStep& step : dataset.steps) {
     const double cost =
         step.rows_before > step.rows_after && step.rows_before > 0
             ? 100.0 * static_cast<double>(step.rows_before - step.rows_after) / static_cast<double>(step.rows_before)
@@ -56,7 +55,7 @@ void print_steps(const programs::ImportedDataset& dataset) {
   }
 }
 
-void print_text(const programs::ImportedDataset& dataset, const std::string& out) {
+void print_text(const logs::ImportedDataset& dataset, const std::string& out) {
   print_steps(dataset);
   for (const std::string& note : dataset.notes) std::printf("%s\n", note.c_str());
   for (const pinnquad::Flight& flight : dataset.flights.flights()) {
@@ -70,24 +69,21 @@ void print_text(const programs::ImportedDataset& dataset, const std::string& out
               dataset.flights.size(), dataset.sample_period_s, dataset.lag_removed_s, out.c_str());
 }
 
-programs::ImportRequest request_of(const ImportOptions& options) {
-  programs::ImportRequest request;
-  request.logs = options.logs;
-  request.mapping = options.mapping;
-  request.rate_hz = options.rate_hz;
-  request.hold_commands = options.hold;
-  std::string airframe = options.airframe;
-  if (airframe.empty()) airframe = programs::chosen_mapping(options.mapping).airframe;
-  if (!airframe.empty()) request.airframe = programs::chosen_airframe(airframe);
+logs::LogSettings settings_of(const ImportOptions& options) {
+  logs::LogSettings settings;
+  settings.mapping = options.mapping;
+  settings.airframe = options.airframe;
+  settings.rate_hz = options.rate_hz;
+  settings.hold_commands = options.hold;
   if (options.lag != "auto") {
     constexpr double longest_s = 1;
     double lag_s = 0;
     if (!programs::parse_decimal(options.lag, -longest_s, longest_s, lag_s)) {
       throw std::invalid_argument("--lag: expected auto, or seconds from -1 to 1, found '" + options.lag + "'");
     }
-    request.lag_s = lag_s;
+    settings.lag_s = lag_s;
   }
-  return request;
+  return settings;
 }
 
 int run(const ImportOptions& options) {
@@ -98,18 +94,18 @@ int run(const ImportOptions& options) {
   if (options.logs.empty())
     throw std::invalid_argument("expected a log: a .ulg file, a .csv table, a folder of ulog2csv");
   if (options.mapping.empty()) {
-    throw std::invalid_argument("expected --mapping: " + programs::mapping_names() + ", or a .toml file");
+    throw std::invalid_argument("expected --mapping: " + logs::mapping_names() + ", or a .toml file");
   }
   if (options.out.empty()) throw std::invalid_argument("expected --out DATASET: the folder to write");
-  programs::ImportRequest request = request_of(options);
-  programs::require_dataset_place(options.out);
+  logs::LogSettings settings = settings_of(options);
+  logs::require_dataset_place(options.out);
   programs::ProgressLine progress("importing");
-  request.on_progress = [&progress](const std::string&, double share) { progress.update(share / 2); };
-  const programs::ImportedDataset dataset = programs::import_logs(request);
-  programs::write_dataset_folder(options.out, dataset, [&](double share) { progress.update(0.5 + share / 2); });
+  settings.on_progress = [&progress](const std::string&, double share) { progress.update(share / 2); };
+  const logs::ImportedDataset dataset = logs::read_dataset(options.logs, settings);
+  logs::write_dataset_folder(options.out, dataset, [&](double share) { progress.update(0.5 + share / 2); });
   progress.clear();
   if (options.json) {
-    std::printf("%s\n", programs::described(dataset, programs::flight_files(dataset)).dump(1).c_str());
+    std::printf("%s\n", logs::dataset_json(dataset).c_str());
   } else {
     print_text(dataset, options.out);
   }
@@ -122,7 +118,8 @@ programs::Command programs::import_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, ulog2csv, CSV");
   const auto options = std::make_shared<ImportOptions>();
   add_paths(*line, "logs", options->logs, "LOG", "ULog files, CSV tables, folders of ulog2csv or of ULog files");
-  line->add_option("--mapping", options->mapping, "what the columns mean: " + mapping_names() + ", or a file")
+  line->add_option("--mapping", options->mapping,
+                   "what the columns mean: " + pinnquad::logs::mapping_names() + ", or a file")
       ->type_name("NAME|FILE.toml");
   add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
            "gives rotor speeds and thrusts their commands; the mapping may name one");

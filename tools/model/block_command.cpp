@@ -1,61 +1,137 @@
 // SPDX-License-Identifier: MIT
-// Writes an exported header as a model block, from its text: the bytes that its training would have written
-// (deploy/weight_file.hpp). A header that contradicts itself, or whose golden vectors its weights miss, is none.
-//   pinnquad block my_model/model.hpp --out weights.block
+// Says what a model block holds: it describes itself (docs/blocks.md).
+//   pinnquad block my_model/model.block
 #include "model/block_command.hpp"
 
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "command_line/file_roles.hpp"
-#include "command_line/options.hpp"
-#include "model/asked_model.hpp"
-#include "model/model_file.hpp"
-#include "pinnquad/deploy/weight_file.hpp"
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "model/given_model.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace {
 
 using namespace pinnquad;
-using programs::HeaderFile;
 
 struct BlockOptions {
-  std::string header;
-  std::string out;
+  std::string model;
+  bool json = false;
 };
 
-int write_block(const BlockOptions& options) {
-  programs::FileRoles roles;
-  roles.reads("header", options.header);
-  roles.writes("--out", options.out);
-  const HeaderFile header(options.header);
-  programs::ModelHints hints;
-  const std::vector<unsigned char> bytes = programs::header_block(header, hints);
-  // what open() or the self test would refuse is not written
-  const programs::Block block = programs::read_block(options.header, {bytes.begin(), bytes.end()});
-  const std::optional<programs::Identity> identity = programs::find_identity(block, hints);
-  if (identity) programs::asked_model(block, *identity, true);
-  write_weight_file(options.out, bytes);
-  std::printf("%s: %s as a block of %zu bytes%s\n", printable(options.out).c_str(),
-              printable(header.quoted("name")).c_str(), bytes.size(),
-              identity ? "" : "; of a shape unknown here: its golden vectors were not replayed");
+nlohmann::json named(const RunTimeFeatures::Named& one) {
+  return {{"name", std::string(one.name)}, {"unit", std::string(one.unit)}};
+}
+
+/// All but the weights and the golden vectors.
+nlohmann::json description_of(const BlockModel& model) {
+  const RunTimeFeatures& features = model.features();
+  const RunTimeWindow& window = features.window();
+  nlohmann::json all = {{"model", model.path()},
+                        {"name", model.name()},
+                        {"contents_hash", hexadecimal(model.contents_hash())},
+                        {"checksum", hexadecimal(model.checksum())},
+                        {"scalar", model.is_double() ? "double" : "float"},
+                        {"network", model.answer()},
+                        {"parameters", model.network().parameter_count()},
+                        {"outputs_are", model.schema()},
+                        {"airframe", model.airframe_name()},
+                        {"golden_vectors", model.golden_count()},
+                        {"golden_difference", model.golden_difference()}};
+  if (window.taps > 1) {
+    all["window"] = {{"taps", window.taps}, {"period_s", window.period_s}, {"causal", window.causal}};
+  }
+  model.with([&](const auto& own) {
+    const auto& records = own.records();
+    for (int i = 0; i < features.size(); ++i) {
+      nlohmann::json feature = named(features[i]);
+      feature["envelope"] = {own.scales().lower[i], own.scales().upper[i]};
+      all["features"].push_back(feature);
+    }
+    for (int i = 0; i < features.column_count(); ++i) all["columns"].push_back(named(features.column(i)));
+    for (int k = 0; k < own.network().outputs(); ++k) all["outputs"].push_back(named(own.output(k)));
+    all["commands"] = {{"meaning", to_string(records.command_meaning)},
+                       {"lower", records.command_lower},
+                       {"upper", records.command_upper}};
+    all["sample_period_s"] = 1e-9 * records.sample_period_ns;
+    all["lag_removed_s"] = 1e-9 * records.lag_removed_ns;
+    all["training_rows"] = own.training_rows();
+    all["training_data_hash"] = hexadecimal(own.training_data_hash());
+    all["limits_of_trust"] = records.trust != nullptr;
+    if (records.has_verdict) {
+      all["worse_than_mean"] = records.worse_than_mean;
+      all["beats_linear_regression"] = records.beats_linear_regression;
+    }
+    std::string_view rest = records.provenance, word, value;
+    while (RunTimeFeatures::take_text(rest, word) && RunTimeFeatures::take_text(rest, value)) {
+      all["provenance"][std::string(word)] = std::string(value);
+    }
+  });
+  if (const auto certificate = model.certificate()) all["proven"] = certificate->proven();
+  return all;
+}
+
+std::string line_of(const nlohmann::json& list) {
+  std::string line;
+  for (const auto& one : list) {
+    const std::string unit = one["unit"];
+    line += (line.empty() ? "" : ", ") + one["name"].get<std::string>() + (unit == "1" ? "" : " [" + unit + "]");
+  }
+  return printable(line);
+}
+
+void print_text(const nlohmann::json& all) {
+  const auto text = [&](const char* key) { return printable(all[key].get<std::string>()); };
+  std::printf("model       %s, contents_hash %s\n", text("name").c_str(), text("contents_hash").c_str());
+  std::printf("network     %s, %d parameters\n", text("network").c_str(), all["parameters"].get<int>());
+  std::printf("features    %s\n", line_of(all["features"]).c_str());
+  if (all.contains("window")) {
+    const auto& window = all["window"];
+    std::printf("window      %d instants, %g ms apart, %s\n", window["taps"].get<int>(),
+                1e3 * window["period_s"].get<double>(), window["causal"].get<bool>() ? "looking back" : "centred");
+  }
+  if (all.contains("columns")) std::printf("columns     %s\n", line_of(all["columns"]).c_str());
+  std::printf("outputs     %s: %s\n", text("outputs_are").c_str(), line_of(all["outputs"]).c_str());
+  std::printf("airframe    %s\n", text("airframe").c_str());
+  std::printf("commands    %s, %g to %g\n", all["commands"]["meaning"].get<std::string>().c_str(),
+              all["commands"]["lower"].get<double>(), all["commands"]["upper"].get<double>());
+  if (all.contains("proven")) std::printf("structure   %s\n", all["proven"].get<bool>() ? "proven" : "not proven");
+  std::printf("trust       %s\n", all["limits_of_trust"].get<bool>() ? "limits are there" : "no limits");
+  if (all.contains("provenance")) {
+    for (const auto& [word, value] : all["provenance"].items()) {
+      std::printf("%-11s %s\n", printable(word).c_str(), printable(value.get<std::string>()).c_str());
+    }
+  }
+  std::printf("rows        %u, data %s\n", all["training_rows"].get<unsigned>(), text("training_data_hash").c_str());
+  std::printf("self test   %d golden vectors, largest difference %.1e\n", all["golden_vectors"].get<int>(),
+              all["golden_difference"].get<double>());
+}
+
+int describe(const BlockOptions& options) {
+  const nlohmann::json all = description_of(programs::read_model(options.model));
+  if (options.json) {
+    std::printf("%s\n", all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    print_text(all);
+  }
   return 0;
 }
 
 }  // namespace
 
 programs::Command programs::block_command(CLI::App& program) {
-  CLI::App* line = program.add_subcommand("block", "Writes an exported header as a model block, without compiling");
+  CLI::App* line = program.add_subcommand("block", "Says what a model block holds: it describes itself");
   const auto options = std::make_shared<BlockOptions>();
-  add_path(*line, "header", options->header, "MODEL.hpp", "a header of format 2 or 3, as pinnquad train writes it")
-      ->required();
-  add_path(*line, "--out", options->out, "FILE", "the block to write")->required();
+  add_model(*line, options->model);
+  line->add_flag("--json", options->json, "all of it as JSON");
   line->footer(
       "Examples:\n"
-      "  pinnquad block my_model/model.hpp --out my_model/weights.block\n"
-      "  pinnquad evaluate my_model/weights.block --flight flight.csv\n"
-      "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted.");
-  return {line, [options] { return write_block(*options); }};
+      "  pinnquad train --flight d1.csv --out my_model\n"
+      "  pinnquad block my_model/model.block\n"
+      "Exit codes: 0; 2 bad input or a file that can't be read; 130 interrupted.");
+  return {line, [options] { return describe(*options); }};
 }

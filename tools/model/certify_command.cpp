@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Says of a model, a block or an exported header, whether each signed sum of its commands rises with the angular
+// Says of a model whether each signed sum of its commands rises with the angular
 // acceleration about its axis: proven by its structure (docs/certificate.md), or refuted by two motions inside its
 // envelope.
 //   pinnquad certify my_model/model.hpp
@@ -18,13 +18,10 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/console.hpp"
-#include "model/asked_model.hpp"
 #include "model/counterexample.hpp"
-#include "model/model_file.hpp"
-#include "model/model_options.hpp"
+#include "model/given_model.hpp"
 #include "model/response.hpp"
 #include "model/searched_model.hpp"
-#include "model/structure_certificate.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/certificate_words.hpp"
 
@@ -37,7 +34,6 @@ constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name}
 
 struct CertifyOptions {
   std::string model;
-  programs::ModelHints hints;
   double seconds = 5;
   std::uint64_t seed = 1;
   bool json = false;
@@ -67,60 +63,66 @@ constexpr const char* by_path_bound =
     "axis alone, and a network whose weights leave the slopes above 0 on every path from it";
 constexpr const char* by_affinity = "the model is affine: its derivatives are the same everywhere";
 
-bool sees_angular_acceleration(const programs::Identity& identity) { return identity.networks.back().path_bounded; }
+bool sees_angular_acceleration(const BlockModel& model) {
+  return model.network().part(model.network().part_count() - 1).path_bounded;
+}
 
-bool is_affine(const programs::Identity& identity) {
-  for (const programs::NetworkSpec& network : identity.networks) {
-    if (network.bounded || network.path_bounded) return false;
-    for (const programs::LayerSpec& layer : network.layers) {
-      if (layer.size == 0) return false;
+bool is_affine(const RunTimeNetwork& network) {
+  for (int i = 0; i < network.part_count(); ++i) {
+    const RunTimePart& part = network.part(i);
+    if (part.bounded || part.path_bounded) return false;
+    for (int layer = 0; layer < part.layer_count; ++layer) {
+      if (part.layers[layer].outputs == 0) return false;
     }
   }
   return true;
 }
 
+bool has_base(const BlockModel& model) {
+  return model.with([](const auto& own) { return !own.records().base.empty(); });
+}
+
 /// To what moves several features at once. The body rates move a base too, which is no part of the response.
-void add_responses(const programs::Block& block, const programs::Identity& identity, const programs::AskedModel& model,
-                   Findings& findings) {
+void add_responses(const BlockModel& model, Findings& findings) {
   const auto along = [&](const std::optional<programs::Direction>& direction) {
-    return direction ? std::optional(programs::response_along(*direction, identity.networks, block.parameters,
-                                                              block.input_deviation, block.output_deviation))
-                     : std::nullopt;
+    if (!direction) return std::optional<programs::Response>();
+    return model.with([&](const auto& own) {
+      return std::optional(programs::response_along(*direction, own.network(), own.parameters(),
+                                                    own.scales().input_deviation, own.scales().output_deviation));
+    });
   };
-  findings.thrust = along(programs::more_thrust(model.names));
-  if (!block.base.empty() || model.seen.period_s <= 0) return;
+  findings.thrust = along(programs::more_thrust(findings.names));
+  const RunTimeWindow& window = model.features().window();
+  if (has_base(model) || window.taps < 2) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    findings.with_rates[axis] =
-        along(programs::held_with_rates(model.names, axis, model.seen, block.envelope_lower, block.envelope_upper));
+    findings.with_rates[axis] = along(programs::held_with_rates(
+        findings.names, axis, {window.period_s, window.earliest_s}, model.envelope_lower(), model.envelope_upper()));
   }
 }
 
-Findings findings_of(const CertifyOptions& options, const programs::Block& block, const programs::Identity& identity) {
-  const auto model = programs::asked_model(block, identity);
+Findings findings_of(const CertifyOptions& options, const BlockModel& model) {
   Findings findings;
-  findings.names = model->names;
-  findings.taps = model->taps.size();
-  if (model->taps.empty()) {
-    throw InputError(block.path, 0, 0, "a model that is asked for an angular acceleration", "one that is not");
+  findings.names = model.feature_names();
+  findings.taps = model.angular_accelerations().size();
+  if (findings.taps == 0) {
+    throw InputError(model.path(), 0, 0, "a model that is asked for an angular acceleration", "one that is not");
   }
-  if (model->signed_sums) {
-    findings.certificate = programs::certificate_of_block(block, identity, *model);
-    if (findings.certificate && findings.certificate->proven()) {
-      findings.argument = sees_angular_acceleration(identity) ? by_path_bound : by_structure;
-      add_responses(block, identity, *model, findings);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        findings.slope[axis] = findings.certificate->slope[axis];
-        findings.held_slope[axis] = findings.certificate->held_slope[axis];
-      }
-      return findings;
+  findings.certificate = model.certificate();
+  if (findings.certificate && findings.certificate->proven()) {
+    findings.argument = sees_angular_acceleration(model) ? by_path_bound : by_structure;
+    add_responses(model, findings);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      findings.slope[axis] = findings.certificate->slope[axis];
+      findings.held_slope[axis] = findings.certificate->held_slope[axis];
     }
+    return findings;
   }
-  const programs::SearchedModel searched = programs::searched_model(block, identity, *model);
-  if (model->affine_schema && is_affine(identity)) {
+  const programs::SearchedModel searched = programs::searched_model(model);
+  if (model.has_affine_schema() && is_affine(model.network())) {
     const std::vector<double>& anywhere = searched.starts.front();
-    findings.slope = model->derivatives(anywhere, false);
-    findings.held_slope = model->derivatives(anywhere, true);
-    const auto vehicle = pinnquad::detail::certified_vehicle<AxisCommandOutputs>(identity.airframe.value);
+    findings.slope = model.derivatives(anywhere, false);
+    findings.held_slope = model.derivatives(anywhere, true);
+    const auto vehicle = pinnquad::detail::certified_vehicle<AxisCommandOutputs>(model.airframe());
     bool above = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double floor = std::max(vehicle.least_slope[axis], 0.0);
@@ -152,31 +154,31 @@ double least_thrust_slope(const Findings& findings) {
   return findings.certificate->held_thrust_slope + findings.thrust->residual_least[0];
 }
 
-void add_thrust(const programs::Identity& identity, const Findings& findings, nlohmann::json& report) {
+void add_thrust(const BlockModel& model, const Findings& findings, nlohmann::json& report) {
   if (!findings.thrust) return;
   report["thrust_slope"] = findings.certificate->thrust_slope;
   report["held_thrust_slope"] = findings.certificate->held_thrust_slope;
-  report["airframe_thrust_slope"] = hover_thrust_slope(identity.airframe.value);
+  report["airframe_thrust_slope"] = hover_thrust_slope(model.airframe());
   report["least_thrust_slope"] = least_thrust_slope(findings);  // null where nobody can bound it
 }
 
-void print_json(const programs::Block& block, const programs::Identity& identity, const Findings& findings) {
-  nlohmann::json report = {{"model", block.path},
-                           {"answer", identity.answer},
-                           {"airframe", identity.airframe.name},
+void print_json(const BlockModel& model, const Findings& findings) {
+  nlohmann::json report = {{"model", model.path()},
+                           {"answer", model.answer()},
+                           {"airframe", model.airframe_name()},
                            {"verdict", verdict_of(findings)}};
   if (findings.proven()) {
     report["argument"] = findings.argument;
     report["inputs"] = "all finite features";
     report["slope"] = by_axis(findings.slope);
     report["held_slope"] = by_axis(findings.held_slope);
-    report["airframe_slope"] = by_axis(hover_slopes(identity.airframe.value));
+    report["airframe_slope"] = by_axis(hover_slopes(model.airframe()));
   }
   if (findings.proven() && findings.certificate) {
     report["residual_lower"] = findings.certificate->residual_lower;
     report["residual_upper"] = findings.certificate->residual_upper;
     report["command_bound"] = findings.certificate->command_bound;
-    add_thrust(identity, findings, report);
+    add_thrust(model, findings, report);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto& response = findings.with_rates[axis];
       if (response) report["held_slope_with_body_rates"][axes[axis]] = response->least(axis + 1);
@@ -186,7 +188,7 @@ void print_json(const programs::Block& block, const programs::Identity& identity
       report["rounding"] = findings.certificate->rounding;
       report["sure_step"] = by_axis({step[0], step[1], step[2]});
     }
-    if (sees_angular_acceleration(identity)) {
+    if (sees_angular_acceleration(model)) {
       const double* other = findings.certificate->other_sums;
       report["other_sums"] = by_axis({other[0], other[1], other[2]});
     }
@@ -216,15 +218,15 @@ void print_json(const programs::Block& block, const programs::Identity& identity
   std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void print_thrust(const programs::Block& block, const programs::Identity& identity, const Findings& findings) {
+void print_thrust(const BlockModel& model, const Findings& findings) {
   if (!findings.thrust) return;
   const Certificate& certificate = *findings.certificate;
-  const double own = hover_thrust_slope(identity.airframe.value), floor = least_thrust_share * own;
+  const double own = hover_thrust_slope(model.airframe()), floor = least_thrust_share * own;
   const double held = certificate.held_thrust_slope;
   std::printf("thrust     the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover",
               held, held / own);
   if (findings.taps > 1) std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
-  std::printf("%s\n", block.base.empty() ? "" : ", while the base's commands are in 0 to 1");
+  std::printf("%s\n", !has_base(model) ? "" : ", while the base's commands are in 0 to 1");
   const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
   const double least = least_thrust_slope(findings);
   if (range > 0 && std::isfinite(least)) {
@@ -259,8 +261,8 @@ void print_with_rates(const Findings& findings) {
   }
 }
 
-void print_rounding(const programs::Identity& identity, const Findings& findings) {
-  if (sees_angular_acceleration(identity)) {
+void print_rounding(const BlockModel& model, const Findings& findings) {
+  if (sees_angular_acceleration(model)) {
     std::printf(
         "rounding   may turn the order of two accelerations that differ by as little as it does; the proof is of "
         "the real function\n");
@@ -277,16 +279,16 @@ void print_rounding(const programs::Identity& identity, const Findings& findings
       findings.taps > 1 ? "; over a smaller one that is held it may fall" : "");
 }
 
-void print_text(const programs::Block& block, const programs::Identity& identity, const Findings& findings) {
-  std::printf("model      %s: %s, for %s\n", printable(block.path).c_str(), identity.answer.c_str(),
-              identity.airframe.name.c_str());
+void print_text(const BlockModel& model, const Findings& findings) {
+  std::printf("model      %s: %s, for %s\n", printable(model.path()).c_str(), model.answer().c_str(),
+              model.airframe_name().c_str());
   if (findings.proven()) {
-    const AxisSlopes own = hover_slopes(identity.airframe.value);
+    const AxisSlopes own = hover_slopes(model.airframe());
     std::printf("proven     each signed sum of the commands rises with the angular acceleration about its axis%s\n",
                 !findings.certificate ? ""
-                                      : (sees_angular_acceleration(identity) ? ", and each rotor goes the right way"
-                                                                             : " and with no other, before a limit "
-                                                                               "clips a command"));
+                                      : (sees_angular_acceleration(model) ? ", and each rotor goes the right way"
+                                                                          : " and with no other, before a limit "
+                                                                            "clips a command"));
     std::printf("for        all finite features, inside the envelope and outside of it\n");
     std::printf("by         %s\n", findings.argument);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -300,9 +302,9 @@ void print_text(const programs::Block& block, const programs::Identity& identity
     }
     if (findings.certificate) {
       std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate).c_str());
-      print_thrust(block, identity, findings);
+      print_thrust(model, findings);
       if (findings.taps > 1) print_with_rates(findings);
-      print_rounding(identity, findings);
+      print_rounding(model, findings);
     }
     return;
   }
@@ -329,11 +331,9 @@ void print_text(const programs::Block& block, const programs::Identity& identity
 }
 
 int certify(const CertifyOptions& options) {
-  programs::ModelHints hints = options.hints;
-  const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
-  const programs::Identity identity = programs::identify(block, hints);
-  const Findings findings = findings_of(options, block, identity);
-  options.json ? print_json(block, identity, findings) : print_text(block, identity, findings);
+  const BlockModel model = programs::read_model(options.model);
+  const Findings findings = findings_of(options, model);
+  options.json ? print_json(model, findings) : print_text(model, findings);
   if (findings.proven()) return 0;
   return findings.search.found ? programs::exit_failed : exit_neither;
 }
@@ -345,7 +345,6 @@ programs::Command programs::certify_command(CLI::App& program) {
       "certify", "Proves that a model's commands follow the angular acceleration that is asked, or refutes it");
   const auto options = std::make_shared<CertifyOptions>();
   add_model(*line, options->model);
-  add_model_hints(*line, options->hints);
   add_number(*line, "--seconds", options->seconds, 0.01, 3600.0,
              "how long, in seconds of the processor, to search a counterexample where nothing is proven");
   add_number(*line, "--seed", options->seed, std::uint64_t{0}, most_seed, "of the search")->type_name("N");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Judges a model, a block or an exported header, on recorded flights: the network is put together at run time, from
-// what the model says of itself.
+// Judges a model on recorded flights, by its block, which describes itself: no compiler is asked.
 //   pinnquad evaluate my_model/model.hpp --flight flight.csv --json
 #include "model/evaluate_command.hpp"
 
@@ -17,12 +16,11 @@
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
-#include "logs/training_flights.hpp"
-#include "model/asked_model.hpp"
-#include "model/model_file.hpp"
-#include "model/model_options.hpp"
+#include "model/given_model.hpp"
+#include "training/derivatives.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
+#include "training/training_flights.hpp"
 
 namespace {
 
@@ -31,7 +29,6 @@ using namespace pinnquad;
 struct EvaluateOptions {
   std::string model;
   std::vector<std::string> flights;
-  programs::ModelHints hints;
   std::string rows = "all";
   bool json = false;
 };
@@ -44,13 +41,13 @@ struct EvaluatedModel {
   programs::DerivativeFigures derivatives;
 };
 
-EvaluatedModel evaluated(const programs::AskedModel& model, const RowSet& rows) {
+EvaluatedModel evaluated(const BlockModel& model, const RowSet& rows) {
   EvaluatedModel result;
   programs::Predictions predictions(rows.size());
   std::vector<bool> counts(rows.size(), false);
   programs::DerivativeSigns signs;
   programs::ProgressLine progress("judging " + std::to_string(rows.size()) + " rows");
-  model.answer(rows, [&](std::size_t row, const programs::AnsweredRow& answer) {
+  model.answer(rows, [&](std::size_t row, const AnsweredRow& answer) {
     progress.update(static_cast<double>(row) / static_cast<double>(rows.size()));
     predictions[row] = answer.commands;
     counts[row] = true;
@@ -74,30 +71,29 @@ RowSet chosen_rows(const EvaluateOptions& options, const Dataset& dataset) {
   return all;
 }
 
-void print_json(const EvaluateOptions& options, const programs::Block& block, const programs::Identity& identity,
-                const Dataset& dataset, double golden_difference, const EvaluatedModel& evaluation,
-                const programs::Judgement& judged) {
+void print_json(const EvaluateOptions& options, const BlockModel& model, const Dataset& dataset,
+                const EvaluatedModel& evaluation, const programs::Judgement& judged) {
   nlohmann::json all = nlohmann::json::object();
   for (const programs::Figure& figure : programs::figures()) all[figure.name] = figure.of(judged, figure.index);
-  nlohmann::json report = {{"model", block.path},
-                           {"answer", identity.answer},
-                           {"airframe", identity.airframe.name},
+  nlohmann::json report = {{"model", model.path()},
+                           {"answer", model.answer()},
+                           {"airframe", model.airframe_name()},
                            {"flight", pinnquad::flight_names(dataset)},
                            {"rows", evaluation.answered.rows.size()},
                            {"rows_without_features", evaluation.without_features},
                            {"rows_judged", options.rows},
                            {"rows_outside_envelope", evaluation.outside_envelope},
-                           {"golden_vectors", block.golden_count},
-                           {"golden_difference", golden_difference},
+                           {"golden_vectors", model.golden_count()},
+                           {"golden_difference", model.golden_difference()},
                            {"figures", all}};
   report.update(programs::figures_of_model(judged));
   std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void print_table(const programs::Block& block, const programs::Identity& identity, const Dataset& dataset,
-                 const EvaluatedModel& evaluation, const programs::Judgement& judged) {
-  std::printf("model       %s: %s, for %s\n", printable(block.path).c_str(), identity.answer.c_str(),
-              identity.airframe.name.c_str());
+void print_table(const BlockModel& model, const Dataset& dataset, const EvaluatedModel& evaluation,
+                 const programs::Judgement& judged) {
+  std::printf("model       %s: %s, for %s\n", printable(model.path()).c_str(), model.answer().c_str(),
+              model.airframe_name().c_str());
   std::printf("rows        %zu of %s, %zu outside the training envelope\n", evaluation.answered.rows.size(),
               pinnquad::flight_names(dataset).c_str(), evaluation.outside_envelope);
   if (evaluation.without_features > 0) {
@@ -110,29 +106,24 @@ void print_table(const programs::Block& block, const programs::Identity& identit
 }
 
 int evaluate(const EvaluateOptions& options) {
-  programs::ModelHints hints = options.hints;
-  const programs::Block block = programs::read_block(options.model, programs::block_bytes(options.model, hints));
-  const programs::Identity identity = programs::identify(block, hints);
-  const auto model = programs::asked_model(block, identity);
-  const double difference = programs::golden_difference(block, *model);
-  const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model->columns);
-  const EvaluatedModel evaluation = evaluated(*model, chosen_rows(options, dataset));
+  const BlockModel model = programs::read_model(options.model);
+  const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model.columns());
+  const EvaluatedModel evaluation = evaluated(model, chosen_rows(options, dataset));
   if (evaluation.answered.rows.empty()) {
     throw std::invalid_argument("--flight: no row of " + pinnquad::flight_names(dataset) +
                                 " has the whole window of instants that the model asks for");
   }
-  programs::Judgement judged =
-      programs::judge(programs::RunTimeAirframe(identity.airframe.name, identity.airframe.value),
-                      evaluation.answered.rows, evaluation.answered.predictions);
+  programs::Judgement judged = programs::judge(GivenAirframe(model.airframe_name(), model.airframe()),
+                                               evaluation.answered.rows, evaluation.answered.predictions);
   judged.derivatives = evaluation.derivatives;
   if (options.json) {
-    print_json(options, block, identity, dataset, difference, evaluation, judged);
+    print_json(options, model, dataset, evaluation, judged);
   } else {
-    print_table(block, identity, dataset, evaluation, judged);
+    print_table(model, dataset, evaluation, judged);
   }
   const double r_squared = judged.errors.mean.r_squared;
   if (std::isfinite(r_squared) && r_squared >= 0) return 0;
-  programs::complain("evaluate", block.path + ": worse than the mean of the commands on these rows");
+  programs::complain("evaluate", model.path() + ": worse than the mean of the commands on these rows");
   return programs::exit_failed;
 }
 
@@ -148,13 +139,12 @@ programs::Command programs::evaluate_command(CLI::App& program) {
                    "all: every row; test: those that pinnquad train tests on when it is given these flights")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "test"}));
-  add_model_hints(*line, options->hints);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --out my_model --block my_model/weights.block\n"
+      "  pinnquad train --flight d1.csv --out my_model\n"
       "  pinnquad evaluate my_model/model.hpp --flight d1.csv --rows test\n"
-      "  pinnquad evaluate my_model/weights.block --flight d2.csv --json\n"
+      "  pinnquad evaluate my_model/model.block --flight d2.csv --json\n"
       "Exit codes: 0; 1 it is worse than the mean of the commands; 2 bad input or a file that can't be read; 130\n"
       "interrupted.");
   return {line, [options] { return evaluate(*options); }};

@@ -2,6 +2,7 @@
 // Ideas beyond the paper, each beside the paper's network on the same rows.
 //   pinnquad-study beyond --seeds 10 --out DIR
 #include "study/beyond_command.hpp"
+#include "training/training_flights.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -13,7 +14,6 @@
 #include "airframe/choice.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/interrupt.hpp"
-#include "logs/training_flights.hpp"
 #include "study/beyond_picture.hpp"
 #include "study/beyond_summary.hpp"
 #include "study/campaign.hpp"
