@@ -38,7 +38,7 @@ std::string written(const TemporaryFolder& folder, const std::string& name, std:
   vehicle.seed = seed;
   Flight flight = pinnquad::test::synthetic_flight(vehicle);
   flight.add_column({{"battery_voltage", "V"}, std::vector<double>(flight.size(), 12)});
-  if (seed > 1) flight.add_column({{"payload", "kg"}, std::vector<double>(flight.size(), 1)});
+  if (seed == 1) flight.add_column({{"payload", "kg"}, std::vector<double>(flight.size(), 1)});
   pinnquad::write_flight_csv(folder.path(name), flight);
   return folder.path(name);
 }
