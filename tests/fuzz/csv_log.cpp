@@ -14,6 +14,8 @@
 
 #include "fuzz/fuzzing.hpp"
 #include "logs/csv_log.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace {
 

@@ -13,6 +13,7 @@
 #include "logs/log_parts.hpp"
 #include "logs/mapping.hpp"
 #include "logs/row_checks.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace {
 

@@ -12,6 +12,7 @@
 
 #include "fuzz/fuzzing.hpp"
 #include "logs/ulog.hpp"
+#include "pinnquad/io/file_error.hpp"
 
 namespace {
 
