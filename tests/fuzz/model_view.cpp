@@ -129,9 +129,9 @@ void load(const std::uint8_t* data, std::size_t size) {
          "the length is right");
   expect(plain_crc32(memory.block(), length - 4) == detail::read_u32(memory.block() + length - 4),
          "the checksum is right");
-  expect(std::memcmp(memory.block(), "PINNQUAD\1\0\0\0", 12) == 0 ||
-             std::memcmp(memory.block(), "PINNQUAD\2\0\0\0", 12) == 0,
-         "it is a block of version 1 or 2");
+  const std::uint32_t version = detail::read_u32(memory.block() + Header::version);
+  expect(std::memcmp(memory.block(), "PINNQUAD", 8) == 0 && (version == 1 || version == 2 || version == 4),
+         "it is a block of version 1, 2 or 4");
   const auto* begin = reinterpret_cast<const unsigned char*>(view.parameters());
   expect(begin >= memory.block() &&
              begin + sizeof(Scalar) * Shape::Network::parameter_count + Header::checksum_size <= memory.block() + size,
