@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -32,10 +33,6 @@ struct AirframeOptions {
   std::string struct_name = "MyQuadrotor";
 };
 
-bool ends_with(const std::string& text, const std::string& ending) {
-  return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 int check(const AirframeOptions& options) {
   const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   const Airframe<double>& a = airframe.value;
@@ -51,7 +48,7 @@ int check(const AirframeOptions& options) {
 }
 
 int convert(const AirframeOptions& options) {
-  const bool as_struct = ends_with(options.out, ".hpp");
+  const bool as_struct = std::filesystem::path(options.out).extension() == ".hpp";
   if (!as_struct && !programs::is_airframe_file(options.out)) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml or .hpp was expected");
   }
