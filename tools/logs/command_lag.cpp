@@ -79,10 +79,6 @@ std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, const
   return result;
 }
 
-constexpr double lag_away_s = 0.05;
-
-constexpr double least_explained = 0.05, least_sharpness = 0.1;
-
 /// -log(1 - R^2): log-likelihood per row, so that motions of different noise can be added.
 double say(double explained) noexcept { return -0.5 * std::log(std::max(1e-9, 1 - explained)); }
 
@@ -96,9 +92,10 @@ double peak_at(const std::vector<double>& curve) noexcept {
 }
 
 double sharpness_of(const std::vector<double>& curve, double step_s) noexcept {
+  constexpr double away_s = 0.05;
   const auto top = std::max_element(curve.begin(), curve.end()) - curve.begin();
   const auto size = static_cast<std::ptrdiff_t>(curve.size());
-  const auto away = static_cast<std::ptrdiff_t>(std::lround(lag_away_s / step_s));
+  const auto away = static_cast<std::ptrdiff_t>(std::lround(away_s / step_s));
   const std::ptrdiff_t reach = std::max<std::ptrdiff_t>(1, away);
   const double peak = curve[static_cast<std::size_t>(top)];
   double better = 0;
@@ -110,6 +107,7 @@ double sharpness_of(const std::vector<double>& curve, double step_s) noexcept {
 std::string milliseconds(double seconds) { return std::to_string(std::lround(seconds * 1e3)) + " ms"; }
 
 CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& grid) {
+  constexpr double least_explained = 0.05, least_sharpness = 0.1;
   CommandLag result;
   const std::vector<Explained> explained = explained_by_lag(series, grid, result.rows);
   std::vector<double> together(explained.size(), 0.0);

@@ -33,7 +33,7 @@ OrderMoments order_moments(const std::vector<LagSeries>& segments) {
   std::size_t rows = 0;
   LagMoments moments = lag_moments(segments, 0, 0, 0, 1, rows);
   const LagMoments whole = moments;
-  for (const std::size_t k : {0, 5, 6, 7}) take_out(moments, k, 1e-12 * whole[k][k]);
+  for (const unsigned k : {0u, 5u, 6u, 7u}) take_out(moments, k, 1e-12 * whole[k][k]);
   OrderMoments result;
   for (std::size_t i = 0; i < rotor_count; ++i) {
     if (!(moments[1 + i][1 + i] > 1e-12 * whole[1 + i][1 + i])) continue;  // stands still: rounding is no motion

@@ -44,7 +44,7 @@ Mapping chosen_mapping(const std::string& name_or_file) {
 }
 
 /// Fewest rows of a flight: a batch of training.
-constexpr std::size_t minimum_rows = 64;
+constexpr std::size_t fewest_rows = 64;
 
 /// Rows that the steps cost, summed over logs.
 class Steps {
@@ -356,7 +356,7 @@ class Import {
       int part = 0;
       for (Flight& flight : split_at_gaps(joined(std::move(passage.segments)), mapping_.split_gap_s)) {
         longest = std::max(longest, flight.size());
-        if (flight.size() < minimum_rows) continue;
+        if (flight.size() < fewest_rows) continue;
         flight.trajectory = passage.trajectory;
         flight.name = free_name(dataset_.flights, passage.name, ++part);
         require_plausible_flight(flight, passage.source);
@@ -364,8 +364,7 @@ class Import {
         dataset_.sources.push_back(passage.source);
       }
     }
-    steps_.add("short flights", before, dataset_.flights.rows(),
-               "fewer than " + std::to_string(minimum_rows) + " rows");
+    steps_.add("short flights", before, dataset_.flights.rows(), "fewer than " + std::to_string(fewest_rows) + " rows");
     dataset_.sample_period_s = *period_s_;
     if (dataset_.flights.size() == 0) refuse_without_flight(longest);
     require_different_flights(dataset_.flights);
@@ -383,7 +382,7 @@ class Import {
     std::string found = std::to_string(longest);
     if (worst != dataset_.steps.end()) found += "; most were lost to '" + worst->name + "' (" + worst->told + ")";
     for (const std::string& warning : dataset_.warnings) found += "; " + warning;
-    throw InputError(logs_.front(), 0, 0, "a flight of at least " + std::to_string(minimum_rows) + " rows", found);
+    throw InputError(logs_.front(), 0, 0, "a flight of at least " + std::to_string(fewest_rows) + " rows", found);
   }
 
   /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no
