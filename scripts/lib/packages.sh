@@ -4,14 +4,13 @@
 # Brings a Debian machine to what a script needs, and takes nothing away from it. Sourced, never run; needs stage.sh.
 
 # program_of <package>: the program that a package is wanted for, nothing for a library. In PATH it counts as installed,
-# wherever it comes from: Debian's own may not fit beside it (gnuplot-nox drives out gnuplot-qt, npm another Node.js).
+# wherever it comes from: Debian's own may not fit beside it (npm drives out another Node.js).
 program_of() {
   case $1 in
     g++ | cmake | chromium | npm) echo "$1" ;;
     ninja-build) echo ninja ;;
     nodejs) echo node ;;
     clang) echo clang++ ;;
-    gnuplot-nox) echo gnuplot ;;
     gcc-arm-none-eabi) echo arm-none-eabi-g++ ;;
     g++-aarch64-linux-gnu) echo aarch64-linux-gnu-g++ ;;
     g++-arm-linux-gnueabihf) echo arm-linux-gnueabihf-g++ ;;

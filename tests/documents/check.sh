@@ -97,7 +97,7 @@ check_simple_command() {
       cmake:--target)
         [ -f "$work/targets" ] || cmake --build "$build" --target help >"$work/targets"
         # the page's target is there only where Node.js is
-        [ "$next" != replay_bundle ] || command -v npm >/dev/null || continue
+        [ "$next" != watch_bundle ] || command -v npm >/dev/null || continue
         grep -qE "(^|[ /])$next(:|$)" "$work/targets" || fault "$line" "no such target: $next"
         ;;
       ctest:-L)

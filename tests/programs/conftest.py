@@ -180,9 +180,6 @@ def commands_of(program):
     return below(program)
 
 
-WATCH = "--replay"  # the option of fly that writes a page
-
-
 @pytest.fixture(autouse=True)
 def work(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

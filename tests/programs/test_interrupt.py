@@ -49,31 +49,6 @@ def test_hangup(study):
     finished(ended(process), 500)
 
 
-def test_while_gnuplot_draws(pinnquad, flight, monkeypatch):
-    """One that never ends: what is finished is kept, one line, the code of an interrupt."""
-    for folder in "tools", "pictures", "exported":
-        Path(folder).mkdir()
-    Path("tools/gnuplot").write_text(f'#!/bin/sh\n: >"{os.getcwd()}/drawing"\nexec sleep 300\n')
-    Path("tools/gnuplot").chmod(0o755)
-    monkeypatch.setenv("PATH", f"{os.getcwd()}/tools:{os.environ['PATH']}")
-
-    def interrupted(*words):
-        process = pinnquad.start(*words)
-        until(Path("drawing").exists, process)
-        Path("drawing").unlink()
-        return ended(process, whole_group=True)
-
-    done = interrupted("fly --samples 40 --out drawn.csv --pictures pictures")
-    assert done.code == 130 and len(done.lines) == 1 and "pictures are missing" in done.lines[0], done
-    assert len(Path("drawn.csv").read_text().splitlines()) == 41
-    done = interrupted("train --out exported --seeds 1 --epochs 4 --allow-poor --flight",
-                       flight)
-    assert finished(done, 3) == 3
-    for file in "results.csv", "report.json", "model.hpp", "replay.txt", "model.block":
-        assert Path("exported", file).stat().st_size, f"{file} was lost to a picture"
-    no_partial_files()
-
-
 def test_evaluate(pinnquad, made, flight):
     """It writes nothing that could be half there: it ends at once, however long the flight."""
     exported = made(f"train --flight {flight} --out . --seeds 1 --epochs 4 --allow-poor")

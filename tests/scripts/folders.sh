@@ -29,7 +29,7 @@ tool apt-config </dev/null
 tool git </dev/null
 tool debootstrap <<<'exit 1'
 tool cmake <<<'exit 1'
-for name in g++ ninja python3 gnuplot; do tool "$name" </dev/null; done
+for name in g++ ninja python3; do tool "$name" </dev/null; done
 export PATH=$work/tools:$PATH TMPDIR=$work
 unset CI
 

@@ -39,7 +39,7 @@ require installed-one installed-two
 [ "$code" -eq 0 ] && [ ! -s calls.txt ] || fail "installed packages were installed"
 
 # what is in PATH is there, whichever package it came from
-for pair in gnuplot-nox:gnuplot ninja-build:ninja clang:clang++ nodejs:node g++:g++ npm:npm; do
+for pair in ninja-build:ninja clang:clang++ nodejs:node g++:g++ npm:npm; do
   require "${pair%:*}"
   grep -q "install .*${pair%:*}" calls.txt || fail "$pair: not installed where it is missing"
   tool "${pair#*:}" </dev/null

@@ -90,7 +90,7 @@ TEXT
   if [ "$name" = pinnquad ]; then
     cat <<'TEXT'
 .TP
-.I share/pinnquad/replay.html
+.I share/pinnquad/watch.json
 beside the program's folder bin: the page that
 .B pinnquad fly \-\-replay
 fills.

@@ -24,10 +24,10 @@
 #include "flight/pictures.hpp"
 #include "flight/statistics.hpp"
 #include "flight/trace.hpp"
+#include "page/watch_page.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/simulation/recorded_sticks.hpp"
 #include "pinnquad/simulation/recorder.hpp"
-#include "replay/page.hpp"
 
 namespace {
 
@@ -49,7 +49,7 @@ struct FlyOptions {
   double stick_interval_ms = 0;
   std::size_t statistics = 0;
   std::string pictures;
-  std::string replay;
+  std::string watch;
   bool list_airframes = false;
 };
 
@@ -60,7 +60,7 @@ void require_separate_files(const FlyOptions& options) {
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   roles.writes("--record-sticks", options.record_sticks);
-  roles.writes("--replay", options.replay);
+  roles.writes("--watch", options.watch);
   if (options.pictures.empty()) return;
   roles.writes("--pictures", options.pictures);
   for (const char* name : programs::flight_picture_names) roles.writes("--pictures", options.pictures + "/" + name);
@@ -111,13 +111,13 @@ class ChosenFlight {
     std::vector<programs::TraceRow> trace;
     programs::AnyPilot pilot = pilot_of(options_.seed);
     if (!options_.record_sticks.empty()) pilot = written_down(pilot, sticks, options_.stick_interval_ms / 1000);
-    programs::ReplayPage replay(title(), airframe_, paper_site<double>().ground_z_m);
+    programs::WatchPage watch(title(), airframe_, paper_site<double>().ground_z_m);
     programs::ProgressLine progress("flying");
     const RecordedFlight recorded = flown(options_.seed, pilot, [&](const auto& flies) {
       const Flight& rows = flies.recording();
       progress.update(static_cast<double>(rows.size()) / static_cast<double>(plan_.samples));
       if (!options_.pictures.empty()) trace.push_back(programs::trace_row(vehicle_, without_, flies.vehicle()));
-      if (!options_.replay.empty()) replay.add(flies.vehicle(), rows.back().commands);
+      if (!options_.watch.empty()) watch.add(flies.vehicle(), rows.back().commands);
     });
     progress.clear();
     if (recorded.report.end != FlightEnd::completed) {
@@ -126,15 +126,13 @@ class ChosenFlight {
     }
     write_flight(recorded.flight);
     if (!options_.record_sticks.empty()) write_sticks_csv(options_.record_sticks, sticks);
-    if (!options_.replay.empty()) replay.write(options_.replay);
+    if (!options_.watch.empty()) watch.write(options_.watch);
     print_summary(recorded);
-    if (options_.pictures.empty()) return 0;
-    return programs::keeping("the flight is written, pictures are missing", [&] {
-      return programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_, ground_effect_,
-                                   std::is_same_v<PaperFlight, WindyFlight>)
-                 ? 0
-                 : programs::exit_failed;
-    });
+    if (!options_.pictures.empty()) {
+      programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_, ground_effect_,
+                            std::is_same_v<PaperFlight, WindyFlight>);
+    }
+    return 0;
   }
 
  private:
@@ -259,10 +257,10 @@ class ChosenFlight {
 
 /// Options that contradict each other; empty if none do.
 std::string contradiction(const FlyOptions& o) {
-  const bool single_output = !o.record_sticks.empty() || !o.pictures.empty() || !o.replay.empty();
+  const bool single_output = !o.record_sticks.empty() || !o.pictures.empty() || !o.watch.empty();
   if (o.out.empty() && !single_output && o.statistics == 0) return "--out FILE.csv is needed (see --help)";
   if (o.statistics > 0 && !o.sticks.empty()) return "--statistics flies seeds, --sticks a recording: one of them";
-  if (o.statistics > 0 && single_output) return "--statistics goes with none of --record-sticks, --pictures, --replay";
+  if (o.statistics > 0 && single_output) return "--statistics goes with none of --record-sticks, --pictures, --watch";
   if (!o.sticks.empty() && o.max_speed_m_s) return "--max-speed is the random pilot's, --sticks has no use for it";
   return {};
 }
@@ -292,8 +290,8 @@ int fly_chosen(const FlyOptions& options) {
   int code = programs::exit_bad_input;
   with_all_choices(options, [&](auto tag, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect) {
     ChosenFlight<typename decltype(tag)::type> chosen(options, airframe, ground_effect);
-    for (const std::string& file : {options.out, options.record_sticks, options.replay}) require_writable(file);
-    if (!options.replay.empty()) programs::ReplayPage::require_available(options.replay);
+    for (const std::string& file : {options.out, options.record_sticks, options.watch}) require_writable(file);
+    if (!options.watch.empty()) programs::WatchPage::require_available(options.watch);
     if (!options.pictures.empty()) make_folder(options.pictures);
     code = chosen.run();
   });
@@ -312,8 +310,8 @@ void add_options(CLI::App& app, FlyOptions& options) {
       "  pinnquad fly d1 --seed 1 --out d1.csv\n"
       "  pinnquad fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
       "  pinnquad fly d3 --statistics 20\n"
-      "Exit codes: 0; 1 the flight ended early, or gnuplot is missing or failed; 2 bad input or a file that can't be "
-      "read or\nwritten; 130 interrupted: nothing was written, or pictures alone are missing.");
+      "Exit codes: 0; 1 the flight ended early; 2 bad input or a file that can't be read or written;\n"
+      "130 interrupted: nothing was written.");
   app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3")->capture_default_str();
   add_path(app, "--out", options.out, "FILE.csv", "the flight, or with --statistics the table");
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
@@ -341,10 +339,8 @@ void add_options(CLI::App& app, FlyOptions& options) {
   add_number(app, "--statistics", options.statistics, std::size_t{1}, std::size_t{100000},
              "fly this many seeds from --seed on, and print what they reach")
       ->default_str("");
-  add_path(app, "--pictures", options.pictures, "DIR",
-           "draw trajectory, correlation, ground effect and wind as SVG (gnuplot)");
-  add_path(app, "--replay", options.replay, "FILE.html",
-           "page that replays the flight in 3D in a browser (docs/replay.md); a model over a log: pinnquad replay");
+  add_path(app, "--pictures", options.pictures, "DIR", "draw trajectory, correlation, ground effect and wind as SVG");
+  add_path(app, "--watch", options.watch, "FILE.html", "page to watch the flight in 3D in a browser (docs/watch.md)");
   app.add_flag("--list-airframes", options.list_airframes,
                "print the airframes and where their values are from, and stop");
 }

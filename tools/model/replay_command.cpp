@@ -234,7 +234,7 @@ programs::Command programs::replay_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "replay",
       "Runs a model, or a flight stack's core, over a log: who answered, what, and why not (a flight as a page in "
-      "3D: fly --replay)");
+      "3D: fly --watch)");
   const auto options = std::make_shared<ReplayOptions>();
   add_path(*line, "log", options->log, "LOG",
            "a recorded flight (FILE.csv), a folder that pinnquad import wrote, or what a flight stack's core logged: a "
@@ -265,6 +265,6 @@ programs::Command programs::replay_command(CLI::App& program) {
       "  pinnquad replay flight.ulg --model model.block --set attitude_us=30000\n"
       "Exit codes: 0; 1 the core answers otherwise than was logged, nothing of its log can be compared, or the model\n"
       "answers no row; 2 bad input or a file that can't be read or written; 130 interrupted.\n"
-      "docs/replay_log.md says what a core logs. A flight as a page in 3D: pinnquad fly --replay.");
+      "docs/replay_log.md says what a core logs. A flight as a page in 3D: pinnquad fly --watch.");
   return {line, [options] { return replay(*options); }};
 }

@@ -13,7 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pictures/html_text.hpp"
+#include "page/text.hpp"
 #include "report/figures.hpp"
 #include "report/settings.hpp"
 

@@ -12,8 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/listed.hpp"
-#include "pictures/filled_page.hpp"
-#include "pictures/page_template.hpp"
+#include "page/page.hpp"
 #include "report/figures.hpp"
 #include "report/gaps.hpp"
 #include "report/input.hpp"
@@ -57,20 +56,18 @@ inline nlohmann::json figures_words(const ReportInput& input, std::uint64_t epoc
 inline nlohmann::json drawings(const ReportInput& input, const std::vector<Comparison>& comparisons,
                                std::uint64_t epochs) {
   const Study& study = input.study;
-  std::vector<int> models;
-  std::vector<StudySeries> series;
-  for (const auto& [model, one] : input.series) {
-    models.push_back(model);
-    series.push_back(one);
-  }
-  const auto or_none = [](const std::string& svg) { return svg.empty() ? nlohmann::json(false) : nlohmann::json(svg); };
-  return {{"changes", or_none(changes_figure(comparisons))},
-          {"correlation", or_none(series.empty() ? "" : correlation_figure(series.front()))},
-          {"ellipses", or_none(series.empty() ? "" : ellipses_figure(models, series))},
-          {"schedule", schedule_figure(input.settings.annealing, static_cast<int>(epochs))},
-          {"errors_d1", errors_figure(study, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, "Test error on D1")},
-          {"errors_d2", errors_figure(study, {11, 12}, "Test error on D2, with ground effect")},
-          {"errors_d3", errors_figure(study, {13, 14}, "Test error on D3, with periodic wind")}};
+  std::vector<EllipsesOf> ellipses;
+  for (const auto& [model, series] : input.series) ellipses.push_back({"M" + std::to_string(model), series.axes});
+  const auto svg = [](const Chart& chart) {
+    return chart.panels.empty() ? nlohmann::json(false) : nlohmann::json(inline_svg(chart));
+  };
+  return {{"changes", svg(changes_chart(comparisons))},
+          {"correlation", svg(ellipses.empty() ? Chart{} : series_chart(input.series.front().second))},
+          {"ellipses", svg(ellipses_chart(ellipses))},
+          {"schedule", svg(schedule_chart(input.settings.annealing, static_cast<int>(epochs)))},
+          {"errors_d1", svg(study_errors_chart(study, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, "Test error on D1"))},
+          {"errors_d2", svg(study_errors_chart(study, {11, 12}, "Test error on D2, with ground effect"))},
+          {"errors_d3", svg(study_errors_chart(study, {13, 14}, "Test error on D3, with periodic wind"))}};
 }
 
 }  // namespace detail
@@ -123,7 +120,8 @@ inline nlohmann::json report_figures(const detail::ReportInput& input, const std
 inline std::string report_page(const detail::ReportInput& input, const std::vector<Comparison>& comparisons,
                                nlohmann::json figures) {
   figures["drawings"] = detail::drawings(input, comparisons, figures["figures"]["epochs"].get<std::uint64_t>());
-  return filled_page(report_template, std::move(figures));
+  figures["title"] = "Physics-informed quadrotor dynamics: the paper’s study, run again";
+  return text_page(report_template, figures);
 }
 
 }  // namespace programs

@@ -14,10 +14,10 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/listed.hpp"
+#include "page/text.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "report/claims.hpp"
 #include "report/comparisons.hpp"
-#include "pictures/numbers.hpp"
 #include "report/settings.hpp"
 
 namespace programs {

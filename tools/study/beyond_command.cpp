@@ -14,6 +14,7 @@
 #include "airframe/choice.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/interrupt.hpp"
+#include "page/page.hpp"
 #include "study/beyond_picture.hpp"
 #include "study/beyond_summary.hpp"
 #include "study/campaign.hpp"
@@ -94,43 +95,31 @@ std::string name_of_file(const std::string& path, const std::set<std::string>& t
 /// The page and beyond.json.
 void write_found(const std::string& out, const study::Plan& plan, const std::vector<study::Condition>& conditions,
                  const std::vector<study::BeyondModel>& models, const nlohmann::json& found) {
-  std::string text =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><title>Beyond the paper</title>\n<style>" +
-      std::string(programs::page_style) +
-      "svg .bar{fill:var(--series-1)}svg .one{stroke:var(--muted);stroke-dasharray:4 3}</style></head>\n"
-      "<body><main><h1>Beyond the paper</h1>\n<p>" +
-      std::to_string(plan.seeds) + " seeds, up to " + std::to_string(plan.flights) + " flights, " +
-      std::to_string(plan.epochs) +
-      " epochs. Ratio: mean absolute error, in the closed loop that of the figure-eight, over that of the paper's "
-      "network, paired by flight and seed; p: exact Wilcoxon signed-rank test, two-sided. Of the axes the worst is "
-      "shown; rows.csv and beyond.json have all. Closed loop: root mean square error of the position with the model "
-      "as feed-forward; where it declines the hover's commands stand in.</p>\n";
+  nlohmann::json content = {{"title", "Beyond the paper"},
+                            {"seeds", plan.seeds},
+                            {"flights", plan.flights},
+                            {"epochs", plan.epochs},
+                            {"conditions", nlohmann::json::array()}};
   for (const study::Condition& condition : conditions) {
     if (!found.contains(condition.name)) continue;
     const nlohmann::json& of_models = found[condition.name];
-    text += "<section><h2>" + programs::html_text(condition.name) + "</h2><p>" +
-            programs::html_text(condition.summary) + "</p>\n" + study::ratio_bars(of_models, models);
+    nlohmann::json tables = nlohmann::json::array();
     for (const study::BeyondTable& table : study::beyond_tables()) {
       if (!study::has_table(table, of_models)) continue;
-      text += "<div class=\"wide\"><table><thead><tr>";
-      for (const std::string& title : study::beyond_titles(table)) {
-        text += "<th>" + programs::html_text(title) + "</th>";
-      }
-      text += "</tr></thead><tbody>\n";
+      nlohmann::json lines = nlohmann::json::array();
       for (const study::BeyondModel& model : models) {
         if (!of_models.contains(model.name)) continue;
-        text += "<tr>";
-        for (const std::string& cell : study::beyond_line(table, model.name, of_models[model.name])) {
-          text += "<td>" + programs::html_text(cell) + "</td>";
-        }
-        text += "</tr>\n";
+        lines.push_back({{"cells", study::beyond_line(table, model.name, of_models[model.name])}});
       }
-      text += "</tbody></table></div>\n";
+      tables.push_back({{"titles", study::beyond_titles(table)}, {"lines", lines}});
     }
-    text += "</section>\n";
+    content["conditions"].push_back({{"name", condition.name},
+                                     {"summary", condition.summary},
+                                     {"ratios", programs::inline_svg(study::ratios_chart(of_models, models))},
+                                     {"tables", tables}});
   }
   pinnquad::AtomicFile page(out + "/beyond.html"), json(out + "/beyond.json");
-  page.stream() << text << "</main></body></html>\n";
+  page.stream() << programs::text_page(programs::beyond_page_template, content);
   json.stream() << found.dump(2) << '\n';
   page.commit();
   json.commit();
@@ -205,8 +194,7 @@ int run(const BeyondOptions& options) {
   const nlohmann::json found = study::beyond_json(campaign.rows());
   print_found(conditions, models, found);
   write_found(options.out, plan, conditions, models, found);
-  // without gnuplot the picture is left out, with a line
-  static_cast<void>(study::draw_found(options.out + "/beyond.svg", found, conditions));
+  study::draw_found(options.out + "/beyond.svg", found, conditions);
   return 0;
 }
 

@@ -2,68 +2,55 @@
 // Picture of the command `beyond`: errors over those of the paper's network, and how far off the closed loop flies.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "pictures/gnuplot.hpp"
 #include "study/beyond_summary.hpp"
+#include "training/pictures.hpp"
 
 namespace study {
 
-namespace detail {
-
-struct DrawnModel {
-  const char* name;
-  const char* colour;
-  int point;  ///< gnuplot's type
-};
-
-/// As gnuplot takes a text between single quotes.
-inline std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
-  return result + "'";
+/// Ratios of the errors of one condition as bars; a log scale would hide what is gained.
+inline programs::Chart ratios_chart(const nlohmann::json& models, const std::vector<BeyondModel>& order) {
+  std::vector<programs::ErrorBar> bars;
+  for (const BeyondModel& model : order) {
+    const nlohmann::json::json_pointer place("/" + model.name + "/mean_absolute_error/ratio");
+    if (!models.contains(place)) continue;
+    bars.push_back({model.name});
+    bars.back().mean = models[place].get<double>();
+  }
+  return programs::errors_chart("Errors over the paper's network", "mean absolute error over the paper network's", bars,
+                                1.5, 2);
 }
 
-/// A panel: a place per condition, a point per model; empty where no model has a figure. `value_of(entry)`: NaN where
-/// there is none.
-template <std::size_t Count, class ValueOf>
-std::string panel(const nlohmann::json& found, const std::vector<Condition>& conditions,
-                  const std::array<DrawnModel, Count>& models, const ValueOf& value_of) {
-  std::ostringstream names, data, plots;
-  int place = 0;
-  std::array<bool, Count> stands{};
+namespace detail {
+
+/// A row per condition, a mark per model. `value_of(entry)`: NaN where there is no figure.
+template <class ValueOf>
+programs::Panel panel(const nlohmann::json& found, const std::vector<Condition>& conditions,
+                      std::vector<programs::Series> models, const ValueOf& value_of) {
+  programs::Panel panel;
+  panel.x.logarithmic = true;
   for (const Condition& condition : conditions) {
     if (!found.contains(condition.name)) continue;
-    std::ostringstream line;
+    const nlohmann::json& of_models = found[condition.name];
+    const auto row = static_cast<double>(panel.y.rows.size());
     bool any = false;
-    for (std::size_t i = 0; i < Count; ++i) {
-      const nlohmann::json& of_models = found[condition.name];
-      const double value =
-          of_models.contains(models[i].name) ? value_of(of_models[models[i].name]) : pinnquad::not_a_number;
-      any = any || std::isfinite(value);
-      stands[i] = stands[i] || std::isfinite(value);
-      line << ' ' << (std::isfinite(value) ? std::to_string(value) : "NaN");
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const auto entry = of_models.find(models[i].name);
+      const double value = entry == of_models.end() ? pinnquad::not_a_number : value_of(*entry);
+      if (!std::isfinite(value)) continue;
+      models[i].x.push_back(value);
+      models[i].y.push_back(row + 0.1 * (static_cast<double>(i) - 0.5 * static_cast<double>(models.size() - 1)));
+      any = true;
     }
-    if (!any) continue;
-    names << (place > 0 ? ", " : "") << quoted(condition.name) << ' ' << place;
-    data << place++ << line.str() << '\n';
+    if (any) panel.y.rows.push_back(condition.name);
   }
-  if (place == 0) return {};
-  for (std::size_t i = 0; i < Count; ++i) {
-    if (!stands[i]) continue;
-    plots << (plots.str().empty() ? "" : ", ") << "$found using ($1+"
-          << 0.09 * (static_cast<double>(i) - 0.5 * (Count - 1)) << "):" << i + 2 << " with points pt "
-          << models[i].point << " ps 1 lc rgb '" << models[i].colour << "' title '" << models[i].name << "'";
+  for (const programs::Series& series : models) {
+    if (!series.x.empty()) panel.series.push_back(series);
   }
-  std::ostringstream out;
-  out << "$found << EOD\n"
-      << data.str() << "EOD\nset xtics (" << names.str() << ")\nset xrange [-0.6:" << place - 0.4 << "]\nplot "
-      << plots.str() << '\n';
-  return out.str();
+  return panel;
 }
 
 inline double mean_of(const nlohmann::json& entry, const char* figure, const char* what) {
@@ -73,45 +60,38 @@ inline double mean_of(const nlohmann::json& entry, const char* figure, const cha
 
 }  // namespace detail
 
-/// False, after one line on stderr, where gnuplot is missing or failed.
-inline bool draw_found(const std::string& svg, const nlohmann::json& found, const std::vector<Condition>& conditions) {
-  constexpr std::array<detail::DrawnModel, 6> judged = {{{"vanilla", "#9a9a9a", 6},
-                                                         {"vanilla_mirrored", "#b07aa1", 12},
-                                                         {"vanilla_physics", "#e0a526", 4},
-                                                         {"inverse", "#59a14f", 8},
-                                                         {"ridge", "#1f6fb2", 10},
-                                                         {"structured", "#d1541a", 7}}};
-  constexpr std::array<detail::DrawnModel, 5> flown = {{{"none", "#9a9a9a", 2},
-                                                        {"inverse", "#59a14f", 8},
-                                                        {"vanilla", "#b8b8b8", 6},
-                                                        {yardstick, "#1f6fb2", 5},
-                                                        {"structured", "#d1541a", 7}}};
-  const std::string errors = detail::panel(found, conditions, judged, [](const nlohmann::json& entry) {
-    return detail::mean_of(entry, "mean_absolute_error", "ratio");
-  });
-  const std::string loop = detail::panel(found, conditions, flown, [](const nlohmann::json& entry) {
-    return 100 * detail::mean_of(entry, "eight_rmse_m", "mean");
-  });
-  const int panels = (errors.empty() ? 0 : 1) + (loop.empty() ? 0 : 1);
-  if (panels == 0) return false;
-  std::string script =
-      "set tics font ',11' tc rgb '#303030'\nset xtics rotate by 35 right scale 0 noenhanced\nset logscale y\n"
-      "set key outside right top samplen 1 noenhanced\nset multiplot layout " +
-      std::to_string(panels) + ",1\n";
-  if (!errors.empty()) {
-    script +=
-        "set ylabel \"error over the paper network's\"\nset arrow 1 from graph 0, first 1 to graph 1, first 1 "
-        "nohead dt 2 lc rgb '#707070'\n" +
-        errors + "unset arrow 1\n";
+/// Draws what was found; nothing where nothing was.
+inline void draw_found(const std::string& svg, const nlohmann::json& found, const std::vector<Condition>& conditions) {
+  using programs::Shape;
+  namespace colour = programs::colour;
+  programs::Panel errors =
+      detail::panel(found, conditions,
+                    {{"vanilla", Shape::dots, colour::muted, {}, {}, 7},
+                     {"vanilla_mirrored", Shape::pluses, colour::violet, {}, {}, 2},
+                     {"vanilla_physics", Shape::squares, colour::amber},
+                     {"inverse", Shape::triangles, colour::green},
+                     {"ridge", Shape::diamonds, colour::blue},
+                     {"structured", Shape::dots, colour::orange, {}, {}, 7}},
+                    [](const nlohmann::json& entry) { return detail::mean_of(entry, "mean_absolute_error", "ratio"); });
+  programs::Panel loop =
+      detail::panel(found, conditions,
+                    {{"none", Shape::strokes, colour::text},
+                     {"inverse", Shape::triangles, colour::green},
+                     {"vanilla", Shape::dots, colour::muted, {}, {}, 7},
+                     {yardstick, Shape::squares, colour::blue},
+                     {"structured", Shape::dots, colour::orange, {}, {}, 7}},
+                    [](const nlohmann::json& entry) { return 100 * detail::mean_of(entry, "eight_rmse_m", "mean"); });
+  errors.x.name = "error over the paper network's";
+  loop.x.name = "RMSE on the figure-eight, cm";
+  errors.series.push_back(
+      {"", Shape::line, colour::muted, {1, 1}, {-0.5, static_cast<double>(errors.y.rows.size()) - 0.5}});
+  programs::Chart chart{"Beyond the paper",
+                        "Above, per condition: mean absolute error of each model over that of the paper's network. "
+                        "Below: position error in the closed loop with the model as feed-forward."};
+  for (const programs::Panel& panel : {errors, loop}) {
+    if (!panel.y.rows.empty()) chart.panels.push_back(panel);
   }
-  if (!loop.empty()) script += "set ylabel 'RMSE on the figure-eight, cm'\n" + loop;
-  script += "unset multiplot\n";
-  return programs::draw_svg(
-      svg,
-      {900, 340 * panels, "Beyond the paper",
-       "Above, per condition: mean absolute error of each model over that of the paper's network. "
-       "Below: position error in the closed loop with the model as feed-forward."},
-      script);
+  if (!chart.panels.empty()) programs::write_svg(svg, chart);
 }
 
 }  // namespace study

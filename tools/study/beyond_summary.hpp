@@ -15,9 +15,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pictures/drawing.hpp"
-#include "pictures/html_text.hpp"
-#include "pictures/page_template.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "study/beyond_conditions.hpp"
@@ -184,25 +181,6 @@ inline bool has_table(const BeyondTable& table, const nlohmann::json& models) {
     const nlohmann::json& mean = entry.at(table.compared).at("mean");
     return mean.is_number() && std::isfinite(mean.get<double>());
   });
-}
-
-/// Ratios of the errors as bars; a log scale would hide what is gained.
-inline std::string ratio_bars(const nlohmann::json& models, const std::vector<BeyondModel>& order) {
-  constexpr double width = 620, height = 20, left = 190, longest = 1.5, unit = (width - left - 60) / longest;
-  std::string bars;
-  double y = 4;
-  for (const BeyondModel& model : order) {
-    const nlohmann::json::json_pointer place("/" + model.name + "/mean_absolute_error/ratio");
-    if (!models.contains(place)) continue;
-    const double ratio = models[place].get<double>();
-    bars += programs::drawing::label(left - 8, y + 13, model.name, "end") +
-            programs::drawing::rectangle(left, y, unit * std::min(ratio, longest), height - 6, "bar") +
-            programs::drawing::label(left + unit * std::min(ratio, longest) + 5, y + 13,
-                                     programs::shown::number(ratio, 2), "start");
-    y += height;
-  }
-  bars += programs::drawing::line(left + unit, 0, left + unit, y, "one");
-  return programs::drawing::svg(width, y + 4, bars, "ratios", "mean absolute error over that of the paper's network");
 }
 
 }  // namespace study

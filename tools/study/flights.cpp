@@ -31,13 +31,10 @@ pinnquad::Flight study::flown(const programs::StudyFlight& id) {
 void study::draw_flights(const std::string& folder, std::uint64_t seed) {
   using namespace pinnquad;
   const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();
-  bool drawn = true;
   programs::ProgressLine progress("drawing the flights");
   double done = 0;
   programs::each_flight([&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
-    if (!drawn) return;
-    progress.update(done++ / 3);
     const auto vehicle = flight_vehicle<PaperFlight>(airframe, PaperFlight::ground_effect);
     const auto without = flight_vehicle<PaperFlight>(airframe, GroundEffectModel::none);
     std::vector<programs::TraceRow> trace;
@@ -46,7 +43,8 @@ void study::draw_flights(const std::string& folder, std::uint64_t seed) {
             [&](const auto& flies) { trace.push_back(programs::trace_row(vehicle, without, flies.vehicle())); });
     const std::string into = folder + "/flights/" + PaperFlight::name;
     programs::make_folders(into);
-    drawn = programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
-                                  std::is_same_v<PaperFlight, WindyFlight>);
+    programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
+                          std::is_same_v<PaperFlight, WindyFlight>);
+    progress.update(++done / 3);
   });
 }

@@ -114,7 +114,7 @@ programs::Command paper_command(CLI::App& program) {
                            "  pinnquad-study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
                            "  pinnquad-study merge study/* --out study/all         joins such parts\n"
                            "The same command goes on where it was stopped or killed.\n") +
-               study::exit_codes + "\nWithout gnuplot the pictures are left out, with a line.");
+               study::exit_codes);
   return {line, [options] { return run_campaign(*options, "table 2", study::chosen_models(options->models)); }};
 }
 

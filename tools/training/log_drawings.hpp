@@ -7,12 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "pictures/drawing.hpp"
-#include "pictures/numbers.hpp"
+#include "page/chart.hpp"
 #include "training/log_moments.hpp"
 #include "training/log_verdict.hpp"
 
@@ -20,59 +18,37 @@ namespace programs {
 
 /// Kinds that a drawing shows in colour, an index of LogJudgement::kinds each.
 inline constexpr std::size_t most_shown_kinds = 3;
-inline constexpr const char* stroke_of_shown[most_shown_kinds] = {"first", "second", "third"};
-
-namespace detail {
-
-/// Names of the shown kinds in their colours, from `x` on.
-inline std::string legend(double x, double y, const LogJudgement& judged, const std::vector<std::size_t>& shown) {
-  constexpr double stroke = 22, letter = 6.6, gap = 26;
-  std::string text;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const std::string title = judged.kinds[shown[i]].kind.title;
-    text += drawing::line(x, y - 4, x + stroke, y - 4, stroke_of_shown[i]) +
-            drawing::label(x + stroke + 6, y, title, "start");
-    x += stroke + 6 + letter * static_cast<double>(title.size()) + gap;
-  }
-  return text;
-}
-
-}  // namespace detail
+inline constexpr const char* colour_of_shown[most_shown_kinds] = {colour::blue, colour::orange, colour::green};
 
 /// Root mean square error of every kind on each held-out flight: a mark each, those shown in colour.
-inline std::string flights_drawing(const LogJudgement& judged, const std::vector<std::size_t>& shown) {
-  constexpr double row = 26, left = 250, right = 1030, top = 44;
+inline Chart flights_chart(const LogJudgement& judged, const std::vector<std::size_t>& shown) {
+  Panel panel;
+  panel.y.rows = judged.flights;
+  const auto marks = [&](std::size_t k, Series series) {
+    const std::vector<double> errors = error_of_flights(judged.kinds[k]);
+    for (std::size_t flight = 0; flight < errors.size(); ++flight) {
+      series.x.push_back(1e3 * errors[flight]);
+      series.y.push_back(static_cast<double>(flight));
+    }
+    panel.series.push_back(series);
+  };
+  for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
+    const bool coloured = std::find(shown.begin(), shown.end(), k) != shown.end();
+    if (judged.kinds[k].applicable() && !coloured)
+      marks(k, {"others", Shape::strokes, colour::muted, {}, {}, 1.2, 0.7});
+  }
   double most = 0;
-  for (const std::size_t k : shown) {
-    for (const double error : error_of_flights(judged.kinds[k])) {
-      if (std::isfinite(error)) most = std::max(most, 1e3 * error);
+  for (std::size_t i = shown.size(); i-- > 0;) {
+    marks(shown[i], {judged.kinds[shown[i]].kind.title, Shape::strokes, colour_of_shown[i], {}, {}, 4});
+    for (const double error : panel.series.back().x) {
+      if (std::isfinite(error)) most = std::max(most, error);
     }
   }
-  const double bottom = top + row * static_cast<double>(judged.flights.size());
-  const drawing::Axis x{0, most * 1.25 + 1e-9, left, right};
-  std::string text = drawing::horizontal_axis(x, top, bottom, 8, "root mean square error of the commands, 1e-3");
-  for (std::size_t flight = 0; flight < judged.flights.size(); ++flight) {
-    const double y = top + row * (static_cast<double>(flight) + 0.5);
-    constexpr std::size_t most_letters = 34;
-    std::string name = judged.flights[flight];
-    if (name.size() > most_letters) name = name.substr(0, most_letters - 1) + "…";
-    text += drawing::label(left - 10, y + 4, name, "end") + drawing::line(left, y, right, y, "grid");
-    const auto mark = [&](std::size_t k, const std::string& kind, double half) {
-      const double error = 1e3 * error_of_flights(judged.kinds[k])[flight];
-      if (std::isfinite(error) && error <= x.most) {
-        text += drawing::line(x(error), y - half, x(error), y + half, kind);
-      }
-    };
-    for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
-      const bool coloured = std::find(shown.begin(), shown.end(), k) != shown.end();
-      if (judged.kinds[k].applicable() && !coloured) mark(k, "axis", 5);
-    }
-    for (std::size_t i = shown.size(); i-- > 0;) mark(shown[i], std::string(stroke_of_shown[i]) + " mark", 9);
-  }
-  text += detail::legend(left, top - 20, judged, shown);
-  return drawing::svg(1060, bottom + 44, text, "Error on each held-out flight",
-                      "Root mean square error of the commands by model and held-out flight, mean over the seeds; the "
-                      "table has the figures.");
+  panel.x = {"root mean square error of the commands, 10⁻³", 0, 1.25 * most + 1e-9};
+  return {"Error on each held-out flight",
+          "Root mean square error of the commands by model and held-out flight, mean over the seeds; the table has the "
+          "figures.",
+          {panel}};
 }
 
 /// An error of each row that counts, by shown kind, over a quantity of that row.
@@ -83,113 +59,86 @@ struct ErrorsOver {
   std::vector<std::vector<double>> square;  ///< the same of the squares
 };
 
-/// Of a tenth of the rows: means, and the root mean square.
-struct ErrorsOfPart {
-  double value = 0, mean = 0, root = 0;
-};
-
-/// One panel: root mean square (solid) and mean (dashed) of the error in tenths of the rows, from low to high.
-inline std::string errors_over_panel(const ErrorsOver& over, double x0, double width, double top, double height) {
+/// Root mean square (solid) and mean (dashed) of the error in tenths of the rows, from low to high.
+inline Panel errors_over_panel(const LogJudgement& judged, const std::vector<std::size_t>& shown,
+                               const ErrorsOver& over) {
   constexpr std::size_t parts = 10;
   std::vector<std::size_t> order(over.value.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return over.value[a] < over.value[b]; });
-  std::vector<std::vector<ErrorsOfPart>> lines(over.error.size());
-  double least = 0, most = 1e-9;
+  Panel panel;
+  panel.x.name = over.quantity + ", " + over.unit;
+  panel.y.name = "error, 10⁻³";
+  panel.height = 190;
   for (std::size_t kind = 0; kind < over.error.size(); ++kind) {
+    Series root{judged.kinds[shown[kind]].kind.title, Shape::line, colour_of_shown[kind]}, mean = root;
+    mean.name.clear();
+    mean.dashed = true;
     for (std::size_t part = 0; part < parts; ++part) {
       const std::size_t begin = part * order.size() / parts, end = (part + 1) * order.size() / parts;
       if (begin == end) continue;
-      ErrorsOfPart p;
+      double value = 0, error = 0, square = 0;
       for (std::size_t i = begin; i < end; ++i) {
-        p.value += over.value[order[i]];
-        p.mean += 1e3 * over.error[kind][order[i]];
-        p.root += 1e6 * over.square[kind][order[i]];
+        value += over.value[order[i]];
+        error += over.error[kind][order[i]];
+        square += over.square[kind][order[i]];
       }
       const auto count = static_cast<double>(end - begin);
-      p = {p.value / count, p.mean / count, std::sqrt(p.root / count)};
-      least = std::min(least, p.mean);
-      most = std::max({most, p.root, p.mean});
-      lines[kind].push_back(p);
+      root.x.push_back(value / count);
+      root.y.push_back(1e3 * std::sqrt(square / count));
+      mean.x.push_back(value / count);
+      mean.y.push_back(1e3 * error / count);
     }
+    panel.series.insert(panel.series.end(), {root, mean});
   }
-  const double low = over.value[order.front()], high = over.value[order.back()];
-  const drawing::Axis x{low, high > low ? high : low + 1, x0, x0 + width},
-      y{least * 1.1, most * 1.1, top + height, top};
-  std::string text = drawing::horizontal_axis(x, top, top + height, 4, over.quantity + ", " + over.unit) +
-                     drawing::vertical_axis(y, x0, x0 + width, 5, "");
-  for (std::size_t kind = 0; kind < lines.size(); ++kind) {
-    drawing::Trace root, mean;
-    for (const ErrorsOfPart& p : lines[kind]) {
-      root.to(x(p.value), y(p.root));
-      mean.to(x(p.value), y(p.mean));
-    }
-    text += drawing::path(root.d(), stroke_of_shown[kind]) +
-            drawing::path(mean.d(), std::string(stroke_of_shown[kind]) + " dash");
-  }
-  return text;
+  return panel;
 }
 
-/// Panels side by side; empty for none.
-inline std::string errors_over_drawing(const LogJudgement& judged, const std::vector<std::size_t>& shown,
-                                       const std::vector<ErrorsOver>& panels) {
-  if (panels.empty()) return {};
-  constexpr double left = 56, right = 1040, gap = 56, top = 48, height = 220;
-  const auto count = static_cast<double>(panels.size());
-  const double width = std::min(460.0, (right - left - gap * (count - 1)) / count);
-  std::string text = detail::legend(left, top - 24, judged, shown);
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    text += errors_over_panel(panels[i], left + static_cast<double>(i) * (width + gap), width, top, height);
-  }
-  return drawing::svg(
-      1060, top + height + 44, text, "Error over speed, battery and height",
-      "Root mean square and mean of the command error, 1e-3, in tenths of the held-out rows, by model.");
+/// Panels side by side; none for none.
+inline Chart errors_over_chart(const LogJudgement& judged, const std::vector<std::size_t>& shown,
+                               const std::vector<ErrorsOver>& quantities) {
+  Chart chart{"Error over speed, battery and height",
+              "Root mean square and mean of the command error, 10⁻³, in tenths of the held-out rows, by model.",
+              {},
+              std::max(1, static_cast<int>(quantities.size()))};
+  for (const ErrorsOver& over : quantities) chart.panels.push_back(errors_over_panel(judged, shown, over));
+  return chart;
 }
 
 /// The flown and the predicted commands of a motor, two seconds before and after a moment.
-inline std::string moment_drawing(const LogMoment& moment, const pinnquad::FlightRows& piece,
-                                  const LogJudgement& judged, const std::vector<std::size_t>& shown,
-                                  const std::vector<const Predictions*>& predictions) {
-  constexpr double left = 56, right = 1040, top = 14, height = 120, reach_s = 2;
+inline Chart moment_chart(const LogMoment& moment, const pinnquad::FlightRows& piece, const LogJudgement& judged,
+                          const std::vector<std::size_t>& shown, const std::vector<const Predictions*>& predictions) {
+  constexpr double reach_s = 2;
   const pinnquad::Flight& flight = *moment.flight;
   const double at_s = flight[moment.row].time_s;
   std::size_t begin = moment.row, end = moment.row + 1;
   while (begin > piece.rows.begin && flight[begin - 1].time_s >= at_s - reach_s) --begin;
   while (end < piece.rows.end && flight[end].time_s <= at_s + reach_s) ++end;
-  const auto held_out = [&](std::size_t row) { return moment.held_out + row - moment.row; };
-  double least = 1, most = 0;
-  const auto widen = [&](double u) {
-    if (!std::isfinite(u)) return;
-    least = std::min(least, u);
-    most = std::max(most, u);
-  };
-  for (std::size_t row = begin; row < end; ++row) {
-    widen(flight[row].commands[moment.motor]);
-    for (const Predictions* of : predictions) widen((*of)[held_out(row)][moment.motor]);
+  Panel panel;
+  panel.x = {"time, s", at_s - reach_s, at_s + reach_s};
+  panel.y.name = "command u" + std::to_string(moment.motor + 1);
+  panel.series = {{"flown", Shape::line, colour::muted, {}, {}, 3.4, 0.55}};
+  for (std::size_t i = 0; i < predictions.size(); ++i) {
+    panel.series.push_back({judged.kinds[shown[i]].kind.title, Shape::line, colour_of_shown[i]});
   }
-  const double margin = 0.08 * (most - least) + 1e-6;
-  const drawing::Axis x{at_s - reach_s, at_s + reach_s, left, right},
-      y{least - margin, most + margin, top + height, top};
-  drawing::Trace flown;
   for (std::size_t row = begin; row < end; ++row) {
-    if (row > begin && flight[row].time_s - flight[row - 1].time_s > 0.1) flown.to(std::nan(""), 0);
-    flown.to(x(flight[row].time_s), y(flight[row].commands[moment.motor]));
-  }
-  std::string text = drawing::horizontal_axis(x, top, top + height, 8, "time, s") +
-                     drawing::vertical_axis(y, left, right, 4, "") +
-                     drawing::line(x(at_s), top, x(at_s), top + height, "axis") + drawing::path(flown.d(), "flown");
-  for (std::size_t i = predictions.size(); i-- > 0;) {
-    drawing::Trace said;
-    for (std::size_t row = begin; row < end; ++row) {
-      const double u = (*predictions[i])[held_out(row)][moment.motor];
-      said.to(x(flight[row].time_s), std::isfinite(u) ? y(u) : u);
+    const bool gap = row > begin && flight[row].time_s - flight[row - 1].time_s > 0.1;
+    for (std::size_t i = 0; i < panel.series.size(); ++i) {
+      Series& series = panel.series[i];
+      if (gap && i == 0) {
+        series.x.push_back(pinnquad::not_a_number);
+        series.y.push_back(pinnquad::not_a_number);
+      }
+      series.x.push_back(flight[row].time_s);
+      series.y.push_back(i == 0 ? flight[row].commands[moment.motor]
+                                : (*predictions[i - 1])[moment.held_out + row - moment.row][moment.motor]);
     }
-    text += drawing::path(said.d(), stroke_of_shown[i]);
   }
-  const std::string names = listed(shown, [&judged](std::size_t k) { return judged.kinds[k].kind.title; });
-  return drawing::svg(1060, top + height + 42, text,
-                      "Command of motor u" + std::to_string(moment.motor + 1) + " about the moment",
-                      "As flown, and as predicted by " + names + ".");
+  panel.bands = {{"", colour::muted, at_s - 0.02, at_s + 0.02}};
+  return {"Command of motor u" + std::to_string(moment.motor + 1) + " about the moment",
+          "As flown, and as predicted by " +
+              listed(shown, [&judged](std::size_t k) { return judged.kinds[k].kind.title; }) + ".",
+          {panel}};
 }
 
 }  // namespace programs

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "pictures/numbers.hpp"
+#include "page/text.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/logs/read_dataset.hpp"

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "pictures/filled_page.hpp"
-#include "training/ellipses_drawing.hpp"
+#include "page/page.hpp"
 #include "training/log_drawings.hpp"
 #include "training/log_report.hpp"
+#include "training/pictures.hpp"
 
 namespace programs {
 
@@ -28,7 +28,7 @@ struct LogPageInput {
   const nlohmann::json& report;                ///< report.json
   std::optional<std::size_t> exported;         ///< of judged.kinds: what was exported, or would have been
   std::string export_sentence;                 ///< what became of it
-  std::map<std::string, std::string> replays;  ///< flight -> file of its 3D replay, where there is one
+  std::map<std::string, std::string> watched;  ///< flight -> file to watch it in 3D, where there is one
 };
 
 namespace detail {
@@ -199,7 +199,7 @@ inline nlohmann::json moments_json(const LogPageInput& in, const std::vector<std
   const auto moments = worst_moments(in.plan.folds, shown_predictions(in, shown.front()), in.judged.counts, told);
   for (const LogMoment& moment : moments) {
     const pinnquad::Sample& sample = (*moment.flight)[moment.row];
-    const auto replay = in.replays.find(moment.flight->name);
+    const auto watched = in.watched.find(moment.flight->name);
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.2f", std::max(0.0, sample.time_s - 1));
     nlohmann::json one = {{"flight", moment.flight->name},
@@ -207,15 +207,15 @@ inline nlohmann::json moments_json(const LogPageInput& in, const std::vector<std
                           {"motor", "u" + std::to_string(moment.motor + 1)},
                           {"facts", facts_of(moment, in.dataset)},
                           {"happened", what_happened(moment, in.dataset)},
-                          {"replay", replay == in.replays.end() ? nlohmann::json(false)
-                                                                : nlohmann::json(replay->second + "#t=" + seconds)},
+                          {"watch", watched == in.watched.end() ? nlohmann::json(false)
+                                                                : nlohmann::json(watched->second + "#t=" + seconds)},
                           {"drawing", false}};
     if (list.size() < drawn) {
       std::vector<const Predictions*> predictions;
       for (const std::size_t k : shown) predictions.push_back(shown_predictions(in, k)[moment.fold]);
       for (const pinnquad::FlightRows& piece : in.plan.folds[moment.fold].split.test.pieces()) {
         if (piece.flight == moment.flight) {
-          one["drawing"] = moment_drawing(moment, piece, in.judged, shown, predictions);
+          one["drawing"] = inline_svg(moment_chart(moment, piece, in.judged, shown, predictions));
         }
       }
     }
@@ -250,6 +250,7 @@ inline std::string log_page(const LogPageInput& in) {
   std::size_t rows = 0;
   for (const std::size_t of_fold : in.judged.rows) rows += of_fold;
   nlohmann::json page = {
+      {"title", "What the models of these flights are worth"},
       {"held_out", detail::or_false(in.judged.flights.size() <= most_named ? listed(in.judged.flights) : "")},
       {"flight_count", in.judged.flights.size()},
       {"rows", rows},
@@ -274,7 +275,7 @@ inline std::string log_page(const LogPageInput& in) {
       {"closed_loop", false},
       {"moments", nlohmann::json::array()},
       {"shown", false},
-      {"replays", !in.replays.empty()}};
+      {"watched", !in.watched.empty()}};
   for (const JudgedKind& kind : in.judged.kinds) {
     if (!kind.applicable())
       page["not_applicable"].push_back({{"title", kind.kind.title}, {"reason", kind.not_applicable}});
@@ -314,15 +315,14 @@ inline std::string log_page(const LogPageInput& in) {
                         {"sentence", verdict.sentence}};
   }
   if (!shown.empty()) {
-    page["shown"] = {{"name", in.judged.kinds[shown.front()].kind.title},
-                     {"flights", flights_drawing(in.judged, shown)},
-                     {"over", detail::or_false(errors_over_drawing(in.judged, shown, detail::errors_over(in, shown)))},
-                     {"ellipses", ellipses_drawing({{"held out", in.judged.kinds[shown.front()].kind.title,
-                                                     detail::counted_series(in, shown.front())}},
-                                                   "model")}};
+    page["shown"] = {
+        {"name", in.judged.kinds[shown.front()].kind.title},
+        {"flights", inline_svg(flights_chart(in.judged, shown))},
+        {"over", detail::or_false(inline_svg(errors_over_chart(in.judged, shown, detail::errors_over(in, shown))))},
+        {"ellipses", inline_svg(ellipses_chart({{"held out", detail::counted_series(in, shown.front())}}))}};
     page["moments"] = detail::moments_json(in, shown);
   }
-  return filled_page(log_page_template, std::move(page));
+  return text_page(log_page_template, page);
 }
 
 }  // namespace programs

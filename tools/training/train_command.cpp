@@ -36,7 +36,7 @@
 #include "training/log_options.hpp"
 #include "training/model_figures.hpp"
 #include "training/model_predictions.hpp"
-#include "training/plots.hpp"
+#include "training/pictures.hpp"
 #include "training/recipe.hpp"
 #include "training/train_logs.hpp"
 #include "training/training_flights.hpp"
@@ -80,8 +80,7 @@ void draw(const GivenAirframe& airframe, const std::string& folder, const RowSet
           const std::vector<programs::Result>& results, const std::vector<programs::Predictions>& predictions,
           const std::vector<std::size_t>& shown, const std::vector<std::string>& kinds) {
   std::vector<std::string> shown_names;
-  std::vector<std::array<programs::AxisSeries, 3>> series;
-  std::vector<programs::Judgement> judged;
+  std::vector<programs::EllipsesOf> ellipses;
   std::vector<double> time_s, target;
   std::vector<std::vector<double>> command(shown.size());
   // of one flight: a curve over its clock
@@ -92,14 +91,13 @@ void draw(const GivenAirframe& airframe, const std::string& folder, const RowSet
   }
   for (std::size_t s = 0; s < shown.size(); ++s) {
     shown_names.push_back(results[shown[s]].model);
-    series.push_back(programs::axis_series(airframe, test, predictions[shown[s]]));
-    judged.push_back(results[shown[s]].test);
+    ellipses.push_back({shown_names.back(), programs::axis_series(airframe, test, predictions[shown[s]])});
     for (std::size_t i = 0; i < excerpt; ++i) command[s].push_back(predictions[shown[s]][i][0]);
   }
-  const bool drawn = programs::plot_ellipses(folder + "ellipses.svg", shown_names, series, judged) &&
-                     programs::plot_errors(folder + "errors.svg", results, kinds) &&
-                     programs::plot_prediction(folder + "prediction.svg", time_s, target, shown_names, command);
-  if (drawn) std::printf("  pictures: %sellipses.svg, errors.svg, prediction.svg\n", folder.c_str());
+  programs::write_svg(folder + "ellipses.svg", programs::ellipses_chart(ellipses));
+  programs::write_svg(folder + "errors.svg", programs::errors_chart(results, kinds));
+  programs::write_svg(folder + "prediction.svg", programs::prediction_chart(time_s, target, shown_names, command));
+  std::printf("  pictures: %sellipses.svg, errors.svg, prediction.svg\n", folder.c_str());
 }
 
 /// "; of an earlier training: ..." with the files an export would have replaced; nothing where there are none.
@@ -381,8 +379,7 @@ void add_options(CLI::App& app, TrainOptions& options) {
       "  pinnquad train --log logs --mapping px4 --hold-out flight7 --out my_model\n"
       "  pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model\n"
       "Exit codes: 0; 1 nothing exported: no model was finished, or the best is worse than the mean of the commands;\n"
-      "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.\n"
-      "Without gnuplot the pictures are left out, with a line.");
+      "2 bad input or a file that can't be read or written; 130 interrupted, what is finished is kept.");
   programs::add_paths(
       app, "--flight", options.flights, "FILE.csv",
       "recorded flight, CSV as `pinnquad fly` writes it: its first part trains, its last tests. Of three or more, "

@@ -29,9 +29,9 @@
 #include "training/log_flight.hpp"
 #include "training/log_input.hpp"
 #include "training/log_page.hpp"
-#include "training/log_replay.hpp"
 #include "training/log_report.hpp"
 #include "training/log_table.hpp"
+#include "training/log_watch.hpp"
 
 namespace {
 
@@ -307,19 +307,19 @@ class LogTraining {
     }
   }
 
-  /// The page, and a 3D replay of each held-out flight where their page is built.
+  /// The page, and one to watch each held-out flight in 3D where that is built.
   void write_page() {
     programs::LogPageInput input{plan_, dataset_, fits_, judged_, verdicts_, report_.json(), chosen_, told_, {}};
-    if (programs::ReplayPage::available()) {
-      programs::ProgressLine progress("replays");
+    if (programs::WatchPage::available()) {
+      programs::ProgressLine progress("flights to watch");
       for (const std::string& name : judged_.flights) {
-        progress.update(static_cast<double>(input.replays.size()) / static_cast<double>(judged_.flights.size()));
-        const std::string file = "replay-" + std::to_string(input.replays.size() + 1) + ".html";
+        progress.update(static_cast<double>(input.watched.size()) / static_cast<double>(judged_.flights.size()));
+        const std::string file = "watch-" + std::to_string(input.watched.size() + 1) + ".html";
         for (const Flight& flight : dataset_.flights.flights()) {
           if (flight.name == name)
-            programs::write_log_replay(options_.out + "/" + file, flight, dataset_, plan_.airframe.value);
+            programs::write_watched_log(options_.out + "/" + file, flight, dataset_, plan_.airframe.value);
         }
-        input.replays[name] = file;
+        input.watched[name] = file;
       }
     }
     AtomicFile file(options_.out + "/report.html");

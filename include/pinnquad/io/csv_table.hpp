@@ -297,7 +297,7 @@ void for_each_csv_row(const std::string& path, const std::vector<std::string>& c
 }
 
 /// Writes a table row by row; the file appears whole, on commit(), or not at all. NaN and Inf are written as nan and
-/// inf (gnuplot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
+/// inf (a plot leaves them out; `read_csv` refuses them). Throws OutputError if the file cannot be written,
 /// std::invalid_argument for a row of other length than the header and a column without a name.
 class CsvWriter {
  public:

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "flight/pictures.hpp"
-#include "training/plots.hpp"
+#include "page/page.hpp"
+#include "training/pictures.hpp"
 
 namespace {
 
@@ -52,20 +54,22 @@ programs::AxisSeries ellipse_cloud() {
   return series;
 }
 
-bool draw(const std::string& folder) {
+void draw(const std::string& folder) {
   const std::vector<std::string> models = {"linearized", "vanilla", "physics_informed"};
   const programs::AxisSeries series = ellipse_cloud();
-  programs::Judgement judged;
-  for (pinnquad::PhysicalConsistency& axis : judged.axes) axis = pinnquad::physical_consistency(series);
-  return programs::plot_trajectory(folder + "/trajectory.svg", spiral(8)) &&
-         programs::plot_trajectory(folder + "/slow_trajectory.svg", spiral(3)) &&
-         programs::plot_errors(folder + "/errors.svg",
-                               results(models, {{0.0549, 0.0549}, {0.0082, 0.0078}, {0.0072, 0.0074}}), models) &&
-         programs::plot_errors(folder + "/even_errors.svg",
-                               results(models, {{0.009, 0.009}, {0.0082, 0.0078}, {0.0072, 0.0074}}), models) &&
-         programs::plot_ellipses(folder + "/ellipses.svg", {"a & b"}, {{series, series, series}}, {judged}) &&
-         programs::plot_prediction(folder + "/prediction.svg", {0, 0.05, 0.1}, {0.4, 0.5, 0.45}, {"vanilla"},
-                                   {{0.41, 0.52, 0.44}});
+  const auto write = [&](const char* name, const programs::Chart& chart) {
+    programs::write_svg(folder + "/" + name + ".svg", chart);
+    std::ofstream(folder + "/" + name + ".html")
+        << programs::whole_page("charts", programs::text_style, "<figure>" + programs::inline_svg(chart) + "</figure>");
+  };
+  write("trajectory", programs::trajectory_chart(spiral(8)));
+  write("slow_trajectory", programs::trajectory_chart(spiral(3)));
+  write("errors",
+        programs::errors_chart(results(models, {{0.0549, 0.0549}, {0.0082, 0.0078}, {0.0072, 0.0074}}), models));
+  write("even_errors",
+        programs::errors_chart(results(models, {{0.009, 0.009}, {0.0082, 0.0078}, {0.0072, 0.0074}}), models));
+  write("ellipses", programs::ellipses_chart({{"a & b", {series, series, series}}}));
+  write("prediction", programs::prediction_chart({0, 0.05, 0.1}, {0.4, 0.5, 0.45}, {"vanilla"}, {{0.41, 0.52, 0.44}}));
 }
 
 }  // namespace
@@ -76,7 +80,8 @@ int main(int argument_count, char** arguments) {
     return 2;
   }
   try {
-    return draw(arguments[1]) ? 0 : 1;
+    draw(arguments[1]);
+    return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "pictures_driver: %s\n", error.what());
     return 2;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "judged_run.hpp"
+#include "page/text.hpp"
 #include "training/log_page.hpp"
 
 namespace {
@@ -28,7 +29,7 @@ pinnquad::Dataset with_battery(const pinnquad::Dataset& flights) {
   return dataset;
 }
 
-std::string page_of(Judged& run, const std::vector<std::string>& absent, bool with_replays) {
+std::string page_of(Judged& run, const std::vector<std::string>& absent, bool with_watched) {
   pinnquad::logs::ImportedDataset imported;
   imported.flights = run.dataset;
   imported.absent = absent;
@@ -47,7 +48,7 @@ std::string page_of(Judged& run, const std::vector<std::string>& absent, bool wi
                                "Exported as out/model.hpp.",
                                {}};
   for (const std::string& flight : run.judged.flights) {
-    if (with_replays) input.replays[flight] = "replay-of-" + flight + ".html";
+    if (with_watched) input.watched[flight] = "watch-" + flight + ".html";
   }
   return programs::log_page(input);
 }
@@ -77,13 +78,13 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
   CHECK(page.find("battery, V") != std::string::npos);
   CHECK(page.find("specific force by the library") != std::string::npos);
   CHECK(page.find("a command below 0.005 or above 0.995") != std::string::npos);
-  CHECK(page.find("href=\"replay-of-flight") != std::string::npos);
+  CHECK(page.find("href=\"watch-of-flight") != std::string::npos);
   CHECK(page.find("can’t reach p") == std::string::npos);  // eight flights can
   CHECK(page.find("· speed ") != std::string::npos);
   CHECK(page.find("nan") == std::string::npos);
   CHECK(page.find("{{") == std::string::npos);
   CHECK(count_of(page, "<svg") == count_of(page, "</svg>"));
-  CHECK(count_of(page, "<svg") == 3 + 4);  // flights, errors over, ellipses; the four worst moments
+  CHECK(count_of(page, "<svg") == 2 * (3 + 4));  // flights, errors over, ellipses; four moments: for wide, for narrow
   CHECK(count_of(page, "class=\"moment\"") == 8);
 }
 
@@ -98,7 +99,7 @@ TEST_CASE(
   CHECK(page.find("Fewer than 6 held-out flights can’t reach p") != std::string::npos);
   CHECK(page.find("· speed ") == std::string::npos);
   CHECK(page.find("· tilt ") != std::string::npos);
-  CHECK(page.find("No 3D replays") != std::string::npos);
+  CHECK(page.find("No flights to watch in 3D") != std::string::npos);
 }
 
 TEST_CASE("the worst moment is where a model was spoiled, and what happened there is named") {

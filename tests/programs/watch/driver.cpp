@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flies a short flight and writes it twice: as a replay page and as rows of plain text for the test to compare with.
-//   replay_driver page.html rows.csv [samples] [title]
+// Flies a short flight and writes it twice: as a page to watch it, of watch.json of the working folder, and as rows of plain text for the test to compare with.
+//   watch_driver page.html rows.csv [samples] [title]
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -8,20 +8,21 @@
 #include <random>
 #include <string>
 
+#include "page/watch_page.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/simulation/simulator.hpp"
-#include "replay/page.hpp"
 
 namespace {
 
 using namespace pinnquad;
 
 int run(const std::string& html, const std::string& csv, std::size_t samples, const std::string& title) {
-  programs::ReplayPage::require_available(html);
-  programs::ReplayPage page(title, airframe_value<PaperQuadrotor, double>(), paper_site<double>().ground_z_m);
+  const std::string bundle = "watch.json";
+  programs::WatchPage::require_available(html, bundle);
+  programs::WatchPage page(title, airframe_value<PaperQuadrotor, double>(), paper_site<double>().ground_z_m, bundle);
   std::ofstream rows(csv);
   rows.precision(17);
   rows << "t,north,east,down,v_north,v_east,v_down,qw,qx,qy,qz,u1,u2,u3,u4\n";
@@ -44,7 +45,7 @@ int run(const std::string& html, const std::string& csv, std::size_t samples, co
                               }).report;
   rows.close();
   if (report.end != FlightEnd::completed || !rows) {
-    std::fprintf(stderr, "replay_driver: the flight or its rows failed: %s\n", to_string(report.status));
+    std::fprintf(stderr, "watch_driver: the flight or its rows failed: %s\n", to_string(report.status));
     return 1;
   }
   page.write(html);
@@ -55,7 +56,7 @@ int run(const std::string& html, const std::string& csv, std::size_t samples, co
 
 int main(int argument_count, char** arguments) {
   if (argument_count < 3) {
-    std::fprintf(stderr, "usage: replay_driver page.html rows.csv [samples] [title]\n");
+    std::fprintf(stderr, "usage: watch_driver page.html rows.csv [samples] [title]\n");
     return 2;
   }
   const std::size_t samples = argument_count > 3 ? std::strtoull(arguments[3], nullptr, 10) : 600;
@@ -63,7 +64,7 @@ int main(int argument_count, char** arguments) {
   try {
     return run(arguments[1], arguments[2], samples, title);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "replay_driver: %s\n", error.what());
+    std::fprintf(stderr, "watch_driver: %s\n", error.what());
     return 2;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Colours of a quantity: viridis (Smith, van der Walt and Firing, matplotlib, CC0), lightness rising evenly from end to
-// end, so that it also reads in grey and with any colour vision. The replay page has the same anchors (src/ramp.js).
+// end, so that it also reads in grey and with any colour vision. The page to watch a flight has the same anchors
+// (watch/src/ramp.js).
 #pragma once
 
 #include <algorithm>
@@ -40,15 +41,5 @@ inline std::string viridis_colour(double share) {
 
 /// The colour of one of `steps` equal parts of the range: the ends of viridis are the first and the last.
 inline std::string viridis_step(int step, int steps) { return viridis_colour(steps > 1 ? step / (steps - 1.0) : 0); }
-
-/// gnuplot's palette of these steps. Each is given from end to end: `maxcolors` would choose colours of its own.
-inline std::string viridis_palette(int steps) {
-  std::string text = "defined (";
-  for (int step = 0; step < steps; ++step) {
-    const std::string colour = " '" + viridis_step(step, steps) + "'";
-    text += (step > 0 ? ", " : "") + std::to_string(step) + colour + ", " + std::to_string(step + 1) + colour;
-  }
-  return text + ")";
-}
 
 }  // namespace programs

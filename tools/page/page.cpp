@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A page of text: its template (pictures/page_template.hpp) filled with what it says, as JSON.
-#pragma once
-
-#include <string>
-#include <utility>
+#include "page/page.hpp"
 
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
-#include "pictures/html_text.hpp"
-#include "pictures/page_template.hpp"
+#include "page/text.hpp"
 
 namespace programs {
-namespace detail {
+namespace {
 
 /// JSON as the template reads it. It cannot ask whether a list has entries: beside a list `x` there is `any_x`.
-inline kainjow::mustache::data mustache_data(const nlohmann::json& value) {
+kainjow::mustache::data mustache_data(const nlohmann::json& value) {
   using kainjow::mustache::data;
   if (value.is_object()) {
     data object(data::type::object);
@@ -34,14 +29,20 @@ inline kainjow::mustache::data mustache_data(const nlohmann::json& value) {
   return data(value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-}  // namespace detail
-
-/// The whole page; text is escaped where the template has two braces, `page_style` is added.
-inline std::string filled_page(const char* page_template, nlohmann::json content) {
-  content["page_style"] = page_style;
-  kainjow::mustache::mustache page(page_template);
+std::string filled(const char* text, const nlohmann::json& content) {
+  kainjow::mustache::mustache page(text);
   page.set_custom_escape(html_text);
-  return page.render(detail::mustache_data(content));
+  return page.render(mustache_data(content));
+}
+
+}  // namespace
+
+std::string whole_page(const std::string& title, const std::string& style, const std::string& body) {
+  return filled(page_template, {{"title", title}, {"style", page_palette + style}, {"body", body}});
+}
+
+std::string text_page(const char* body_template, const nlohmann::json& content) {
+  return whole_page(content.at("title"), text_style, filled(body_template, content));
 }
 
 }  // namespace programs

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Speed as a colour: the trail, the profile and the legend share this one ramp, viridis (Smith, van der Walt and
 // Firing, matplotlib, CC0), whose lightness rises evenly from slow to fast. The pictures have the same anchors
-// (tools/pictures/viridis.hpp).
+// (tools/page/viridis.hpp).
 
 const stops = [
   [68, 1, 84],

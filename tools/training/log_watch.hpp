@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-// A logged flight as a page that replays it in 3D. A dataset has no positions: the path is integrated from the
+// A logged flight as a page to watch it in 3D. A dataset has no positions: the path is integrated from the
 // velocity.
 #pragma once
 
 #include <cstddef>
 #include <string>
 
+#include "page/watch_page.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
-#include "replay/page.hpp"
 
 namespace programs {
 
 /// Without a velocity the vehicle stays in its place and turns. Times are those of the flight: page.html#t=12.5 is its
 /// second 12.5.
-inline void write_log_replay(const std::string& path, const pinnquad::Flight& flight,
-                             const pinnquad::logs::ImportedDataset& dataset,
-                             const pinnquad::Airframe<double>& airframe) {
+inline void write_watched_log(const std::string& path, const pinnquad::Flight& flight,
+                              const pinnquad::logs::ImportedDataset& dataset,
+                              const pinnquad::Airframe<double>& airframe) {
   const bool has_altitude = !dataset.lacks("altitude");
-  ReplayPage page(flight.name + ", path integrated from the velocity", airframe, 0);
+  WatchPage page(flight.name + ", path integrated from the velocity", airframe, 0);
   pinnquad::VehicleState<double> vehicle;
   pinnquad::Vector3<double> last_velocity = pinnquad::Vector3<double>::Zero();
   for (std::size_t row = 0; row < flight.size(); ++row) {

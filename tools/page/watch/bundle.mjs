@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Makes the one file that ReplayPage fills: page, style, three.js with its licence, and the replay.
-//   node bundle.mjs <folder that holds node_modules> <page to write>
+// Makes the one file that WatchPage fills: style, body with the licence of three.js, and the script with three.js.
+//   node bundle.mjs <folder that holds node_modules> <file to write>
 import { readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
@@ -22,10 +22,7 @@ const script = buildSync({
   charset: 'utf8',
   legalComments: 'none', // the licence is in the page as a whole, for its reader
 }).outputFiles[0].text;
-const palette = join(source, '../../pictures/page.css'); // shared with the report
-const sheets = [palette, join(source, 'style.css'), join(source, 'small_screens.css')].map((sheet) =>
-  readFileSync(sheet, 'utf8'),
-);
+const sheets = ['style.css', 'small_screens.css'].map((sheet) => readFileSync(join(source, sheet), 'utf8'));
 const style = transformSync(sheets.join('\n'), {
   loader: 'css',
   minify: true,
@@ -37,14 +34,8 @@ const escaped = licence.replace(/&/g, '&amp;').replace(/</g, '&lt;');
 if (/<\/script|<!--/i.test(script)) throw new Error('the script would end its own element');
 if (!/Permission is hereby granted/.test(licence)) throw new Error('three.js came without its licence');
 
-const parts = { STYLE: style.trim(), LICENCE: escaped.trim(), SCRIPT: script.trim() };
-const page = readFileSync(join(source, 'page.html'), 'utf8').replace(
-  /@PINNQUAD_(\w+)@/g,
-  (marker, name) => parts[name] ?? marker,
-);
-for (const marker of ['@PINNQUAD_TITLE@', '@PINNQUAD_FLIGHT@']) {
-  if (page.split(marker).length !== 2) throw new Error(`${marker} must be in the page once`);
-}
-writeFileSync(`${out}.partial`, page);
+const body = readFileSync(join(source, 'body.html'), 'utf8').replace('@LICENCE@', () => escaped.trim());
+const bundle = JSON.stringify({ style: style.trim(), body, script: script.trim() });
+writeFileSync(`${out}.partial`, bundle);
 renameSync(`${out}.partial`, out);
-console.log(`${out}: ${Math.round(page.length / 1024)} KiB before a flight`);
+console.log(`${out}: ${Math.round(bundle.length / 1024)} KiB before a flight`);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# Installs the locked packages beside the page and runs bundle.mjs. Run by the target replay_bundle with
+# Installs the locked packages beside the page and runs bundle.mjs. Run by the target watch_bundle with
 # NODE, NPM, SOURCE, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice, and there is no page.
 get_filename_component(folder "${PAGE}" DIRECTORY)
 file(MAKE_DIRECTORY "${folder}")
@@ -8,7 +8,7 @@ file(MAKE_DIRECTORY "${folder}")
 macro(give_up what output)
   file(REMOVE "${PAGE}") # a page of older sources would be a lie
   if(REQUIRED STREQUAL "AUTO")
-    message(NOTICE "pinnquad: ${what}; fly --replay is not available. It said:\n${output}")
+    message(NOTICE "pinnquad: ${what}; fly --watch is not available. It said:\n${output}")
     return()
   endif()
   message(FATAL_ERROR "pinnquad: ${what}. It said:\n${output}")
@@ -24,7 +24,7 @@ if(NOT EXISTS "${stamp}")
     COMMAND "${NPM}" ci --ignore-scripts --no-audit --no-fund --no-update-notifier --loglevel=error --fetch-retries=1
     WORKING_DIRECTORY "${folder}" RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 300)
   if(NOT code EQUAL 0)
-    give_up("npm could not install the packages of the replay page" "${output}")
+    give_up("npm could not install the packages of the page to watch a flight" "${output}")
   endif()
   file(WRITE "${stamp}" "")
 endif()
@@ -33,6 +33,6 @@ execute_process(
   COMMAND "${NODE}" "${SOURCE}/bundle.mjs" "${folder}" "${PAGE}"
   RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 120)
 if(NOT code EQUAL 0)
-  give_up("the replay page could not be bundled" "${output}")
+  give_up("the page to watch a flight could not be bundled" "${output}")
 endif()
 message(NOTICE "${output}")

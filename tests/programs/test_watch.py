@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""ReplayPage without a browser: what it refuses, that text cannot leave its element, and that the page holds the
+"""WatchPage without a browser: what it refuses, that text cannot leave its element, and that the page holds the
 flight."""
 import base64
 import json
+import re
 import struct
 from pathlib import Path
 
@@ -12,18 +13,20 @@ from conftest import no_partial_files
 
 @pytest.fixture
 def driver(program):
-    return program("replay_driver")
+    return program("watch_driver")
 
 
 @pytest.fixture
 def bundle(work):
-    Path("page.html").write_text("<title>@PINNQUAD_TITLE@</title>\n@PINNQUAD_FLIGHT@\nend\n")
+    Path("watch.json").write_text('{"style":"b{}","body":"<p>{{title}}</p>","script":"let whole = 1"}')
 
 
 def test_without_the_bundle(driver):
     """Refused before anything flies or is written."""
-    driver.refused("out.html rows.csv", at="out.html", keyword="replay_bundle")
+    driver.refused("out.html rows.csv", at="out.html", keyword="watch_bundle")
     assert not Path("rows.csv").exists()
+    Path("watch.json").write_text('{"style":"no body","script":""}')
+    driver.refused("out.html rows.csv 10", at="out.html", keyword="not built")
 
 
 def test_refused(driver, bundle):
@@ -33,11 +36,14 @@ def test_refused(driver, bundle):
 
 def test_page(driver, bundle):
     driver("out.html rows.csv 200", '</title><script>"a" & b</script>\n\x01end')
-    title, flight, end = Path("out.html").read_text().splitlines()
-    assert title == "<title>&lt;/title&gt;&lt;script&gt;&quot;a&quot; &amp; b&lt;/script&gt;  end</title>"
-    assert end == "end" and "<" not in flight
+    page = Path("out.html").read_text()
+    assert "<title>&lt;/title&gt;&lt;script&gt;&quot;a&quot; &amp; b&lt;/script&gt;  end</title>" in page
+    for part in "b{}", "<p>{{title}}</p>", "<script>let whole = 1</script>", "</html>":
+        assert part in page, part
+    flight = re.search(r'^<script type="application/json" id="flight">(.*)</script>$', page, re.M).group(1)
+    assert "<" not in flight
     no_partial_files()
-    page = json.loads(flight[flight.index("{") : flight.rindex("}") + 1])
+    page = json.loads(flight)
     rows = [list(map(float, line.split(","))) for line in Path("rows.csv").read_text().splitlines()[1:]]
     assert len(rows) == 200
     velocity = page["velocity_unit_m_s"]

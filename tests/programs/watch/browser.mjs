@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Opens a replay page in headless Chromium, without a network, and uses it as a person would: plays, drags, presses
+// Opens a page to watch a flight in headless Chromium, without a network, and uses it as a person would: plays, drags, presses
 // keys. What it shows is compared with the flight's own rows, which did not go through the page.
 //   node browser.mjs <chromium> <page.html> <rows.csv> <title> <folder for screenshots>
-import { rampColour } from '../../../tools/replay/src/ramp.js';
+import { rampColour } from '../../../tools/page/watch/src/ramp.js';
 import {
   cameraPlace,
   check,
