@@ -78,7 +78,7 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
   CHECK(page.find("battery, V") != std::string::npos);
   CHECK(page.find("specific force by the library") != std::string::npos);
   CHECK(page.find("a command below 0.005 or above 0.995") != std::string::npos);
-  CHECK(page.find("href=\"watch-of-flight") != std::string::npos);
+  CHECK(page.find("href=\"watch-flight") != std::string::npos);
   CHECK(page.find("can’t reach p") == std::string::npos);  // eight flights can
   CHECK(page.find("· speed ") != std::string::npos);
   CHECK(page.find("nan") == std::string::npos);
