@@ -17,6 +17,7 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/trust_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"

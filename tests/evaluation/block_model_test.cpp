@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A block on the ground: the shipped ones are those of their headers; rows of flights are answered as the compiled model
-// answers them, with columns and windows.
+// A block on the ground: the shipped ones are those of their headers; rows of flights are answered as the compiled
+// model answers them, with columns and windows.
 #include "pinnquad/deploy/block_model.hpp"
 
 #include <doctest/doctest.h>

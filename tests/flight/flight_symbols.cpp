@@ -8,6 +8,7 @@
 #include "../support/hover.hpp"
 #include "../support/small_model.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
+#include "pinnquad/exported/run_time_certificate.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/simulation/tracking.hpp"
@@ -132,6 +133,30 @@ unsigned char fly(const Trajectory& trajectory, const FeedForward& feed_forward,
   return static_cast<unsigned char>(result.status);
 }
 
+/// A model of any block, in memory that the caller has.
+template <class Scalar>
+struct RunTimeAsked {
+  pinnquad::RunTimeModel<Scalar> model;
+  pinnquad::RunTimeInputs<Scalar> taps[2];
+  Scalar x[64], work[256], u[4];
+  double paths[256];
+  pinnquad::Certificate certificate;
+};
+template <class Scalar>
+unsigned char predict_at_run_time(const void* block, unsigned long length, RunTimeAsked<Scalar>& asked) {
+  auto& model = asked.model;
+  pinnquad::BlockFault fault;
+  Status status = pinnquad::RunTimeModel<Scalar>::open(block, length, model, fault);
+  if (status == Status::ok && model.workspace() > 256) status = Status::block_incompatible;
+  if (status == Status::ok) status = model.features().check(asked.taps);
+  if (status != Status::ok) return static_cast<unsigned char>(status);
+  model.features().extract(asked.taps, asked.x);
+  model.commands(asked.x, asked.u, asked.work);
+  const bool sound = model.golden_difference(asked.work) <= Scalar(pinnquad::golden_tolerance) &&
+                     pinnquad::run_time_certificate(model, asked.paths, asked.certificate);
+  return static_cast<unsigned char>(sound ? Status::ok : Status::self_test_failed);
+}
+
 }  // namespace
 
 extern "C" {
@@ -245,6 +270,14 @@ unsigned char pinnquad_flight_loaded_predict(const void* block, unsigned long le
   const pinnquad::InverseDynamics<Loaded> inverse(loaded);
   if (pinnquad::self_test(inverse) != Status::ok) return static_cast<unsigned char>(Status::self_test_failed);
   return static_cast<unsigned char>(inverse.predict_features(x, u));
+}
+
+unsigned char pinnquad_flight_run_time_predict(const void* block, unsigned long length, RunTimeAsked<float>* asked) {
+  return predict_at_run_time(block, length, *asked);
+}
+unsigned char pinnquad_flight_run_time_predict_in_double(const void* block, unsigned long length,
+                                                         RunTimeAsked<double>* asked) {
+  return predict_at_run_time(block, length, *asked);
 }
 
 unsigned char pinnquad_flight_predict_with_jacobian(const float* x, float* u, float* jacobian) {

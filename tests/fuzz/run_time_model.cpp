@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // libFuzzer target over blocks that describe themselves: whatever the bytes, open() reads none beyond the block and
-// says why it refuses one; what it accepts is looked at, asked and certified without a trap, and a program refuses it in
-// one line or takes it. The mutator makes most inputs pass checksum, counts, hash: chance would not. Build and run:
+// says why it refuses one; an accepted block is looked at, asked and certified without a trap, and a program refuses it
+// in one line or takes it. The mutator makes most inputs pass checksum, counts, hash: chance would not. Build and run:
 // scripts/heavy/fuzz.
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "fuzz/fuzzing.hpp"
-#include "pinnquad/evaluation/block_model.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "support/block_bytes.hpp"
 
 namespace {

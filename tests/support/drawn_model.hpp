@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trained models whose numbers are drawn at random, of any network, feature set, outputs and airframe, and their blocks.
+// Trained models whose numbers are drawn at random, of any network, feature set, outputs and airframe, and their
+// blocks.
 #pragma once
 
 #include <random>

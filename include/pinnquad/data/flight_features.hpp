@@ -61,7 +61,8 @@ class FlightInputs {
 };
 
 namespace detail {
-/// Values of a flight's extra column. Throws std::invalid_argument, one line, for one that is absent or in another unit.
+/// Values of a flight's extra column. Throws std::invalid_argument, one line, for one that is absent or in another
+/// unit.
 inline const std::vector<double>& column_values(const Flight& flight, const std::string& name,
                                                 const std::string& unit) {
   const ExtraColumn* column = flight.column(name);

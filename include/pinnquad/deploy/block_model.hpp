@@ -202,8 +202,8 @@ class BlockModel {
   /// Signed sums of commands about roll, pitch, yaw.
   std::array<double, 3> signed_sums(const Commands<double>& u) const { return derivatives_.signed_sums(u); }
 
-  /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is moved;
-  /// else the present alone.
+  /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is
+  /// moved; else the present alone.
   AxisDerivatives derivatives(const std::vector<double>& x, bool held = true) const {
     return derivatives_(x.data(), held);
   }

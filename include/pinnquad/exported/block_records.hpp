@@ -119,7 +119,7 @@ struct BlockRecords : ModelRecords<Scalar> {
         if (length <= exact + flown) return Status::block_corrupt;
         airframe = bytes;
         flown_airframe = scalars + exact / sizeof(Scalar);
-        vehicle_name = text.substr(exact + flown);
+        vehicle_name = {text.data() + exact + flown, length - exact - flown};  // substr() may throw
         break;
       }
       case BlockRecord::contents: contents_hash = read_u64(bytes); break;

@@ -95,7 +95,7 @@ class RunTimeFeatures {
   static bool take_text(std::string_view& texts, std::string_view& text) noexcept {
     const std::size_t end = texts.find('\0');
     if (end == std::string_view::npos) return false;
-    text = texts.substr(0, end);
+    text = {texts.data(), end};  // substr() may throw
     texts.remove_prefix(end + 1);
     return true;
   }
@@ -191,7 +191,7 @@ class RunTimeFeatures {
   bool find_tap(std::string_view& name, int& tap) const noexcept {
     const std::size_t bracket = name.rfind('[');
     if (bracket == std::string_view::npos || bracket == 0 || bracket + 3 > name.size()) return false;
-    std::string_view digits = name.substr(bracket + 2, name.size() - bracket - 3);
+    const std::string_view digits(name.data() + bracket + 2, name.size() - bracket - 3);
     const char sign = name[bracket + 1];
     int periods = 0;
     for (const char digit : digits) {
@@ -199,7 +199,7 @@ class RunTimeFeatures {
       periods = 10 * periods + (digit - '0');
     }
     if ((sign != '-' && sign != '+') || digits.empty()) return false;
-    name = name.substr(0, bracket);
+    name = {name.data(), bracket};
     for (int other = 0; other < window_.taps - 1; ++other) {
       if (window_.offset(other) != (sign == '-' ? -periods : periods)) continue;
       tap = other + 1;

@@ -17,7 +17,7 @@
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// What is wrong with a block, in words: a refusal on the ground says both.
+/// The fault of a block, in words: a refusal on the ground says both.
 struct BlockFault {
   const char* expected = nullptr;
   const char* found = nullptr;
@@ -32,9 +32,9 @@ class RunTimeModel {
   using Layout = ModelBlockHeader;
 
   /// Makes `model` the model of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
-  /// Statuses as ModelView::open(); `block_incompatible` too for a block that does not describe itself, and for a layer,
-  /// feature or schema that this library can't work out. `model` is of no use unless the Status is ok. Its weights are
-  /// not asked: see golden_difference().
+  /// Statuses as ModelView::open(); `block_incompatible` too for a block that does not describe itself, and for a
+  /// layer, column or schema that this library can't work out. `model` is of no use unless the Status is ok. Weights
+  /// are not asked: see golden_difference().
   static Status open(const void* block, std::size_t length, RunTimeModel& model, BlockFault& fault) noexcept {
     return model.read(static_cast<const unsigned char*>(block), length, fault);
   }
@@ -335,7 +335,8 @@ class RunTimeModel {
     return structure_sound(fault);
   }
 
-  /// What a base in closed form, alone or with a residual between bounds, says twice (detail::StatedStructure).
+  /// Of a base in closed form, alone or with a residual between bounds: the numbers that are said twice
+  /// (detail::StatedStructure).
   Status structure_sound(BlockFault& fault) const noexcept {
     const RunTimePart& base = network_.part(0);
     const bool has_residual = network_.part_count() == 2 && network_.part(1).bounded;

@@ -83,7 +83,7 @@ struct ActivationTable<Number, std::tuple<Specs...>> {
 template <class Number>
 inline constexpr auto& run_time_activations = ActivationTable<Number, Activations>::of;
 
-/// Reads a description from left to right; spaces don't count.
+/// Reads a description from left to right; spaces don't count. std::string_view::substr() may throw: it does not fly.
 class DescriptionReader {
  public:
   constexpr explicit DescriptionReader(std::string_view text) noexcept : rest_(text) {}
@@ -95,7 +95,7 @@ class DescriptionReader {
   /// Takes the text where it is next.
   constexpr bool take(std::string_view text) noexcept {
     skip_spaces();
-    if (rest_.substr(0, text.size()) != text) return false;
+    if (rest_.size() < text.size() || std::string_view(rest_.data(), text.size()) != text) return false;
     rest_.remove_prefix(text.size());
     return true;
   }
@@ -164,9 +164,9 @@ class RunTimeNetwork {
   template <class Number, int Count>
   using Values = std::array<Number, std::size_t(Count)>;
 
-  /// y = predictor(x), both standardised; Number is that of the parameters for the bits of the compiled predictor. Exact
-  /// derivatives go with the values. At the kink of a ReLU it is the derivative from below, 0, as in nn/jacobian.hpp; of
-  /// an output on its bound 0.
+  /// y = predictor(x), both standardised; Number is that of the parameters for the bits of the compiled predictor.
+  /// Exact derivatives go with the values. At the kink of a ReLU it is the derivative from below, 0, as in
+  /// nn/jacobian.hpp; of an output on its bound 0.
   template <class Number, int Count, class Scalar>
   void forward(const Scalar* parameters, const Values<Number, Count>* x, Values<Number, Count>* y,
                Values<Number, Count>* work) const noexcept {

@@ -94,7 +94,8 @@ class RunTimeOutputs {
     visit([&](auto schema) {
       using Base = typename detail::BaseOf<decltype(schema)>::type;
       if (std::is_same_v<decltype(schema), RotorSpeedOutputs>) affine = false;
-      if (curved && detail::reads_angular_acceleration<Base>()) affine = false;
+      constexpr bool reads_acceleration = detail::reads_angular_acceleration<Base>();
+      if (curved && reads_acceleration) affine = false;
       if (curved && detail::is_among<decltype(schema), std::tuple<WrenchOutputs, AccelerationOutputs>>) affine = false;
     });
     return affine;

@@ -104,7 +104,8 @@ struct ThrustPlaces {
 };
 /// True for "s_z", "vdot_bz" and, of other taps, "s_z[-1]".
 constexpr bool is_thrust(std::string_view name) noexcept {
-  const std::string_view of_tap = name.substr(0, name.find('['));
+  const std::size_t bracket = name.find('[');
+  const std::string_view of_tap(name.data(), bracket < name.size() ? bracket : name.size());  // substr() may throw
   return of_tap == "s_z" || of_tap == "vdot_bz";
 }
 template <class Features>
