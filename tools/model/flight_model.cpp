@@ -21,7 +21,7 @@ namespace programs {
 
 namespace detail {
 
-/// What warming_up says in words.
+/// The words for warming_up.
 inline std::string warming_up(const pinnquad::RunTimeWindow& window) {
   if (window.taps == 1) return "its window is not complete";
   std::string span = in_words("%.0f ms before", -1e3 * window.earliest_s);

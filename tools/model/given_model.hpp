@@ -15,8 +15,8 @@ namespace programs {
 /// MODEL, of a command that takes one.
 void add_model(CLI::App& line, std::string& model);
 
-/// The path of the block: itself, or the one beside a header, which says the header's hash. Throws InputError, one line:
-/// no block is there, or one of another header.
+/// The path of the block: itself, or the one beside a header, which says the header's hash. Throws InputError, one
+/// line: no block is there, or one of another header.
 std::string block_path(const std::string& model);
 
 /// Throws InputError as block_path() and BlockModel.

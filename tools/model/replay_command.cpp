@@ -128,7 +128,8 @@ class FlownModels {
   std::vector<std::uint32_t> checksums_, strangers_;
 };
 
-/// The limits that the core had are those of the block. Throws std::invalid_argument where it has none, and notes others.
+/// The limits that the core had are those of the block. Throws std::invalid_argument where it has none; others are
+/// noted.
 void compare_trust(const BlockModel& model, const pinnquad::autopilot::CoreSettings& logged, Replayed& replayed) {
   if (!(logged.distance_limit > 0)) return;
   const unsigned char* trust = model.with([](const auto& own) { return own.records().trust; });

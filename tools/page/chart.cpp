@@ -346,7 +346,7 @@ std::string legend(const Chart& chart, double width, double& y) {
   return drawn;
 }
 
-/// What stands in a picture of this width, from `y` on; `y` goes to its end.
+/// The contents of a picture of this width, from `y` on; `y` goes to its end.
 std::string drawn_chart(const Chart& chart, double width, double& y) {
   std::string drawn = legend(chart, width, y);
   const std::size_t columns =

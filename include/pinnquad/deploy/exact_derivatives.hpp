@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Does a model command more torque where more angular acceleration is asked for? The derivative of the signed command
-// sum about each axis by the angular acceleration about it, exact, in double whatever the model's scalar is: above 0 for
-// any vehicle that turns the way it is told to.
+// The derivative of the signed command sum about each axis by the angular acceleration about it: above 0 for any vehicle
+// that turns the way it is told to. Exact, in double whatever the model's scalar is.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a program makes of an exception: a refusal is its user's to mend, anything else is a fault of ours.
+// A program's answer to an exception: a refusal is its user's to mend, anything else is a fault of ours.
 #include <doctest/doctest.h>
 
 #include <atomic>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flies a short flight and writes it twice: as a page to watch it, of watch.json of the working folder, and as rows of plain text for the test to compare with.
+// Flies a short flight and writes it twice: as a page to watch it, of watch.json of the working folder, and as rows of
+// plain text for the test to compare with.
 //   watch_driver page.html rows.csv [samples] [title]
 #include <cstdio>
 #include <cstdlib>
