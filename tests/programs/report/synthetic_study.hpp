@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A study that nobody ran, with planted effects: every verdict occurs, and each is known beforehand (report.sh).
+// A study that nobody ran, with planted effects: every verdict occurs, and each is known beforehand (test_report.py).
 #pragma once
 
 #include <array>
