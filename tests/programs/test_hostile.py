@@ -47,10 +47,6 @@ def given(pinnquad, flown, tmp_path_factory):
     return folder
 
 
-def copied(name):
-    return lambda run: shutil.copy(run / "../in" / name, run)
-
-
 def unchanged(name, run_name):
     def check(run):
         assert (run / run_name).read_bytes() == (run / "../in" / name).read_bytes(), f"{run_name} was lost"

@@ -251,11 +251,6 @@ def test_mappings(pinnquad, work, pattern, new, place, keyword):
     left_nothing(work)
 
 
-def in_rows(change):
-    """A change of every row but the header."""
-    return lambda line, cells: change(line, cells) if line > 1 else None
-
-
 TABLES = [
     ("table.csv:1", "header", lambda line, cells: False), ("table.csv", "64 rows", lambda line,
                                                            cells: None if line <= 50 else False),

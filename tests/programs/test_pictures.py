@@ -3,7 +3,6 @@
 out from their ground, bars that can be read. Luminance and contrast as WCAG 2.2 defines them."""
 import re
 import shutil
-from pathlib import Path
 
 import pytest
 from conftest import SOURCE, Program, needed
