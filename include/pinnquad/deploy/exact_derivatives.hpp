@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The derivative of the signed command sum about each axis by the angular acceleration about it: above 0 for any vehicle
-// that turns the way it is told to. Exact, in double whatever the model's scalar is.
+// The derivative of the signed command sum about each axis by the angular acceleration about it: above 0 for any
+// vehicle that turns the way it is told to. Exact, in double whatever the model's scalar is.
 #pragma once
 
 #include <array>
