@@ -213,8 +213,8 @@ programs::Command programs::new_command(CLI::App& program) {
   const auto options = std::make_shared<NewOptions>();
   add_path(*line, "folder", options->folder, "FOLDER", "where to write it: not there yet, or empty")->required();
   add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
-           "what flies: a file (examples/airframes), or one of: " + airframe_names() +
-               " (default: that of MODEL, or " + pinnquad::PaperQuadrotor::name + ")");
+           "what flies: a file (examples/airframes), or one of: " + airframe_names() + " (default: that of MODEL, or " +
+               pinnquad::PaperQuadrotor::name + ")");
   add_path(*line, "--model", options->model, "MODEL",
            "begin with features, network and airframe of this exported model, no structured one (default: the "
            "paper's)");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Makes a synthetic study, and writes the report of a study as pinnquad report does:
+// Makes a synthetic study, and writes the report of a study as pinnquad-study report does:
 //   report_driver make DIR SEEDS
 //   report_driver report DIR
 //   report_driver interrupt DIR       the same, and Ctrl-C comes before the first row is read
