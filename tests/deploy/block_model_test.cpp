@@ -46,7 +46,7 @@ BlockModel shipped() {
 Flight drawn_flight() {
   test::RandomStates random(3);
   Flight flight;
-  flight.add_column({"battery_voltage", "V", {}});
+  flight.add_column({{"battery_voltage", "V"}, {}});
   for (int i = 0; i < 60; ++i) {
     Sample sample;
     sample.time_s = 0.01 * i + (i < 30 ? 0 : 1);

@@ -27,8 +27,7 @@ constexpr int size = DemoQuadModel::Features::size;
 /// The demo's model with speeds of rotors as outputs: the same numbers, another schema.
 struct SpeedModel : DemoQuadModel {
   using Outputs = RotorSpeedOutputs;
-  static constexpr auto output_names = RotorSpeedOutputs::names;
-  static constexpr const char* output_unit = RotorSpeedOutputs::unit;
+  static constexpr int format_version = 1;  // its words are those of the demo's
 };
 
 /// Float rounding through eleven layers, of a column's largest entry.

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 
 #include "pinnquad/core/finite.hpp"
@@ -226,8 +225,7 @@ struct RecordReader {
     if (said.allocation == nullptr || (has_base && !said.said(BlockRecord::base))) return false;
     bool fits = said.window_taps == std::uint32_t(Window::taps) && said.causal == std::uint32_t(Window::causal);
     fits &= window_ns == 0 || same_period_ns(said.sample_period_ns, window_ns);
-    fits &=
-        said.columns.size() == columns.count && std::memcmp(said.columns.data(), &columns.text[0], columns.count) == 0;
+    fits &= said.columns == std::string_view(&columns.text[0], columns.count);
     fits &=
         !said.said(BlockRecord::base) || same_letters(&base.text[0], base.count, said.base.data(), said.base.size());
     fits &= same_allocation<Scalar>(RowMajorAllocation<Scalar>{said.allocation},
