@@ -10,7 +10,6 @@
 
 #include "airframe/choice.hpp"
 #include "airframe/names.hpp"
-#include "model/header_airframe.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/uneven_airframe.hpp"
@@ -167,34 +166,4 @@ TEST_CASE("what a file holds is shown on one line, whatever it is; broken TOML e
                 "ble 1") == "accepted");
   CHECK(said_of("mass_kg = 1.5", "mass_kg = \"\xCF\xBB\" # \xCF\xBB").find(":4:11: expected a number") == 0);
   CHECK(said_of("mass_kg = 1.5", "mass_kg = '\\' # \xCF\xBB 'a").find(":4:11: expected a number") == 0);
-}
-
-TEST_CASE("the airframe that an exported header brings with it is read back bit for bit, or refused") {
-  const pinnquad_test::TemporaryFolder folder_of_header;
-  const std::string path = folder_of_header.path("model.hpp");
-  const Airframe<double> uneven = pinnquad::test::uneven_airframe<double>();
-  std::ostringstream airframe;
-  pinnquad::write_airframe(airframe, "Own", "a \"crooked\" one", uneven);
-  const auto read = [&path](const std::string& own) {
-    std::ofstream(path) << "// Inverse-dynamics model, exported by pinnquad 9.\n\n"
-                        << own << "\nstruct Model {\n  using Scalar = float;\n  using Vehicle = Own;\n"
-                        << "  static constexpr const char* vehicle_name = \"a \\\"crooked\\\" one\";\n};\n";
-    return programs::own_airframe(programs::HeaderFile(path));
-  };
-  const auto own = read(airframe.str());
-  REQUIRE(own.has_value());
-  CHECK(own->name == "a \"crooked\" one");
-  CHECK(same_bits(own->value, uneven));
-
-  const auto changed = [&airframe](const std::string& piece, const std::string& instead) {
-    std::string text = airframe.str();
-    const std::size_t at = text.find(piece);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, piece.size(), instead);
-  };
-  CHECK_THROWS_AS(read(changed("a.mass_kg", "a.mass_g")), pinnquad::InputError);
-  CHECK_THROWS_AS(read(changed("a.mass_kg = Scalar(", "a.mass_kg = Scalar(-")), pinnquad::InputError);
-  CHECK_THROWS_AS(read(changed("a.mass_kg = Scalar(", "a.mass_kg = Scalar(x")), pinnquad::InputError);
-  CHECK_THROWS_AS(read(changed("a.drag_area_m2 = {", "a.drag_area_m2 = {Scalar(1), ")), pinnquad::InputError);
-  CHECK_THROWS_AS(read(changed("struct Own {", "struct Other {")), pinnquad::InputError);
 }
