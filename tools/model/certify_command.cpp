@@ -79,7 +79,7 @@ bool is_affine(const RunTimeNetwork& network) {
 }
 
 bool has_base(const BlockModel& model) {
-  return model.with([](const auto& own) { return !own.records().base.empty(); });
+  return model.with([](const auto& own) { return own.records().base.count != 0; });
 }
 
 /// To what moves several features at once. The body rates move a base too, which is no part of the response.

@@ -37,12 +37,26 @@ struct ModelRecords {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
+/// A text in the block. What flies asks std::string_view nothing: at -O0 its members are functions that translation units
+/// of other instruction sets would share.
+struct BlockText {
+  const unsigned char* first = nullptr;
+  std::size_t count = 0;
+
+  operator std::string_view() const noexcept {
+    return {static_cast<const char*>(static_cast<const void*>(first)), count};
+  }
+  bool is(const char* letters, std::size_t letter_count) const noexcept {
+    return same_letters(letters, letter_count, first, count);
+  }
+};
+
 /// All records of a block, in the block. A text or pointer that is null is not said.
 template <class Scalar>
 struct BlockRecords : ModelRecords<Scalar> {
   std::uint32_t window_taps = 1;
   std::uint32_t causal = 1;
-  std::string_view columns, base, answer, features, outputs, vehicle_name, provenance;
+  BlockText columns, base, answer, features, outputs, vehicle_name, provenance;
   const Scalar* allocation = nullptr;
   const unsigned char* airframe = nullptr;  ///< f64
   const Scalar* flown_airframe = nullptr;
@@ -62,7 +76,7 @@ struct BlockRecords : ModelRecords<Scalar> {
     const std::uint32_t sized = lengths.of[static_cast<unsigned>(type)];
     if (sized != 0 && length != sized) return Status::block_corrupt;
     const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes));  // at a multiple of 8
-    const std::string_view text(static_cast<const char*>(static_cast<const void*>(bytes)), length);
+    const BlockText text{bytes, length};
     bool sound = true;
     switch (type) {
       case BlockRecord::commands: {
@@ -118,7 +132,7 @@ struct BlockRecords : ModelRecords<Scalar> {
         if (length <= exact + flown) return Status::block_corrupt;
         airframe = bytes;
         flown_airframe = scalars + exact / sizeof(Scalar);
-        vehicle_name = {text.data() + exact + flown, length - exact - flown};  // substr() may throw
+        vehicle_name = {bytes + exact + flown, length - exact - flown};
         break;
       }
       case BlockRecord::contents: contents_hash = read_u64(bytes); break;
@@ -213,6 +227,13 @@ struct RecordReader {
     return sound;
   }
 
+  /// No std::memcmp: a text that is not said is null.
+  static bool same_start(const char* letters, const BlockText& text) noexcept {
+    bool same = true;
+    for (std::size_t i = 0; i < text.count; ++i) same &= letters[i] == static_cast<char>(text.first[i]);
+    return same;
+  }
+
   static bool fits(const BlockRecords<Scalar>& said) noexcept {
     constexpr bool has_base = !std::is_same_v<Base, NoBase>;
     constexpr std::uint32_t window_ns = nanoseconds(Window::period_s);
@@ -225,14 +246,13 @@ struct RecordReader {
     if (said.allocation == nullptr || (has_base && !said.said(BlockRecord::base))) return false;
     bool fits = said.window_taps == std::uint32_t(Window::taps) && said.causal == std::uint32_t(Window::causal);
     fits &= window_ns == 0 || same_period_ns(said.sample_period_ns, window_ns);
-    fits &= said.columns == std::string_view(&columns.text[0], columns.count);
-    fits &=
-        !said.said(BlockRecord::base) || same_letters(&base.text[0], base.count, said.base.data(), said.base.size());
+    fits &= said.columns.count == columns.count && same_start(&columns.text[0], said.columns);
+    fits &= !said.said(BlockRecord::base) || said.base.is(&base.text[0], base.count);
     fits &= same_allocation<Scalar>(RowMajorAllocation<Scalar>{said.allocation},
                                     RowMajorAllocation<Scalar>{first_of<Scalar>(expected)});
     if (said.said(BlockRecord::answer)) {
       constexpr auto answer = description_letters<typename Shape::Network>();
-      fits &= same_letters(&answer.text[0], answer.count, said.answer.data(), said.answer.size());
+      fits &= said.answer.is(&answer.text[0], answer.count);
     }
     return fits;
   }

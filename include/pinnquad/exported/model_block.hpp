@@ -90,7 +90,7 @@ inline constexpr std::uint16_t mandatory_record = 0x8000;
 namespace detail {
 
 /// Version 3 was of headers alone.
-constexpr bool is_block_version(std::uint32_t version) noexcept {
+PINNQUAD_ALWAYS_INLINE constexpr bool is_block_version(std::uint32_t version) noexcept {
   return version >= oldest_model_block_version && version <= model_block_version && version != 3;
 }
 

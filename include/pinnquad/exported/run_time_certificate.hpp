@@ -71,7 +71,7 @@ bool run_time_certificate(const RunTimeModel<Scalar>& model, double* work, Certi
       present += now ? 1 : 0;
     }
   }
-  const auto vehicle = model.records().base.empty()
+  const auto vehicle = model.records().base.count == 0
                            ? detail::certified_vehicle<AxisCommandOutputs>(model.flown_airframe())
                            : detail::certified_vehicle<SignedSumsOn<RigidBodyBase>>(model.flown_airframe());
   certificate = certificate_of(detail::CertifiedNumbers<Scalar>{
