@@ -8,6 +8,7 @@
 
 #include "own_outputs/setting.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
@@ -89,8 +90,10 @@ void write_structured(const Answer& answer, const Structured& context, const Row
   for (std::size_t i = 0; i < 4; ++i) {
     golden.push_back(sample_features<PhysicsFeatures, float>(flight[100 + 700 * i]));
   }
-  write_model_header(file, name, model, golden,
-                     {"simulated flight", content_hash(flight), rows.size(), 5, short_training().epochs, "structured"});
+  const Provenance provenance{"simulated flight",      content_hash(flight), rows.size(), 5,
+                              short_training().epochs, "structured"};
+  write_model_header(file + ".hpp", name, model, golden, provenance);
+  write_weight_file(file + ".block", model_block(model, golden, provenance, name));
 }
 
 /// Monotone by construction: a base in closed form and a residual, whether it helps here or not. Two of them: one that
@@ -105,9 +108,9 @@ void write_structured(const Flight& flight, const std::string& folder) {
   const auto context = make_context<Structured>(training);
   const AffineMap map = fit_monotone_base(context, training);
   const auto fit = fit_monotone<Residual>(context, training, validation, map, short_training(), engine, on);
-  write_structured(fit.predictor, context, training, flight, folder + "/structured.hpp", "StructuredModel");
+  write_structured(fit.predictor, context, training, flight, folder + "/structured", "StructuredModel");
   const auto seeing = fit_path_bounded<Seeing>(context, training, validation, map, short_training(), engine, on);
-  write_structured(seeing.predictor, context, training, flight, folder + "/path_bounded.hpp", "PathBoundedModel");
+  write_structured(seeing.predictor, context, training, flight, folder + "/path_bounded", "PathBoundedModel");
 }
 
 }  // namespace

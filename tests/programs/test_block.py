@@ -43,7 +43,7 @@ def sealed(block):
 
 @pytest.mark.parametrize("offset, value, keyword", [
     (0, b"X", "version"), (8, b"\x05", "version"), (8, b"\x02", "describes itself"), (12, b"\xff", "cut short"),
-    (16, b"\x03", "scalar"), (20, b"\x11", ""), (28, b"\x01", ""), (40, b"\x00", "hash")])
+    (16, b"\x03", "size"), (20, b"\x11", ""), (28, b"\x01", ""), (40, b"\x00", "hash")])
 def test_changed(pinnquad, offset, value, keyword):
     """With its checksum made right again."""
     block = bytearray(SHIPPED.read_bytes())

@@ -18,8 +18,7 @@ def but_the_time(text, key="seconds"):
     return [line for line in text.splitlines() if key not in line]
 
 
-@pytest.mark.parametrize("model", ["examples/models/demo_quadrotor.hpp", "examples/models/crazyflie_2_1.hpp",
-                                   "tests/models/v2/demo_quadrotor.hpp", "tests/models/v3/demo_quadrotor.hpp"])
+@pytest.mark.parametrize("model", ["examples/models/demo_quadrotor.hpp", "examples/models/crazyflie_2_1.hpp"])
 def test_counterexample(pinnquad, flags, model):
     """Two motions inside the envelope differ in one angular acceleration, and the signed sum falls from the first to
     the second: by the network of the header's text, in double."""
@@ -47,7 +46,7 @@ def test_text_and_seed(pinnquad):
     one, other = (pinnquad("certify --json --seed 7", DEMO, code=1).out for _ in range(2))
     assert but_the_time(one) == but_the_time(other)
     # no time to find anything: neither
-    pinnquad("certify --seconds 0.01", SOURCE / "tests/models/v2/crazyflie_tanh.hpp", code=(1, 3))
+    pinnquad("certify --seconds 0.01", SOURCE / "examples/models/crazyflie_2_1.hpp", code=(1, 3))
 
 
 @pytest.fixture(scope="module")

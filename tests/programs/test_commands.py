@@ -122,7 +122,7 @@ def check_refused(program, commands, words, keyword):
     line = program.refused(words, keyword=keyword).lines[0]
     if "expected a command" in line or "known" in line:  # it lists what there is
         group = Program(program, *[word for word in words.split()[:1] if word == "airframe"])
-        listed = re.search(r"(?:known|: expected a command[^:]*): (.*?)( \(|$)", line).group(1)
+        listed = re.search(r"(?:known|: expected a command[^:]*): (.*?)( \(|;|$)", line).group(1)
         assert listed.split(", ") == names_below(commands, group)
     assert not Path("o").exists()
 

@@ -175,9 +175,9 @@ def train_cases():
             assert (run / "o" / name).stat().st_size, f"{name} was lost to a picture"
         assert not (run / "o/ellipses.svg").exists(), "the pictures fit: this check needs fewer blocks"
 
-    for disk, blocks in itertools.product(DISKS, (1, 8, 60, 400)):  # the last: header and replay fit, not every picture
+    for disk, blocks in itertools.product(DISKS, (1, 8, 60, 210)):  # the last: header and replay fit, not every picture
         yield Case(f"{ONE} --out run/o", around=disk, blocks=blocks, leaves=True,
-                   after=header_but_no_picture if blocks == 400 else no_cut_pictures)
+                   after=header_but_no_picture if blocks == 210 else no_cut_pictures)
     yield refused(f"{ONE} --out run/o", around="few_files")
 
 

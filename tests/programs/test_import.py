@@ -275,8 +275,8 @@ def test_tables(pinnquad, work, at, keyword, change):
     ("ned.csv", "", "--mapping"), ("missing.csv NED", "missing.csv", "readable file"),
     ("quaternion.csv --mapping ENU", "quaternion.csv:77:*", "unit quaternion"),
     # the same flight twice, by whatever name: one would be judged on what it was trained on
-    ("ned.csv ned.csv NED", "", "are the same"), ("ned.csv ./ned.csv NED", "", "are the same"),
-    ("ned.csv copy.csv NED", "", "A1_wave_rep1 (2) are the same"), ("ned.csv NED --lag soon", "", "--lag"),
+    ("ned.csv ned.csv NED", "", "the same flight"), ("ned.csv ./ned.csv NED", "", "the same flight"),
+    ("ned.csv copy.csv NED", "", "A1_wave_rep1 (2) hold the same flight"), ("ned.csv NED --lag soon", "", "--lag"),
     ("ned.csv NED --rate 0", "", "--rate"), ("cut.ulg --mapping px4", "cut.ulg", ""),
     ("empty_folder --mapping px4", "empty_folder", "ulog2csv")])
 def test_refused(pinnquad, work, words, at, keyword):

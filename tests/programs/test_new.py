@@ -4,6 +4,8 @@ edited, built, run; what it exports is judged by the program, which has none of 
 import json
 import os
 import re
+import struct
+import zlib
 from pathlib import Path
 
 import pytest
@@ -91,16 +93,18 @@ def test_from_an_export(pinnquad):
 
 @pytest.mark.parametrize("words, at, keyword", [
     ("", "", "folder is required"), ("x/y --name 3rd", "", "--name"), ("x --airframe zeppelin", "", "'zeppelin'"),
-    ("x --airframe none.toml", "none.toml", "found none"), ("x --model flight.csv", "flight.csv", "header"),
-    ("x --model features.hpp", "features.hpp:*", "my::Features"), ("x --model airframe.hpp", "airframe.hpp:*",
-                                                                   "MyModelAirframe"),
-    (f"x --model {SOURCE}/examples/models/structured_quadrotor.hpp", "structured_quadrotor.hpp:*", "AxisAligned<"),
+    ("x --airframe none.toml", "none.toml", "found none"), ("x --model flight.csv", "flight.csv", "block"),
+    ("x --model alone.hpp", "alone.hpp", "alone.block"),
+    ("x --model own.hpp", "own.block", "of the library, found `my_own_room::MyFeatures`"),
+    (f"x --model {SOURCE}/examples/models/structured_quadrotor.hpp", "structured_quadrotor.block", "a network"),
     (PROJECT, "my_training", "not empty"), ("flight.csv/x", "flight.csv/x", "cannot write"),
     ("flight.csv", "flight.csv", "cannot write")])
 def test_refused(pinnquad, words, at, keyword):
     """One line, and no folder, no file."""
-    replaced("out.hpp", "features.hpp", ("using Features = .*", "using Features = my::Features;"))
-    replaced("out.hpp", "airframe.hpp", ("^struct MyModelAirframe {", "struct Other {"))
+    Path("alone.hpp").symlink_to("out.hpp")
+    Path("own.hpp").symlink_to("out.hpp")
+    block = Path("out.block").read_bytes().replace(b"pinnquad::PaperFeatures", b"my_own_room::MyFeatures")
+    Path("own.block").write_bytes(block[:-4] + struct.pack("<I", zlib.crc32(block[:-4])))
     pinnquad.refused(f"new {words}", at=at, keyword=keyword)
     assert not Path("x").exists()
 

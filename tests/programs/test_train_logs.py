@@ -55,8 +55,7 @@ def test_refused(pinnquad, dataset, write, logs, words, at, keyword):
 
 def test_each_flight_in_turn(pinnquad, logs, fly_export):
     """A table, a report, a header that compiles and agrees, a closed loop."""
-    said = pinnquad(f"{TRAIN} --hold-out-each flight --models constant,linear,ridge --seeds 2 --out each "
-                    "--block each/model.block").out
+    said = pinnquad(f"{TRAIN} --hold-out-each flight --models constant,linear,ridge --seeds 2 --out each").out
     assert "what the others are compared with" in said
     assert {"report.json", "report.html", "model.hpp", "model.block", "replay.txt"} <= set(listing("each"))
     assert "fits" not in listing("each"), "the fits of a whole training were left behind"

@@ -34,6 +34,7 @@ class FlightModelOf : public FlightModel {
   using View = typename Inverse::Model;
   using Scalar = typename View::Scalar;
   using Inputs = programs::FlightInputs<Scalar>;
+  using Recorded = pinnquad::detail::RunTimeFlightInputs<Scalar>;
 
  public:
   FlightModelOf(const pinnquad::RunTimeModel<Scalar>& model, const typename Inverse::Guard& guard)
@@ -41,7 +42,13 @@ class FlightModelOf : public FlightModel {
 
   void run(const pinnquad::Flight& flight, std::size_t index, std::vector<ReplayedRow>& rows,
            const std::function<void()>& on_row) const override {
-    const pinnquad::detail::RunTimeFlightInputs<Scalar> recorded(features_, {&flight, {0, flight.size()}});
+    // what is refused stays out of the windows of others, as out of a loop's InputHistory
+    const Recorded all(features_, {&flight, {0, flight.size()}});
+    const std::vector<bool> sound = sound_rows(all, flight.size());
+    pinnquad::Flight kept = flight;
+    kept.keep_rows([&sound](std::size_t row) { return sound[row]; });
+    const Recorded recorded(features_, {&kept, {0, kept.size()}});
+    std::size_t kept_row = 0;
     Inputs inputs;
     inputs.features = &features_;
     inputs.taps.resize(static_cast<std::size_t>(features_.window().taps));
@@ -51,8 +58,10 @@ class FlightModelOf : public FlightModel {
       result.row = row + 1;
       result.time_s = flight[row].time_s;
       result.logged = flight[row].commands;
-      inputs.complete = recorded.read(row, inputs.taps.data());
-      static_cast<pinnquad::MotionInputs<Scalar>&>(inputs) = inputs.taps.front();
+      inputs.complete = sound[row] && recorded.read(kept_row++, inputs.taps.data());
+      if (!sound[row]) inputs.taps.front() = all.present(row);
+      static_cast<pinnquad::MotionInputsWithAltitude<Scalar>&>(inputs) = inputs.taps.front();
+      if (!features_.asks_for_altitude()) inputs.altitude_m = Scalar(0);
       predict(inputs, result);
       const std::string columns = bad_columns(flight, row);
       if (result.cause == pinnquad::Status::not_finite && !columns.empty()) result.reason = columns;
@@ -64,6 +73,14 @@ class FlightModelOf : public FlightModel {
   }
 
  private:
+  std::vector<bool> sound_rows(const Recorded& recorded, std::size_t rows) const {
+    std::vector<bool> sound;
+    for (std::size_t row = 0; row < rows; ++row) {
+      sound.push_back(features_.check_present(recorded.present(row)) == pinnquad::Status::ok);
+    }
+    return sound;
+  }
+
   void predict(const Inputs& inputs, ReplayedRow& result) const {
     typename View::FeatureVector x{};
     View::Features::extract(inputs, x.data());

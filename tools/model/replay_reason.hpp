@@ -23,7 +23,9 @@ class ReasonOf {
   using FeatureVector = typename View::FeatureVector;
 
   /// The features must stay where they are.
-  ReasonOf(const View& view, const pinnquad::RunTimeFeatures& features) : view_(view), features_(&features) {}
+  ReasonOf(const View& view, const pinnquad::RunTimeFeatures& features) : view_(view), features_(&features) {
+    for (int i = 0; i < features.size(); ++i) feature_at_[place(i)] = i;
+  }
 
   /// Of what the network alone came to; `x`: its features. Empty where it answered.
   template <class Report>
@@ -42,26 +44,31 @@ class ReasonOf {
     }
   }
 
-  std::string name(int feature) const { return std::string((*features_)[feature].name); }
+  /// Of what stands at a place of X.
+  std::string name(int place) const { return std::string(said(place).name); }
 
   /// "wdot_x = 71.2 rad/s^2 is above 62.9, by 0.13 half-widths of its range"
-  std::string beyond(int feature, double value, double half_widths) const {
-    const auto i = static_cast<std::size_t>(feature);
-    const std::string said(features_->operator[](feature).unit), unit = said == "1" ? "" : " " + said;
-    if (!std::isfinite(value)) return name(feature) + (std::isnan(value) ? " is NaN" : " is infinite");
+  std::string beyond(int place, double value, double half_widths) const {
+    const auto i = static_cast<std::size_t>(place);
+    const std::string of(said(place).unit), unit = of == "1" ? "" : " " + of;
+    if (!std::isfinite(value)) return name(place) + (std::isnan(value) ? " is NaN" : " is infinite");
     const auto lower = static_cast<double>(view_.envelope_lower[i]),
                upper = static_cast<double>(view_.envelope_upper[i]);
     const bool below = value < lower;
-    return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(feature).c_str(), value,
+    return in_words("%s = %.4g%s is %s %.4g, by %.2g half-widths of its range", name(place).c_str(), value,
                     unit.c_str(), below ? "below" : "above", below ? lower : upper, half_widths);
   }
 
  private:
+  const pinnquad::RunTimeFeatures::Named& said(int place) const {
+    return (*features_)[feature_at_[static_cast<std::size_t>(place)]];
+  }
+  std::size_t place(int feature) const { return static_cast<std::size_t>(View::Features::place(*features_, feature)); }
+
   std::string not_finite(const FeatureVector& x) const {
     std::string names;
     for (int i = 0; i < features_->size(); ++i) {
-      if (std::isfinite(x[static_cast<std::size_t>(i)])) continue;
-      add_to_list(names, name(i));
+      if (!std::isfinite(x[place(i)])) add_to_list(names, std::string((*features_)[i].name));
     }
     return names.empty() ? "an input is NaN or infinite" : "NaN or infinite: " + names;
   }
@@ -92,6 +99,7 @@ class ReasonOf {
 
   View view_;
   const pinnquad::RunTimeFeatures* features_;
+  std::array<int, static_cast<std::size_t>(View::Features::size)> feature_at_{};  ///< by its place in X
 };
 
 }  // namespace programs

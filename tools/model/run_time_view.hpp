@@ -25,33 +25,46 @@ constexpr std::array<const char*, Size> no_names() {
   return names;
 }
 
-/// The motion of every instant that a model asks for; the base is the present one, which a fallback sees.
+/// The motion of every instant that a model asks for; the base is the present one, which a fallback sees. Its altitude
+/// is 0 for a model that asks for none.
 template <class Scalar>
-struct FlightInputs : pinnquad::MotionInputs<Scalar> {
+struct FlightInputs : pinnquad::MotionInputsWithAltitude<Scalar> {
   const pinnquad::RunTimeFeatures* features = nullptr;
   std::vector<pinnquad::RunTimeInputs<Scalar>> taps;  ///< the present first
   bool complete = false;                              ///< all of them are there
 };
 
-/// Features of a flight's rows: windows, columns, the altitude among them.
+/// Features of a flight's rows: windows, columns, the altitude among them. The angular acceleration, where a model has
+/// one, comes first: the guards that fly ask for its place.
 struct FlightFeatures {
   template <class Scalar>
   using Inputs = FlightInputs<Scalar>;
-  static constexpr int size = pinnquad::RunTimeFeatures::most_features;
-  static constexpr int angular_acceleration = -1;
+  static constexpr int size = 3 + pinnquad::RunTimeFeatures::most_features;
+  static constexpr int angular_acceleration = 0;
   static constexpr auto names = no_names<std::size_t(size)>();
   static constexpr auto units = names;
 
   template <class Scalar>
   static pinnquad::Status check(const FlightInputs<Scalar>& in) noexcept {
     if (in.complete) return in.features->check(in.taps.data());
-    const pinnquad::Status present = pinnquad::PaperFeatures::check<Scalar>(in);
+    const pinnquad::Status present = in.features->check_present(in.taps.front());
     return present == pinnquad::Status::ok ? pinnquad::Status::warming_up : present;
   }
   template <class Scalar>
   static void extract(const FlightInputs<Scalar>& in, Scalar* x) noexcept {
     for (int i = 0; i < size; ++i) x[i] = Scalar(0);
-    if (in.complete) in.features->extract(in.taps.data(), x);
+    if (!in.complete) return;
+    std::vector<pinnquad::RunTimeInputs<Scalar>> taps = in.taps;
+    static_cast<pinnquad::MotionInputsWithAltitude<Scalar>&>(taps.front()) = in;
+    Scalar own[pinnquad::RunTimeFeatures::most_features];
+    in.features->extract(taps.data(), static_cast<Scalar*>(own));
+    for (int i = 0; i < in.features->size(); ++i) x[place(*in.features, i)] = own[i];
+  }
+  /// Where a model's feature stands.
+  static int place(const pinnquad::RunTimeFeatures& features, int feature) noexcept {
+    const int first = features.angular_acceleration(0);
+    if (first < 0 || feature < first) return feature + 3;
+    return feature < first + 3 ? feature - first : feature;
   }
 };
 
@@ -80,6 +93,7 @@ struct CoreFeatures {
     if (of != nullptr) of->extract(&inputs, x);
     for (int i = 0; i < size; ++i) last<Scalar>[std::size_t(i)] = x[i];
   }
+  static int place(const pinnquad::RunTimeFeatures& /*features*/, int feature) noexcept { return feature; }
   /// True for a model that a core can fly: of the motion of the present alone.
   static bool fits(const pinnquad::BlockModel& model) {
     const pinnquad::RunTimeFeatures& features = model.features();
@@ -135,14 +149,15 @@ class RunTimeView {
     const auto size = static_cast<std::size_t>(model.features().size());
     envelope_lower = {};
     for (std::size_t i = 0; i < size; ++i) {
-      input.mean[i] = model.scales().input_mean[i];
-      input.standard_deviation[i] = model.scales().input_deviation[i];
-      envelope_lower[i] = model.scales().lower[i];
-      envelope_upper[i] = model.scales().upper[i];
+      const std::size_t at = place(i);
+      input.mean[at] = model.scales().input_mean[i];
+      input.standard_deviation[at] = model.scales().input_deviation[i];
+      envelope_lower[at] = model.scales().lower[i];
+      envelope_upper[at] = model.scales().upper[i];
     }
     for (int vector = 0; vector < model.golden_count(); ++vector) {
       FeatureVector x{};
-      std::copy_n(model.golden_features(vector), size, x.begin());
+      for (std::size_t i = 0; i < size; ++i) x[place(i)] = model.golden_features(vector)[i];
       golden_features.push_back(x);
       golden_commands.emplace_back();
       std::copy_n(model.golden_commands(vector), pinnquad::rotor_count, golden_commands.back().begin());
@@ -163,12 +178,20 @@ class RunTimeView {
       for (int i = 0; i < pinnquad::rotor_count; ++i) commands[i] = std::numeric_limits<Scalar>::quiet_NaN();
       return;
     }
-    FeatureVector x{};  // X again, to rounding: a schema may ask for it
-    input.restore(standardised, x.data());
-    model_->answer(x.data(), standardised, commands, work_.data());
+    FeatureVector restored, x, scaled;
+    input.restore(standardised, restored.data());  // X again, to rounding: a schema may ask for it
+    for (std::size_t i = 0; i < static_cast<std::size_t>(model_->features().size()); ++i) {
+      x[i] = restored[place(i)];
+      scaled[i] = standardised[place(i)];
+    }
+    model_->answer(x.data(), scaled.data(), commands, work_.data());
   }
 
  private:
+  std::size_t place(std::size_t feature) const noexcept {
+    return static_cast<std::size_t>(Features::place(model_->features(), static_cast<int>(feature)));
+  }
+
   static std::map<const void*, RunTimeView>& known() {
     static std::map<const void*, RunTimeView> all;
     return all;

@@ -38,17 +38,17 @@ class RunTimeFlightInputs {
 
   /// `taps`: as many as the window has, the present first. False where the rows do not hold them.
   bool read(std::size_t row, Inputs* taps) const {
-    taps[0] = at(row);
+    taps[0] = present(row);
     const RunTimeWindow& window = features_->window();
     const auto read_row = [this](std::size_t i, Inputs& inputs) {
-      inputs = at(i);
+      inputs = present(i);
       return true;
     };
     return window.taps == 1 || read_window<Scalar>(window, rows_, row, read_row, taps + 1);
   }
 
- private:
-  Inputs at(std::size_t row) const {
+  /// Of a row alone.
+  Inputs present(std::size_t row) const {
     Inputs inputs;
     static_cast<MotionInputsWithAltitude<Scalar>&>(inputs) =
         sample_inputs<MotionInputsWithAltitude<Scalar>>((*rows_.flight)[row]);
@@ -56,6 +56,7 @@ class RunTimeFlightInputs {
     return inputs;
   }
 
+ private:
   const RunTimeFeatures* features_;
   FlightRows rows_;
   std::vector<const std::vector<double>*> columns_;

@@ -37,8 +37,8 @@ struct ModelRecords {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// A text in the block. What flies asks std::string_view nothing: at -O0 its members are functions that translation units
-/// of other instruction sets would share.
+/// A text in the block. What flies asks std::string_view nothing: at -O0 its members are functions that translation
+/// units of other instruction sets would share.
 struct BlockText {
   const unsigned char* first = nullptr;
   std::size_t count = 0;

@@ -74,8 +74,8 @@ class RunTimeFeatures {
   };
 
   /// `texts`: name and unit of each feature, every one closed by a 0. False for texts that are no such list, a tap that
-  /// the window has not, a name of the library with another unit, a name that stands twice, and for more columns or
-  /// features than there is room for.
+  /// the window has not or that no feature is of, a name of the library with another unit, a name that stands twice,
+  /// and for more columns or features than there is room for.
   bool read(std::string_view texts, int count, const RunTimeWindow& window) noexcept {
     if (count < 1 || count > most_features || window.taps < 1 || window.taps > RunTimeWindow::most_taps) return false;
     window_ = window;
@@ -89,7 +89,7 @@ class RunTimeFeatures {
         if (features_[k].source == feature.source && features_[k].tap == feature.tap) return false;
       }
     }
-    return texts.empty();
+    return texts.empty() && uses_its_window();
   }
   /// Takes the text before the next 0. False where there is none.
   static bool take_text(std::string_view& texts, std::string_view& text) noexcept {
@@ -128,16 +128,15 @@ class RunTimeFeatures {
   template <class Scalar>
   Status check(const RunTimeInputs<Scalar>* inputs) const noexcept {
     for (int tap = 0; tap < window_.taps; ++tap) {
-      bool finite = true;
-      for (int i = 0; i < size_; ++i) {
-        if (features_[i].tap != tap || features_[i].source < altitude) continue;
-        finite &= is_finite(beside_motion(inputs[tap], features_[i].source));
-      }
-      if (!finite) return Status::not_finite;
-      const Status motion = PaperFeatures::check<Scalar>(inputs[tap]);
-      if (motion != Status::ok) return motion;
+      const Status checked = check_tap(inputs[tap], tap);
+      if (checked != Status::ok) return checked;
     }
     return Status::ok;
+  }
+  /// The same of the present instant alone, which a window may still lack.
+  template <class Scalar>
+  Status check_present(const RunTimeInputs<Scalar>& inputs) const noexcept {
+    return check_tap(inputs, 0);
   }
   /// Fills x[0..size()), physical units.
   template <class Scalar>
@@ -153,6 +152,16 @@ class RunTimeFeatures {
   }
 
  private:
+  template <class Scalar>
+  Status check_tap(const RunTimeInputs<Scalar>& inputs, int tap) const noexcept {
+    bool finite = true;
+    for (int i = 0; i < size_; ++i) {
+      if (features_[i].tap != tap || features_[i].source < altitude) continue;
+      finite &= is_finite(beside_motion(inputs, features_[i].source));
+    }
+    return finite ? PaperFeatures::check<Scalar>(inputs) : Status::not_finite;
+  }
+
   static constexpr int altitude = NamedFeatures::size;  ///< columns come behind it
 
   struct Feature {
@@ -164,6 +173,17 @@ class RunTimeFeatures {
   template <class Scalar>
   static const Scalar& beside_motion(const RunTimeInputs<Scalar>& inputs, int source) noexcept {
     return source == altitude ? inputs.altitude_m : inputs.columns[std::size_t(source - altitude - 1)];
+  }
+
+  bool uses_its_window() const noexcept {
+    bool used[RunTimeWindow::most_taps] = {};
+    int taps = 0;
+    for (int i = 0; i < size_; ++i) {
+      bool& of_tap = used[features_[i].tap];
+      taps += of_tap ? 0 : 1;
+      of_tap = true;
+    }
+    return taps == window_.taps;
   }
 
   bool find(Feature& feature) noexcept {

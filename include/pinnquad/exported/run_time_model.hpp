@@ -204,13 +204,12 @@ class RunTimeModel {
     }
     const RunTimeWindow window(static_cast<int>(records_.window_taps < 65 ? records_.window_taps : 65),
                                records_.causal != 0, records_.sample_period_ns / 1e9);
+    if (!window.causal && window.taps % 2 == 0) return corrupt("an odd centred window", "an even one");
     if (!features_.read(records_.features, int(inputs), window)) {
       return corrupt("names and units of its features", "others, or some that its window has not");
     }
     if (!asks_for_columns()) return incompatible("columns by names that are no feature's of the library", "another");
     if (window.taps > 1 && records_.sample_period_ns == 0) return corrupt("the period of its window", "none");
-    if (window.taps > 1 && !window.causal && window.taps % 2 == 0)
-      return corrupt("an odd centred window", "an even one");
     if (!take_vehicle()) return corrupt("an airframe that can fly, said twice alike", "another");
     if (!take_outputs(int(outputs))) return incompatible("an output schema that is known, or linear", "another");
     const auto own = allocation(flown_);
