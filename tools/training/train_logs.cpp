@@ -293,7 +293,6 @@ class LogTraining {
     const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
     std::printf(
         "  flown on the vehicle that the logs show, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
-        "without "
         "without feed-forward %s\n",
         flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
         centimetres("hover_trim").c_str());

@@ -204,7 +204,8 @@ class RunTimeModel {
     }
     const RunTimeWindow window(static_cast<int>(records_.window_taps < 65 ? records_.window_taps : 65),
                                records_.causal != 0, records_.sample_period_ns / 1e9);
-    if (!window.causal && window.taps % 2 == 0) return corrupt("an odd centred window", "an even one");
+    if (window.taps > 1 && !window.causal && window.taps % 2 == 0)
+      return corrupt("an odd centred window", "an even one");
     if (!features_.read(records_.features, int(inputs), window)) {
       return corrupt("names and units of its features", "others, or some that its window has not");
     }
