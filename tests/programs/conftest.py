@@ -91,7 +91,7 @@ class Program:
         assert len(done.lines) == 1, done
         name = Path(done.words[0]).name
         if name in ("pinnquad", "pinnquad-study"):
-            assert done.lines[0].split(":")[0] in (name, *done.words[1:2]), done
+            assert done.lines[0].split(":")[0] in (name, *done.words[1:]), done
         place = re.escape(at).replace(r"\*", r"\d+")
         assert re.search(rf"(^|[ /]){place}(?![\w.])" if at else "", done.lines[0]), (at, done)
         assert keyword in done.lines[0], (keyword, done)
