@@ -17,6 +17,7 @@
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "model/given_model.hpp"
+#include "pinnquad/data/csv.hpp"
 #include "training/derivatives.hpp"
 #include "training/judgement.hpp"
 #include "training/model_figures.hpp"
@@ -100,9 +101,7 @@ void print_table(const BlockModel& model, const Dataset& dataset, const Evaluate
     std::printf("            %zu more without a whole window of instants, which count for nothing\n",
                 evaluation.without_features);
   }
-  const std::vector<programs::Result> results = {{"model", 0, judged, 0, 0}};
-  programs::print_table(results, {"model"});
-  programs::print_signs(results, {"model"});
+  programs::print_figures(judged);
 }
 
 int evaluate(const EvaluateOptions& options) {

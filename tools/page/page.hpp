@@ -9,12 +9,12 @@
 namespace programs {
 
 // Files of this repository, compiled in (page/CMakeLists.txt).
-extern const char* const page_template;         ///< page/page.html, in the language of mustache
-extern const char* const page_palette;          ///< page/palette.css
-extern const char* const text_style;            ///< page/text.css: a page of text, tables and charts
-extern const char* const report_template;       ///< report/report.html
-extern const char* const log_page_template;     ///< training/log_page.html
-extern const char* const beyond_page_template;  ///< study/beyond_page.html
+extern const char* const page_template;           ///< page/page.html, in the language of mustache
+extern const char* const page_palette;            ///< page/palette.css
+extern const char* const text_style;              ///< page/text.css: a page of text, tables and charts
+extern const char* const report_template;         ///< report/report.html
+extern const char* const training_page_template;  ///< training/training_page.html
+extern const char* const beyond_page_template;    ///< study/beyond_page.html
 
 /// A page of its title as text, and its style and body as they are.
 std::string whole_page(const std::string& title, const std::string& style, const std::string& body);

@@ -3,6 +3,7 @@
 #include "study/beyond_models.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -11,52 +12,16 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "study/mirrored_rows.hpp"
+#include "training/model_predictions.hpp"
 #include "training/recipe.hpp"
 
 namespace study {
 
 namespace {
 
-/// A model that a recipe of `train` makes.
-class JudgedNetwork : public JudgedModel {
- public:
-  explicit JudgedNetwork(std::shared_ptr<const programs::TrainedNetwork> network) : network_(std::move(network)) {}
-  programs::Predictions predictions(const pinnquad::RowSet& rows) const override { return network_->predictions(rows); }
-  programs::Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
-    return network_->guarded_predictions(rows);
-  }
-  programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
-    return network_->derivatives(rows);
-  }
-  std::optional<pinnquad::Certificate> certificate() const override { return network_->certificate(); }
-
- private:
-  std::shared_ptr<const programs::TrainedNetwork> network_;
-};
-
-/// Nothing that is trained: `predict(sample)` gives the commands, with the airframe as it is told.
-template <class Predict>
-class JudgedFormula : public JudgedModel {
- public:
-  JudgedFormula(pinnquad::GivenAirframe airframe, Predict predict)
-      : airframe_(std::move(airframe)), predict_(std::move(predict)) {}
-  programs::Predictions predictions(const pinnquad::RowSet& rows) const override {
-    programs::Predictions result;
-    for (std::size_t row = 0; row < rows.size(); ++row) result.push_back(predict_(rows[row]));
-    return result;
-  }
-  programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
-    return programs::derivative_figures(rows, programs::FormulaDerivatives(airframe_, predict_));
-  }
-
- private:
-  pinnquad::GivenAirframe airframe_;
-  Predict predict_;
-};
-
 template <class Predict>
 BeyondTraining evaluated(const BeyondTask& task, Predict predict) {
-  return {std::make_shared<JudgedFormula<Predict>>(task.airframe, std::move(predict)), false, false};
+  return {programs::formula_model(task.airframe, std::move(predict)), false, false};
 }
 
 using Sample = pinnquad::Sample;
@@ -108,18 +73,15 @@ bool has_residual(const std::optional<pinnquad::Certificate>& certificate) {
 
 using Train = std::function<BeyondTraining(const BeyondTask&)>;
 
-Train by_recipe(programs::Recipe (*recipe)(), const programs::LossName& loss,
-                programs::AltitudeRule altitude = programs::AltitudeRule::by_validation, bool pinned_slopes = false) {
-  return [recipe, loss, altitude, pinned_slopes](const BeyondTask& task) {
-    programs::TrainingPlan plan{task.airframe, false, task.split, {loss}, task.epochs, task.seed};
-    plan.silent = true;
-    plan.altitude = altitude;
-    plan.pinned_slopes = pinned_slopes;
+Train by_recipe(programs::Recipe (*recipe)(), const char* kind, const programs::FitSettings& settings = {}) {
+  return [recipe, kind, settings](const BeyondTask& task) {
+    const programs::NamedAirframe airframe{task.airframe.airframe_name(), task.airframe.airframe<double>()};
+    const std::vector<std::string> absent;
+    programs::FitTask fit{airframe, task.split.train, task.split.validation, absent,
+                          0,        task.seed,        task.epochs,           settings};
     BeyondTraining result;
-    for (const programs::Training& training : recipe().train(plan)) {
-      result.model = std::make_shared<JudgedNetwork>(training.network);
-      result.best_weights = result.residual_kept = has_residual(training.network->certificate());
-    }
+    result.model = recipe().kind(kind).fit(fit);
+    result.best_weights = result.residual_kept = has_residual(result.model->certificate());
     return result;
   };
 }
@@ -142,12 +104,12 @@ Train on_rigid_body(Slopes slopes) {
 }  // namespace
 
 std::vector<BeyondModel> beyond_models() {
-  using programs::AltitudeRule, programs::best_recipe, programs::structured_recipe;
-  const Train vanilla = by_recipe(best_recipe, programs::vanilla);
-  const auto structured = [](AltitudeRule altitude, bool pinned_slopes = false) {
-    return by_recipe(structured_recipe, programs::structured, altitude, pinned_slopes);
+  using programs::best_recipe, programs::structured_recipe;
+  const Train vanilla = by_recipe(best_recipe, "vanilla");
+  const auto structured = [](std::optional<bool> altitude, bool pinned_slopes = false) {
+    return by_recipe(structured_recipe, "structured", {false, altitude, pinned_slopes});
   };
-  const Train shipped = structured(AltitudeRule::by_validation);
+  const Train shipped = structured({});
   constexpr Symmetries mirrored{true, false}, turned{true, true};
   return {
       {"none", "commands of the hover, whatever is asked", true, false, evaluate_none},
@@ -156,9 +118,9 @@ std::vector<BeyondModel> beyond_models() {
        evaluate_inverse},
       {"vanilla", "10 x 25 ReLU on the paper's features, MSE", false, true, vanilla},
       {yardstick, "the same, physics-informed: the paper's network", false, true,
-       by_recipe(best_recipe, programs::physics_informed)},
+       by_recipe(best_recipe, "physics_informed")},
       {"paper_own_optimiser", "the same, trained as the paper trains: Adam at a constant rate", false, true,
-       by_recipe(programs::paper_recipe, programs::physics_informed)},
+       by_recipe(programs::paper_recipe, "physics_informed")},
       {"paper_altitude", "the paper's network, shown the altitude", false, true, train_paper_with_altitude},
       {"match", "the paper's network with the loss that asks for equal steps", false, true, train_match},
       {"vanilla_mirrored", "vanilla on rows and their mirror images", false, true, on_images(vanilla, mirrored)},
@@ -168,10 +130,9 @@ std::vector<BeyondModel> beyond_models() {
       {"ridge", "affine ridge on the structured model's features, no network", false, false, train_ridge},
       {"structured", "what `train` exports: ridge, slopes above 0, 2 x 32 ReLU without angular acceleration", true,
        true, shipped},
-      {"structured_no_altitude", "the same, never shown the altitude", true, true, structured(AltitudeRule::no)},
-      {"structured_altitude", "the same, always shown the altitude", true, true, structured(AltitudeRule::yes)},
-      {"structured_pinned", "structured, slopes the airframe's", true, true,
-       structured(AltitudeRule::by_validation, true)},
+      {"structured_no_altitude", "the same, never shown the altitude", true, true, structured(false)},
+      {"structured_altitude", "the same, always shown the altitude", true, true, structured(true)},
+      {"structured_pinned", "structured, slopes the airframe's", true, true, structured({}, true)},
       {"structured_mirrored", "structured on rows and their mirror images", true, true, on_images(shipped, mirrored)},
       {"structured_physics", "structured with all three parts of the specific force, no altitude", true, true,
        train_structured_on_physics},

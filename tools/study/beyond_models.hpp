@@ -12,46 +12,9 @@
 
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/loss/context.hpp"
-#include "training/derivatives.hpp"
-#include "training/judgement.hpp"
-#include "training/model_predictions.hpp"
 #include "training/trained_network.hpp"
 
 namespace study {
-
-/// A trained model: what judging asks of it.
-class JudgedModel {
- public:
-  virtual ~JudgedModel() = default;
-  virtual programs::Predictions predictions(const pinnquad::RowSet& rows) const = 0;
-  /// The same, NaN where the guard of its export declines.
-  virtual programs::Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
-  virtual programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
-  /// None of a model without structure.
-  virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
-};
-
-/// Of a pinnquad::TrainedModel: the numbers that its header would hold.
-template <class Model>
-class JudgedModelOf : public JudgedModel {
- public:
-  explicit JudgedModelOf(const Model& model) : model_(model) {}
-  programs::Predictions predictions(const pinnquad::RowSet& rows) const override {
-    return pinnquad::predicted_commands(model_, rows);
-  }
-  programs::Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
-    return pinnquad::predicted_commands(model_, rows, true);
-  }
-  programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
-    return programs::derivative_figures_of(model_, rows);
-  }
-  std::optional<pinnquad::Certificate> certificate() const override {
-    return programs::certificate_of_structure(model_);
-  }
-
- private:
-  Model model_;
-};
 
 /// The training to do: models and data.
 struct BeyondTask {
@@ -64,8 +27,8 @@ struct BeyondTask {
 
 /// Its results.
 struct BeyondTraining {
-  std::shared_ptr<const JudgedModel> model;  ///< none: it was stopped
-  bool best_weights = false;                 ///< the validation rows chose the epoch
+  std::shared_ptr<const programs::TrainedNetwork> model;  ///< none: it was stopped
+  bool best_weights = false;                              ///< the validation rows chose the epoch
   bool residual_kept = false;
 };
 

@@ -4,7 +4,8 @@
 #pragma once
 
 #include "training/best_recipe.hpp"
-#include "training/campaign.hpp"
+#include "training/network_kinds.hpp"
+#include "training/recipe.hpp"
 
 namespace programs::best {
 
@@ -26,7 +27,7 @@ inline nlohmann::json settings(const char* network) {
           {"optimizer", optimizer_name},
           {"learning_rate", learning_rate},
           {"learning_rate_schedule", learning_rate_schedule_name},
-          {"weight_decay", {{vanilla.key, vanilla_decay}, {physics_informed.key, informed_decay}}},
+          {"weight_decay", {{"vanilla", vanilla_decay}, {"physics_informed", informed_decay}}},
           {"lambda_max", lambda_max},
           {"cycles", annealing_cycles},
           {"hold", annealing_hold},

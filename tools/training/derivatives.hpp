@@ -4,9 +4,9 @@
 // is told to.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,30 +20,32 @@ namespace programs {
 
 using pinnquad::AxisDerivatives;
 
-/// Counts rows in which the derivative is negative, and keeps the least, per axis.
+/// Derivatives of all rows, per axis.
 class DerivativeSigns {
  public:
   void add(const AxisDerivatives& derivatives) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double derivative = derivatives[axis];
-      if (!std::isfinite(derivative)) wrong_[axis] = least_[axis] = pinnquad::not_a_number;
-      wrong_[axis] += derivative < 0 ? 1 : 0;
-      if (derivative < least_[axis]) least_[axis] = derivative;
-    }
-    ++rows_;
+    for (std::size_t axis = 0; axis < 3; ++axis) all_[axis].push_back(derivatives[axis]);
   }
-  /// NaN where the derivative is not finite in a row, or there are no rows.
+  /// NaN where a derivative is not finite in a row, or there are no rows.
   DerivativeFigures figures() const {
-    if (rows_ == 0) return {};
-    DerivativeFigures result{wrong_, least_};
-    for (double& share : result.wrong_share) share /= static_cast<double>(rows_);
+    DerivativeFigures result;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::vector<double> values = all_[axis];
+      if (values.empty() || !std::all_of(values.begin(), values.end(), [](double d) { return std::isfinite(d); })) {
+        continue;
+      }
+      std::sort(values.begin(), values.end());
+      const auto wrong = std::lower_bound(values.begin(), values.end(), 0.0) - values.begin();
+      result.wrong_share[axis] = static_cast<double>(wrong) / static_cast<double>(values.size());
+      result.least[axis] = values.front();
+      result.median[axis] = values[values.size() / 2];
+      if (values.front() < 0 || values.back() > 0) result.sees_acceleration = true;
+    }
     return result;
   }
 
  private:
-  static constexpr double above_all = std::numeric_limits<double>::infinity();
-  AxisDerivatives wrong_{}, least_ = {above_all, above_all, above_all};
-  std::size_t rows_ = 0;
+  std::array<std::vector<double>, 3> all_;
 };
 
 /// Over rows. `derivatives_of(sample)` gives a row's AxisDerivatives.

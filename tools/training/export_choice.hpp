@@ -1,52 +1,126 @@
 // SPDX-License-Identifier: MIT
-// Chooses the trained model to export; says in words why, or why none is.
+// Chooses the judged model to export, and says where it comes from.
 #pragma once
 
-#include <cstdio>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "pinnquad/evaluation/errors.hpp"
-#include "training/judgement.hpp"
-#include "training/losses.hpp"
+#include "command_line/listed.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/evaluation/judgement.hpp"
+#include "training/kind_figures.hpp"
+#include "training/kind_verdict.hpp"
 
 namespace programs {
 
-inline std::string four_digits(double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4f", value);
-  return text;
-}
+/// Values of `--export` besides a model's key.
+inline constexpr const char* export_causal = "causal";
+inline constexpr const char* export_centred = "centred";
 
-/// The model chosen for the export, a result of the kind `loss`.
-struct Chosen {
-  LossName loss;
-  std::optional<std::size_t> best;  ///< of the results; none: nothing is there to be exported
-  pinnquad::Verdict verdict{};      ///< where there is one
+namespace detail {
 
-  /// "best structured model".
-  std::string name() const { return "best " + with_kind(loss); }
-  /// Why it is no better than none.
-  std::string poor() const {
-    return "on the test rows the " + name() + " is worse than the mean of the commands (R^2 " +
-           four_digits(verdict.test_r_squared) + ", worst motor " + four_digits(verdict.worst_motor_r_squared) + ")";
+/// Over the fits that were not fitted to the validation rows.
+inline double mean_validation_mae(const JudgedKind& kind) {
+  std::vector<double> errors;
+  for (const JudgedFit& fit : kind.fits) {
+    if (std::isfinite(fit.validation_mae)) errors.push_back(fit.validation_mae);
   }
-};
-
-/// Why nothing of a kind is there to be exported.
-inline std::string reason_of_none(const LossName& loss, const std::vector<Result>& results) {
-  const bool none = over_seeds(results, loss.title, figures().front()).empty();
-  return "no " + with_kind(loss) + (none ? " was finished" : " predicts finite commands on the validation rows");
+  return pinnquad::summarize(errors).mean;
 }
 
-/// The best model, by the validation rows, of the kind that is exported. `regression_r_squared`: see Verdict.
-inline Chosen chosen_export(const std::vector<LossName>& losses, const std::vector<Result>& results,
-                            double regression_r_squared) {
-  const LossName kind = exported_kind(losses);
-  Chosen chosen{kind, best_of(results, kind.title)};
-  if (chosen.best) chosen.verdict = pinnquad::verdict_on(results[*chosen.best].test.errors, regression_r_squared);
-  return chosen;
+}  // namespace detail
+
+/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. After a
+/// rotation by their held-out error: every flight was held out once, and the export is fitted anew. Else by their error
+/// on the validation rows: the rows held out have no say.
+/// Throws std::invalid_argument for the key of a kind that was not judged.
+inline std::vector<std::size_t> kinds_to_export(const JudgedKinds& judged, const std::string& choice, bool rotated) {
+  for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
+    if (choice != judged.kinds[k].kind.key) continue;
+    if (judged.kinds[k].applicable()) return {k};  // what was asked for by name
+    throw std::invalid_argument("--export " + choice + ": not applicable: " + judged.kinds[k].not_applicable);
+  }
+  std::vector<std::size_t> order = ranking(judged, choice == export_centred);
+  order.erase(
+      std::remove_if(order.begin(), order.end(), [&judged](std::size_t k) { return !judged.kinds[k].kind.exportable; }),
+      order.end());
+  if (rotated) return order;
+  const auto error_of = [&judged](std::size_t k) { return detail::mean_validation_mae(judged.kinds[k]); };
+  order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t k) { return !std::isfinite(error_of(k)); }),
+              order.end());
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return error_of(a) < error_of(b); });
+  return order;
+}
+
+/// Of the fits of a kind the one with the least error on the validation rows, of one that was fitted to them the
+/// first; none if no such error is finite.
+inline const FinishedFit* best_fit(const std::vector<FinishedFit>& fits, std::size_t kind, bool takes_validation) {
+  const FinishedFit* best = nullptr;
+  for (const FinishedFit& fit : fits) {
+    if (fit.kind != kind) continue;
+    if (takes_validation) return &fit;
+    if (!std::isfinite(fit.validation_mae)) continue;
+    if (best == nullptr || fit.validation_mae < best->validation_mae) best = &fit;
+  }
+  return best;
+}
+
+/// How the exported model did on the rows held out: by the fit of `seed`, or as mean over partings and seeds where the
+/// export is fitted anew.
+inline pinnquad::Verdict exported_verdict(const FitPlan& plan, const JudgedKinds& judged, std::size_t k,
+                                          std::optional<std::uint64_t> seed) {
+  const JudgedKind& kind = judged.kinds[k];
+  MotorFigures r2{};
+  for (const JudgedFit& fit : kind.fits) {
+    if (seed && fit.seed != *seed) continue;
+    const double share = 1.0 / static_cast<double>(seed ? kind.folds() : kind.fits.size());
+    for (std::size_t motor = 0; motor < r2.size(); ++motor) r2[motor] += share * fit.errors.r2[motor];
+  }
+  const JudgedKind* linear = judged.find("linear");
+  double by_regression = pinnquad::not_a_number;
+  if (linear != nullptr && linear->applicable()) {
+    by_regression = detail::r2_of(*linear);
+  } else if (std::find(plan.absent.begin(), plan.absent.end(), "velocity") == plan.absent.end()) {
+    by_regression = 0;
+    for (const Fold& fold : plan.folds) {
+      by_regression += pinnquad::linear_regression_errors<pinnquad::PaperFeatures>(fold.split.train, fold.split.test)
+                           .mean.r_squared /
+                       static_cast<double>(plan.folds.size());
+    }
+  }
+  double worst = r2[0];
+  for (const double of_motor : r2) {
+    if (!(worst <= of_motor)) worst = of_motor;
+  }
+  return {mean_over_motors(r2), by_regression, worst};
+}
+
+/// The header's provenance; a model that the validation rows do not stop was fitted to them too.
+inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Dataset& dataset, double lag_removed_s,
+                                          const ModelKind& kind, std::uint64_t seed, int epochs,
+                                          const pinnquad::Verdict& verdict) {
+  std::string flights;
+  const auto add = [&flights](const std::vector<std::string>& names) {
+    for (const std::string& name : names) add_to_list(flights, name);
+  };
+  add(fold.train);
+  std::size_t rows = fold.split.train.size();
+  if (kind.takes_validation) {
+    if (!fold.part_validates) add(fold.validation);
+    rows += fold.split.validation.size();
+  }
+  const char* words = kind.words != nullptr ? kind.words : kind.title;
+  pinnquad::Provenance from{flights, pinnquad::content_hash(dataset), rows, seed, epochs, words, verdict};
+  from.sample_period_s = pinnquad::sample_period_s(fold.split.train);
+  from.lag_removed_s = lag_removed_s;
+  return from;
 }
 
 }  // namespace programs

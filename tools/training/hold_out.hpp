@@ -34,6 +34,7 @@ struct Fold {
   std::vector<std::string> train, validation, held_out;
   /// No flight was left to validate: the last fifth of the training flights does.
   bool part_validates = false;
+  bool by_time = false;  ///< one flight, in contiguous blocks: its end is held out, what is before that validates
   pinnquad::RowSplit split;
 };
 
@@ -200,6 +201,25 @@ inline std::vector<Fold> folds_of(const pinnquad::Dataset& dataset, const HoldOu
   return folds;
 }
 std::vector<Fold> folds_of(const pinnquad::Dataset&&, const HoldOutChoice&) = delete;  // its rows would be gone
+
+/// The parting of flights of which none is named to be held out, in their order: of one its last part, of three or more
+/// the last. Throws what split_for_training() throws.
+inline Fold fold_in_order(const pinnquad::Dataset& dataset) {
+  Fold fold;
+  fold.split = pinnquad::split_for_training(dataset);
+  fold.by_time = dataset.size() == 1;
+  const auto names = [](const pinnquad::RowSet& rows) {
+    std::vector<std::string> of;
+    for (const pinnquad::FlightRows& piece : rows.pieces()) of.push_back(piece.flight->name);
+    return of;
+  };
+  fold.train = names(fold.split.train);
+  fold.validation = names(fold.split.validation);
+  fold.held_out = names(fold.split.test);
+  fold.name = listed(fold.held_out);
+  return fold;
+}
+Fold fold_in_order(const pinnquad::Dataset&&) = delete;  // its rows would be gone
 
 /// Rows of the model exported after a rotation: all flights, the group closest to a fifth validates.
 inline Fold fold_of_all(const pinnquad::Dataset& dataset) {

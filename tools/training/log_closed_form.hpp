@@ -18,7 +18,7 @@ template <class Features, class Outputs = pinnquad::CommandOutputs>
 using LogContext = pinnquad::Context<Features, pinnquad::GivenAirframe, Outputs>;
 
 /// Training and validation.
-inline pinnquad::RowSet rows_not_held_out(const LogFit& fit) {
+inline pinnquad::RowSet rows_not_held_out(const FitTask& fit) {
   pinnquad::RowSet rows = fit.training;
   for (const pinnquad::FlightRows& piece : fit.validation.pieces()) rows.add(*piece.flight, piece.rows);
   return rows;
@@ -26,13 +26,12 @@ inline pinnquad::RowSet rows_not_held_out(const LogFit& fit) {
 
 /// Throws std::invalid_argument where no row has all features.
 template <class Context>
-Context log_context(const LogFit& fit, const pinnquad::RowSet& rows) {
+Context log_context(const FitTask& fit, const pinnquad::RowSet& rows) {
   bool any = false;
   pinnquad::each_features<typename Context::Features, double>(
       rows, [&any](const pinnquad::Flight&, std::size_t, const auto&) { any = true; });
   if (!any) throw std::invalid_argument("no row has all features that are asked for");
-  const pinnquad::GivenAirframe airframe(fit.airframe.name, fit.airframe.value);
-  return pinnquad::make_context<Context>(rows, airframe);
+  return pinnquad::make_context<Context>(rows, fit.given_airframe());
 }
 
 template <class Answer, class Context>
@@ -45,7 +44,7 @@ std::shared_ptr<const TrainedNetwork> log_model_of(const Answer& answer, const C
 
 /// `solve(context, rows)` gives the map of standardised features to standardised outputs.
 template <class Features, class Solve>
-std::shared_ptr<const TrainedNetwork> fit_affine(const LogFit& fit, const Solve& solve) {
+std::shared_ptr<const TrainedNetwork> fit_affine(const FitTask& fit, const Solve& solve) {
   using Context = LogContext<Features>;
   const pinnquad::RowSet rows = rows_not_held_out(fit);
   const Context context = log_context<Context>(fit, rows);
@@ -59,7 +58,7 @@ std::vector<pinnquad::RegressionSums> log_sums(const Context& context, const pin
 }
 
 template <TimeReach Reach>
-std::shared_ptr<const TrainedNetwork> fit_log_ridge(const LogFit& fit) {
+std::shared_ptr<const TrainedNetwork> fit_log_ridge(const FitTask& fit) {
   return with_physics_features<Reach>(fit, [&](auto tag) {
     return fit_affine<typename decltype(tag)::type>(
         fit, [](const auto& context, const pinnquad::RowSet& rows) { return solved_ridge(log_sums(context, rows)); });

@@ -2,12 +2,11 @@
 // Feature sets of models of logged flights, by what the logs have measured and by how far a model looks.
 #pragma once
 
-#include <algorithm>
 #include <string>
 
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/features/windowed.hpp"
-#include "training/log_model.hpp"
+#include "training/model_kind.hpp"
 
 namespace programs {
 
@@ -30,12 +29,8 @@ struct FeaturesTag {
   using type = Features;
 };
 
-inline bool has_velocity(const LogFit& fit) {
-  return std::find(fit.absent.begin(), fit.absent.end(), "velocity") == fit.absent.end();
-}
-
 /// In all flights, in volts.
-inline bool has_battery(const LogFit& fit) {
+inline bool has_battery(const FitTask& fit) {
   for (const pinnquad::RowSet* rows : {&fit.training, &fit.validation}) {
     for (const pinnquad::FlightRows& piece : rows->pieces()) {
       const pinnquad::ExtraColumn* column = piece.flight->column(pinnquad::BatteryVoltage::name);
@@ -47,10 +42,10 @@ inline bool has_battery(const LogFit& fit) {
 
 /// Calls `use(FeaturesTag)` with what physics asks for, as far as the logs have it.
 template <TimeReach Reach, class Use>
-auto with_physics_features(const LogFit& fit, const Use& use) {
+auto with_physics_features(const FitTask& fit, const Use& use) {
   using namespace pinnquad;
   using Without = PhysicsFeaturesWithoutVelocity;
-  if (has_velocity(fit)) {
+  if (!fit.lacks("velocity")) {
     return has_battery(fit) ? use(FeaturesTag<LogFeatures<Reach, WithColumns<PhysicsFeatures, BatteryVoltage>>>{})
                             : use(FeaturesTag<LogFeatures<Reach, PhysicsFeatures>>{});
   }
@@ -60,20 +55,14 @@ auto with_physics_features(const LogFit& fit, const Use& use) {
 
 /// The same with the paper's features, which the logs have to have but for the battery.
 template <class Use>
-auto with_paper_features(const LogFit& fit, const Use& use) {
+auto with_paper_features(const FitTask& fit, const Use& use) {
   using namespace pinnquad;
   return has_battery(fit) ? use(FeaturesTag<WithColumns<PaperFeatures, BatteryVoltage>>{})
                           : use(FeaturesTag<PaperFeatures>{});
 }
 
-inline std::string always_applicable(const LogFit&) { return ""; }
-
-inline std::string needs_velocity(const LogFit& fit) {
-  return has_velocity(fit) ? "" : "needs velocity, which the logs lack";
-}
-
 /// A window is interpolated between rows, but not over gaps.
-inline std::string needs_window(const LogFit& fit) {
+inline std::string needs_window(const FitTask& fit) {
   using Window = LogCausalWindow<pinnquad::PhysicsFeatures>::Window;
   if (fit.sample_period_s <= Window::largest_gap_s) return "";
   const auto milliseconds = [](double seconds) { return std::to_string(static_cast<int>(seconds * 1e3 + 0.5)); };

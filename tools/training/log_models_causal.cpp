@@ -5,7 +5,7 @@
 
 namespace programs {
 
-LogModelKind log_ridge_causal() {
+ModelKind log_ridge_causal() {
   return {"ridge_causal",
           "ridge, the last 160 ms",
           TimeReach::causal,

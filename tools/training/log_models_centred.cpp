@@ -5,7 +5,7 @@
 
 namespace programs {
 
-LogModelKind log_ridge_centred() {
+ModelKind log_ridge_centred() {
   return {"ridge_centred",
           "ridge, 80 ms to both sides",
           TimeReach::centred,

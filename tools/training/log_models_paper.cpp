@@ -9,7 +9,7 @@ namespace programs {
 
 namespace {
 
-std::shared_ptr<const TrainedNetwork> fit_linear(const LogFit& fit) {
+std::shared_ptr<const TrainedNetwork> fit_linear(const FitTask& fit) {
   return with_paper_features(fit, [&](auto tag) {
     return fit_affine<typename decltype(tag)::type>(fit, [](const auto& context, const pinnquad::RowSet& rows) {
       return solved_least_squares(log_sums(context, rows));
@@ -18,7 +18,7 @@ std::shared_ptr<const TrainedNetwork> fit_linear(const LogFit& fit) {
 }
 
 /// A residual of 0 on Eq. (3) inverted.
-std::shared_ptr<const TrainedNetwork> fit_linearized(const LogFit& fit) {
+std::shared_ptr<const TrainedNetwork> fit_linearized(const FitTask& fit) {
   using Context = LogContext<pinnquad::PaperFeatures, pinnquad::ResidualOutputs<pinnquad::LinearizedBase>>;
   const pinnquad::RowSet rows = rows_not_held_out(fit);
   Context context = log_context<Context>(fit, rows);
@@ -30,10 +30,10 @@ std::shared_ptr<const TrainedNetwork> fit_linearized(const LogFit& fit) {
 
 }  // namespace
 
-LogModelKind log_linear() {
+ModelKind log_linear() {
   return {"linear", "linear on the paper's features", TimeReach::present, false, needs_velocity, fit_linear, true};
 }
-LogModelKind log_linearized() {
+ModelKind log_linearized() {
   return {"linearized", "linearized model of the airframe", TimeReach::present, false, needs_velocity, fit_linearized,
           true};
 }

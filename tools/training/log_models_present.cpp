@@ -9,7 +9,7 @@ namespace programs {
 namespace {
 
 /// Of features that every log has.
-std::shared_ptr<const TrainedNetwork> fit_constant(const LogFit& fit) {
+std::shared_ptr<const TrainedNetwork> fit_constant(const FitTask& fit) {
   return fit_affine<pinnquad::PhysicsFeaturesWithoutVelocity>(fit, [](const auto& context, const pinnquad::RowSet&) {
     pinnquad::AffineMap map;  // standardised outputs have the mean 0
     map.inputs = std::decay_t<decltype(context)>::Features::size;
@@ -20,7 +20,7 @@ std::shared_ptr<const TrainedNetwork> fit_constant(const LogFit& fit) {
   });
 }
 
-std::shared_ptr<const TrainedNetwork> fit_physics(const LogFit& fit) {
+std::shared_ptr<const TrainedNetwork> fit_physics(const FitTask& fit) {
   return with_physics_features<TimeReach::present>(fit, [&](auto tag) {
     using Features = typename decltype(tag)::type;
     return fit_affine<Features>(fit, [](const auto& context, const pinnquad::RowSet& rows) {
@@ -37,13 +37,13 @@ std::shared_ptr<const TrainedNetwork> fit_physics(const LogFit& fit) {
 
 }  // namespace
 
-LogModelKind log_constant() {
+ModelKind log_constant() {
   return {"constant", "mean of the commands", TimeReach::present, false, always_applicable, fit_constant, true};
 }
-LogModelKind log_physics() {
+ModelKind log_physics() {
   return {"physics", "physics, parameters fitted", TimeReach::present, false, always_applicable, fit_physics, true};
 }
-LogModelKind log_ridge() {
+ModelKind log_ridge() {
   return {"ridge", "ridge on physics features", TimeReach::present,
           false,   always_applicable,           fit_log_ridge<TimeReach::present>,
           true};

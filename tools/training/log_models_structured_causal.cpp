@@ -4,7 +4,7 @@
 
 namespace programs {
 
-LogModelKind log_structured_causal() {
+ModelKind log_structured_causal() {
   return {"structured_causal",
           "structured: monotone ridge + residual network, the last 160 ms",
           TimeReach::causal,

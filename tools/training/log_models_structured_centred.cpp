@@ -4,7 +4,7 @@
 
 namespace programs {
 
-LogModelKind log_structured_centred() {
+ModelKind log_structured_centred() {
   return {"structured_centred",
           "structured: monotone ridge + residual network, 80 ms to both sides",
           TimeReach::centred,

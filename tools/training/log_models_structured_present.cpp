@@ -4,7 +4,7 @@
 
 namespace programs {
 
-LogModelKind log_structured() {
+ModelKind log_structured() {
   return {"structured",
           "structured: monotone ridge + residual network",
           TimeReach::present,

@@ -44,7 +44,7 @@ class LogStructured {
   using Answer = pinnquad::MonotonePredictor<FeatureSet, Network>;
 
  public:
-  explicit LogStructured(const LogFit& fit)
+  explicit LogStructured(const FitTask& fit)
       : fit_(fit),
         rows_(rows_not_held_out(fit)),
         context_(log_context<Context>(fit, rows_)),
@@ -196,14 +196,14 @@ class LogStructured {
     });
   }
 
-  const LogFit& fit_;
+  const FitTask& fit_;
   pinnquad::RowSet rows_;
   Context context_;
   int epochs_;
 };
 
 template <TimeReach Reach>
-std::shared_ptr<const TrainedNetwork> fit_log_structured(const LogFit& fit) {
+std::shared_ptr<const TrainedNetwork> fit_log_structured(const FitTask& fit) {
   return with_physics_features<Reach>(
       fit, [&](auto tag) { return LogStructured<typename decltype(tag)::type>(fit).model(); });
 }

@@ -22,11 +22,11 @@ struct ModelFigure {
   const char* name;
   bool has_axes;
   double (*of)(const Judgement&, std::size_t axis);  ///< axis: 0 where it has none
-  const char* title = nullptr;                       ///< in print_signs(); null: it stands in print_table()
+  const char* title = nullptr;                       ///< in print_figures(); null: it is one of figures()
   double shown_times = 1;
 };
 
-inline constexpr std::array<ModelFigure, 10> model_figures = {
+inline constexpr std::array<ModelFigure, 11> model_figures = {
     {{"mean_absolute_error", false, [](const Judgement& j, std::size_t) { return j.errors.mean.mean_absolute; }},
      {"rmse", false, [](const Judgement& j, std::size_t) { return j.errors.mean.root_mean_square; }},
      {"r2", false, [](const Judgement& j, std::size_t) { return j.errors.mean.r_squared; }},
@@ -42,61 +42,43 @@ inline constexpr std::array<ModelFigure, 10> model_figures = {
       "wrong derivatives, % of rows", 100},
      {"least_derivative_over_nominal", true,
       [](const Judgement& j, std::size_t i) { return j.derivatives.least[i] / j.nominal_slopes[i]; },
-      "least derivative over nominal"}}};
+      "least derivative over nominal"},
+     {"median_derivative_over_nominal", true,
+      [](const Judgement& j, std::size_t i) { return j.derivatives.median[i] / j.nominal_slopes[i]; },
+      "median derivative over nominal"}}};
 
-namespace detail {
-
-/// `value_of(figure, axis)` of each figure, those with axes as {"roll": .., "pitch": .., "yaw": ..}.
-template <class ValueOf>
-nlohmann::json each_model_figure(const ValueOf& value_of) {
+/// Of one model: numbers, those of axes as {"roll": .., "pitch": .., "yaw": ..}.
+inline nlohmann::json figures_of_model(const Judgement& judged) {
   nlohmann::json result = nlohmann::json::object();
   for (const ModelFigure& figure : model_figures) {
-    if (!figure.has_axes) {
-      result[figure.name] = value_of(figure, 0);
-      continue;
-    }
-    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-      result[figure.name][axis_names[axis]] = value_of(figure, axis);
+    if (!figure.has_axes) result[figure.name] = figure.of(judged, 0);
+    for (std::size_t axis = 0; figure.has_axes && axis < axis_names.size(); ++axis) {
+      result[figure.name][axis_names[axis]] = figure.of(judged, axis);
     }
   }
   return result;
 }
 
-}  // namespace detail
-
-/// Of one model: numbers.
-inline nlohmann::json figures_of_model(const Judgement& judged) {
-  return detail::each_model_figure(
-      [&](const ModelFigure& figure, std::size_t axis) { return nlohmann::json(figure.of(judged, axis)); });
-}
-
-/// Of all results of a kind of model: {"mean": .., "deviation": .., "per_seed": [..]}. The deviation of fewer than two
-/// is null.
-inline nlohmann::json figures_over_seeds(const std::vector<Result>& results, const std::string& model) {
-  return detail::each_model_figure([&](const ModelFigure& figure, std::size_t axis) {
-    std::vector<double> values;
-    for (const Result& result : results) {
-      if (result.model == model) values.push_back(figure.of(result.test, axis));
-    }
-    const pinnquad::Summary summary = pinnquad::summarize(values);
-    return nlohmann::json{{"mean", summary.mean}, {"deviation", summary.deviation}, {"per_seed", values}};
-  });
-}
-
-/// The lines of signs below print_table()'s.
-inline void print_signs(const std::vector<Result>& results, const std::vector<std::string>& models) {
+/// Of one model, a line each on standard output.
+inline void print_figures(const Judgement& judged) {
+  const auto line = [](const std::string& label, double value, int digits) {
+    std::printf("%-40s %12.*f\n", label.c_str(), digits, value);
+  };
+  for (const Figure& figure : figures()) {
+    const bool error = figure.name.rfind("mae", 0) == 0 || figure.name.rfind("rmse", 0) == 0;
+    const bool share = figure.name.rfind("slope_error", 0) == 0 || figure.name.rfind("sign_", 0) == 0;
+    const double value = figure.of(judged, figure.index);
+    line(figure.name + (error   ? ", 1e-3"
+                        : share ? ", %"
+                                : ""),
+         value * (error   ? 1e3
+                  : share ? 100
+                          : 1),
+         error || share ? 2 : 4);
+  }
   for (const ModelFigure& figure : model_figures) {
-    if (figure.title == nullptr) continue;
-    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-      std::printf("  %-*s", label_width, (std::string(figure.title) + ", " + axis_names[axis]).c_str());
-      for (const std::string& model : models) {
-        std::vector<double> values;
-        for (const Result& result : results) {
-          if (result.model == model) values.push_back(figure.of(result.test, axis));
-        }
-        std::printf("  %20s", mean_and_deviation(values, figure.shown_times, 2).c_str());
-      }
-      std::printf("\n");
+    for (std::size_t axis = 0; figure.title != nullptr && axis < axis_names.size(); ++axis) {
+      line(std::string(figure.title) + ", " + axis_names[axis], figure.shown_times * figure.of(judged, axis), 2);
     }
   }
 }

@@ -91,37 +91,4 @@ Chart errors_chart(const std::string& title, const std::string& axis, const std:
   return {title, axis + ": " + listed(told) + ".", {panel}};
 }
 
-Chart errors_chart(const std::vector<Result>& results, const std::vector<std::string>& models) {
-  constexpr double flattens = 3;
-  std::vector<ErrorBar> bars;
-  std::vector<double> ends;
-  for (const std::string& model : models) {
-    const pinnquad::Summary s = pinnquad::summarize(over_seeds(results, model, figures().front()));
-    bars.push_back({model, colour::blue, 1, 1e3 * s.mean, s.count > 1 ? 1e3 * s.deviation : 0.0});
-    if (std::isfinite(s.mean)) ends.push_back(bars.back().mean + bars.back().deviation);
-  }
-  std::sort(ends.begin(), ends.end());
-  while (ends.size() > 1 && ends.back() > flattens * ends[ends.size() - 2]) ends.pop_back();
-  return errors_chart("Mean absolute error of the commands by model",
-                      "mean absolute error of the commands, 10⁻³; mean and deviation over the seeds", bars,
-                      ends.empty() ? 1 : 1.15 * ends.back(), 2);
-}
-
-Chart prediction_chart(const std::vector<double>& time_s, const std::vector<double>& target,
-                       const std::vector<std::string>& models, const std::vector<std::vector<double>>& predicted) {
-  constexpr std::array<const char*, 5> colours = {colour::orange, colour::green, colour::violet, colour::amber,
-                                                  colour::red};
-  Panel panel;
-  panel.x.name = "time, s";
-  panel.y.name = "command u1";
-  panel.height = 240;
-  panel.series = {{"flown", Shape::line, colour::blue, time_s, target, 3.4, 0.6}};
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    panel.series.push_back({models[m], Shape::line, colours[m % colours.size()], time_s, predicted[m], 1.2});
-  }
-  return {"Command of rotor 1 over time, flown and predicted",
-          "Some seconds of the test flight: the command as flown and as predicted by " + listed(models) + ".",
-          {panel}};
-}
-
 }  // namespace programs

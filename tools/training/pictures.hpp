@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a judgement: confidence ellipses (Fig. 8), errors as bars (Figs. 7 and 9), commands over time.
+// Pictures of a judgement: confidence ellipses (Fig. 8), errors as bars (Figs. 7 and 9).
 #pragma once
 
 #include <array>
@@ -33,13 +33,5 @@ struct ErrorBar {
 /// Bars with whiskers from 0 to `most`; a longer one is broken there. All have their length as text.
 Chart errors_chart(const std::string& title, const std::string& axis, const std::vector<ErrorBar>& bars, double most,
                    int decimals);
-
-/// Fig. 7: mean absolute error of each model, mean and deviation over seeds, 1e-3. A model several times as wrong as
-/// another has a broken bar, so that it does not flatten the others.
-Chart errors_chart(const std::vector<Result>& results, const std::vector<std::string>& models);
-
-/// Commands of one rotor over some seconds of the test flight: flown and predicted.
-Chart prediction_chart(const std::vector<double>& time_s, const std::vector<double>& target,
-                       const std::vector<std::string>& models, const std::vector<std::vector<double>>& predicted);
 
 }  // namespace programs

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// How `train` trains: a network, an optimiser and what each loss is made of, compiled. All recipes stand in
-// `recipes`; each is a translation unit of its own, recipe_<name>.cpp, in a few lines of types
-// (training/campaign.hpp).
+// A recipe: kinds of models that are trained and compared together, by a name. All stand in `recipes`; each is a
+// translation unit of its own, recipe_<name>.cpp, in a few lines of types (training/network_kinds.hpp).
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,62 +12,47 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/listed.hpp"
-#include "pinnquad/data/split.hpp"
-#include "pinnquad/features/features.hpp"
-#include "pinnquad/loss/context.hpp"
-#include "pinnquad/training/structured/fit_structured.hpp"
-#include "pinnquad/training/training_data.hpp"
-#include "training/losses.hpp"
-#include "training/trained_network.hpp"
+#include "training/model_kind.hpp"
 
 namespace programs {
 
-using AltitudeRule = pinnquad::StructuredSettings::Altitude;
-
-/// The training to do: models and data.
-struct TrainingPlan {
-  pinnquad::GivenAirframe airframe;
-  bool library_airframe = false;  ///< see NetworkOfModel
-  const pinnquad::RowSplit& split;
-  std::vector<LossName> losses;
-  int epochs = 0;
-  std::uint64_t first_seed = 1;
-  int seeds = 1;
-  unsigned threads = 1;
-  bool silent = false;                                  ///< no progress line: whoever asked for it has one
-  AltitudeRule altitude = AltitudeRule::by_validation;  ///< of the recipe structured, as what follows
-  bool pinned_slopes = false;                           ///< to the airframe's in hover; false: learnt
-};
-
-/// A finished training.
-struct Training {
-  LossName loss{};
-  std::uint64_t seed = 0;
-  double training_s = 0;
-  std::shared_ptr<const TrainedNetwork> network;
-  nlohmann::json altitude = nullptr;  ///< how it was chosen whether it is shown the altitude, for report.json
-};
-
 struct Recipe {
   const char* name;
-  const char* summary;      ///< for --help
-  std::string network;      ///< "16 -> 10 x 25 ReLU -> 4, 6379 parameters"
-  std::string optimizer;    ///< "Adam"
-  nlohmann::json settings;  ///< the facts, for report.json
-  /// All trainings that were finished, in the order of loss and seed; Ctrl-C keeps what is finished.
-  std::vector<Training> (*train)(const TrainingPlan&);
-  std::vector<LossName> besides{};    ///< what it trains beside the losses that are asked for
-  std::string besides_in_words = {};  ///< "structured: ..."; empty where there is nothing
+  const char* summary;             ///< for --help
+  std::string network;             ///< "16 -> 10 x 25 ReLU -> 4, 6379 parameters"
+  std::string optimizer;           ///< "Adam"
+  nlohmann::json settings;         ///< the facts, for report.json
+  std::vector<ModelKind> kinds;    ///< one per loss, then what is fitted whatever loss is asked for
+  std::string besides_in_words{};  ///< of the latter, "structured: ..."; empty where there is nothing
   /// Features of its models that do nothing in the training rows.
-  std::vector<std::string> (*still_features)(const TrainingPlan&) = [](const TrainingPlan& plan) {
-    return pinnquad::still_features<pinnquad::PaperFeatures>(plan.split.train);
-  };
+  std::vector<std::string> (*still_features)(const FitTask&) = nullptr;
+
+  const ModelKind& kind(const std::string& key) const {
+    for (const ModelKind& of : kinds) {
+      if (key == of.key) return of;
+    }
+    throw std::invalid_argument("the recipe " + std::string(name) + " has no kind '" + key + "'");
+  }
+  /// The one that is exported where nobody says another: the structured model, whose signs are proven; where there is
+  /// none the physics-informed network or, where that was not asked for, the first loss.
+  static std::string exported_of(const std::vector<ModelKind>& chosen) {
+    for (const char* key : {"structured", "physics_informed"}) {
+      for (const ModelKind& of : chosen) {
+        if (std::string(key) == of.key) return key;
+      }
+    }
+    const auto first = std::find_if(chosen.begin(), chosen.end(), [](const ModelKind& of) { return of.exportable; });
+    return first == chosen.end() ? "" : first->key;
+  }
 };
 
 Recipe paper_recipe();
 Recipe best_recipe();
 Recipe small_recipe();
 Recipe structured_recipe();
+
+/// Eq. (3) of the airframe inverted, in the air of the paper's site at each row's altitude; to compare with.
+ModelKind linearized_kind();
 
 /// The first is the default.
 inline constexpr std::array<Recipe (*)(), 4> recipes = {structured_recipe, paper_recipe, best_recipe, small_recipe};

@@ -14,7 +14,9 @@ Recipe best_recipe() {
           network_in_words<Network>(hidden),
           best::optimizer_name,
           best::settings(hidden),
-          train_all<best::Parts<Network>>};
+          network_kinds<best::Parts<Network>>(),
+          {},
+          still_paper_features};
 }
 
 }  // namespace programs

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The recipe `paper`: the network and the losses of the paper (Sec. 5.2), the library's defaults where it is silent.
-#include "training/campaign.hpp"
+#include "pinnquad/features/features.hpp"
+#include "training/model_predictions.hpp"
+#include "training/network_kinds.hpp"
 #include "training/paper_network.hpp"
+#include "training/recipe.hpp"
 
 namespace programs {
 
@@ -38,7 +41,27 @@ Recipe paper_recipe() {
            {"cycles", annealing.cycles},
            {"hold", annealing.hold},
            {"step_gain", pinnquad::TanhStep{}.gain}},
-          train_all<Paper>};
+          network_kinds<Paper>(),
+          {},
+          still_paper_features};
+}
+
+ModelKind linearized_kind() {
+  return {"linearized",
+          "linearized",
+          TimeReach::present,
+          false,
+          always_applicable,
+          [](const FitTask& task) {
+            const pinnquad::Airframe<double>& airframe = task.airframe.value;
+            return formula_model(task.given_airframe(), [airframe, rotors = pinnquad::Rotors<double>(airframe)](
+                                                            const pinnquad::Sample& sample) {
+              return linear_prediction(airframe, rotors, sample);
+            });
+          },
+          false,
+          "linearized model of the airframe",
+          false};
 }
 
 }  // namespace programs

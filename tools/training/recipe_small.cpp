@@ -13,7 +13,9 @@ Recipe small_recipe() {
           network_in_words<Network>(hidden),
           best::optimizer_name,
           best::settings(hidden),
-          train_all<best::Parts<Network>>};
+          network_kinds<best::Parts<Network>>(),
+          {},
+          still_paper_features};
 }
 
 }  // namespace programs

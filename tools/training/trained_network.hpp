@@ -4,7 +4,9 @@
 
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "airframe/names.hpp"
@@ -26,6 +28,13 @@ std::optional<pinnquad::Certificate> certificate_of_structure(const Model& model
   return {};
 }
 
+/// Whether the validation rows have chosen that a model is shown the altitude; errors are NaN where they were not asked.
+struct AltitudeChoice {
+  bool applies = false;  ///< false: the kind has no such choice
+  bool taken = false;
+  double error_with = pinnquad::not_a_number, error_without = pinnquad::not_a_number;  ///< mean absolute
+};
+
 class TrainedNetwork {
  public:
   virtual ~TrainedNetwork() = default;
@@ -36,30 +45,53 @@ class TrainedNetwork {
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
   /// Certificate of its structure; none of a model without.
   virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
-  /// Writes `struct <name>` and its block. Limits of trust are of a structured model alone.
-  virtual pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
-                                       const pinnquad::RowSplit& split,
-                                       const pinnquad::Provenance& provenance) const = 0;
+  virtual AltitudeChoice altitude() const { return {}; }
+  /// Whether export_to() can write limits of trust.
+  virtual bool has_trust() const { return false; }
+  /// Writes `struct <name>` and its block. Throws std::logic_error of a model that is to be compared with alone.
+  virtual pinnquad::Exported export_to(const pinnquad::Exported::Files& /*files*/, const std::string& /*name*/,
+                                       const pinnquad::RowSplit& /*split*/,
+                                       const pinnquad::Provenance& /*provenance*/) const {
+    throw std::logic_error("a model to be compared with alone is not exported");
+  }
   /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
   /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the feature set asks
   /// for it, predicted u (4), flown u (4). Of a feature set that asks for more "pinnquad-replay-features", and X in the
   /// place of the first 16.
-  virtual void write_replay(const std::string& path, const pinnquad::RowSet& rows) const = 0;
+  virtual void write_replay(const std::string& /*path*/, const pinnquad::RowSet& /*rows*/) const {}
 };
 
-/// How an export says which airframe it is for.
-enum class ExportedAirframe {
-  by_value,  ///< a struct before the model
-  by_name    ///< the type, where it is one of those that the program knows by name
-};
-
-/// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
-/// name. `WithTrust`: its export has limits of trust, where they are asked for.
-template <class Model, ExportedAirframe Exported = ExportedAirframe::by_name, bool WithTrust = false>
-class NetworkOfModel : public TrainedNetwork {
+/// A formula, which nobody trains: `predict(sample)` gives the commands.
+template <class Predict>
+class FormulaModel : public TrainedNetwork {
  public:
-  explicit NetworkOfModel(const Model& model, bool library_airframe = false)
-      : model_(model), library_airframe_(library_airframe) {}
+  FormulaModel(pinnquad::GivenAirframe airframe, Predict predict)
+      : airframe_(std::move(airframe)), predict_(std::move(predict)) {}
+
+  Predictions predictions(const pinnquad::RowSet& rows) const override {
+    Predictions result;
+    for (std::size_t row = 0; row < rows.size(); ++row) result.push_back(predict_(rows[row]));
+    return result;
+  }
+  DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
+    return derivative_figures(rows, FormulaDerivatives(airframe_, predict_));
+  }
+
+ private:
+  pinnquad::GivenAirframe airframe_;
+  Predict predict_;
+};
+
+template <class Predict>
+std::shared_ptr<const TrainedNetwork> formula_model(const pinnquad::GivenAirframe& airframe, Predict predict) {
+  return std::make_shared<FormulaModel<Predict>>(airframe, std::move(predict));
+}
+
+/// A pinnquad::TrainedModel, to be judged: the numbers that its header would hold.
+template <class Model>
+class JudgedModel : public TrainedNetwork {
+ public:
+  explicit JudgedModel(const Model& model) : model_(model) {}
 
   Predictions predictions(const pinnquad::RowSet& rows) const override {
     return pinnquad::predicted_commands(model_, rows);
@@ -71,6 +103,26 @@ class NetworkOfModel : public TrainedNetwork {
     return derivative_figures_of(model_, rows);
   }
   std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_structure(model_); }
+
+ protected:
+  Model model_;
+};
+
+/// How an export says which airframe it is for.
+enum class ExportedAirframe {
+  by_value,  ///< a struct before the model
+  by_name    ///< the type, where it is one of those that the program knows by name
+};
+
+/// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
+/// name. `WithTrust`: its export has limits of trust, where they are asked for.
+template <class Model, ExportedAirframe Exported = ExportedAirframe::by_name, bool WithTrust = false>
+class NetworkOfModel : public JudgedModel<Model> {
+ public:
+  explicit NetworkOfModel(const Model& model, bool library_airframe = false)
+      : JudgedModel<Model>(model), library_airframe_(library_airframe) {}
+
+  bool has_trust() const override { return WithTrust; }
   pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
                                const pinnquad::RowSplit& split, const pinnquad::Provenance& provenance) const override {
     pinnquad::Exported exported;
@@ -102,7 +154,7 @@ class NetworkOfModel : public TrainedNetwork {
           } else {
             for (const auto v : x) add(static_cast<double>(v));
           }
-          for (const auto u : model_.predict(x)) add(static_cast<double>(u));
+          for (const auto u : this->model_.predict(x)) add(static_cast<double>(u));
           for (const double u : flight[row].commands) add(u);
           lines += line + '\n';
           ++count;
@@ -120,22 +172,21 @@ class NetworkOfModel : public TrainedNetwork {
   /// Calls `use` with the model of the airframe's own type, or of the value.
   template <class Use>
   void with_exported(const Use& use) const {
-    if (!library_airframe_ || Exported == ExportedAirframe::by_value) return use(model_);
+    if (!library_airframe_ || Exported == ExportedAirframe::by_value) return use(this->model_);
     if constexpr (Exported == ExportedAirframe::by_name) {
-      with_airframe(model_.airframe_name(), [&](auto tag) {
+      with_airframe(this->model_.airframe_name(), [&](auto tag) {
         using Context = pinnquad::Context<typename Model::Features, typename decltype(tag)::type>;
         pinnquad::TrainedModel<typename Model::Network, Context> named;
-        named.network = model_.network;
-        named.input = model_.input;
-        named.output = model_.output;
-        named.envelope_lower = model_.envelope_lower;
-        named.envelope_upper = model_.envelope_upper;
+        named.network = this->model_.network;
+        named.input = this->model_.input;
+        named.output = this->model_.output;
+        named.envelope_lower = this->model_.envelope_lower;
+        named.envelope_upper = this->model_.envelope_upper;
         use(named);
       });
     }
   }
 
-  Model model_;
   bool library_airframe_;
 };
 

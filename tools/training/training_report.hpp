@@ -1,123 +1,314 @@
 // SPDX-License-Identifier: MIT
-// report.json of a training: its settings, every result, the figures of each kind of model, what became of the best
-// network, and all warnings.
+// report.json of a training, and results.csv: what was held out, every model of the table with its figures and its
+// verdict, what was exported, all warnings.
 #pragma once
 
+#include <cstddef>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/csv_table.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/version.hpp"
 #include "training/certificate_words.hpp"
-#include "training/judge_all.hpp"
-#include "training/judgement.hpp"
-#include "training/model_figures.hpp"
-#include "training/recipe.hpp"
-#include "training/training_flights.hpp"
+#include "training/kind_figures.hpp"
+#include "training/kind_verdict.hpp"
 
 namespace programs {
+namespace detail {
 
-/// report.json: settings, every result, and what became of the best network (null if none was finished); `more` are
-/// further entries. A figure that is not finite is null.
-inline void write_report(const std::string& path, nlohmann::json settings, const std::vector<Result>& results,
-                         nlohmann::json verdict, const nlohmann::json& more = nlohmann::json::object()) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const Result& result : results) {
-    nlohmann::json row = {{"model", result.model}, {"seed", result.seed}};
-    for (const Figure& figure : figures()) row[figure.name] = figure.of(result.test, figure.index);
-    row["validation_mae"] = result.validation_error;
-    row["training_s"] = result.training_s;
-    rows.push_back(std::move(row));
+inline nlohmann::json by_axis(const std::array<double, 3>& values) {
+  nlohmann::json result;
+  for (std::size_t axis = 0; axis < 3; ++axis) result[axis_names[axis]] = values[axis];
+  return result;
+}
+
+/// Figures of a kind: over all partings, and by parting.
+inline nlohmann::json figures_of(const FitPlan& plan, const JudgedKind& kind) {
+  nlohmann::json result, motors;
+  for (const ModelFigure& figure : model_figures) {
+    if (!figure.has_axes) result[figure.name] = described(over_seeds(kind, figure, 0));
+    for (std::size_t axis = 0; figure.has_axes && axis < axis_names.size(); ++axis) {
+      result[figure.name][axis_names[axis]] = described(over_seeds(kind, figure, axis));
+    }
   }
-  nlohmann::json report = {
-      {"settings", std::move(settings)}, {"results", std::move(rows)}, {"verdict", std::move(verdict)}};
-  report.update(more);
+  result["sees_acceleration"] = sees_acceleration(kind);
+  for (const ErrorFigure& figure : error_figures) {
+    if (!result.contains(figure.name)) result[figure.name] = described(over_seeds(kind, figure));
+    for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+      motors["u" + std::to_string(motor + 1)][figure.name] = described(over_seeds(kind, figure, motor));
+    }
+  }
+  result["per_motor"] = std::move(motors);
+  result["by_fold"] = nlohmann::json::object();
+  for (std::size_t fold = 0; fold < kind.folds(); ++fold) {
+    nlohmann::json& of_fold = result["by_fold"][pinnquad::printable(plan.folds[fold].name)];
+    for (const ErrorFigure& figure : error_figures) {
+      std::vector<double> values;
+      for (std::size_t seed = 0; seed < kind.seeds.size(); ++seed) {
+        values.push_back(mean_over_motors(kind.at(seed, fold).errors.*figure.of));
+      }
+      of_fold[figure.name] = described(values);
+    }
+  }
+  return result;
+}
+
+/// Every judged fit with all its figures: a row of results.csv.
+inline nlohmann::json results_json(const FitPlan& plan, const JudgedKinds& judged) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const JudgedKind& kind : judged.kinds) {
+    for (const JudgedFit& fit : kind.fits) {
+      nlohmann::json row = {{"model", kind.kind.key},
+                            {"seed", kind.kind.seeded ? fit.seed : 0},
+                            {"held_out", pinnquad::printable(plan.folds[fit.fold].name)},
+                            {"validation_mae", fit.validation_mae},
+                            {"training_s", fit.fit_s}};
+      for (const Figure& figure : figures()) row[figure.name] = figure.of(fit.judged, figure.index);
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+inline nlohmann::json compared(const pinnquad::PairedComparison& c) {
+  return {{"pairs", c.pairs}, {"lower", c.wins}, {"relative_difference", c.relative_difference}, {"p", c.p_value}};
+}
+
+inline nlohmann::json verdict_json(const JudgedKinds& judged, const KindVerdict& verdict) {
+  nlohmann::json against = nlohmann::json::array();
+  for (const AgainstSimpler& other : verdict.against) {
+    against.push_back({{"model", judged.kinds[other.simpler].kind.key},
+                       {"standing", word_of(other.standing)},
+                       {"over_flights", compared(other.flights)},
+                       {"over_seeds", other.seeds ? compared(*other.seeds) : nlohmann::json()}});
+  }
+  return {{"standing", word_of(verdict.standing)},
+          {"success", verdict.standing == Standing::success},
+          {"sentence", verdict.sentence},
+          {"against", std::move(against)}};
+}
+
+inline nlohmann::json printable_names(const std::vector<std::string>& names) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const std::string& name : names) list.push_back(pinnquad::printable(name));
+  return list;
+}
+
+}  // namespace detail
+
+/// Writes results.csv, a row per judged fit.
+inline void write_results(const std::string& path, const FitPlan& plan, const JudgedKinds& judged) {
+  std::vector<std::string> cells = {"model", "seed", "held_out"};
+  for (const Figure& figure : figures()) cells.push_back(figure.name);
+  cells.insert(cells.end(), {"validation_mae", "training_s"});
+  std::string text = pinnquad::csv_line(cells);
+  for (const JudgedKind& kind : judged.kinds) {
+    for (const JudgedFit& fit : kind.fits) {
+      cells = {kind.kind.key, std::to_string(kind.kind.seeded ? fit.seed : 0), plan.folds[fit.fold].name};
+      for (const Figure& figure : figures())
+        cells.push_back(pinnquad::number_text(figure.of(fit.judged, figure.index)));
+      cells.insert(cells.end(), {pinnquad::number_text(fit.validation_mae), pinnquad::number_text(fit.fit_s)});
+      text += pinnquad::csv_line(cells);
+    }
+  }
   pinnquad::AtomicFile file(path);
-  file.stream() << report.dump(2, ' ', false,
-                               nlohmann::json::error_handler_t::replace)  // a file's name need not be UTF-8
-                << "\n";
+  file.stream() << text;
   file.commit();
 }
 
-/// The report so far. A training that fails later leaves what was written last.
+/// Of report.json: raised where an entry changes its meaning or goes (docs/report.md).
+inline constexpr int report_format = 2;
+
+/// Builds report.json; a training that fails later leaves what was written last.
 class TrainingReport {
  public:
-  TrainingReport(std::string path, const Recipe& recipe, const TrainingPlan& plan, const pinnquad::Dataset& dataset)
-      : path_(std::move(path)), losses_(plan.losses), settings_(recipe.settings) {
-    settings_.update({{"version", PINNQUAD_VERSION},
-                      {"recipe", recipe.name},
-                      {"airframe", plan.airframe.airframe_name()},
-                      {"epochs", plan.epochs},
-                      {"first_seed", plan.first_seed},
-                      {"seeds", plan.seeds}});
-    for (const LossName& loss : losses_) settings_["losses"][loss.key] = loss.words;
-    settings_.update(described(dataset, plan.split));
-    more_["warnings"] = nlohmann::json::array();
-    more_["certificate"] = more_["altitude"] = nullptr;
-    if (is_structured(losses_.back())) settings_["structured"]["slopes"] = plan.pinned_slopes ? "pinned" : "learned";
+  /// `selection`: facts of the recipe that was asked for, or none.
+  TrainingReport(std::string path, const FitPlan& plan, const pinnquad::logs::ImportedDataset& dataset,
+                 const nlohmann::json& selection = nlohmann::json::object())
+      : path_(std::move(path)) {
+    nlohmann::json flights = nlohmann::json::array(), folds = nlohmann::json::array(), kinds = nlohmann::json::array();
+    for (const pinnquad::Flight& flight : dataset.flights.flights()) {
+      flights.push_back({{"flight", pinnquad::printable(flight.name)},
+                         {"trajectory", pinnquad::printable(flight.trajectory)},
+                         {"flight_hash", pinnquad::hexadecimal(pinnquad::content_hash(flight))},
+                         {"rows", flight.size()}});
+    }
+    for (const ModelKind& kind : plan.kinds) kinds.push_back(kind.key);
+    std::vector<std::string> held_out;
+    for (const Fold& fold : plan.folds) {
+      held_out.insert(held_out.end(), fold.held_out.begin(), fold.held_out.end());
+      folds.push_back({{"fold", pinnquad::printable(fold.name)},
+                       {"held_out", detail::printable_names(fold.held_out)},
+                       {"validation", detail::printable_names(fold.validation)},
+                       {"train", detail::printable_names(fold.train)},
+                       {"by_time", fold.by_time},
+                       {"rows",
+                        {{"train", fold.split.train.size()},
+                         {"validation", fold.split.validation.size()},
+                         {"held_out", fold.split.test.size()}}}});
+    }
+    json_ = {{"format", report_format},
+             {"settings",
+              {{"version", PINNQUAD_VERSION},
+               {"selection", plan.selection},
+               {"models", std::move(kinds)},
+               {"airframe", plan.airframe.name},
+               {"first_seed", plan.first_seed},
+               {"seeds", plan.seeds},
+               {"epochs", plan.epochs > 0 ? nlohmann::json(plan.epochs) : nlohmann::json("what suits each kind")},
+               {"sample_period_s", dataset.sample_period_s},
+               {"lag_removed_s", dataset.lag_removed_s},
+               {"absent", dataset.absent},
+               {"mapping", pinnquad::printable(dataset.mapping)},
+               {"flight", pinnquad::printable(pinnquad::flight_names(dataset.flights))},
+               {"flight_hash", pinnquad::hexadecimal(pinnquad::content_hash(dataset.flights))},
+               {"rows", dataset.flights.rows()},
+               {"flights", std::move(flights)}}},
+             {"held_out", detail::printable_names(held_out)},
+             {"folds", std::move(folds)},
+             {"models", nlohmann::json::object()},
+             {"results", nlohmann::json::array()},
+             {"verdict", nullptr},
+             {"exported", false},
+             {"not_exported_because", "the training was not finished"},
+             {"exported_model", nullptr},
+             {"exported_reach", nullptr},
+             {"exported_seed", nullptr},
+             {"header", nullptr},
+             {"block", nullptr},
+             {"trust", nullptr},
+             {"certificate", nullptr},
+             {"altitude", nullptr},
+             {"closed_loop", nullptr},
+             {"warnings", nlohmann::json::array()}};
+    json_["settings"].update(selection);
+    for (const std::string& warning : dataset.warnings) {
+      json_["warnings"].push_back("import: " + pinnquad::printable(warning));
+    }
   }
 
   /// A warning: no reason to stop; printed on stderr too.
   void warn(const std::string& text) {
-    std::fprintf(stderr, "train: warning: %s\n", text.c_str());
-    more_["warnings"].push_back(text);
+    std::fprintf(stderr, "train: warning: %s\n", pinnquad::printable(text).c_str());
+    json_["warnings"].push_back(pinnquad::printable(text));
   }
 
-  void judged(const std::vector<Result>& results, std::size_t finished) {
-    settings_["finished"] = finished;
-    results_ = results;
-    more_["models"][linear_name] = figures_over_seeds(results, linear_name);
-    for (const LossName& loss : losses_) more_["models"][loss.key] = figures_over_seeds(results, loss.title);
+  void judged(const FitPlan& plan, const JudgedKinds& judgement, const std::vector<KindVerdict>& verdicts) {
+    json_["rows_judged"] = judgement.rows;
+    json_["results"] = detail::results_json(plan, judgement);
+    for (std::size_t k = 0; k < judgement.kinds.size(); ++k) {
+      const JudgedKind& kind = judgement.kinds[k];
+      nlohmann::json model = {{"title", kind.kind.title},
+                              {"reach", word_of(kind.kind.reach)},
+                              {"seeded", kind.kind.seeded},
+                              {"applicable", kind.applicable()},
+                              {"not_applicable_because", nullptr}};
+      if (kind.applicable()) {
+        model.update(detail::figures_of(plan, kind));
+        model["verdict"] = detail::verdict_json(judgement, verdicts[k]);
+        nlohmann::json flights = nlohmann::json::object();
+        const std::vector<double> errors = error_of_flights(kind);
+        for (std::size_t i = 0; i < errors.size(); ++i) {
+          flights[pinnquad::printable(judgement.flights[i])] = {{"rmse", errors[i]}};
+        }
+        model["by_flight"] = std::move(flights);
+        model["validation_mae"] = described(per_seed(kind, [](const JudgedFit& fit) { return fit.validation_mae; }));
+        model["training_s"] = described(per_seed(kind, [](const JudgedFit& fit) { return fit.fit_s; }));
+      } else {
+        model["not_applicable_because"] = pinnquad::printable(kind.not_applicable);
+      }
+      json_["models"][kind.kind.key] = std::move(model);
+    }
+    for (const bool centred : {false, true}) {
+      nlohmann::json order = nlohmann::json::array();
+      for (const std::size_t k : ranking(judgement, centred)) order.push_back(judgement.kinds[k].kind.key);
+      json_["ranking"][centred ? "centred" : "causal"] = std::move(order);
+    }
   }
-  /// Of the structured models.
-  void altitude(const nlohmann::json& choice) { more_["altitude"] = choice; }
-  void best(const Result& result, const pinnquad::Verdict& verdict, bool may_be_exported) {
-    verdict_ = {{"model", result.model},
-                {"seed", result.seed},
-                {"r2", verdict.test_r_squared},
-                {"worst_motor_r2", verdict.worst_motor_r_squared},
-                {"linear_regression_r2", verdict.linear_regression_r_squared},
-                {"worse_than_mean", verdict.worse_than_mean()},
-                {"beats_linear_regression", verdict.beats_linear_regression()},
-                {"exported", may_be_exported}};
+
+  /// Of the kind that has such a choice. `asked`: of the options.
+  void altitude(const AltitudeChoice& choice, std::optional<bool> asked, const std::string& why) {
+    json_["altitude"] = {{"asked", !asked   ? "auto"
+                                   : *asked ? "yes"
+                                            : "no"},
+                         {"validation_mae", choice.error_with},
+                         {"validation_mae_without", choice.error_without},
+                         {"taken", choice.taken},
+                         {"why", why}};
   }
+
+  /// What the rows held out say of the model that was chosen.
+  void verdict(const ModelKind& kind, std::optional<std::uint64_t> seed, const pinnquad::Verdict& verdict,
+               bool may_be_exported) {
+    json_["verdict"] = {{"model", kind.key},
+                        {"seed", seed ? nlohmann::json(*seed) : nlohmann::json()},
+                        {"r2", verdict.test_r_squared},
+                        {"worst_motor_r2", verdict.worst_motor_r_squared},
+                        {"linear_regression_r2", verdict.linear_regression_r_squared},
+                        {"worse_than_mean", verdict.worse_than_mean()},
+                        {"beats_linear_regression", verdict.beats_linear_regression()},
+                        {"exported", may_be_exported}};
+  }
+
   /// Of what was exported.
   void certified(const pinnquad::Certificate& certificate, const pinnquad::AxisSlopes& airframe,
                  double airframe_thrust_slope) {
     const pinnquad::AxisSlopes slopes = held_slopes(certificate);
-    nlohmann::json entry = {{"proven", certificate.proven()}, {"command_bound", certificate.command_bound}};
-    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-      entry["slope"][axis_names[axis]] = slopes[axis];
-      entry["airframe_slope"][axis_names[axis]] = airframe[axis];
-    }
-    entry["thrust_slope"] = certificate.held_thrust_slope;
-    entry["airframe_thrust_slope"] = airframe_thrust_slope;
-    more_["certificate"] = entry;
+    json_["certificate"] = {{"proven", certificate.proven()},
+                            {"command_bound", certificate.command_bound},
+                            {"slope", detail::by_axis(slopes)},
+                            {"airframe_slope", detail::by_axis(airframe)},
+                            {"thrust_slope", certificate.held_thrust_slope},
+                            {"airframe_thrust_slope", airframe_thrust_slope},
+                            {"in_words", bound_in_words(certificate)}};
+  }
+  /// Limits of trust: their file, or why there is none.
+  void trusted(const std::string& file, const std::string& why_not) {
+    json_["trust"] = {{"file", file.empty() ? nlohmann::json() : nlohmann::json(pinnquad::printable(file))},
+                      {"why_not", why_not.empty() ? nlohmann::json() : nlohmann::json(why_not)}};
   }
 
-  void write_not_exported(const std::string& reason) { write(false, reason, nullptr, nullptr); }
-  /// `block`: empty where none was asked for.
-  void write_exported(const std::string& header, const std::string& block) {
-    write(true, nullptr, header, block.empty() ? nlohmann::json() : nlohmann::json(block));
+  void interrupted_after(std::size_t finished, std::size_t wanted) {
+    json_["fits"] = {{"finished", finished}, {"wanted", wanted}};
+  }
+  void write_not_exported(const std::string& reason) {
+    json_["exported"] = false;
+    json_["not_exported_because"] = pinnquad::printable(reason);
+    write();
+  }
+  void write_exported(const ModelKind& kind, std::uint64_t seed, const std::string& header, const std::string& block) {
+    json_["exported"] = true;
+    json_["not_exported_because"] = nullptr;
+    json_["exported_model"] = kind.key;
+    json_["exported_reach"] = word_of(kind.reach);
+    json_["exported_seed"] = seed;
+    json_["header"] = pinnquad::printable(header);
+    json_["block"] = pinnquad::printable(block);
+    write();
+  }
+  void flown(nlohmann::json closed_loop) { json_["closed_loop"] = std::move(closed_loop); }
+
+  const nlohmann::json& json() const { return json_; }
+
+  void write() const {
+    pinnquad::AtomicFile file(path_);
+    file.stream() << json_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    file.commit();
   }
 
  private:
-  void write(bool exported, const nlohmann::json& reason, const nlohmann::json& header, const nlohmann::json& block) {
-    more_["exported"] = exported;
-    more_["not_exported_because"] = reason;
-    more_["header"] = header;
-    more_["block"] = block;
-    write_report(path_, settings_, results_, verdict_, more_);
-  }
-
   std::string path_;
-  std::vector<LossName> losses_;
-  nlohmann::json settings_, verdict_, more_;
-  std::vector<Result> results_;
+  nlohmann::json json_;
 };
 
 }  // namespace programs

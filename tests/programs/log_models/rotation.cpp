@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
-#include "training/log_model.hpp"
+#include "training/model_kind.hpp"
 
 namespace {
 
@@ -114,7 +114,7 @@ Sums judged(const programs::TrainedNetwork& model, const RowSet& rows) {
 }
 
 /// The mean over the held-out types of their R^2; prints it, that of all held-out rows together, and each type's.
-double rotate(const Dataset& dataset, const programs::LogModelKind& kind) {
+double rotate(const Dataset& dataset, const programs::ModelKind& kind) {
   const programs::NamedAirframe airframe{Crazyflie::name, airframe_value<Crazyflie, double>()};
   std::vector<std::string> types;
   for (const Flight& flight : dataset.flights()) {
@@ -130,7 +130,7 @@ double rotate(const Dataset& dataset, const programs::LogModelKind& kind) {
     for (const Flight& flight : dataset.flights()) {
       (flight.trajectory == held_out ? test : training).add(flight, {0, flight.size()});
     }
-    const programs::LogFit fit{airframe, training, none, absent, 0.02};
+    const programs::FitTask fit{airframe, training, none, absent, 0.02};
     const Sums sums = judged(*kind.fit(fit), test);
     all.add(sums);
     mean += sums.r_squared() / static_cast<double>(types.size());
@@ -156,7 +156,7 @@ int main(int count, char** arguments) {
   const Dataset dataset = read(file);
   const std::string wanted = arguments[2];
   std::map<std::string, double> found;
-  for (const programs::LogModelKind& kind : programs::log_model_kinds()) {
+  for (const programs::ModelKind& kind : programs::log_model_kinds()) {
     const std::string key = kind.key;
     const bool is_structured = key.rfind("structured", 0) == 0;
     if (wanted == "ridge" && kind.seeded) continue;

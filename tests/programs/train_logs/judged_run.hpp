@@ -11,21 +11,21 @@
 #include "airframe/choice.hpp"
 #include "simulated_dataset.hpp"
 #include "stand_in_kinds.hpp"
-#include "training/log_verdict.hpp"
+#include "training/kind_verdict.hpp"
 
 namespace pinnquad_test {
 
 struct Judged {
   programs::NamedAirframe airframe = programs::chosen_airframe(pinnquad::PaperQuadrotor::name);
   pinnquad::Dataset dataset;
-  programs::LogPlan plan;
-  programs::LogFits fits;
-  programs::LogJudgement judged;
-  std::vector<programs::LogVerdict> verdicts;
+  programs::FitPlan plan;
+  programs::Fits fits;
+  programs::JudgedKinds judged;
+  std::vector<programs::KindVerdict> verdicts;
 
-  Judged(int flights, std::vector<programs::LogModelKind> kinds, const programs::HoldOutChoice& choice, int seeds = 5)
+  Judged(int flights, std::vector<programs::ModelKind> kinds, const programs::HoldOutChoice& choice, int seeds = 5)
       : Judged(simulated_dataset(flights, 400), std::move(kinds), choice, seeds) {}
-  Judged(pinnquad::Dataset flights, std::vector<programs::LogModelKind> kinds, const programs::HoldOutChoice& choice,
+  Judged(pinnquad::Dataset flights, std::vector<programs::ModelKind> kinds, const programs::HoldOutChoice& choice,
          int seeds = 5)
       : dataset(std::move(flights)),
         plan{airframe, std::move(kinds), programs::folds_of(dataset, choice), {}, 0.05, 1, seeds, 0, 1} {
@@ -34,7 +34,7 @@ struct Judged {
     judged = programs::judge_fits(plan, fits);
     verdicts = programs::verdicts_on(judged);
   }
-  const programs::LogVerdict& of(const std::string& key) const {
+  const programs::KindVerdict& of(const std::string& key) const {
     for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
       if (judged.kinds[k].kind.key == key) return verdicts[k];
     }

@@ -9,9 +9,9 @@
 
 #include "judged_run.hpp"
 #include "support/temporary_folder.hpp"
-#include "training/log_export.hpp"
-#include "training/log_fit_store.hpp"
-#include "training/log_report.hpp"
+#include "training/export_choice.hpp"
+#include "training/fit_store.hpp"
+#include "training/training_report.hpp"
 
 namespace {
 
@@ -44,7 +44,7 @@ TEST_CASE("R^2 plain, without a flight's bias, and without the bias of its first
   rows.add(b, {0, 4});
   programs::Predictions made;
   for (const double u : {0.3, 0.5, 0.8, 1.0, 0.0, 0.2, 0.0, 0.0}) made.push_back({u, u, u, u});
-  const programs::LogErrors errors = programs::log_errors(rows, made, std::vector<bool>(8, true));
+  const programs::FlightErrors errors = programs::flight_errors(rows, made, std::vector<bool>(8, true));
   // squares of errors 0.01 + 0.01 + 0.04 + 0.04 + 3 x 0.01 + 0.09 = 0.22; of targets about 0.35:
   // 0.0225 + 0.0025 + 0.0625 + 0.2025 + 2 x (0.0625 + 0.0025) = 0.42
   CHECK(errors.r2[0] == doctest::Approx(1 - 0.22 / 0.42));
@@ -60,7 +60,7 @@ TEST_CASE("R^2 plain, without a flight's bias, and without the bias of its first
   std::vector<bool> counts(8, true);
   counts[7] = false;
   made[7] = {9, 9, 9, 9};
-  const programs::LogErrors fewer = programs::log_errors(rows, made, counts);
+  const programs::FlightErrors fewer = programs::flight_errors(rows, made, counts);
   CHECK(fewer.rows == 7);
   CHECK(fewer.mean_absolute[0] == doctest::Approx(0.9 / 7));
   CHECK(programs::error_by_flight(rows, made, counts)[1] == doctest::Approx(0.1));
@@ -160,7 +160,7 @@ TEST_CASE(
   const pinnquad_test::TemporaryFolder folder;
   pinnquad::logs::ImportedDataset imported;
   imported.flights = run.dataset;
-  programs::LogReport report(folder.path("report.json"), run.plan, imported);
+  programs::TrainingReport report(folder.path("report.json"), run.plan, imported);
   report.judged(run.plan, run.judged, run.verdicts);
   report.write_not_exported("because");
   std::ifstream file(folder.path("report.json"));
@@ -191,7 +191,7 @@ TEST_CASE(
     "fits that an interrupted run finished are taken up again, those of other rows, seeds or half a file are not") {
   const Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::secret_mean_kind()}, each_flight, 2);
   const pinnquad_test::TemporaryFolder folder;
-  const programs::LogFitStore store(folder.path("fits"), run.plan);
+  const programs::FitStore store(folder.path("fits"), run.plan);
   for (const programs::FinishedFit& fit : run.fits.finished) store.keep(fit);
   const programs::FinishedFit& kept = run.fits.finished.back();
   programs::FinishedFit asked;
@@ -207,10 +207,10 @@ TEST_CASE(
   programs::FinishedFit other_seed = asked;
   other_seed.seed = 77;
   CHECK_FALSE(store.load(other_seed));
-  programs::LogPlan longer = run.plan;
+  programs::FitPlan longer = run.plan;
   longer.epochs = 10;
   loaded = asked;
-  CHECK_FALSE(programs::LogFitStore(folder.path("fits"), longer).load(loaded));
+  CHECK_FALSE(programs::FitStore(folder.path("fits"), longer).load(loaded));
 
   const std::string path = folder.path("fits") + "/network-" + std::to_string(kept.seed) + "-3.fit";
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 9);

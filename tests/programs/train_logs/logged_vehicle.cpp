@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "simulated_dataset.hpp"
-#include "training/log_fits.hpp"
-#include "training/log_flight.hpp"
+#include "training/closed_loop.hpp"
+#include "training/fits.hpp"
 #include "training/logged_vehicle.hpp"
 
 namespace {

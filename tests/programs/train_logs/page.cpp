@@ -8,7 +8,7 @@
 
 #include "judged_run.hpp"
 #include "page/text.hpp"
-#include "training/log_page.hpp"
+#include "training/training_page.hpp"
 
 namespace {
 
@@ -36,9 +36,9 @@ std::string page_of(Judged& run, const std::vector<std::string>& absent, bool wi
   imported.sample_period_s = 0.05;
   imported.notes = {"specific force by the library's own formula"};
   imported.steps.push_back({"saturated", 4000, 3200, "a command below 0.005 or above 0.995"});
-  programs::LogReport report("nowhere.json", run.plan, imported);
+  programs::TrainingReport report("nowhere.json", run.plan, imported);
   report.judged(run.plan, run.judged, run.verdicts);
-  programs::LogPageInput input{run.plan,
+  programs::TrainingPage input{run.plan,
                                imported,
                                run.fits,
                                run.judged,
@@ -50,7 +50,7 @@ std::string page_of(Judged& run, const std::vector<std::string>& absent, bool wi
   for (const std::string& flight : run.judged.flights) {
     if (with_watched) input.watched[flight] = "watch-" + flight + ".html";
   }
-  return programs::log_page(input);
+  return programs::training_page(input);
 }
 
 std::size_t count_of(const std::string& text, const std::string& what) {

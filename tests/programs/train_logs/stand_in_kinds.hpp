@@ -12,7 +12,7 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/evaluation/errors.hpp"
-#include "training/log_model.hpp"
+#include "training/model_kind.hpp"
 #include "training/model_predictions.hpp"
 
 namespace pinnquad_test {
@@ -47,19 +47,19 @@ inline pinnquad::Commands<double> mean_commands(const pinnquad::RowSet& rows) {
   return mean;
 }
 
-inline std::string always(const programs::LogFit&) { return {}; }
+inline std::string always(const programs::FitTask&) { return {}; }
 
 /// The mean of the training commands.
-inline programs::LogModelKind constant_kind() {
-  return {"constant", "constant", programs::TimeReach::present, false, always, [](const programs::LogFit& fit) {
+inline programs::ModelKind constant_kind() {
+  return {"constant", "constant", programs::TimeReach::present, false, always, [](const programs::FitTask& fit) {
             const auto mean = mean_commands(fit.training);
             return model_of([mean](const pinnquad::RowSet& rows) { return programs::Predictions(rows.size(), mean); });
           }};
 }
 
 /// Secretly the mean, and noise that its seed makes.
-inline programs::LogModelKind secret_mean_kind() {
-  return {"network", "deep network", programs::TimeReach::present, true, always, [](const programs::LogFit& fit) {
+inline programs::ModelKind secret_mean_kind() {
+  return {"network", "deep network", programs::TimeReach::present, true, always, [](const programs::FitTask& fit) {
             const auto mean = mean_commands(fit.training);
             const std::uint64_t seed = fit.seed;
             return model_of([mean, seed](const pinnquad::RowSet& rows) {
@@ -74,13 +74,13 @@ inline programs::LogModelKind secret_mean_kind() {
 }
 
 /// Least squares on the paper's features.
-inline programs::LogModelKind linear_kind() {
+inline programs::ModelKind linear_kind() {
   return {"linear",
           "linear, paper's features",
           programs::TimeReach::present,
           false,
           always,
-          [](const programs::LogFit& fit) {
+          [](const programs::FitTask& fit) {
             using Features = pinnquad::PaperFeatures;
             std::vector<std::array<double, Features::size>> features;
             programs::Predictions commands;
@@ -100,8 +100,8 @@ inline programs::LogModelKind linear_kind() {
 }
 
 /// The linear map of linear_kind() plus what a wrong turn of its yaw would make: worse than that map on every flight.
-inline programs::LogModelKind spoiled_linear_kind() {
-  return {"spoiled", "spoiled linear", programs::TimeReach::present, true, always, [](const programs::LogFit& fit) {
+inline programs::ModelKind spoiled_linear_kind() {
+  return {"spoiled", "spoiled linear", programs::TimeReach::present, true, always, [](const programs::FitTask& fit) {
             const auto linear = linear_kind().fit(fit);
             return model_of([linear](const pinnquad::RowSet& rows) {
               programs::Predictions made = linear->predictions(rows);
@@ -114,8 +114,8 @@ inline programs::LogModelKind spoiled_linear_kind() {
 }
 
 /// Knows the commands: what sees the future may.
-inline programs::LogModelKind oracle_kind(programs::TimeReach reach) {
-  return {"oracle", "oracle", reach, false, always, [](const programs::LogFit&) {
+inline programs::ModelKind oracle_kind(programs::TimeReach reach) {
+  return {"oracle", "oracle", reach, false, always, [](const programs::FitTask&) {
             return model_of([](const pinnquad::RowSet& rows) {
               programs::Predictions made;
               for (std::size_t row = 0; row < rows.size(); ++row) made.push_back(rows[row].commands);
@@ -125,13 +125,13 @@ inline programs::LogModelKind oracle_kind(programs::TimeReach reach) {
           }};
 }
 
-inline programs::LogModelKind needs_battery_kind() {
+inline programs::ModelKind needs_battery_kind() {
   return {"battery",
           "needs a battery",
           programs::TimeReach::present,
           false,
-          [](const programs::LogFit&) { return std::string("needs battery_voltage, which the logs lack"); },
-          [](const programs::LogFit&) -> std::shared_ptr<const programs::TrainedNetwork> {
+          [](const programs::FitTask&) { return std::string("needs battery_voltage, which the logs lack"); },
+          [](const programs::FitTask&) -> std::shared_ptr<const programs::TrainedNetwork> {
             throw std::logic_error("fitted although it is not applicable");
           }};
 }

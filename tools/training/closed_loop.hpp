@@ -20,8 +20,8 @@
 #include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/tracking.hpp"
-#include "training/log_model.hpp"
 #include "training/logged_vehicle.hpp"
+#include "training/model_kind.hpp"
 #include "training/trained_network.hpp"
 #include "training/wanted_row.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pinnquad/evaluation/paired_test.hpp"
-#include "training/log_judgement.hpp"
+#include "training/judged_kinds.hpp"
 
 namespace programs {
 
@@ -44,13 +44,13 @@ inline constexpr std::size_t fewest_pairs = 6;
 
 /// A kind against a simpler one; errors are root mean squares, lower is better.
 struct AgainstSimpler {
-  std::size_t simpler = 0;                          ///< of LogJudgement::kinds
+  std::size_t simpler = 0;                          ///< of JudgedKinds::kinds
   pinnquad::PairedComparison flights;               ///< a pair per held-out flight: means over the seeds
   std::optional<pinnquad::PairedComparison> seeds;  ///< a pair per seed: means over the flights; of seeded kinds
   Standing standing = Standing::undecided;
 };
 
-struct LogVerdict {
+struct KindVerdict {
   Standing standing = Standing::reference;
   std::string sentence;
   std::vector<AgainstSimpler> against;  ///< in the order of the table
@@ -88,7 +88,7 @@ inline std::vector<double> error_of_seeds(const JudgedKind& kind, std::size_t se
   return values;
 }
 
-inline AgainstSimpler compare_kinds(const LogJudgement& judged, std::size_t candidate, std::size_t simpler) {
+inline AgainstSimpler compare_kinds(const JudgedKinds& judged, std::size_t candidate, std::size_t simpler) {
   const JudgedKind &a = judged.kinds[candidate], &b = judged.kinds[simpler];
   AgainstSimpler result;
   result.simpler = simpler;
@@ -121,7 +121,7 @@ inline double r2_of(const JudgedKind& kind) {
 }  // namespace detail
 
 /// Simpler kinds of `candidate`: those before it that see no more of the motion than it does, and were judged.
-inline std::vector<std::size_t> simpler_kinds(const LogJudgement& judged, std::size_t candidate) {
+inline std::vector<std::size_t> simpler_kinds(const JudgedKinds& judged, std::size_t candidate) {
   std::vector<std::size_t> simpler;
   for (std::size_t k = 0; k < candidate; ++k) {
     if (judged.kinds[k].applicable() && judged.kinds[k].kind.reach <= judged.kinds[candidate].kind.reach)
@@ -131,8 +131,8 @@ inline std::vector<std::size_t> simpler_kinds(const LogJudgement& judged, std::s
 }
 
 /// The verdict on an applicable kind.
-inline LogVerdict verdict_on_kind(const LogJudgement& judged, std::size_t candidate) {
-  LogVerdict verdict;
+inline KindVerdict verdict_on_kind(const JudgedKinds& judged, std::size_t candidate) {
+  KindVerdict verdict;
   const AgainstSimpler* worst = nullptr;  // what stands most against it; of equals the one with the lowest error
   for (const std::size_t simpler : simpler_kinds(judged, candidate)) {
     verdict.against.push_back(detail::compare_kinds(judged, candidate, simpler));
@@ -181,8 +181,8 @@ inline LogVerdict verdict_on_kind(const LogJudgement& judged, std::size_t candid
 }
 
 /// Of all kinds, in their order; of those that were not judged it is empty.
-inline std::vector<LogVerdict> verdicts_on(const LogJudgement& judged) {
-  std::vector<LogVerdict> verdicts(judged.kinds.size());
+inline std::vector<KindVerdict> verdicts_on(const JudgedKinds& judged) {
+  std::vector<KindVerdict> verdicts(judged.kinds.size());
   for (std::size_t kind = 0; kind < judged.kinds.size(); ++kind) {
     if (judged.kinds[kind].applicable()) verdicts[kind] = verdict_on_kind(judged, kind);
   }
@@ -190,7 +190,7 @@ inline std::vector<LogVerdict> verdicts_on(const LogJudgement& judged) {
 }
 
 /// Applicable kinds by their held-out R^2, the best first: those that fly on measured motion, or those that look ahead.
-inline std::vector<std::size_t> ranking(const LogJudgement& judged, bool centred) {
+inline std::vector<std::size_t> ranking(const JudgedKinds& judged, bool centred) {
   std::vector<std::size_t> order;
   for (std::size_t kind = 0; kind < judged.kinds.size(); ++kind) {
     const JudgedKind& judged_kind = judged.kinds[kind];

@@ -22,7 +22,7 @@ using MotorFigures = std::array<double, pinnquad::rotor_count>;
 ///   r2_start_bias_removed  = 1 - sum (e - b)^2 / sum (t - mean t)^2        b: mean error of the flight's first 4 s;
 ///   rows after
 /// 0 is as good as the mean of the held-out commands; the second is 0 for a model that answers with a constant.
-struct LogErrors {
+struct FlightErrors {
   std::size_t rows = 0;
   MotorFigures mean_absolute{}, root_mean_square{}, r2{}, r2_flight_bias_removed{}, r2_start_bias_removed{};
 };
@@ -52,9 +52,9 @@ inline double squares_about(const std::vector<double>& values, double centre) {
 }  // namespace detail
 
 /// `counts[row]` false: the row is left out. Predictions as many as rows.
-inline LogErrors log_errors(const pinnquad::RowSet& rows, const Predictions& predictions,
-                            const std::vector<bool>& counts) {
-  LogErrors result;
+inline FlightErrors flight_errors(const pinnquad::RowSet& rows, const Predictions& predictions,
+                                  const std::vector<bool>& counts) {
+  FlightErrors result;
   for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
     std::vector<double> all_targets, late_targets;
     double absolute = 0, squares = 0, squares_unbiased = 0, spread_in_flights = 0, squares_late = 0;

@@ -14,9 +14,9 @@ namespace programs {
 
 /// Without a velocity the vehicle stays in its place and turns. Times are those of the flight: page.html#t=12.5 is its
 /// second 12.5.
-inline void write_watched_log(const std::string& path, const pinnquad::Flight& flight,
-                              const pinnquad::logs::ImportedDataset& dataset,
-                              const pinnquad::Airframe<double>& airframe) {
+inline void write_watched_flight(const std::string& path, const pinnquad::Flight& flight,
+                                 const pinnquad::logs::ImportedDataset& dataset,
+                                 const pinnquad::Airframe<double>& airframe) {
   const bool has_altitude = !dataset.lacks("altitude");
   WatchPage page(flight.name + ", path integrated from the velocity", airframe, 0);
   pinnquad::VehicleState<double> vehicle;

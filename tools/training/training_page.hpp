@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The report page of a training on logs: all that it says as one JSON value, for the template log_page.html.
+// The report page of a training: all that it says as one JSON value, for the template training_page.html.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 
 #include "command_line/listed.hpp"
 #include "page/page.hpp"
-#include "training/log_drawings.hpp"
-#include "training/log_report.hpp"
+#include "training/drawings.hpp"
 #include "training/pictures.hpp"
+#include "training/training_report.hpp"
 
 namespace programs {
 
 /// Contents of a page.
-struct LogPageInput {
-  const LogPlan& plan;
+struct TrainingPage {
+  const FitPlan& plan;
   const pinnquad::logs::ImportedDataset& dataset;
-  const LogFits& fits;
-  const LogJudgement& judged;
-  const std::vector<LogVerdict>& verdicts;
+  const Fits& fits;
+  const JudgedKinds& judged;
+  const std::vector<KindVerdict>& verdicts;
   const nlohmann::json& report;                ///< report.json
   std::optional<std::size_t> exported;         ///< of judged.kinds: what was exported, or would have been
   std::string export_sentence;                 ///< what became of it
@@ -34,7 +34,7 @@ struct LogPageInput {
 namespace detail {
 
 /// The predictions of a kind's first seed, parting by parting.
-inline std::vector<const Predictions*> shown_predictions(const LogPageInput& in, std::size_t kind) {
+inline std::vector<const Predictions*> shown_predictions(const TrainingPage& in, std::size_t kind) {
   std::vector<const Predictions*> result(in.plan.folds.size(), nullptr);
   for (const FinishedFit& fit : in.fits.finished) {
     if (fit.kind == kind && fit.seed == in.judged.kinds[kind].seeds.front()) result[fit.fold] = &fit.held_out;
@@ -43,7 +43,7 @@ inline std::vector<const Predictions*> shown_predictions(const LogPageInput& in,
 }
 
 /// The exported kind, the simpler kind nearest to it, the best that looks ahead.
-inline std::vector<std::size_t> shown_kinds(const LogPageInput& in) {
+inline std::vector<std::size_t> shown_kinds(const TrainingPage& in) {
   std::vector<std::size_t> shown;
   const auto show = [&shown](std::size_t k) {
     if (std::find(shown.begin(), shown.end(), k) == shown.end() && shown.size() < most_shown_kinds) shown.push_back(k);
@@ -77,9 +77,8 @@ inline const char* badge_of(Standing standing) {
   }
 }
 
-inline nlohmann::json table_rows(const LogPageInput& in, bool centred) {
+inline nlohmann::json table_rows(const TrainingPage& in, bool centred) {
   nlohmann::json rows = nlohmann::json::array();
-  const std::array<double, 3> nominal = pinnquad::hover_slopes(in.plan.airframe.value);
   for (const std::size_t k : ranking(in.judged, centred)) {
     const JudgedKind& kind = in.judged.kinds[k];
     nlohmann::json row = {{"title", kind.kind.title},
@@ -90,27 +89,41 @@ inline nlohmann::json table_rows(const LogPageInput& in, bool centred) {
                           {"standing", word_of(in.verdicts[k].standing)},
                           {"sentence", in.verdicts[k].sentence}};
     row["figures"] = nlohmann::json::array();
-    for (std::size_t i = 0; i < log_figures.size(); ++i) {
-      std::string label = log_figures[i].title;
+    for (std::size_t i = 0; i < error_figures.size(); ++i) {
+      std::string label = error_figures[i].title;
       if (label.find("R^2") == 0) label.replace(0, 3, "R²");
       row["figures"].push_back(
-          {{"text", shown_figure(over_seeds(kind, log_figures[i]), i < 3 ? 1 : 1e3, i < 3 ? 3 : 1)}, {"label", label}});
+          {{"text", shown_figure(over_seeds(kind, error_figures[i]), i < 3 ? 1 : 1e3, i < 3 ? 3 : 1)},
+           {"label", label}});
     }
-    const KindSlopes slopes = slopes_of(kind);
-    row["slopes"] = nlohmann::json::array();
-    for (std::size_t axis = 0; slopes.applicable && axis < 3; ++axis) {
+    const auto mean_of = [&](double (*of)(const Judgement&, std::size_t)) { return axis_means(kind, of); };
+    const AxisFigures wrong = mean_of([](const Judgement& j, std::size_t i) { return j.derivatives.wrong_share[i]; });
+    const AxisFigures least =
+        mean_of([](const Judgement& j, std::size_t i) { return j.derivatives.least[i] / j.nominal_slopes[i]; });
+    const AxisFigures median =
+        mean_of([](const Judgement& j, std::size_t i) { return j.derivatives.median[i] / j.nominal_slopes[i]; });
+    const AxisFigures large = mean_of([](const Judgement& j, std::size_t i) { return j.pairs.large[i]; });
+    const AxisFigures angle = mean_of([](const Judgement& j, std::size_t i) { return j.axes[i].angle_difference_deg; });
+    const AxisFigures slope = mean_of([](const Judgement& j, std::size_t i) { return j.axes[i].slope_error; });
+    const AxisFigures pearson =
+        mean_of([](const Judgement& j, std::size_t i) { return j.axes[i].predicted_correlation; });
+    row["slopes"] = row["pairs"] = row["ellipses"] = nlohmann::json::array();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      row["pairs"].push_back(shown::number(100 * large[axis], 1));
+      row["ellipses"].push_back({{"angle", shown::number(angle[axis], 2)},
+                                 {"slope", shown::number(100 * slope[axis], 1)},
+                                 {"correlation", shown::number(pearson[axis], 3)}});
+      if (!sees_acceleration(kind)) continue;
       row["slopes"].push_back({{"axis", axis_names[axis]},
-                               {"wrong", shown::number(100 * slopes.wrong_share[axis], 2)},
-                               {"is_wrong", slopes.wrong_share[axis] > 0},
-                               {"least", shown::number(slopes.least[axis] / nominal[axis], 2)},
-                               {"median", shown::number(slopes.median[axis] / nominal[axis], 2)}});
+                               {"wrong", shown::number(100 * wrong[axis], 2)},
+                               {"is_wrong", wrong[axis] > 0},
+                               {"least", shown::number(least[axis], 2)},
+                               {"median", shown::number(median[axis], 2)}});
     }
-    const PairSigns pairs = pair_signs_of(kind);
-    for (std::size_t axis = 0; axis < 3; ++axis) row["pairs"].push_back(shown::number(100 * pairs.large[axis], 1));
     row["motors"] = nlohmann::json::array();
     for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
-      row["motors"].push_back({{"r2", shown_figure(over_seeds(kind, log_figures[0], motor), 1, 3)},
-                               {"rmse", shown_figure(over_seeds(kind, log_figures[3], motor), 1e3, 1)}});
+      row["motors"].push_back({{"r2", shown_figure(over_seeds(kind, error_figures[0], motor), 1, 3)},
+                               {"rmse", shown_figure(over_seeds(kind, error_figures[3], motor), 1e3, 1)}});
     }
     rows.push_back(std::move(row));
   }
@@ -118,7 +131,7 @@ inline nlohmann::json table_rows(const LogPageInput& in, bool centred) {
 }
 
 /// Errors of the shown kinds over what the logs have of speed, battery and height.
-inline std::vector<ErrorsOver> errors_over(const LogPageInput& in, const std::vector<std::size_t>& shown) {
+inline std::vector<ErrorsOver> errors_over(const TrainingPage& in, const std::vector<std::size_t>& shown) {
   std::vector<ErrorsOver> all = {
       {"speed", "m/s", {}, {}, {}}, {"battery", "V", {}, {}, {}}, {"height", "m", {}, {}, {}}};
   std::vector<std::vector<const Predictions*>> predictions;
@@ -162,7 +175,7 @@ inline std::vector<ErrorsOver> errors_over(const LogPageInput& in, const std::ve
 }
 
 /// Command sums of the rows that count, flown and predicted.
-inline std::array<AxisSeries, 3> counted_series(const LogPageInput& in, std::size_t kind) {
+inline std::array<AxisSeries, 3> counted_series(const TrainingPage& in, std::size_t kind) {
   const pinnquad::GivenAirframe airframe{in.plan.airframe.name, in.plan.airframe.value};
   const auto predictions = shown_predictions(in, kind);
   std::array<AxisSeries, 3> all;
@@ -181,7 +194,7 @@ inline std::array<AxisSeries, 3> counted_series(const LogPageInput& in, std::siz
 }
 
 /// Speed and the rest at a moment, as far as the logs have it.
-inline std::string facts_of(const LogMoment& moment, const pinnquad::logs::ImportedDataset& dataset) {
+inline std::string facts_of(const WorstMoment& moment, const pinnquad::logs::ImportedDataset& dataset) {
   const MomentFacts facts = facts_at((*moment.flight)[moment.row]);
   const pinnquad::ExtraColumn* battery = moment.flight->column("battery_voltage");
   std::string text =
@@ -193,11 +206,11 @@ inline std::string facts_of(const LogMoment& moment, const pinnquad::logs::Impor
   return text;
 }
 
-inline nlohmann::json moments_json(const LogPageInput& in, const std::vector<std::size_t>& shown) {
+inline nlohmann::json moments_json(const TrainingPage& in, const std::vector<std::size_t>& shown) {
   constexpr std::size_t told = 8, drawn = 4;
   nlohmann::json list = nlohmann::json::array();
   const auto moments = worst_moments(in.plan.folds, shown_predictions(in, shown.front()), in.judged.counts, told);
-  for (const LogMoment& moment : moments) {
+  for (const WorstMoment& moment : moments) {
     const pinnquad::Sample& sample = (*moment.flight)[moment.row];
     const auto watched = in.watched.find(moment.flight->name);
     char seconds[32];
@@ -224,10 +237,10 @@ inline nlohmann::json moments_json(const LogPageInput& in, const std::vector<std
   return list;
 }
 
-inline nlohmann::json folds_json(const LogPlan& plan) {
+inline nlohmann::json folds_json(const FitPlan& plan) {
   nlohmann::json rows = nlohmann::json::array();
   for (const Fold& fold : plan.folds) {
-    rows.push_back({{"held_out", listed(fold.held_out)},
+    rows.push_back({{"held_out", (fold.by_time ? "the end of " : "") + listed(fold.held_out)},
                     {"held_out_rows", fold.split.test.size()},
                     {"validation", (fold.part_validates ? "last fifth of " : "") + listed(fold.validation)},
                     {"validation_rows", fold.split.validation.size()},
@@ -237,6 +250,28 @@ inline nlohmann::json folds_json(const LogPlan& plan) {
   return rows;
 }
 
+/// What is proven of the export's signs; false where nothing is.
+inline nlohmann::json certificate_json(const nlohmann::json& report) {
+  const nlohmann::json& proven = report["certificate"];
+  if (!proven.is_object()) return false;
+  nlohmann::json told = {{"rows", nlohmann::json::array()}, {"bound", proven["in_words"]}};
+  const auto row = [&told](const std::string& name, double slope, double own, const char* unit) {
+    told["rows"].push_back(
+        {{"name", name}, {"slope", shown::number(slope, 6)}, {"unit", unit}, {"ratio", shown::number(slope / own, 2)}});
+  };
+  for (const char* axis : axis_names) row(axis, proven["slope"][axis], proven["airframe_slope"][axis], "s²/rad");
+  row("thrust", proven["thrust_slope"], proven["airframe_thrust_slope"], "s²/m");
+  return told;
+}
+
+/// Its limits of trust: their file, or why there are none; false where nothing was exported.
+inline nlohmann::json trust_json(const nlohmann::json& report) {
+  const nlohmann::json& trust = report["trust"];
+  if (!trust.is_object()) return false;
+  const auto text = [&trust](const char* key) { return trust[key].is_string() ? trust[key] : nlohmann::json(false); };
+  return {{"file", text("file")}, {"why_not", text("why_not")}};
+}
+
 inline nlohmann::json or_false(const std::string& text) {
   return text.empty() ? nlohmann::json(false) : nlohmann::json(text);
 }
@@ -244,7 +279,7 @@ inline nlohmann::json or_false(const std::string& text) {
 }  // namespace detail
 
 /// The whole page.
-inline std::string log_page(const LogPageInput& in) {
+inline std::string training_page(const TrainingPage& in) {
   constexpr std::size_t most_named = 6;  // held-out flights in the first sentence; all are in the last section
   const std::vector<std::size_t> shown = detail::shown_kinds(in);
   std::size_t rows = 0;
@@ -257,6 +292,8 @@ inline std::string log_page(const LogPageInput& in) {
       {"all_rows", in.dataset.flights.rows()},
       {"seeds", in.plan.seeds},
       {"rotated", in.plan.folds.size() > 1},
+      {"by_time", in.plan.folds.front().by_time},
+      {"logged", !in.dataset.mapping.empty() || !in.dataset.steps.empty()},
       {"fewest_pairs", fewest_pairs},
       {"can_decide", in.judged.flights.size() >= fewest_pairs},
       {"export_sentence", in.export_sentence},
@@ -273,6 +310,8 @@ inline std::string log_page(const LogPageInput& in) {
       {"absent", detail::or_false(listed(in.dataset.absent))},
       {"headline", false},
       {"closed_loop", false},
+      {"certificate", detail::certificate_json(in.report)},
+      {"trust", detail::trust_json(in.report)},
       {"moments", nlohmann::json::array()},
       {"shown", false},
       {"watched", !in.watched.empty()}};
@@ -287,7 +326,7 @@ inline std::string log_page(const LogPageInput& in) {
                              {"lost", step.rows_before - std::min(step.rows_before, step.rows_after)},
                              {"told", step.told}});
   }
-  if (in.report.contains("closed_loop") && in.report["closed_loop"].contains("model")) {
+  if (in.report["closed_loop"].contains("model")) {
     const nlohmann::json& flown = in.report["closed_loop"];
     page["closed_loop"] = {{"period", shown::number(flown["period_s"], 1)},
                            {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)},
@@ -306,23 +345,27 @@ inline std::string log_page(const LogPageInput& in) {
   }
   if (in.exported) {
     const JudgedKind& kind = in.judged.kinds[*in.exported];
-    const LogVerdict& verdict = in.verdicts[*in.exported];
+    const KindVerdict& verdict = in.verdicts[*in.exported];
     page["headline"] = {{"title", kind.kind.title},
                         {"r2", shown::number(detail::r2_of(kind), 3)},
-                        {"unbiased", shown::number(pinnquad::summarize(over_seeds(kind, log_figures[1])).mean, 3)},
-                        {"rmse", shown::number(1e3 * pinnquad::summarize(over_seeds(kind, log_figures[3])).mean, 1)},
+                        {"unbiased", shown::number(pinnquad::summarize(over_seeds(kind, error_figures[1])).mean, 3)},
+                        {"rmse", shown::number(1e3 * pinnquad::summarize(over_seeds(kind, error_figures[3])).mean, 1)},
                         {"standing", word_of(verdict.standing)},
                         {"sentence", verdict.sentence}};
   }
   if (!shown.empty()) {
+    std::vector<EllipsesOf> ellipses;
+    for (const std::size_t k : shown) {
+      ellipses.push_back({in.judged.kinds[k].kind.title, detail::counted_series(in, k)});
+    }
     page["shown"] = {
         {"name", in.judged.kinds[shown.front()].kind.title},
         {"flights", inline_svg(flights_chart(in.judged, shown))},
         {"over", detail::or_false(inline_svg(errors_over_chart(in.judged, shown, detail::errors_over(in, shown))))},
-        {"ellipses", inline_svg(ellipses_chart({{"held out", detail::counted_series(in, shown.front())}}))}};
+        {"ellipses", inline_svg(ellipses_chart(ellipses))}};
     page["moments"] = detail::moments_json(in, shown);
   }
-  return text_page(log_page_template, page);
+  return text_page(training_page_template, page);
 }
 
 }  // namespace programs

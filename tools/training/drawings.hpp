@@ -11,17 +11,17 @@
 
 #include "command_line/listed.hpp"
 #include "page/chart.hpp"
-#include "training/log_moments.hpp"
-#include "training/log_verdict.hpp"
+#include "training/kind_verdict.hpp"
+#include "training/worst_moments.hpp"
 
 namespace programs {
 
-/// Kinds that a drawing shows in colour, an index of LogJudgement::kinds each.
+/// Kinds that a drawing shows in colour, an index of JudgedKinds::kinds each.
 inline constexpr std::size_t most_shown_kinds = 3;
 inline constexpr const char* colour_of_shown[most_shown_kinds] = {colour::blue, colour::orange, colour::green};
 
 /// Root mean square error of every kind on each held-out flight: a mark each, those shown in colour.
-inline Chart flights_chart(const LogJudgement& judged, const std::vector<std::size_t>& shown) {
+inline Chart flights_chart(const JudgedKinds& judged, const std::vector<std::size_t>& shown) {
   Panel panel;
   panel.y.rows = judged.flights;
   const auto marks = [&](std::size_t k, Series series) {
@@ -60,7 +60,7 @@ struct ErrorsOver {
 };
 
 /// Root mean square (solid) and mean (dashed) of the error in tenths of the rows, from low to high.
-inline Panel errors_over_panel(const LogJudgement& judged, const std::vector<std::size_t>& shown,
+inline Panel errors_over_panel(const JudgedKinds& judged, const std::vector<std::size_t>& shown,
                                const ErrorsOver& over) {
   constexpr std::size_t parts = 10;
   std::vector<std::size_t> order(over.value.size());
@@ -95,7 +95,7 @@ inline Panel errors_over_panel(const LogJudgement& judged, const std::vector<std
 }
 
 /// Panels side by side; none for none.
-inline Chart errors_over_chart(const LogJudgement& judged, const std::vector<std::size_t>& shown,
+inline Chart errors_over_chart(const JudgedKinds& judged, const std::vector<std::size_t>& shown,
                                const std::vector<ErrorsOver>& quantities) {
   Chart chart{"Error over speed, battery and height",
               "Root mean square and mean of the command error, 10⁻³, in tenths of the held-out rows, by model.",
@@ -106,7 +106,7 @@ inline Chart errors_over_chart(const LogJudgement& judged, const std::vector<std
 }
 
 /// The flown and the predicted commands of a motor, two seconds before and after a moment.
-inline Chart moment_chart(const LogMoment& moment, const pinnquad::FlightRows& piece, const LogJudgement& judged,
+inline Chart moment_chart(const WorstMoment& moment, const pinnquad::FlightRows& piece, const JudgedKinds& judged,
                           const std::vector<std::size_t>& shown, const std::vector<const Predictions*>& predictions) {
   constexpr double reach_s = 2;
   const pinnquad::Flight& flight = *moment.flight;

@@ -19,19 +19,19 @@
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
-#include "training/log_fits.hpp"
+#include "training/fits.hpp"
 
 namespace programs {
 
-class LogFitStore {
+class FitStore : public KnownFits {
  public:
   /// The folder is made when the first fit comes.
-  LogFitStore(std::string folder, const LogPlan& plan)
+  FitStore(std::string folder, const FitPlan& plan)
       : folder_(std::move(folder)), plan_(plan), of_plan_(plan_hash(plan)) {}
 
   /// Fills a job that an earlier run of this very program has finished on the same rows. False if there is none; a file
   /// that is not whole, or of another training, is none.
-  bool load(FinishedFit& job) const {
+  bool load(FinishedFit& job) const override {
     std::ifstream file(path_of(job), std::ios::binary);
     Head head{};
     if (!read(file, head) || std::memcmp(head.magic, Head{}.magic, sizeof head.magic) != 0 || head.key != key_of(job))
@@ -43,22 +43,24 @@ class LogFitStore {
     for (auto& row : loaded.held_out) {
       if (!read(file, row)) return false;
     }
-    loaded.validation_error = head.validation_error;
+    loaded.validation_mae = head.validation_mae;
     loaded.fit_s = head.fit_s;
-    loaded.slopes = head.slopes;
+    loaded.derivatives = head.derivatives;
+    loaded.altitude = head.altitude;
     job = std::move(loaded);
     return true;
   }
 
   /// Throws OutputError.
-  void keep(const FinishedFit& job) const {
+  void keep(const FinishedFit& job) const override {
     make_folders(folder_);
     Head head{};
     head.key = key_of(job);
     head.rows = job.held_out.size();
-    head.validation_error = job.validation_error;
+    head.validation_mae = job.validation_mae;
     head.fit_s = job.fit_s;
-    head.slopes = job.slopes;
+    head.derivatives = job.derivatives;
+    head.altitude = job.altitude;
     pinnquad::AtomicFile file(path_of(job));
     write(file.stream(), head);
     for (const auto& row : job.held_out) write(file.stream(), row);
@@ -77,10 +79,11 @@ class LogFitStore {
  private:
   /// As this machine has it in memory: such a file is read by the program that wrote it.
   struct Head {
-    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '1'};
+    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '2'};
     std::uint64_t key = 0, rows = 0;
-    double validation_error = 0, fit_s = 0;
-    LogSlopes slopes;
+    double validation_mae = 0, fit_s = 0;
+    DerivativeFigures derivatives;
+    AltitudeChoice altitude;
   };
   static_assert(std::is_trivially_copyable_v<Head>);
 
@@ -97,8 +100,8 @@ class LogFitStore {
 
   static void absorb(pinnquad::detail::Fnv1a& fnv, double value) { pinnquad::detail::absorb_number(fnv, value); }
 
-  /// The program (by size and time of its file), the airframe, what the logs lack.
-  static std::uint64_t plan_hash(const LogPlan& plan) {
+  /// The program (by size and time of its file), the airframe, what the flights lack, what was asked for.
+  static std::uint64_t plan_hash(const FitPlan& plan) {
     pinnquad::detail::Fnv1a fnv;
     std::error_code ignored;
     const std::filesystem::path program = "/proc/self/exe";
@@ -123,6 +126,12 @@ class LogFitStore {
     for (const std::string& name : plan.absent) fnv.absorb_text(name);
     absorb(fnv, plan.sample_period_s);
     fnv.absorb_word(static_cast<std::uint64_t>(plan.epochs));
+    fnv.absorb_text(plan.selection);
+    const FitSettings& asked = plan.settings;
+    for (const int word :
+         {int{asked.library_airframe}, asked.altitude ? 1 + int{*asked.altitude} : 0, int{asked.pinned_slopes}}) {
+      fnv.absorb_word(static_cast<std::uint64_t>(word));
+    }
     return fnv.hash;
   }
 
@@ -156,7 +165,7 @@ class LogFitStore {
   }
 
   std::string folder_;
-  const LogPlan& plan_;
+  const FitPlan& plan_;
   std::uint64_t of_plan_;
   mutable std::mutex mutex_;
   mutable std::map<const pinnquad::Flight*, std::uint64_t> hashes_;

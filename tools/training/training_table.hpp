@@ -10,25 +10,27 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "training/log_figures.hpp"
-#include "training/log_verdict.hpp"
+#include "training/kind_figures.hpp"
+#include "training/kind_verdict.hpp"
 
 namespace programs {
 namespace detail {
 
-inline void print_kind(const LogJudgement& judged, const std::vector<LogVerdict>& verdicts, std::size_t k) {
+inline void print_kind(const JudgedKinds& judged, const std::vector<KindVerdict>& verdicts, std::size_t k) {
   const JudgedKind& kind = judged.kinds[k];
   std::printf("  %-44s %-8s", kind.kind.title, word_of(kind.kind.reach));
   for (std::size_t i = 0; i < 4; ++i) {
-    const std::vector<double> values = over_seeds(kind, log_figures[i]);
+    const std::vector<double> values = over_seeds(kind, error_figures[i]);
     const bool known = std::isfinite(pinnquad::summarize(values).mean);  // not where a flight ends within its first 4 s
     const bool error = i == 3;
     std::printf("  %15s", known ? mean_and_deviation(values, error ? 1e3 : 1, error ? 2 : 3).c_str() : "-");
   }
-  const KindSlopes slopes = slopes_of(kind);
   double wrong = 0;
-  for (const double share : slopes.wrong_share) wrong = std::max(wrong, share);
-  if (slopes.applicable) {
+  for (const double share :
+       axis_means(kind, [](const Judgement&j, std::size_t axis) { return j.derivatives.wrong_share[axis]; })) {
+    wrong = std::max(wrong, share);
+  }
+  if (sees_acceleration(kind)) {
     std::printf("  %7.2f\n", 100 * wrong);
   } else {
     std::printf("  %7s\n", "-");
@@ -38,7 +40,7 @@ inline void print_kind(const LogJudgement& judged, const std::vector<LogVerdict>
 
 }  // namespace detail
 
-inline void print_log_table(const LogPlan& plan, const LogJudgement& judged, const std::vector<LogVerdict>& verdicts) {
+inline void print_models(const FitPlan& plan, const JudgedKinds& judged, const std::vector<KindVerdict>& verdicts) {
   std::size_t rows = 0;
   for (const std::size_t of_fold : judged.rows) rows += of_fold;
   std::printf("  held out: %zu rows of %zu flights%s; mean +- deviation over the seeds\n", rows, judged.flights.size(),
@@ -62,11 +64,29 @@ inline void print_folds(const std::vector<Fold>& folds) {
     return listed(names, [](const std::string& name) { return pinnquad::printable(name); });
   };
   for (const Fold& fold : folds) {
-    std::printf("      held out: %s (%zu rows)\n", names_of(fold.held_out).c_str(), fold.split.test.size());
-    std::printf("        validate: %s%s (%zu rows)\n", fold.part_validates ? "the last fifth of " : "",
+    std::printf("      held out: %s%s (%zu rows)\n", fold.by_time ? "the end of " : "", names_of(fold.held_out).c_str(),
+                fold.split.test.size());
+    std::printf("        validate: %s%s (%zu rows)\n",
+                fold.by_time          ? "what is before it of "
+                : fold.part_validates ? "the last fifth of "
+                                      : "",
                 names_of(fold.validation).c_str(), fold.split.validation.size());
-    std::printf("        train: %s (%zu rows)\n", names_of(fold.train).c_str(), fold.split.train.size());
+    std::printf("        train: %s%s (%zu rows)\n", fold.by_time ? "the begin of " : "", names_of(fold.train).c_str(),
+                fold.split.train.size());
   }
+}
+
+/// Of one fit, by kind, on one core.
+inline void print_training_time(const JudgedKinds& judged) {
+  std::string kinds;
+  for (const JudgedKind& kind : judged.kinds) {
+    if (!kind.applicable() || !kind.kind.seeded) continue;
+    char text[96];
+    const double mean = pinnquad::summarize(per_seed(kind, [](const JudgedFit& fit) { return fit.fit_s; })).mean;
+    std::snprintf(text, sizeof text, "%s %.2f s", kind.kind.title, mean);
+    add_to_list(kinds, text);
+  }
+  if (!kinds.empty()) std::printf("  training took, per model and core: %s\n", kinds.c_str());
 }
 
 }  // namespace programs

@@ -13,13 +13,13 @@
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
+#include "training/flight_errors.hpp"
 #include "training/hold_out.hpp"
-#include "training/log_errors.hpp"
 
 namespace programs {
 
 /// A row of a held-out flight, and the error about it.
-struct LogMoment {
+struct WorstMoment {
   const pinnquad::Flight* flight = nullptr;
   std::size_t fold = 0;
   std::size_t row = 0;       ///< of the flight
@@ -41,8 +41,8 @@ struct RowSquares {
 };
 
 /// The worst moments of one piece of a parting's held-out rows, the worst first.
-inline std::vector<LogMoment> moments_of(const pinnquad::FlightRows& piece, std::size_t fold, std::size_t first,
-                                         const Predictions& predictions, const std::vector<bool>& counts) {
+inline std::vector<WorstMoment> moments_of(const pinnquad::FlightRows& piece, std::size_t fold, std::size_t first,
+                                           const Predictions& predictions, const std::vector<bool>& counts) {
   std::vector<RowSquares> squares;
   for (std::size_t i = piece.rows.begin; i < piece.rows.end; ++i) {
     const std::size_t at = first + i - piece.rows.begin;
@@ -54,7 +54,7 @@ inline std::vector<LogMoment> moments_of(const pinnquad::FlightRows& piece, std:
     }
     squares.push_back(square);
   }
-  std::vector<LogMoment> moments;
+  std::vector<WorstMoment> moments;
   std::size_t begin = 0, end = 0;
   MotorFigures sum{};
   for (std::size_t i = 0; i < squares.size(); ++i) {
@@ -69,16 +69,17 @@ inline std::vector<LogMoment> moments_of(const pinnquad::FlightRows& piece, std:
     double all = 0;
     for (const double of_motor : sum) all += of_motor;
     const double count = static_cast<double>(end - begin) * static_cast<double>(sum.size());
-    LogMoment moment{piece.flight,
-                     fold,
-                     squares[i].row,
-                     first + squares[i].row - piece.rows.begin,
-                     std::sqrt(std::max(0.0, all) / count),
-                     0};
+    WorstMoment moment{piece.flight,
+                       fold,
+                       squares[i].row,
+                       first + squares[i].row - piece.rows.begin,
+                       std::sqrt(std::max(0.0, all) / count),
+                       0};
     moment.motor = static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
     moments.push_back(moment);
   }
-  std::sort(moments.begin(), moments.end(), [](const LogMoment& a, const LogMoment& b) { return a.error > b.error; });
+  std::sort(moments.begin(), moments.end(),
+            [](const WorstMoment& a, const WorstMoment& b) { return a.error > b.error; });
   return moments;
 }
 
@@ -102,18 +103,18 @@ inline MomentFacts facts_at(const pinnquad::Sample& sample) {
 
 /// The worst moments of all held-out rows, at most `count`, the worst first, none within seconds of another.
 /// `predictions[fold]` and `counts[fold]` are of the parting's held-out rows.
-inline std::vector<LogMoment> worst_moments(const std::vector<Fold>& folds,
-                                            const std::vector<const Predictions*>& predictions,
-                                            const std::vector<std::vector<bool>>& counts, std::size_t count) {
-  std::vector<LogMoment> all;
+inline std::vector<WorstMoment> worst_moments(const std::vector<Fold>& folds,
+                                              const std::vector<const Predictions*>& predictions,
+                                              const std::vector<std::vector<bool>>& counts, std::size_t count) {
+  std::vector<WorstMoment> all;
   for (std::size_t fold = 0; fold < folds.size(); ++fold) {
     std::size_t first = 0;
     for (const pinnquad::FlightRows& piece : folds[fold].split.test.pieces()) {
       const auto of_piece = detail::moments_of(piece, fold, first, *predictions[fold], counts[fold]);
-      std::vector<LogMoment> kept;
-      for (const LogMoment& moment : of_piece) {
+      std::vector<WorstMoment> kept;
+      for (const WorstMoment& moment : of_piece) {
         const double time_s = (*moment.flight)[moment.row].time_s;
-        const bool near = std::any_of(kept.begin(), kept.end(), [&](const LogMoment& other) {
+        const bool near = std::any_of(kept.begin(), kept.end(), [&](const WorstMoment& other) {
           return std::abs((*other.flight)[other.row].time_s - time_s) < detail::moments_apart_s;
         });
         if (!near) kept.push_back(moment);
@@ -123,14 +124,15 @@ inline std::vector<LogMoment> worst_moments(const std::vector<Fold>& folds,
       first += piece.rows.size();
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const LogMoment& a, const LogMoment& b) { return a.error > b.error; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const WorstMoment& a, const WorstMoment& b) { return a.error > b.error; });
   all.resize(std::min(count, all.size()));
   return all;
 }
 
 /// Everything unusual for that flight within half a second of the moment, in a few words; "nothing that stands out"
 /// else.
-inline std::string what_happened(const LogMoment& moment, const pinnquad::logs::ImportedDataset& dataset) {
+inline std::string what_happened(const WorstMoment& moment, const pinnquad::logs::ImportedDataset& dataset) {
   constexpr double unusual = 0.95, nearly_full = 0.97, nearly_idle = 0.03;
   const pinnquad::Flight& flight = *moment.flight;
   std::vector<MomentFacts> all;

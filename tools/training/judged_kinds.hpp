@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "training/log_fits.hpp"
+#include "training/fits.hpp"
+#include "training/flight_errors.hpp"
 
 namespace programs {
 
@@ -19,16 +20,15 @@ namespace programs {
 struct JudgedFit {
   std::size_t fold = 0;
   std::uint64_t seed = 0;
-  LogErrors errors;
+  FlightErrors errors;
   std::vector<double> by_flight;  ///< error_by_flight() of the parting's held-out flights
-  LogSlopes slopes;
-  PairSigns pairs;
-  double validation_error = pinnquad::not_a_number;
+  Judgement judged;
+  double validation_mae = pinnquad::not_a_number;
   double fit_s = 0;
 };
 
 struct JudgedKind {
-  LogModelKind kind;
+  ModelKind kind;
   std::string not_applicable;        ///< why there is nothing to judge; empty if there is
   std::vector<std::uint64_t> seeds;  ///< those with a fit on every parting
   std::vector<JudgedFit> fits;       ///< of these seeds: by seed, then parting
@@ -38,7 +38,7 @@ struct JudgedKind {
   const JudgedFit& at(std::size_t seed, std::size_t fold) const { return fits[seed * folds() + fold]; }
 };
 
-struct LogJudgement {
+struct JudgedKinds {
   std::vector<JudgedKind> kinds;          ///< in the order of the plan
   std::vector<std::vector<bool>> counts;  ///< per parting: the held-out rows that all kinds answer
   std::vector<std::string> flights;       ///< held out, parting by parting; in a rotation each once
@@ -85,20 +85,22 @@ inline double answered_share(const FinishedFit& fit) {
   return static_cast<double>(count) / static_cast<double>(fit.held_out.size());
 }
 
-inline PairSigns pair_signs(const LogPlan& plan, const pinnquad::RowSet& rows, const Predictions& held_out,
-                            const std::vector<bool>& counts) {
-  const PredictedRows counted = rows_that_count(rows, held_out, counts);
-  const pinnquad::GivenAirframe airframe{plan.airframe.name, plan.airframe.value};
-  return programs::pair_signs(axis_series(airframe, counted.rows, counted.predictions));
+inline Judgement judgement_of(const FitPlan& plan, const pinnquad::RowSet& rows, const FinishedFit& fit,
+                              const std::vector<bool>& counts) {
+  const PredictedRows counted = rows_that_count(rows, fit.held_out, counts);
+  Judgement judged =
+      judge(pinnquad::GivenAirframe{plan.airframe.name, plan.airframe.value}, counted.rows, counted.predictions);
+  judged.derivatives = fit.derivatives;
+  return judged;
 }
 
 }  // namespace detail
 
 /// Rows that a kind leaves without an answer (a window that is not complete) count for no kind. A kind that leaves more
 /// than half of a parting's rows without one is not judged.
-inline LogJudgement judge_fits(const LogPlan& plan, const LogFits& fits) {
+inline JudgedKinds judge_fits(const FitPlan& plan, const Fits& fits) {
   constexpr double least_answered = 0.5;
-  LogJudgement result;
+  JudgedKinds result;
   std::vector<std::map<std::uint64_t, std::vector<const FinishedFit*>>> by_seed(plan.kinds.size());
   for (std::size_t kind = 0; kind < plan.kinds.size(); ++kind) {
     result.kinds.push_back({plan.kinds[kind], "", {}, {}});
@@ -145,9 +147,9 @@ inline LogJudgement judge_fits(const LogPlan& plan, const LogFits& fits) {
       for (const FinishedFit* fit : of_seed) {
         const pinnquad::RowSet& rows = plan.folds[fit->fold].split.test;
         const std::vector<bool>& counts = result.counts[fit->fold];
-        kind.fits.push_back({fit->fold, seed, log_errors(rows, fit->held_out, counts),
-                             error_by_flight(rows, fit->held_out, counts), fit->slopes,
-                             detail::pair_signs(plan, rows, fit->held_out, counts), fit->validation_error, fit->fit_s});
+        kind.fits.push_back({fit->fold, seed, flight_errors(rows, fit->held_out, counts),
+                             error_by_flight(rows, fit->held_out, counts),
+                             detail::judgement_of(plan, rows, *fit, counts), fit->validation_mae, fit->fit_s});
       }
     }
     if (kind.seeds.empty()) kind.not_applicable = "not finished: interrupted before every parting had a fit";

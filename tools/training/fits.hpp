@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// Fits every kind of model to every parting of a dataset, from every seed, over the cores; Ctrl-C keeps what is
+// finished.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "command_line/interrupt.hpp"
+#include "command_line/parallel.hpp"
+#include "pinnquad/loss/context.hpp"
+#include "training/hold_out.hpp"
+#include "training/model_kind.hpp"
+#include "training/trained_network.hpp"
+
+namespace programs {
+
+struct FitPlan {
+  const NamedAirframe& airframe;
+  std::string selection;  ///< of the kinds: a recipe's name, or "logs"
+  std::vector<ModelKind> kinds;
+  std::vector<Fold> folds;
+  std::vector<std::string> absent;
+  double sample_period_s = 0;
+  std::uint64_t first_seed = 1;
+  int seeds = 5;
+  int epochs = 0;
+  unsigned threads = 1;
+  FitSettings settings{};
+
+  FitTask task(const Fold& fold, std::uint64_t seed) const {
+    return {airframe, fold.split.train, fold.split.validation, absent, sample_period_s, seed, epochs, settings};
+  }
+};
+
+/// One kind on one parting from one seed, and what it answers on the rows held out.
+struct FinishedFit {
+  std::size_t kind = 0, fold = 0;  ///< of the plan
+  std::uint64_t seed = 0;
+  Predictions held_out;
+  /// Mean absolute error of the commands on the validation rows that it answers, if it was not fitted to them; else NaN.
+  double validation_mae = pinnquad::not_a_number;
+  double fit_s = 0;
+  DerivativeFigures derivatives;  ///< over the rows held out
+  AltitudeChoice altitude;
+  std::shared_ptr<const TrainedNetwork> model;  ///< null: taken from a file of an earlier run
+};
+
+/// An earlier run's fits, or none: FitStore (training/fit_store.hpp).
+class KnownFits {
+ public:
+  virtual ~KnownFits() = default;
+  /// Fills a fit that an earlier run has finished. False: there is none.
+  virtual bool load(FinishedFit& /*job*/) const { return false; }
+  /// Is told of each that this run finishes, from the thread that did it.
+  virtual void keep(const FinishedFit& /*job*/) const {}
+};
+
+struct Fits {
+  std::vector<FinishedFit> finished;  ///< by seed, parting, kind
+  /// [kind][parting]: why it has no fit there; empty if it can have one.
+  std::vector<std::vector<std::string>> not_applicable;
+  std::size_t wanted = 0;
+  std::size_t known = 0;  ///< of the finished ones: from an earlier run
+};
+
+namespace detail {
+
+inline bool answered(const std::array<double, pinnquad::rotor_count>& commands) {
+  return std::all_of(commands.begin(), commands.end(), [](double u) { return std::isfinite(u); });
+}
+
+inline double mean_absolute_error(const pinnquad::RowSet& rows, const Predictions& predictions) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (!answered(predictions[row])) continue;
+    for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+      sum += std::abs(predictions[row][motor] - rows[row].commands[motor]);
+    }
+    count += pinnquad::rotor_count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : pinnquad::not_a_number;
+}
+
+inline Predictions predictions_of(const ModelKind& kind, const TrainedNetwork& model, const pinnquad::RowSet& rows) {
+  Predictions predictions = model.predictions(rows);
+  if (predictions.size() != rows.size()) {
+    throw std::logic_error(std::string(kind.key) + ": " + std::to_string(predictions.size()) + " predictions of " +
+                           std::to_string(rows.size()) + " rows");
+  }
+  return predictions;
+}
+
+}  // namespace detail
+
+inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const NamedAirframe& given) {
+  const pinnquad::GivenAirframe airframe{given.name, given.value};
+  return {airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()};
+}
+
+/// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose
+/// rows held out have no say), one that takes the validation rows for fitting is fitted without them too, from the first
+/// seed. Throws what the kind's fit() throws.
+inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) {
+  const ModelKind& kind = plan.kinds[job.kind];
+  const Fold& fold = plan.folds[job.fold];
+  const auto error_of = [&](const TrainedNetwork& model) {
+    return detail::mean_absolute_error(fold.split.validation,
+                                       detail::predictions_of(kind, model, fold.split.validation));
+  };
+  const auto start = std::chrono::steady_clock::now();
+  job.model = kind.fit(task);
+  job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  job.altitude = job.model->altitude();
+  if (!kind.takes_validation) {
+    job.validation_mae = error_of(*job.model);
+  } else if (plan.folds.size() == 1 && job.seed == plan.first_seed && !fold.split.test.empty()) {
+    const pinnquad::RowSet none;
+    const FitTask without{task.airframe,        task.training, none,        task.absent,
+                          task.sample_period_s, task.seed,     task.epochs, task.settings};
+    job.validation_mae = error_of(*kind.fit(without));
+  }
+  if (fold.split.test.empty()) return;  // to be exported
+  job.held_out = detail::predictions_of(kind, *job.model, fold.split.test);
+  job.derivatives = job.model->derivatives(fold.split.test);
+}
+
+/// A fit that is known from an earlier run, once more: the same rows, seed and altitude give the same model.
+inline void fit_again(const FitPlan& plan, FinishedFit& job) {
+  FitTask task = plan.task(plan.folds[job.fold], job.seed);
+  if (job.altitude.applies && job.seed != plan.first_seed) task.settings.altitude = job.altitude.taken;
+  fit_one(plan, job, task);
+}
+
+/// All of a plan. Where the first seed's fit chooses whether a kind is shown the altitude, the other seeds' follow it.
+inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{}) {
+  Fits fits;
+  fits.not_applicable.assign(plan.kinds.size(), std::vector<std::string>(plan.folds.size()));
+  for (std::size_t kind = 0; kind < plan.kinds.size(); ++kind) {
+    for (std::size_t fold = 0; fold < plan.folds.size(); ++fold) {
+      fits.not_applicable[kind][fold] = plan.kinds[kind].not_applicable(plan.task(plan.folds[fold], plan.first_seed));
+    }
+  }
+  std::vector<FinishedFit> jobs;
+  std::size_t of_first_seed = 0;
+  for (int i = 0; i < plan.seeds; ++i) {  // a seed whole before the next: what an interruption leaves can be compared
+    for (std::size_t fold = 0; fold < plan.folds.size(); ++fold) {
+      for (std::size_t kind = 0; kind < plan.kinds.size(); ++kind) {
+        if (!fits.not_applicable[kind][fold].empty() || (i > 0 && !plan.kinds[kind].seeded)) continue;
+        FinishedFit job;
+        job.kind = kind;
+        job.fold = fold;
+        job.seed = plan.first_seed + static_cast<std::uint64_t>(i);
+        jobs.push_back(std::move(job));
+      }
+    }
+    if (i == 0) of_first_seed = jobs.size();
+  }
+  fits.wanted = jobs.size();
+  std::vector<char> done(jobs.size(), 0);
+  std::vector<std::string> refused(jobs.size());
+  std::vector<std::atomic<double>> shares(jobs.size());
+  std::atomic<std::size_t> known{0};
+  const auto fit = [&](std::size_t i) {
+    stop_if_interrupted();
+    if (earlier.load(jobs[i])) {
+      done[i] = 1;
+      known.fetch_add(1);
+    } else {
+      FitTask task = plan.task(plan.folds[jobs[i].fold], jobs[i].seed);
+      task.share_done = [&shares, i](double share) { shares[i].store(share); };
+      for (std::size_t first = 0; first < of_first_seed && i >= of_first_seed; ++first) {
+        if (jobs[first].kind == jobs[i].kind && jobs[first].fold == jobs[i].fold && jobs[first].altitude.applies) {
+          task.settings.altitude = jobs[first].altitude.taken;
+        }
+      }
+      try {
+        fit_one(plan, jobs[i], task);
+        earlier.keep(jobs[i]);
+        done[i] = 1;
+      } catch (const std::invalid_argument& without_answer) {
+        refused[i] = without_answer.what();
+      }
+    }
+    shares[i].store(1);
+  };
+  const auto run = [&](std::size_t begin, std::size_t end) {
+    const auto share_done = [&] {
+      double sum = 0;
+      for (std::size_t i = begin; i < end; ++i) sum += shares[i].load();
+      return sum / static_cast<double>(end - begin);
+    };
+    run_parallel("fitting " + std::to_string(end - begin) + " models", end - begin, plan.threads, share_done,
+                 [&](std::size_t i) { fit(begin + i); });
+  };
+  run(0, of_first_seed);
+  if (of_first_seed < jobs.size()) run(of_first_seed, jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (!refused[i].empty()) fits.not_applicable[jobs[i].kind][jobs[i].fold] = refused[i];
+    if (done[i] != 0) fits.finished.push_back(std::move(jobs[i]));
+  }
+  fits.known = known.load();
+  return fits;
+}
+
+}  // namespace programs

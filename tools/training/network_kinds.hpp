@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Networks as kinds of models: the one loop over epochs, and the paper's network under each loss that a training can be
+// asked for by name.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "command_line/interrupt.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
+#include "pinnquad/loss/physics_informed.hpp"
+#include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/training/checkpoint.hpp"
+#include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/trained_model.hpp"
+#include "pinnquad/training/trainer.hpp"
+#include "training/best_recipe.hpp"
+#include "training/model_kind.hpp"
+
+namespace programs {
+
+/// The epoch of a training that counts.
+enum class KeptEpoch { last, best_on_validation };
+
+/// A network from the task's seed, which gives initialisation and batch order, alike for all losses.
+template <class Network, class Context, class Loss, class Optimizer>
+Network trained_network(const FitTask& task, const Context& context, const Loss& loss, const Optimizer& optimizer,
+                        int epochs, KeptEpoch which) {
+  using Trainer = pinnquad::Trainer<Network, Loss, Optimizer, Context, pinnquad::ShuffledBatches, batch_size>;
+  const auto data = pinnquad::standardised<float>(context, task.training);
+  std::optional<typename Trainer::Data> validation;
+  if (which == KeptEpoch::best_on_validation) validation = pinnquad::standardised<float>(context, task.validation);
+  std::mt19937_64 engine(task.seed);
+  const auto network = pinnquad::initialised<Network>(engine);
+  const auto trainer = std::make_unique<Trainer>(network, loss, optimizer, context);
+  pinnquad::Checkpoint<Network> best;
+  for (int epoch = 0; epoch < epochs; ++epoch) {
+    stop_if_interrupted();
+    trainer->epoch(data, {epoch, epochs}, engine);
+    if (validation) best.offer(epoch, trainer->validate(*validation).mean_squared, *trainer);
+    task.share_done(static_cast<double>(epoch + 1) / epochs);
+  }
+  return best.empty() ? trainer->network() : best.network();
+}
+
+template <class Axis>
+using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnquad::CyclicalAnnealing>;
+using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
+                                              PearsonTerm<pinnquad::Yaw>>;
+
+/// Of a recipe where --epochs does not say another number.
+inline constexpr int recipe_epochs = 300;
+
+namespace detail {
+
+/// `Parts` is what differs between recipes: type Network; losses annealed(), constant(), pearson(); optimisers
+/// vanilla_optimizer() and informed_optimizer().
+template <class Parts, class MakeLoss, class MakeOptimizer>
+std::shared_ptr<const TrainedNetwork> fit_by_parts(const FitTask& task, const MakeLoss& loss,
+                                                   const MakeOptimizer& optimizer) {
+  using Context = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::GivenAirframe>;
+  const auto context = pinnquad::make_context<Context>(task.training, task.given_airframe());
+  const int epochs = task.epochs > 0 ? task.epochs : recipe_epochs;
+  const auto network = std::make_unique<typename Parts::Network>(
+      trained_network<typename Parts::Network>(task, context, loss(), optimizer(), epochs, KeptEpoch::last));
+  const auto model = pinnquad::make_trained_model(*network, context, task.training);
+  return std::make_shared<NetworkOfModel<std::decay_t<decltype(model)>>>(model, task.settings.library_airframe);
+}
+
+}  // namespace detail
+
+/// The network of a recipe under each loss; `loss_names` has their keys.
+template <class Parts>
+std::vector<ModelKind> network_kinds() {
+  using Task = FitTask;
+  constexpr auto present = TimeReach::present;
+  return {
+      {"vanilla", "vanilla", present, true, needs_velocity,
+       [](const Task& task) {
+         return detail::fit_by_parts<Parts>(
+             task, [] { return pinnquad::Mse{}; }, Parts::vanilla_optimizer);
+       },
+       false, "MSE"},
+      {"physics_informed", "physics-informed", present, true, needs_velocity,
+       [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::annealed, Parts::informed_optimizer); },
+       false, "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"},
+      {"constant_weight", "constant weight", present, true, needs_velocity,
+       [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::constant, Parts::informed_optimizer); },
+       false, "MSE + local monotonicity (roll, pitch, yaw), constant weight"},
+      {"pearson", "pearson", present, true, needs_velocity,
+       [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::pearson, Parts::informed_optimizer); },
+       false, "MSE + Pearson's correlation (roll, pitch, yaw), cyclical annealing"}};
+}
+
+/// The losses that `--loss` takes: the keys of network_kinds(), in its order.
+inline constexpr std::array<const char*, 4> loss_names = {"vanilla", "physics_informed", "constant_weight", "pearson"};
+
+/// Recipe::still_features of the paper's features.
+inline std::vector<std::string> still_paper_features(const FitTask& task) {
+  return pinnquad::still_features<pinnquad::PaperFeatures>(task.training);
+}
+
+/// "16 -> 10 x 25 ReLU -> 4, 6379 parameters": the words are the middle.
+template <class Network>
+std::string network_in_words(const std::string& hidden) {
+  return std::to_string(Network::inputs) + " -> " + hidden + " -> " + std::to_string(Network::outputs) + ", " +
+         std::to_string(Network::parameter_count) + " parameters";
+}
+
+}  // namespace programs

@@ -1,0 +1,506 @@
+// SPDX-License-Identifier: MIT
+// Trains on flights, and says honestly what came of it.
+#include "training/train_run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "airframe/choice.hpp"
+#include "command_line/console.hpp"
+#include "command_line/file_roles.hpp"
+#include "command_line/folder_lock.hpp"
+#include "command_line/interrupt.hpp"
+#include "command_line/listed.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
+#include "training/closed_loop.hpp"
+#include "training/export_choice.hpp"
+#include "training/fit_store.hpp"
+#include "training/train_input.hpp"
+#include "training/training_page.hpp"
+#include "training/training_report.hpp"
+#include "training/training_table.hpp"
+#include "training/watched_flight.hpp"
+
+namespace {
+
+using namespace pinnquad;
+using programs::TrainOptions;
+
+/// Of an export; the others of --out are written whatever comes of it.
+constexpr std::array<const char*, 4> export_names = {"model.hpp", "model.block", "trust.hpp", "replay.txt"};
+constexpr std::array<const char*, 3> output_names = {"results.csv", "report.json", "report.html"};
+
+template <class Use>
+void each_output(const TrainOptions& options, const Use& use) {
+  for (const char* name : output_names) use(options.out + "/" + name);
+  for (const char* name : export_names) use(options.out + "/" + name);
+}
+
+/// No output takes the place of an input or of another output.
+void require_separate_files(const TrainOptions& options) {
+  programs::FileRoles roles;
+  for (const std::string& path : options.flights) roles.reads("--flight", path);
+  for (const std::string& path : options.logs) roles.reads("--log", path);
+  if (!options.dataset.empty()) roles.reads("--dataset", options.dataset);
+  if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
+  roles.writes("--out", options.out);
+  each_output(options, [&roles](const std::string& path) { roles.writes("--out", path); });
+}
+
+std::string decimals(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+void announce(const std::string& step) {
+  std::printf("%s\n", step.c_str());
+  std::fflush(stdout);
+}
+
+/// Fits, judges, exports: one run of the command.
+class Training {
+ public:
+  Training(const TrainOptions& options, const programs::Selection& selection,
+           const pinnquad::logs::ImportedDataset& dataset, const programs::NamedAirframe& airframe,
+           std::vector<programs::Fold> folds)
+      : options_(options),
+        recipe_(selection.recipe),
+        dataset_(dataset),
+        plan_{airframe,
+              selection.name,
+              selection.kinds,
+              std::move(folds),
+              dataset.absent,
+              dataset.sample_period_s,
+              options.seed,
+              options.seeds,
+              options.epochs > 0 || !recipe_ ? options.epochs : programs::recipe_epochs,
+              options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()),
+              {!programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes}},
+        report_(options.out + "/report.json", plan_, dataset, facts_of_recipe()) {}
+
+  int run() {
+    warn_of_the_setting();
+    announce("[2/5] fit " + std::to_string(plan_.kinds.size()) + " kinds of models, " + std::to_string(plan_.seeds) +
+             " seeds");
+    tell_recipe();
+    const programs::FitStore store(options_.out + "/fits", plan_);
+    int code = 0;
+    try {
+      fit(store);
+      code = judge_and_export();
+    } catch (const programs::Interrupted&) {
+      report_.write_not_exported("interrupted");
+      throw programs::Interrupted{kept()};
+    }
+    announce("[5/5] report");
+    programs::keeping(kept(), [&] { write_page(); });
+    store.clear();
+    return code;
+  }
+
+ private:
+  nlohmann::json facts_of_recipe() const {
+    if (!recipe_) return nlohmann::json::object();
+    nlohmann::json facts = recipe_->settings;
+    facts["recipe"] = recipe_->name;
+    for (const programs::ModelKind& kind : plan_.kinds) {
+      if (kind.exportable) facts["losses"][kind.key] = kind.words;
+    }
+    if (facts.contains("structured")) facts["structured"]["slopes"] = options_.pinned_slopes ? "pinned" : "learned";
+    return facts;
+  }
+
+  void tell_recipe() const {
+    if (!recipe_) return;
+    std::printf("      network %s; %s, batch %d, %d epochs\n", recipe_->network.c_str(), recipe_->optimizer.c_str(),
+                recipe_->settings.at("batch").get<int>(), plan_.epochs);
+    if (!recipe_->besides_in_words.empty()) std::printf("      %s\n", recipe_->besides_in_words.c_str());
+    std::fflush(stdout);
+  }
+
+  void fit(const programs::FitStore& store) {
+    fits_ = programs::fit_all(plan_, store);
+    if (fits_.known > 0) {
+      std::printf("      %zu of %zu fits were finished by an earlier run\n", fits_.known, fits_.wanted);
+    }
+    report_.interrupted_after(fits_.finished.size(), fits_.wanted);
+    if (fits_.finished.size() < fits_.wanted) programs::stop_if_interrupted();
+  }
+
+  int judge_and_export() {
+    announce("[3/5] judge");
+    judged_ = programs::judge_fits(plan_, fits_);
+    verdicts_ = programs::verdicts_on(judged_);
+    programs::print_models(plan_, judged_, verdicts_);
+    programs::print_training_time(judged_);
+    tell_altitude();
+    std::fflush(stdout);
+    report_.judged(plan_, judged_, verdicts_);
+    programs::write_results(options_.out + "/results.csv", plan_, judged_);
+    return export_best();
+  }
+
+  /// Of the first seed's fit on the first parting.
+  void tell_altitude() {
+    for (const programs::FinishedFit& fit : fits_.finished) {
+      if (!fit.altitude.applies) continue;
+      const auto thousandths = [](double error) { return decimals(1e3 * error, 2) + "e-3"; };
+      const programs::AltitudeChoice& choice = fit.altitude;
+      const std::string why = !is_finite(choice.error_with)
+                                  ? std::string("as --altitude asks")
+                                  : "error on the validation rows with it " + thousandths(choice.error_with) +
+                                        ", without " + thousandths(choice.error_without) +
+                                        (choice.taken ? "" : "; a fifth less would take it");
+      std::printf("  the structured model is %s the altitude: %s\n", choice.taken ? "shown" : "not shown", why.c_str());
+      report_.altitude(choice, options_.altitude, why);
+      return;
+    }
+  }
+
+  bool rotated() const { return !options_.hold_out_each.empty(); }
+
+  void warn_of_the_setting() {
+    if (options_.airframe.empty() && options_.flights.empty()) {
+      report_.warn("no --airframe: the linearized model and the nominal slopes are those of " + plan_.airframe.name +
+                   ", which is not what flew");
+    }
+    for (const programs::Fold& fold : plan_.folds) {
+      if (fold.part_validates) {
+        report_.warn("holding out " + fold.name +
+                     " leaves one trajectory: its last fifth validates, no flight of its own");
+      }
+    }
+    if (judges() < programs::fewest_pairs && options_.flights.empty()) {
+      report_.warn("paired tests over " + std::to_string(judges()) + " held-out flights can't decide: fewer than " +
+                   std::to_string(programs::fewest_pairs) + "; --hold-out-each judges by more");
+    }
+    if (!recipe_) return;
+    const std::string still = programs::listed(recipe_->still_features(plan_.task(plan_.folds.front(), 1)));
+    if (!still.empty()) {
+      report_.warn(still +
+                   ": nothing changes in the training rows; the model will not know what it does, and answers only "
+                   "near the value flown");
+    }
+  }
+
+  std::size_t judges() const {
+    std::size_t flights = 0;
+    for (const programs::Fold& fold : plan_.folds) flights += fold.held_out.size();
+    return flights;
+  }
+
+  std::string kept() const {
+    return std::to_string(fits_.finished.size()) + " of " + std::to_string(fits_.wanted) +
+           " fits are finished and kept in " + options_.out + "/fits: the same command goes on from there";
+  }
+
+  int refuse(const std::string& reason, const std::string& advice = {}) {
+    report_.write_not_exported(reason);
+    told_ = "Nothing was exported: " + reason + ".";
+    std::string earlier;
+    for (const char* name : export_names) {
+      const std::string path = options_.out + "/" + name;
+      std::error_code ignored;
+      if (std::filesystem::exists(path, ignored))
+        earlier += (earlier.empty() ? "; of an earlier training: " : ", ") + path;
+    }
+    programs::complain("train", "not exported: " + reason + advice + earlier);
+    return programs::exit_failed;
+  }
+
+  /// What could help where a kind is worse than the mean.
+  std::string advice(const programs::ModelKind& kind) const {
+    if (!recipe_) return "; --allow-poor exports it, marked";
+    if (kind.key != std::string("structured")) return "; more epochs or a better flight, or --allow-poor";
+    return std::string("; ") + (options_.pinned_slopes ? "--slopes learned, " : "") +
+           "a better flight, --allow-poor, or --recipe paper, of whose networks nothing is proven";
+  }
+
+  struct Exported {
+    std::shared_ptr<const programs::TrainedNetwork> model;
+    std::uint64_t seed = 0;
+    const programs::Fold* fold = nullptr;
+    nlohmann::json flown;  ///< what came of the closed loop
+  };
+
+  std::string export_choice() const {
+    if (!options_.export_choice.empty()) return options_.export_choice;
+    return recipe_ ? programs::Recipe::exported_of(plan_.kinds) : programs::export_causal;
+  }
+
+  /// The verdict on a kind that may be exported: on the very fit, unless it is fitted anew.
+  Verdict verdict_of(std::size_t kind) const {
+    std::optional<std::uint64_t> seed;
+    if (!rotated()) {
+      const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation);
+      if (best == nullptr) return {not_a_number, not_a_number, not_a_number};
+      seed = best->seed;
+    }
+    return programs::exported_verdict(plan_, judged_, kind, seed);
+  }
+
+  int export_best() {
+    const std::vector<std::size_t> order = programs::kinds_to_export(judged_, export_choice(), rotated());
+    if (order.empty()) return refuse("no model of the kind asked for was judged");
+    chosen_ = order.front();
+    const programs::ModelKind& first = judged_.kinds[*chosen_].kind;
+    const Verdict verdict = verdict_of(*chosen_);
+    report_.verdict(first, {}, verdict, !verdict.worse_than_mean() || options_.allow_poor);
+    if (verdict.worse_than_mean() && !options_.allow_poor) {
+      return refuse(std::string(first.title) + ", the best, is worse on the rows held out than the mean of their " +
+                        "commands (R^2 " + decimals(verdict.test_r_squared, 4) + ")",
+                    advice(first));
+    }
+    report_.write_not_exported("the export was not finished");
+    std::optional<Exported> made;
+    for (const std::size_t k : order) {
+      if (k != order.front() && verdict_of(k).worse_than_mean()) continue;
+      Exported next = exported(k);
+      next.flown = fly(next, judged_.kinds[k].kind);
+      const bool lost = programs::lost_vehicle(next.flown);
+      if (lost) {
+        report_.warn(std::string(judged_.kinds[k].kind.title) + " loses the vehicle in the closed loop (" +
+                     decimals(next.flown["model"]["largest_error_m"], 1) + " m off): not fit to fly" +
+                     (k != order.back() ? "; the next best is tried" : ""));
+      }
+      if (!lost || !made) {
+        made = std::move(next);
+        chosen_ = k;
+      }
+      if (!lost) break;
+    }
+    if (order.size() > 1 && programs::lost_vehicle(made->flown)) {
+      report_.warn(
+          "every model loses the vehicle in the closed loop: what is exported is the best by its figures alone");
+    }
+    write_with_warnings(*made);
+    return 0;
+  }
+
+  void write_with_warnings(const Exported& made) {
+    const programs::JudgedKind& kind = judged_.kinds[*chosen_];
+    const Verdict verdict = verdict_of(*chosen_);
+    const std::string title = kind.kind.title;
+    report_.verdict(kind.kind, rotated() ? std::optional<std::uint64_t>{} : made.seed, verdict, true);
+    if (verdict.worse_than_mean()) {
+      report_.warn("NOT FOR FLIGHT: " + title + " is worse than the mean of the commands");
+    } else if (verdict.test_r_squared <= verdict.linear_regression_r_squared) {
+      report_.warn(title + " does not beat linear regression on the paper's features (R^2 " +
+                   decimals(verdict.test_r_squared, 4) + " against " +
+                   decimals(verdict.linear_regression_r_squared, 4) + "): a linear map of them would fly as well");
+    }
+    const programs::KindVerdict& beside_simpler = verdicts_[*chosen_];
+    if (beside_simpler.standing > programs::Standing::undecided) {
+      report_.warn("what is exported, " + title + ": " + beside_simpler.sentence);
+    }
+    if (verdict.has_poor_motor()) {
+      report_.warn("one motor's commands are predicted worse than by their mean (R^2 " +
+                   decimals(verdict.worst_motor_r_squared, 4) + " on the rows held out)");
+    }
+    if (kind.kind.reach == programs::TimeReach::centred) {
+      report_.warn(title + " looks ahead: it takes planned trajectories, not measured motion");
+    }
+    warn_of_better_kind(kind);
+    announce("[4/5] export " + title);
+    write(made, kind.kind, verdict);
+  }
+
+  /// A recipe exports what is proven, which may err more than what is not.
+  void warn_of_better_kind(const programs::JudgedKind& exported) {
+    if (!recipe_ || !options_.export_choice.empty()) return;
+    const auto least = [&](const programs::JudgedKind& kind) {
+      double error = not_a_number;
+      for (const programs::JudgedFit& fit : kind.fits) {
+        if (!(error <= fit.validation_mae)) error = fit.validation_mae;
+      }
+      return error;
+    };
+    const double own = least(exported);
+    for (const programs::JudgedKind& kind : judged_.kinds) {
+      if (!kind.applicable() || !kind.kind.exportable || !(least(kind) < own)) continue;
+      report_.warn("the best " + std::string(kind.kind.title) + " network errs less on the validation rows (" +
+                   decimals(least(kind), 4) + " against " + decimals(own, 4) +
+                   "), but nothing is proven of its signs; --export " + kind.kind.key + " exports it");
+    }
+  }
+
+  /// The model to write: after a rotation fitted to all flights, else that of the best seed.
+  Exported exported(std::size_t kind) {
+    if (rotated()) {
+      all_ = programs::fold_of_all(dataset_.flights);
+      programs::FitPlan once = plan_;
+      once.kinds = {plan_.kinds[kind]};
+      once.folds = {*all_};
+      if (once.kinds.front().takes_validation) once.seeds = 1;
+      all_fits_ = programs::fit_all(once);
+      if (all_fits_.finished.size() < all_fits_.wanted) programs::stop_if_interrupted();
+      const programs::FinishedFit* best =
+          programs::best_fit(all_fits_.finished, 0, once.kinds.front().takes_validation);
+      if (best == nullptr)
+        throw std::invalid_argument("the fit to all flights has no finite error on " + all_->validation.front());
+      return Exported{best->model, best->seed, &*all_, {}};
+    }
+    const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation);
+    if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
+    programs::FinishedFit again = *best;
+    if (!again.model) programs::fit_again(plan_, again);
+    return Exported{again.model, again.seed, &plan_.folds[again.fold], {}};
+  }
+
+  void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
+    const Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
+                                                    made.seed, plan_.epochs, verdict);
+    const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
+    const std::string trust = options_.out + "/trust.hpp";
+    const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},
+                                                             options_.model_name, made.fold->split, from);
+    const bool trusted = made.model->has_trust() && written.no_trust_because.empty();
+    std::error_code ignored;
+    if (!trusted) std::filesystem::remove(trust, ignored);  // of an earlier training
+    made.model->write_replay(options_.out + "/replay.txt",
+                             made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
+    std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
+                kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
+                verdict.worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
+    if (trusted) {
+      std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
+                  trust.c_str(), options_.model_name.c_str());
+    } else if (!written.no_trust_because.empty()) {
+      std::printf("  no limits of distance and command residual (trust.hpp): %s\n", written.no_trust_because.c_str());
+    }
+    std::printf("  %s: the same weights as a block of %zu bytes\n", block.c_str(), written.block_bytes);
+    report_.trusted(trusted ? trust : "", written.no_trust_because);
+    tell_certificate(written.certificate);
+    tell_flight(made.flown);
+    report_.write_exported(kind, made.seed, header, block);
+    told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +
+            (rotated() ? "fitted anew to all flights, validated on " + made.fold->validation.front() +
+                             ": the figures are of the fits of the rotation"
+                       : "the very model that was judged") +
+            (verdict.worse_than_mean() ? ". NOT FOR FLIGHT: worse than the mean of the commands." : ".");
+  }
+
+  /// Proof of an export's signs, as `certify` finds it in the header.
+  void tell_certificate(const std::optional<Certificate>& certificate) {
+    if (!certificate || !certificate->proven()) {
+      std::printf("  nothing is proven of its signs: `pinnquad certify %s/model.hpp` looks for a counterexample\n",
+                  options_.out.c_str());
+      return;
+    }
+    const AxisSlopes slopes = programs::held_slopes(*certificate), own = hover_slopes(plan_.airframe.value);
+    const double own_thrust = hover_thrust_slope(plan_.airframe.value);
+    report_.certified(*certificate, own, own_thrust);
+    std::printf(
+        "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
+        "input;\n"
+        "    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad: %.2f, %.2f, %.2f of the airframe's own in hover;\n"
+        "    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n"
+        "    %s\n",
+        slopes[0], slopes[1], slopes[2], slopes[0] / own[0], slopes[1] / own[1], slopes[2] / own[2],
+        certificate->held_thrust_slope, certificate->held_thrust_slope / own_thrust,
+        programs::bound_in_words(*certificate).c_str());
+    std::fflush(stdout);
+    if (options_.airframe.empty() && options_.flights.empty()) return;  // whose airframe's?
+    for (const std::string& doubt : programs::slope_doubts(slopes, own)) report_.warn(doubt);
+    if (const auto doubt = programs::thrust_doubt(*certificate, own_thrust)) report_.warn(*doubt);
+  }
+
+  /// The model in a closed loop on the vehicle that the logs show; what looks ahead is not flown on measured motion.
+  nlohmann::json fly(const Exported& made, const programs::ModelKind& kind) const {
+    if (kind.reach == programs::TimeReach::centred || !options_.flights.empty()) return {};
+    return programs::fly_logged(made.model, kind.reach, made.fold->split.train, plan_.airframe,
+                                programs::axis_signs(plan_.airframe), !dataset_.lacks("velocity"));
+  }
+
+  void tell_flight(const nlohmann::json& flown) {
+    if (flown.is_null()) return;
+    report_.flown(flown);
+    if (flown.contains("why_not")) {
+      report_.warn("the model was not flown: " + flown["why_not"].get<std::string>());
+      return;
+    }
+    const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
+    std::printf(
+        "  flown on the vehicle that the logs show, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
+        "without feed-forward %s\n",
+        flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
+        centimetres("hover_trim").c_str());
+    const std::string status = flown["model"]["status"];
+    if (status != to_string(Status::ok)) {
+      report_.warn("in the closed loop the model ended the flight after " + decimals(flown["model"]["flown_s"], 1) +
+                   " s: " + status);
+    } else if (flown["model"]["rmse_m"] > flown["hover_trim"]["rmse_m"]) {
+      report_.warn("in the closed loop the model tracks worse than no feed-forward (" + centimetres("model") +
+                   " cm against " + centimetres("hover_trim") + " cm)");
+    }
+  }
+
+  /// The page, and one to watch each held-out flight in 3D where that is built.
+  void write_page() {
+    programs::TrainingPage input{plan_, dataset_, fits_, judged_, verdicts_, report_.json(), chosen_, told_, {}};
+    if (programs::WatchPage::available()) {
+      programs::ProgressLine progress("flights to watch");
+      for (const std::string& name : judged_.flights) {
+        progress.update(static_cast<double>(input.watched.size()) / static_cast<double>(judged_.flights.size()));
+        const std::string file = "watch-" + std::to_string(input.watched.size() + 1) + ".html";
+        for (const Flight& flight : dataset_.flights.flights()) {
+          if (flight.name == name)
+            programs::write_watched_flight(options_.out + "/" + file, flight, dataset_, plan_.airframe.value);
+        }
+        input.watched[name] = file;
+      }
+    }
+    AtomicFile file(options_.out + "/report.html");
+    file.stream() << programs::training_page(input);
+    file.commit();
+    std::printf("  %s/report.html\n", options_.out.c_str());
+  }
+
+  const TrainOptions& options_;
+  std::optional<programs::Recipe> recipe_;
+  const pinnquad::logs::ImportedDataset& dataset_;
+  programs::FitPlan plan_;
+  programs::TrainingReport report_;
+  programs::Fits fits_, all_fits_;
+  std::optional<programs::Fold> all_;
+  programs::JudgedKinds judged_;
+  std::vector<programs::KindVerdict> verdicts_;
+  std::optional<std::size_t> chosen_;
+  std::string told_;  ///< what became of the export
+};
+
+}  // namespace
+
+int programs::train(const TrainOptions& options) {
+  if (!is_identifier(options.model_name)) {
+    throw std::invalid_argument("--name " + options.model_name +
+                                ": a C++ identifier was expected, no keyword and no name that C++ reserves");
+  }
+  const Selection selection = selection_of(options);
+  if (!options.export_choice.empty()) require_known_export(options.export_choice, selection.kinds);
+  const NamedAirframe airframe = chosen_airframe(options.airframe.empty() ? PaperQuadrotor::name : options.airframe);
+  require_separate_files(options);
+  announce("[1/5] read");
+  const pinnquad::logs::ImportedDataset dataset = dataset_of(options);
+  std::vector<Fold> folds = folds_asked_for(options, dataset.flights);
+  require_sound(options, dataset, folds);
+  const FolderLock lock(options.out);
+  if (!options.logs.empty()) write_dataset_folder(options.dataset_folder(), dataset);
+  // what can't be written is found before the training
+  each_output(options, [](const std::string& path) { AtomicFile probe(path); });
+  std::printf("      %zu rows of %zu flights\n", dataset.flights.rows(), dataset.flights.size());
+  print_folds(folds);
+  return Training(options, selection, dataset, airframe, std::move(folds)).run();
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// `train`, from a source of flights to a judged, exported model and its report.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace programs {
+
+struct TrainOptions {
+  std::vector<std::string> flights;  ///< recorded flights as CSV; or
+  std::string dataset;               ///< folder that `import` wrote; or
+  std::vector<std::string> logs;     ///< logs to import
+  std::string mapping;
+  std::vector<std::string> hold_out;  ///< flights or trajectories
+  std::string hold_out_each;          ///< "flight", "trajectory"; empty: those of hold_out
+  std::string recipe;                 ///< empty: the kinds that logs are compared by
+  std::vector<std::string> losses;    ///< of the recipe's networks
+  std::vector<std::string> models;    ///< keys of kinds; empty: all
+  std::string export_choice;          ///< empty: what the recipe exports, or "causal"
+  std::optional<bool> altitude;       ///< of the recipe structured, as what follows; none: validation says
+  bool pinned_slopes = false;
+  std::string airframe;  ///< empty: none was given
+  std::string out = "demo_out";
+  std::string model_name = "TrainedQuadModel";
+  int seeds = 5;
+  int epochs = 0;  ///< 0: what suits each kind
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  bool allow_poor = false;  ///< export what is worse than the mean, marked as such
+
+  /// Of what was imported.
+  std::string dataset_folder() const { return logs.empty() ? dataset : out + "/dataset"; }
+};
+
+/// The exit code of the command.
+int train(const TrainOptions& options);
+
+}  // namespace programs
