@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, same_bytes
+from conftest import SOURCE, report_of, same_bytes
 from hostile import Case, left_alone, refused, try_all
 from test_hostile import UNREADABLE
 
@@ -51,16 +51,19 @@ def later(made, other):
 
 def test_trained(pinnquad, trained):
     folder, said = trained
-    for model in "linearized", "vanilla", "physics-informed", "structured":
-        assert re.search(f"^  test flight, .* {model}", said, re.M), said
-    rows = re.search("^  test flight, .*?^  least derivative over nominal, yaw.*?$", said,
-                     re.M | re.S).group().split("\n")
-    assert len({len(row) for row in rows}) == 1 and len(rows) >= 40, "the table's columns do not stand below each other"
+    rows = [re.search(f"^  {model} +present .*$", said, re.M).group() for model in
+            ("structured", "vanilla", "physics-informed", "linearized")]
+    assert len({len(row) for row in rows}) == 1, "the table's columns do not stand below each other"
+    assert said.count("1 held-out flight can't tell") >= 1, "one flight decided"
     assert "\n  proven: each signed sum" in said
     pinnquad("certify", folder / "model.hpp")
-    for file in ["results.csv", "report.json", "model.hpp", "model.block", "replay.txt", "ellipses.svg", "errors.svg",
-                 "prediction.svg"]:
+    for file in ["results.csv", "report.json", "report.html", "model.hpp", "model.block", "replay.txt"]:
         assert (folder / file).stat().st_size, file
+    page = (folder / "report.html").read_text()
+    for text in ["the end of", "What is proven, and when not to trust it", "over the airframe’s own in hover",
+                 "No limits of trust beside the envelope", "physics-informed"]:
+        assert text in page, text
+    assert "{{" not in page and "looking ahead" not in page and "nan" not in page
     # a header, the linearized model, 4 networks and 2 structured models
     assert len((folder / "results.csv").read_text().splitlines()) == 8
 
@@ -82,11 +85,18 @@ def test_several_flights(pinnquad, flight, other):
     for part in 1, 2, 3:
         Path(f"part_{part}.csv").write_text(header + "".join(rows[1000 * (part - 1) : 1000 * part]))
     said = pinnquad(f"train {PARTS} --out d --seeds 1 --epochs 2 --allow-poor").out
-    assert "3000 rows: 1000 train, 1000 validate, 1000 test, in whole flights" in said, said
-    assert "test: part_3.csv" in said, said
-    assert 'training_data = "part_1.csv, part_2.csv, part_3.csv"' in Path("d/model.hpp").read_text()
+    for text in "held out: part_3.csv (1000 rows)", "validate: part_2.csv (1000 rows)", "train: part_1.csv (1000 rows)":
+        assert text in said, said
+    assert 'training_data = "part_1.csv"' in Path("d/model.hpp").read_text()
     assert Path("d/replay.txt").read_text().startswith("pinnquad-replay 1 1000 24\n")
-    assert '"block": "validation"' in Path("d/report.json").read_text()
+    (fold,) = report_of("d")["folds"]
+    assert (fold["train"], fold["validation"], fold["held_out"]) == (["part_1.csv"], ["part_2.csv"], ["part_3.csv"])
+    # two of them named, and each in its turn: the export is fitted to all, and no flight decides alone
+    pinnquad(f"train {PARTS} --hold-out part_1.csv --out n --seeds 1 --epochs 2 --allow-poor --models constant,linear")
+    assert report_of("n")["held_out"] == ["part_1.csv"]
+    pinnquad(f"train {PARTS} --hold-out-each flight --recipe small --out n --seeds 1 --epochs 2 --allow-poor")
+    each = report_of("n")
+    assert len(each["folds"]) == 3 and each["exported_model"] == "physics_informed"
     pinnquad.refused(f"train --out e --flight part_1.csv {other}", keyword="3 flights")
     pinnquad.refused("train --out e --flight part_1.csv part_1.csv part_2.csv", keyword="same flight")
     pinnquad.refused("train --out e --flight part_1.csv part_2.csv", keyword="2200 rows")
@@ -105,7 +115,7 @@ def test_flown(exported, trained):
         errors; echo; rmse export; rmse 'analytic inverse'; rmse 'none \\(hover trim\\)'"""
     demo = subprocess.run(["bash", "-euc", script], capture_output=True, text=True)
     number = "[0-9]+[.][0-9]+"
-    assert re.fullmatch(rf"linearized {number}, vanilla {number}, physics-informed {number}, structured {number}\n"
+    assert re.fullmatch(rf"linearized {number}, vanilla {number}, physics_informed {number}, structured {number}\n"
                         rf"({number}\n){{3}}", demo.stdout), demo
 
 

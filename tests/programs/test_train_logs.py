@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import column, edited, ended, listing, no_partial_files, replaced, until
+from conftest import column, edited, ended, listing, no_partial_files, replaced, report_of, until
 
 FLIGHTS = [f"flight{seed}" for seed in range(1, 8)]
 TRAIN = "train --dataset logs --airframe paper_quadrotor"
@@ -31,8 +31,9 @@ HELD = "--hold-out flight3"
     (f"--dataset logs {HELD} --export rigde", "", "nearest: ridge"), (f"--dataset no {HELD}", "no/dataset.json", ""),
     ("--dataset logs --flight logs/flight1.csv", "", "--flight and --dataset"),
     ("--dataset logs --hold-out flight1 --hold-out-each flight", "", "--hold-out-each"),
-    ("--hold-out flight1", "", "is required"), ("--dataset logs --hold-out flight1 --recipe best", "", "--recipe"),
-    ("--flight logs/flight1.csv --hold-out flight1", "", "--hold-out"), (f"--log logs {HELD}", "", "--mapping"),
+    ("--hold-out flight1", "", "is required"), ("--dataset logs --hold-out flight1 --slopes pinned", "", "--recipe"),
+    ("--dataset logs --hold-out flight1 --recipe best --models ridge", "", "--models"),
+    ("--dataset logs --hold-out flight1 --recipe paper --export linearized", "", "nearest"), (f"--log logs {HELD}", "", "--mapping"),
     ("--dataset logs --hold-out-each row", "", "hold-out-each"),
     # a lag or a clock that no header can state, a command that stands still: found before the folder and the training
     (f"--dataset late {HELD}", "late/dataset.json", "-0.02 s"), (f"--dataset slow {HELD}", "slow/flight2.csv:3:1",
@@ -57,7 +58,7 @@ def test_each_flight_in_turn(pinnquad, logs, fly_export):
     """A table, a report, a header that compiles and agrees, a closed loop."""
     said = pinnquad(f"{TRAIN} --hold-out-each flight --models constant,linear,ridge --seeds 2 --out each").out
     assert "what the others are compared with" in said
-    assert {"report.json", "report.html", "model.hpp", "model.block", "replay.txt"} <= set(listing("each"))
+    assert {"results.csv", "report.json", "report.html", "model.hpp", "model.block", "replay.txt"} <= set(listing("each"))
     assert "fits" not in listing("each"), "the fits of a whole training were left behind"
     report, page = Path("each/report.json").read_text(), Path("each/report.html").read_text()
     for text in ['"exported": true', '"exported_model": "(ridge|linear)"', '"r2_flight_bias_removed"', '"per_seed"',
@@ -74,6 +75,16 @@ def test_one_flight_cannot_decide(pinnquad, logs):
     said = pinnquad(f"{TRAIN} --hold-out flight2 --models constant,linear --seeds 1 --out one").out
     assert "1 held-out flight can't tell" in said
     assert '"success": true' not in Path("one/report.json").read_text()
+
+
+def test_recipe(pinnquad, logs):
+    """The structured model of a recipe on an imported dataset, its signs proven in the report too."""
+    said = pinnquad(f"{TRAIN} --hold-out flight2,flight3 --recipe structured --loss vanilla --seeds 1 --epochs 20 "
+                    "--out recipe").out
+    assert "proven: each signed sum" in said
+    report = report_of("recipe")
+    assert report["exported_model"] == "structured" and report["certificate"]["proven"] is True
+    assert report["altitude"]["asked"] == "auto" and report["closed_loop"]["model"]["status"] == "ok"
 
 
 def test_interrupted(pinnquad, logs):

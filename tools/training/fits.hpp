@@ -47,7 +47,7 @@ struct FinishedFit {
   std::size_t kind = 0, fold = 0;  ///< of the plan
   std::uint64_t seed = 0;
   Predictions held_out;
-  /// Mean absolute error of the commands on the validation rows that it answers, if it was not fitted to them; else NaN.
+  /// Mean absolute error of the commands on the validation rows that it answers; NaN if it was fitted to them.
   double validation_mae = pinnquad::not_a_number;
   double fit_s = 0;
   DerivativeFigures derivatives;  ///< over the rows held out
@@ -109,8 +109,8 @@ inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const
 }
 
 /// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose
-/// rows held out have no say), one that takes the validation rows for fitting is fitted without them too, from the first
-/// seed. Throws what the kind's fit() throws.
+/// rows held out have no say), one that takes the validation rows for fitting is fitted without them too, from the
+/// first seed. Throws what the kind's fit() throws.
 inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) {
   const ModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];

@@ -16,7 +16,7 @@ namespace programs {
 
 namespace {
 
-/// What train exports by default, and how it was chosen whether it is shown the altitude.
+/// The export of train by default, and how it was chosen whether it is shown the altitude.
 template <class Model>
 class StructuredNetwork : public NetworkOfModel<Model, ExportedAirframe::by_value, true> {
  public:

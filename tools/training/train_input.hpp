@@ -152,7 +152,7 @@ inline void require_sound(const TrainOptions& options, const pinnquad::logs::Imp
   }
 }
 
-/// What judges. Flights of which none is named are held out in their order; logs are not.
+/// The partings that the options ask for. Flights of which none is named are held out in their order; logs are not.
 inline std::vector<Fold> folds_asked_for(const TrainOptions& options, const pinnquad::Dataset& flights) {
   HoldOutChoice choice;
   choice.names = options.hold_out;

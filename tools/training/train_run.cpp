@@ -220,7 +220,7 @@ class Training {
     return programs::exit_failed;
   }
 
-  /// What could help where a kind is worse than the mean.
+  /// Advice where a kind is worse than the mean.
   std::string advice(const programs::ModelKind& kind) const {
     if (!recipe_) return "; --allow-poor exports it, marked";
     if (kind.key != std::string("structured")) return "; more epochs or a better flight, or --allow-poor";
@@ -259,8 +259,8 @@ class Training {
     const Verdict verdict = verdict_of(*chosen_);
     report_.verdict(first, {}, verdict, !verdict.worse_than_mean() || options_.allow_poor);
     if (verdict.worse_than_mean() && !options_.allow_poor) {
-      return refuse(std::string(first.title) + ", the best, is worse on the rows held out than the mean of their " +
-                        "commands (R^2 " + decimals(verdict.test_r_squared, 4) + ")",
+      return refuse(std::string(first.title) + ", the best, is worse than the mean of the commands on the rows held " +
+                        "out (R^2 " + decimals(verdict.test_r_squared, 4) + ")",
                     advice(first));
     }
     report_.write_not_exported("the export was not finished");
@@ -500,7 +500,8 @@ int programs::train(const TrainOptions& options) {
   if (!options.logs.empty()) write_dataset_folder(options.dataset_folder(), dataset);
   // what can't be written is found before the training
   each_output(options, [](const std::string& path) { AtomicFile probe(path); });
-  std::printf("      %zu rows of %zu flights\n", dataset.flights.rows(), dataset.flights.size());
+  std::printf("      %zu rows of %zu flight%s\n", dataset.flights.rows(), dataset.flights.size(),
+              dataset.flights.size() == 1 ? "" : "s");
   print_folds(folds);
   return Training(options, selection, dataset, airframe, std::move(folds)).run();
 }

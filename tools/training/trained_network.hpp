@@ -28,7 +28,7 @@ std::optional<pinnquad::Certificate> certificate_of_structure(const Model& model
   return {};
 }
 
-/// Whether the validation rows have chosen that a model is shown the altitude; errors are NaN where they were not asked.
+/// Is a model shown the altitude? By the validation rows; errors are NaN where those were not asked.
 struct AltitudeChoice {
   bool applies = false;  ///< false: the kind has no such choice
   bool taken = false;

@@ -250,7 +250,7 @@ inline nlohmann::json folds_json(const FitPlan& plan) {
   return rows;
 }
 
-/// What is proven of the export's signs; false where nothing is.
+/// The proof of the export's signs; false where there is none.
 inline nlohmann::json certificate_json(const nlohmann::json& report) {
   const nlohmann::json& proven = report["certificate"];
   if (!proven.is_object()) return false;

@@ -108,16 +108,17 @@ inline nlohmann::json printable_names(const std::vector<std::string>& names) {
 
 /// Writes results.csv, a row per judged fit.
 inline void write_results(const std::string& path, const FitPlan& plan, const JudgedKinds& judged) {
-  std::vector<std::string> cells = {"model", "seed", "held_out"};
+  std::vector<std::string> cells = {"model", "seed"};
   for (const Figure& figure : figures()) cells.push_back(figure.name);
-  cells.insert(cells.end(), {"validation_mae", "training_s"});
+  cells.insert(cells.end(), {"validation_mae", "held_out", "training_s"});
   std::string text = pinnquad::csv_line(cells);
   for (const JudgedKind& kind : judged.kinds) {
     for (const JudgedFit& fit : kind.fits) {
-      cells = {kind.kind.key, std::to_string(kind.kind.seeded ? fit.seed : 0), plan.folds[fit.fold].name};
+      cells = {kind.kind.key, std::to_string(kind.kind.seeded ? fit.seed : 0)};
       for (const Figure& figure : figures())
         cells.push_back(pinnquad::number_text(figure.of(fit.judged, figure.index)));
-      cells.insert(cells.end(), {pinnquad::number_text(fit.validation_mae), pinnquad::number_text(fit.fit_s)});
+      cells.insert(cells.end(), {pinnquad::number_text(fit.validation_mae),
+                                 pinnquad::printable(plan.folds[fit.fold].name), pinnquad::number_text(fit.fit_s)});
       text += pinnquad::csv_line(cells);
     }
   }
@@ -126,7 +127,7 @@ inline void write_results(const std::string& path, const FitPlan& plan, const Ju
   file.commit();
 }
 
-/// Of report.json: raised where an entry changes its meaning or goes (docs/report.md).
+/// Of report.json: raised where an entry changes its meaning or goes (docs/guide.md).
 inline constexpr int report_format = 2;
 
 /// Builds report.json; a training that fails later leaves what was written last.
@@ -247,7 +248,7 @@ class TrainingReport {
                          {"why", why}};
   }
 
-  /// What the rows held out say of the model that was chosen.
+  /// The verdict of the rows held out on the model that was chosen.
   void verdict(const ModelKind& kind, std::optional<std::uint64_t> seed, const pinnquad::Verdict& verdict,
                bool may_be_exported) {
     json_["verdict"] = {{"model", kind.key},

@@ -43,8 +43,8 @@ inline void print_kind(const JudgedKinds& judged, const std::vector<KindVerdict>
 inline void print_models(const FitPlan& plan, const JudgedKinds& judged, const std::vector<KindVerdict>& verdicts) {
   std::size_t rows = 0;
   for (const std::size_t of_fold : judged.rows) rows += of_fold;
-  std::printf("  held out: %zu rows of %zu flights%s; mean +- deviation over the seeds\n", rows, judged.flights.size(),
-              plan.folds.size() > 1 ? ", in turn" : "");
+  std::printf("  held out: %zu rows of %zu flight%s%s; mean +- deviation over the seeds\n", rows, judged.flights.size(),
+              judged.flights.size() == 1 ? "" : "s", plan.folds.size() > 1 ? ", in turn" : "");
   std::printf("  %-44s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "sees", "R^2", "flight's bias", "bias of the",
               "RMSE, 1e-3", "wrong");
   std::printf("  %-44s %-8s  %15s  %15s  %15s  %15s  %7s\n", "", "", "", "removed", "first 4 s rem.", "", "slope %");

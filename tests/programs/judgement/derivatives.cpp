@@ -17,7 +17,6 @@
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "training/derivatives.hpp"
-#include "training/model_figures.hpp"
 
 namespace {
 
@@ -211,6 +210,8 @@ TEST_CASE("the share counts rows below 0; what is not finite is told") {
   CHECK(std::isnan(found.wrong_share[2]));
   CHECK(found.least[0] == -1e-9);
   CHECK(found.least[1] == -4);
+  CHECK(found.median[1] == -2);
+  CHECK(found.sees_acceleration);
   CHECK(std::isnan(found.least[2]));
   const programs::DerivativeFigures none =
       programs::derivative_figures({}, [](const Sample&) { return programs::AxisDerivatives{}; });
@@ -240,28 +241,4 @@ TEST_CASE("large steps are those of more than half a deviation; rows that do not
   CHECK(left.rows.pieces()[1].rows.begin == 5);
   CHECK(left.predictions[2][0] == 4);
   CHECK(left.rows.size() == left.predictions.size());
-}
-
-TEST_CASE("figures over seeds: mean, deviation and each; null where one is not finite") {
-  std::vector<programs::Result> results(4);
-  const double errors[] = {0.1, 0.2, 0.6};
-  for (std::size_t i = 0; i < 3; ++i) {
-    results[i].model = "a";
-    results[i].test.errors.mean.mean_absolute = errors[i];
-    results[i].test.derivatives.wrong_share = {0.5, 0.25 * static_cast<double>(i), std::nan("")};
-  }
-  results[3].model = "b";
-  results[3].test.errors.mean.mean_absolute = 7;
-  // as a reader of the file has it
-  const nlohmann::json a = nlohmann::json::parse(programs::figures_over_seeds(results, "a").dump());
-  CHECK(a["mean_absolute_error"]["mean"] == doctest::Approx(0.3));
-  CHECK(a["mean_absolute_error"]["deviation"] == doctest::Approx(std::sqrt(0.07)));
-  CHECK(a["mean_absolute_error"]["per_seed"] == nlohmann::json({0.1, 0.2, 0.6}));
-  CHECK(a["wrong_derivative_share"]["roll"]["deviation"] == 0);
-  CHECK(a["wrong_derivative_share"]["pitch"]["mean"] == 0.25);
-  CHECK(a["wrong_derivative_share"]["yaw"]["mean"].is_null());
-  CHECK(a["wrong_derivative_share"]["yaw"]["per_seed"][1].is_null());
-  const nlohmann::json b = nlohmann::json::parse(programs::figures_over_seeds(results, "b").dump());
-  CHECK(b["mean_absolute_error"]["mean"] == 7);
-  CHECK(b["mean_absolute_error"]["deviation"].is_null());
 }

@@ -5,12 +5,15 @@
 
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "judged_run.hpp"
 #include "support/temporary_folder.hpp"
 #include "training/export_choice.hpp"
 #include "training/fit_store.hpp"
+#include "training/recipe.hpp"
 #include "training/training_report.hpp"
 
 namespace {
@@ -129,13 +132,17 @@ TEST_CASE("models that look ahead are ranked apart, and are no simpler model of 
 
 TEST_CASE("slopes: those of the truth are right, those of a mirrored model wrong in every row, a constant has none") {
   const Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, each_flight);
-  CHECK_FALSE(programs::slopes_of(run.judged.kinds[0]).applicable);
-  const programs::KindSlopes linear = programs::slopes_of(run.judged.kinds[1]);
-  const std::array<double, 3> nominal = pinnquad::hover_slopes(run.airframe.value);
-  REQUIRE(linear.applicable);
+  CHECK_FALSE(programs::sees_acceleration(run.judged.kinds[0]));
+  REQUIRE(programs::sees_acceleration(run.judged.kinds[1]));
+  using programs::Judgement;
+  const auto wrong = programs::axis_means(
+      run.judged.kinds[1], [](const Judgement& j, std::size_t i) { return j.derivatives.wrong_share[i]; });
+  const auto least = programs::axis_means(run.judged.kinds[1], [](const Judgement& j, std::size_t i) {
+    return j.derivatives.least[i] / j.nominal_slopes[i];
+  });
   for (std::size_t axis = 0; axis < 2; ++axis) {  // yaw is a small part of what the paper's quadrotor commands
-    CHECK(linear.wrong_share[axis] == 0);
-    CHECK(linear.least[axis] / nominal[axis] == doctest::Approx(1).epsilon(0.25));
+    CHECK(wrong[axis] == 0);
+    CHECK(least[axis] == doctest::Approx(1).epsilon(0.25));
   }
   const auto mirrored = pinnquad_test::model_of([](const pinnquad::RowSet& rows) {
     programs::Predictions made;
@@ -145,10 +152,92 @@ TEST_CASE("slopes: those of the truth are right, those of a mirrored model wrong
     }
     return made;
   });
-  const auto slopes = programs::log_slopes(*mirrored, run.plan.folds[0].split.test, programs::axis_signs(run.airframe));
-  CHECK(slopes.applicable);
+  const auto slopes = mirrored->derivatives(run.plan.folds[0].split.test);
+  CHECK(slopes.sees_acceleration);
   CHECK(slopes.wrong_share[0] == 1);
   CHECK(slopes.least[0] == doctest::Approx(-4e-3));
+}
+
+TEST_CASE("what is exported: by validation, none that diverged, of a recipe what is proven") {
+  using programs::FinishedFit, programs::Recipe;
+  std::vector<FinishedFit> fits(5);
+  const double errors[] = {std::nan(""), 0.3, 0.2, HUGE_VAL, 0.1};
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    fits[i].seed = i;
+    fits[i].validation_mae = errors[i];
+  }
+  fits[4].kind = 1;
+  CHECK(programs::best_fit(fits, 0, false)->seed == 2);
+  CHECK(programs::best_fit(fits, 1, false)->seed == 4);
+  CHECK(programs::best_fit(fits, 0, true)->seed == 0);  // fitted to the validation rows: their error says nothing
+  CHECK(programs::best_fit({fits[0], fits[3]}, 0, false) == nullptr);
+  CHECK(programs::best_fit(fits, 2, false) == nullptr);
+
+  const auto kinds = [](std::initializer_list<const char*> keys) {
+    std::vector<programs::ModelKind> made;
+    for (const char* key : keys) {
+      made.push_back(pinnquad_test::constant_kind());
+      made.back().key = key;
+      made.back().exportable = key != std::string("linearized");
+    }
+    return made;
+  };
+  CHECK(Recipe::exported_of(kinds({"linearized", "vanilla", "physics_informed", "structured"})) == "structured");
+  CHECK(Recipe::exported_of(kinds({"linearized", "vanilla", "physics_informed"})) == "physics_informed");
+  CHECK(Recipe::exported_of(kinds({"linearized", "constant_weight", "pearson"})) == "constant_weight");
+
+  Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, {{"flight2"}, {}}, 1);
+  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{1, 0});
+  run.judged.kinds[1].kind.exportable = false;
+  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{0});
+}
+
+TEST_CASE("figures over seeds: mean, deviation and each; null where one is not finite") {
+  // as a reader of the file has it
+  const nlohmann::json three = nlohmann::json::parse(programs::described({0.1, 0.2, 0.6}).dump());
+  CHECK(three["mean"] == doctest::Approx(0.3));
+  CHECK(three["deviation"] == doctest::Approx(std::sqrt(0.07)));
+  CHECK(three["per_seed"] == nlohmann::json({0.1, 0.2, 0.6}));
+  const nlohmann::json broken = nlohmann::json::parse(programs::described({0.1, std::nan("")}).dump());
+  CHECK(broken["mean"].is_null());
+  CHECK(broken["per_seed"][1].is_null());
+  CHECK(nlohmann::json::parse(programs::described({7.0}).dump())["deviation"].is_null());
+}
+
+TEST_CASE("the fits of later seeds follow the first seed's choice of the altitude, also from a store") {
+  /// Says its seed, and what it was told of the altitude.
+  class Chooses : public pinnquad_test::ModelOfFunction {
+   public:
+    explicit Chooses(const programs::FitTask& task)
+        : ModelOfFunction([task_seed = task.seed, told = task.settings.altitude](const pinnquad::RowSet& rows) {
+            const double code = 1e-3 * static_cast<double>(task_seed) + (told ? 0.1 : 0.2);
+            return programs::Predictions(rows.size(), {code, code, code, code});
+          }) {
+      choice_.applies = true;
+      choice_.taken = task.settings.altitude.value_or(true);
+    }
+    programs::AltitudeChoice altitude() const override { return choice_; }
+
+   private:
+    programs::AltitudeChoice choice_;
+  };
+  programs::ModelKind kind = pinnquad_test::constant_kind();
+  kind.seeded = true;
+  kind.fit = [](const programs::FitTask& task) -> std::shared_ptr<const programs::TrainedNetwork> {
+    return std::make_shared<Chooses>(task);
+  };
+  Judged run(3, {kind}, {{"flight2"}, {}}, 3);
+  REQUIRE(run.fits.finished.size() == 3);
+  CHECK(run.fits.finished[0].held_out[0][0] == doctest::Approx(0.201));
+  CHECK(run.fits.finished[1].held_out[0][0] == doctest::Approx(0.102));
+  CHECK(run.fits.finished[2].held_out[0][0] == doctest::Approx(0.103));
+  for (programs::FinishedFit fit : run.fits.finished) {
+    const auto before = fit.held_out;
+    fit.model.reset();
+    programs::fit_again(run.plan, fit);
+    CHECK(fit.held_out == before);
+    CHECK(fit.model != nullptr);
+  }
 }
 
 TEST_CASE(
@@ -178,7 +267,19 @@ TEST_CASE(
   }
   CHECK(json["models"]["linear"]["r2"]["per_seed"].size() == 1);
   CHECK(json["models"]["linear"]["r2"]["deviation"].is_null());
-  CHECK(json["models"]["constant"]["slopes"]["not_applicable_because"].is_string());
+  CHECK(json["format"] == programs::report_format);
+  CHECK(json["models"]["constant"]["sees_acceleration"] == false);
+  for (const auto& figure : programs::model_figures) {
+    const auto& of = spoiled[figure.name];
+    CHECK((figure.has_axes ? of["yaw"] : of)["per_seed"].size() == 5);
+  }
+  CHECK(json["results"].size() == 4 * (1 + 1 + 5));  // constant, linear and each seed of the spoiled, on four partings
+  programs::write_results(folder.path("results.csv"), run.plan, run.judged);
+  std::ifstream csv(folder.path("results.csv"));
+  std::size_t lines = 0;
+  for (std::string line; std::getline(csv, line); ++lines) {
+  }
+  CHECK(lines == 1 + json["results"].size());
   CHECK(json["models"]["battery"]["applicable"] == false);
   CHECK(json["models"]["battery"]["not_applicable_because"] == "needs battery_voltage, which the logs lack");
   double mean = 0;
@@ -201,16 +302,21 @@ TEST_CASE(
   programs::FinishedFit loaded = asked;
   REQUIRE(store.load(loaded));
   CHECK(loaded.held_out == kept.held_out);
-  CHECK(loaded.validation_error == kept.validation_error);
-  CHECK(loaded.slopes.median == kept.slopes.median);
+  CHECK(loaded.validation_mae == kept.validation_mae);
+  CHECK(loaded.derivatives.median == kept.derivatives.median);
 
   programs::FinishedFit other_seed = asked;
   other_seed.seed = 77;
   CHECK_FALSE(store.load(other_seed));
   programs::FitPlan longer = run.plan;
   longer.epochs = 10;
-  loaded = asked;
-  CHECK_FALSE(programs::FitStore(folder.path("fits"), longer).load(loaded));
+  programs::FitPlan pinned = run.plan, other_recipe = run.plan;
+  pinned.settings.pinned_slopes = true;
+  other_recipe.selection = "best";
+  for (const programs::FitPlan* other : {&longer, &pinned, &other_recipe}) {
+    loaded = asked;
+    CHECK_FALSE(programs::FitStore(folder.path("fits"), *other).load(loaded));
+  }
 
   const std::string path = folder.path("fits") + "/network-" + std::to_string(kept.seed) + "-3.fit";
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 9);

@@ -68,7 +68,7 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
               oracle_kind(programs::TimeReach::centred), needs_battery_kind()},
              each_flight, 5);
   const std::string page = page_of(run, {}, true);
-  std::ofstream("log_page.html") << page;
+  std::ofstream("training_page.html") << page;
   for (const std::string& sentence :
        {run.of("linear").sentence, run.of("network").sentence, run.of("spoiled").sentence}) {
     CHECK_MESSAGE(page.find(programs::html_text(sentence)) != std::string::npos, sentence);

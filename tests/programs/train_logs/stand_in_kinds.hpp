@@ -2,6 +2,7 @@
 // Kinds of models whose worth is known: what the judgement of logged flights is judged by.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -24,12 +25,20 @@ class ModelOfFunction : public programs::TrainedNetwork {
   explicit ModelOfFunction(Function function) : function_(std::move(function)) {}
 
   programs::Predictions predictions(const pinnquad::RowSet& rows) const override { return function_(rows); }
-  programs::DerivativeFigures derivatives(const pinnquad::RowSet&) const override { return {}; }
-  pinnquad::Exported export_to(const pinnquad::Exported::Files&, const std::string&, const pinnquad::RowSplit&,
-                               const pinnquad::Provenance&) const override {
-    throw std::logic_error("a stand-in is not exported");
+  /// Of a linear model alone.
+  programs::DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
+    const pinnquad::GivenAirframe airframe(pinnquad::PaperQuadrotor::name,
+                                           pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>());
+    const auto predict = [this](const pinnquad::Sample& sample) {
+      pinnquad::Flight one;
+      one.push_back(sample);
+      return function_(pinnquad::RowSet(one, {0, 1})).front();
+    };
+    pinnquad::RowSet some;  // each asks it six times
+    const pinnquad::FlightRows& piece = rows.pieces().front();
+    some.add(*piece.flight, {piece.rows.begin, piece.rows.begin + std::min<std::size_t>(piece.rows.size(), 20)});
+    return programs::derivative_figures(some, programs::FormulaDerivatives(airframe, predict));
   }
-  void write_replay(const std::string&, const pinnquad::RowSet&) const override {}
 
  private:
   Function function_;
