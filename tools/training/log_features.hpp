@@ -12,17 +12,13 @@ namespace programs {
 
 /// Nine instants, 20 ms apart: of planned motions 80 ms to both sides, else the last 160 ms. Specific force and angular
 /// acceleration alone, for they are what the rotors' lag and the differentiation smear.
-template <class Present>
-using LogCausalWindow = pinnquad::PartlyWindowed<Present, pinnquad::AccelerationFeatures, 9,
-                                                 pinnquad::PeriodMicroseconds<20000>, pinnquad::Causal>;
-template <class Present>
-using LogCentredWindow = pinnquad::PartlyWindowed<Present, pinnquad::AccelerationFeatures, 9,
-                                                  pinnquad::PeriodMicroseconds<20000>, pinnquad::Centred>;
+template <class Present, class Part, class Sight>
+using LogWindow = pinnquad::PartlyWindowed<Present, Part, 9, pinnquad::PeriodMicroseconds<20000>, Sight>;
 
-template <TimeReach Reach, class Present>
+template <TimeReach Reach, class Present, class Part = pinnquad::AccelerationFeatures>
 using LogFeatures = std::conditional_t<
     Reach == TimeReach::present, Present,
-    std::conditional_t<Reach == TimeReach::causal, LogCausalWindow<Present>, LogCentredWindow<Present>>>;
+    LogWindow<Present, Part, std::conditional_t<Reach == TimeReach::causal, pinnquad::Causal, pinnquad::Centred>>>;
 
 template <class Features>
 struct FeaturesTag {
@@ -63,7 +59,7 @@ auto with_paper_features(const FitTask& fit, const Use& use) {
 
 /// A window is interpolated between rows, but not over gaps.
 inline std::string needs_window(const FitTask& fit) {
-  using Window = LogCausalWindow<pinnquad::PhysicsFeatures>::Window;
+  using Window = LogFeatures<TimeReach::causal, pinnquad::PhysicsFeatures>::Window;
   if (fit.sample_period_s <= Window::largest_gap_s) return "";
   const auto milliseconds = [](double seconds) { return std::to_string(static_cast<int>(seconds * 1e3 + 0.5)); };
   return "needs a row every " + milliseconds(Window::period_s) + " ms for its window, the logs have one every " +

@@ -31,11 +31,6 @@ pinnquad::AffineMap solved_ridge(const std::vector<pinnquad::RegressionSums>& gr
   return pinnquad::fit_ridge(sum_of(groups), penalty);
 }
 
-pinnquad::AffineMap solved_monotone_ridge(const pinnquad::MonotoneShape& shape,
-                                          const std::vector<pinnquad::RegressionSums>& groups) {
-  return pinnquad::fit_monotone_base(shape, groups);
-}
-
 pinnquad::AffineMap solved_least_squares(const std::vector<pinnquad::RegressionSums>& groups) {
   return pinnquad::fit_ridge(sum_of(groups), 0.0);
 }

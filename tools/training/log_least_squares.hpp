@@ -17,11 +17,6 @@ namespace programs {
 /// std::invalid_argument for no rows. One group alone: no penalty.
 pinnquad::AffineMap solved_ridge(const std::vector<pinnquad::RegressionSums>& groups);
 
-/// Of standardised features and signed sums: each sum sees its own angular acceleration alone, with a slope above 0
-/// (training/structured/closed_form.hpp); its penalty as above.
-pinnquad::AffineMap solved_monotone_ridge(const pinnquad::MonotoneShape& shape,
-                                          const std::vector<pinnquad::RegressionSums>& groups);
-
 /// Ordinary least squares.
 pinnquad::AffineMap solved_least_squares(const std::vector<pinnquad::RegressionSums>& groups);
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "training/log_kinds.hpp"
-#include "training/log_structured.hpp"
+#include "training/structured_kind.hpp"
 
 namespace programs {
 
 ModelKind log_structured_causal() {
   return {"structured_causal",
-          "structured: monotone ridge + residual network, the last 160 ms",
+          "structured, the last 160 ms",
           TimeReach::causal,
           true,
           needs_window,
-          fit_log_structured<TimeReach::causal>,
-          true};
+          fit_structured_kind<TimeReach::causal>,
+          false,
+          pinnquad::structured_in_words};
 }
 
 }  // namespace programs

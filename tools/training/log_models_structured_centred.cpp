@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "training/log_kinds.hpp"
-#include "training/log_structured.hpp"
+#include "training/structured_kind.hpp"
 
 namespace programs {
 
 ModelKind log_structured_centred() {
   return {"structured_centred",
-          "structured: monotone ridge + residual network, 80 ms to both sides",
+          "structured, 80 ms to both sides",
           TimeReach::centred,
           true,
           needs_window,
-          fit_log_structured<TimeReach::centred>,
-          true};
+          fit_structured_kind<TimeReach::centred>,
+          false,
+          pinnquad::structured_in_words};
 }
 
 }  // namespace programs

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "training/log_kinds.hpp"
-#include "training/log_structured.hpp"
+#include "training/structured_kind.hpp"
 
 namespace programs {
 
 ModelKind log_structured() {
   return {"structured",
-          "structured: monotone ridge + residual network",
+          "structured",
           TimeReach::present,
           true,
           always_applicable,
-          fit_log_structured<TimeReach::present>,
-          true};
+          fit_structured_kind<TimeReach::present>,
+          false,
+          pinnquad::structured_in_words};
 }
 
 }  // namespace programs

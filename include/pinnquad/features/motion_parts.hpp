@@ -209,4 +209,11 @@ struct InverseFeatures
 /// And the altitude: for a vehicle near the ground.
 struct InverseFeaturesWithAltitude : detail::WithAltitude<InverseFeatures> {};
 
+/// InverseFeatures for a vehicle whose velocity was not measured.
+struct InverseFeaturesWithoutVelocity
+    : Joined<ThrustAxisForce, AngularAcceleration, BodyRates, RateProducts, DownVector> {};
+
+/// AccelerationFeatures with the specific force along the thrust axis alone.
+struct InverseAccelerations : Joined<ThrustAxisForce, AngularAcceleration> {};
+
 }  // namespace pinnquad

@@ -63,7 +63,7 @@ struct Backwards {
     for (std::size_t i = count; i-- > 0;) static_cast<void>(job(i));
   }
   bool goes_on(int) const { return true; }
-  void chose(const StructuredFits::Choice&) const { *calls += "chose, "; }
+  void chose(const StructuredAltitude&) const { *calls += "chose, "; }
 };
 
 struct StopsAfter {
@@ -75,7 +75,7 @@ struct StopsAfter {
     }
   }
   bool goes_on(int) const { return --*epochs_left >= 0; }
-  void chose(const StructuredFits::Choice&) const { *chosen = true; }
+  void chose(const StructuredAltitude&) const { *chosen = true; }
 };
 
 }  // namespace

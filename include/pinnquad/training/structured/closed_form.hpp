@@ -58,9 +58,9 @@ void take_away(const AffineMap& map, TrainingData<Scalar, InputCount, OutputCoun
   }
 }
 
-/// Groups for cross-validation: trajectories with their repeats; where there is one trajectory, flights; where there is
-/// one flight, its quarters.
-inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
+/// Whole flights that are one piece of evidence: trajectories with their repeats or, where there is one trajectory, its
+/// flights.
+inline std::vector<RowSet> whole_flight_groups(const RowSet& rows) {
   std::vector<RowSet> groups;
   for (const bool by_trajectory : {true, false}) {
     groups.clear();
@@ -79,6 +79,13 @@ inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
     }
     if (groups.size() > 1) return groups;
   }
+  return groups;
+}
+
+/// Groups for cross-validation: whole_flight_groups(); where there is one flight, its quarters.
+inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
+  std::vector<RowSet> groups = whole_flight_groups(rows);
+  if (groups.size() > 1) return groups;
   constexpr std::size_t parts = 4;
   groups.assign(rows.empty() ? 0 : parts, {});
   for (const FlightRows& piece : rows.pieces()) {

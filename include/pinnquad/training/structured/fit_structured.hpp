@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The structured model, whole: a monotone base in closed form and a residual network, fitted from several seeds. The
-// validation rows choose whether the model is shown the altitude, and whether the residual is kept.
+// validation rows choose whether the model is shown the altitude, and whether the residual is kept; so do whole flights,
+// each left out in turn, where several train.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -43,21 +45,34 @@ struct StructuredSettings {
 inline constexpr const char* structured_in_words =
     "least squares, slopes above 0; MSE of the residual, which sees no angular acceleration";
 
+/// The choice of the altitude. Errors are those of the first seed; none where the rule is not by_validation.
+struct StructuredAltitude {
+  bool taken = false;
+  std::optional<double> error_with, error_without;
+};
+
 /// The models of all seeds that were finished, in the order of the seeds. A model has its residual where that helps.
-struct StructuredFits {
+/// `Features`: without the altitude; `WithAltitude`: the same with it, or Features again where that was not measured.
+template <class Features = InverseFeatures, class WithAltitude = InverseFeaturesWithAltitude>
+struct StructuredFitsOf {
+  using Lower = Features;
+  using Higher = WithAltitude;
+  static constexpr bool has_altitude = !std::is_same_v<Features, WithAltitude>;
   /// The residual network.
-  template <class Features>
-  using Residual = Mlp<float, InputSize<residual_inputs<Features>>, Hidden<2, 32>, OutputSize<4>, Relu>;
-  template <class Features, class Predictor>
-  using TrainedAs = TrainedModel<Predictor, Context<Features, GivenAirframe, AxisCommandOutputs>>;
-  template <class Features>
-  using Base = TrainedAs<Features, MonotoneBase<Features>>;
-  template <class Features>
-  using BaseAndResidual = TrainedAs<Features, MonotonePredictor<Features, Residual<Features>>>;
+  template <class Set>
+  using Residual = Mlp<float, InputSize<residual_inputs<Set>>, Hidden<2, 32>, OutputSize<4>, Relu>;
+  template <class Set, class Predictor>
+  using TrainedAs = TrainedModel<Predictor, Context<Set, GivenAirframe, AxisCommandOutputs>>;
+  template <class Set>
+  using Base = TrainedAs<Set, MonotoneBase<Set>>;
+  template <class Set>
+  using BaseAndResidual = TrainedAs<Set, MonotonePredictor<Set, Residual<Set>>>;
 
   /// Base alone or base and residual, without the altitude or with it.
-  using Model = std::variant<Base<InverseFeatures>, BaseAndResidual<InverseFeatures>, Base<InverseFeaturesWithAltitude>,
-                             BaseAndResidual<InverseFeaturesWithAltitude>>;
+  using Model = std::conditional_t<
+      has_altitude,
+      std::variant<Base<Features>, BaseAndResidual<Features>, Base<WithAltitude>, BaseAndResidual<WithAltitude>>,
+      std::variant<Base<Features>, BaseAndResidual<Features>>>;
   /// The model of one seed.
   struct Fit {
     Model model;
@@ -65,13 +80,7 @@ struct StructuredFits {
     double validation_error = 0;  ///< mean absolute error of the commands on the validation rows
     double training_s = 0;        ///< wall-clock time of the residual's training
   };
-  /// The choice of the altitude. Errors are those of the first seed; none where the rule is not by_validation.
-  struct Choice {
-    bool taken = false;
-    std::optional<double> error_with, error_without;
-  };
-
-  Choice altitude;
+  StructuredAltitude altitude;
   std::vector<Fit> models;
 
   /// The model with the least error on the validation rows. Throws std::logic_error where no model was finished.
@@ -83,6 +92,7 @@ struct StructuredFits {
     return *std::min_element(models.begin(), models.end(), less);
   }
 };
+using StructuredFits = StructuredFitsOf<>;
 
 namespace detail {
 
@@ -94,43 +104,87 @@ struct InTurn {
     }
   }
   bool goes_on(int /*epoch*/) const { return true; }
-  void chose(const StructuredFits::Choice&) const {}
+  void chose(const StructuredAltitude&) const {}
 };
 
 /// The fits of one feature set. The base is the same of all seeds, the residual is not.
-template <class Features>
+template <class Fits, class Features>
 class StructuredFitter {
   using ContextType = Context<Features, GivenAirframe, AxisCommandOutputs>;
+  using Residual = typename Fits::template Residual<Features>;
+  using Fit = typename Fits::Fit;
 
  public:
   StructuredFitter(const RowSplit& split, const GivenAirframe& airframe, const StructuredSettings& settings)
       : split_(split), settings_(settings), context_(make_context<ContextType>(split.train, airframe)) {
-    std::optional<AxisSlopes> pinned;
-    if (settings.pinned_slopes) pinned = hover_slopes(airframe.airframe<double>());
-    map_ = fit_monotone_base(context_, split.train, pinned);
+    if (settings.pinned_slopes) pinned_ = hover_slopes(airframe.template airframe<double>());
+    for (const RowSet& group : left_out_groups(split.train)) {
+      RegressionSums sums = regression_sums(context_, group);
+      if (!(sums.rows() > 0)) continue;  // no window is complete there
+      groups_.push_back(group);
+      sums_.push_back(std::move(sums));
+    }
+    map_ = fit_monotone_base(monotone_shape(context_), sums_, pinned_);
+    whole_flights_ = whole_flight_groups(split.train).size() > 1 && groups_.size() > 1;
   }
 
   /// None where `goes_on` stopped it.
   template <class GoesOn>
-  std::optional<StructuredFits::Fit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
+  std::optional<Fit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
     const auto start = std::chrono::steady_clock::now();
-    std::mt19937_64 engine(seed);
-    const auto fit = fit_monotone<StructuredFits::Residual<Features>>(context_, split_.train, split_.validation, map_,
-                                                                      settings_.residual, engine, goes_on);
+    const auto fit = fitted(split_.train, map_, seed, goes_on);
     if (!fit.finished) return {};
+    bool kept = fit.residual_kept;
+    if (kept && whole_flights_) {
+      const std::optional<bool> gains = gains_on_flights_left_out(seed, goes_on);
+      if (!gains) return {};
+      kept = *gains;
+    }
     const auto done = [&](const auto& predictor, double error) {
-      StructuredFits::Fit made{make_trained_model(predictor, context_, split_.train), seed, error, 0};
+      Fit made{make_trained_model(predictor, context_, split_.train), seed, error, 0};
       made.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return made;
     };
-    return fit.residual_kept ? done(fit.predictor, fit.error) : done(fit.base, fit.base_error);
+    return kept ? done(fit.predictor, fit.error) : done(fit.base, fit.base_error);
   }
 
  private:
+  template <class GoesOn>
+  auto fitted(const RowSet& training, const AffineMap& map, std::uint64_t seed, const GoesOn& goes_on) const {
+    std::mt19937_64 engine(seed);
+    return fit_monotone<Residual>(context_, training, split_.validation, map, settings_.residual, engine, goes_on);
+  }
+
+  /// Does the residual lower the error on whole flights, each left out in turn of the rows that it is fitted to? None
+  /// where `goes_on` stopped it.
+  template <class GoesOn>
+  std::optional<bool> gains_on_flights_left_out(std::uint64_t seed, const GoesOn& goes_on) const {
+    double base_error = 0, error = 0;
+    for (std::size_t out = 0; out < groups_.size(); ++out) {
+      RowSet others;
+      std::vector<RegressionSums> sums;
+      for (std::size_t i = 0; i < groups_.size(); ++i) {
+        if (i == out) continue;
+        for (const FlightRows& piece : groups_[i].pieces()) others.add(*piece.flight, piece.rows);
+        sums.push_back(sums_[i]);
+      }
+      const auto fit = fitted(others, fit_monotone_base(monotone_shape(context_), sums, pinned_), seed, goes_on);
+      if (!fit.finished) return {};
+      const auto unseen = standardised<float>(context_, groups_[out]);
+      base_error += unseen.size() * command_error(context_, fit.base, unseen);
+      error += unseen.size() * command_error(context_, fit.predictor, unseen);
+    }
+    return error < (1 - settings_.residual.least_gain) * base_error;
+  }
+
   const RowSplit& split_;
   const StructuredSettings& settings_;
   ContextType context_;
+  std::optional<AxisSlopes> pinned_;
+  std::vector<RowSet> groups_;
+  std::vector<RegressionSums> sums_;  ///< of the groups
   AffineMap map_;
+  bool whole_flights_ = false;
 };
 
 }  // namespace detail
@@ -142,27 +196,29 @@ class StructuredFitter {
 ///   template <class Job> void run(std::size_t count, const Job& job);  // calls job(i) for each i below `count`, also
 ///       // from several threads. A job that returns false was stopped: no further one need be started.
 ///   bool goes_on(int epoch);                     // asked before each epoch of each fit; false stops it
-///   void chose(const StructuredFits::Choice&);   // called once, before the fits of the other seeds
-template <class Work = detail::InTurn>
-StructuredFits fit_structured(const RowSplit& split, const GivenAirframe& airframe,
-                              const StructuredSettings& settings = {}, Work&& work = {}) {
+///   void chose(const StructuredAltitude&);   // called once, before the fits of the other seeds
+template <class Fits = StructuredFits, class Work = detail::InTurn>
+Fits fit_structured(const RowSplit& split, const GivenAirframe& airframe, const StructuredSettings& settings = {},
+                    Work&& work = {}) {
   using Altitude = StructuredSettings::Altitude;
-  std::optional<detail::StructuredFitter<InverseFeatures>> lower;
-  std::optional<detail::StructuredFitter<InverseFeaturesWithAltitude>> higher;
-  if (settings.altitude != Altitude::no) higher.emplace(split, airframe, settings);
-  if (settings.altitude != Altitude::yes) lower.emplace(split, airframe, settings);
+  using Fit = typename Fits::Fit;
+  std::optional<detail::StructuredFitter<Fits, typename Fits::Lower>> lower;
+  std::optional<detail::StructuredFitter<Fits, typename Fits::Higher>> higher;
+  const Altitude rule = Fits::has_altitude ? settings.altitude : Altitude::no;
+  if (rule != Altitude::no) higher.emplace(split, airframe, settings);
+  if (rule != Altitude::yes) lower.emplace(split, airframe, settings);
   const auto fit = [&](bool with_altitude, std::uint64_t seed) {
     const auto goes_on = [&work](int epoch) { return work.goes_on(epoch); };
     return with_altitude ? (*higher)(seed, goes_on) : (*lower)(seed, goes_on);
   };
 
-  StructuredFits fits;
-  StructuredFits::Choice& choice = fits.altitude;
-  choice.taken = settings.altitude == Altitude::yes;
-  std::vector<std::optional<StructuredFits::Fit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));
+  Fits fits;
+  StructuredAltitude& choice = fits.altitude;
+  choice.taken = rule == Altitude::yes;
+  std::vector<std::optional<Fit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));
   std::size_t next = 0;  // seed that is fitted next
-  if (settings.altitude == Altitude::by_validation && !made.empty()) {
-    std::optional<StructuredFits::Fit> tried[2];  // without the altitude, with it
+  if (rule == Altitude::by_validation && !made.empty()) {
+    std::optional<Fit> tried[2];  // without the altitude, with it
     work.run(2, [&](std::size_t i) { return (tried[i] = fit(i == 1, settings.first_seed)).has_value(); });
     if (!tried[0] || !tried[1]) return fits;
     choice.error_without = tried[0]->validation_error;

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// The structured model of the library (training/structured/fit_structured.hpp) as a kind, for the features that the
+// flights have: velocity and battery where they were measured, the altitude where the validation rows gain by it.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <type_traits>
+#include <variant>
+
+#include "command_line/interrupt.hpp"
+#include "pinnquad/training/structured/fit_structured.hpp"
+#include "training/log_features.hpp"
+#include "training/network_kinds.hpp"
+
+namespace programs {
+
+/// A structured model, and how it was chosen whether it is shown the altitude.
+template <class Model>
+class StructuredNetwork
+    : public NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>> {
+ public:
+  StructuredNetwork(const Model& model, const AltitudeChoice& altitude)
+      : NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>>(model),
+        altitude_(altitude) {}
+  AltitudeChoice altitude() const override { return altitude_; }
+
+ private:
+  AltitudeChoice altitude_;
+};
+
+/// Work of fit_structured(): one fit after the other, with progress; Ctrl-C stops it.
+class StructuredWork {
+ public:
+  StructuredWork(const FitTask& task, int epochs) : task_(task), epochs_(epochs) {}
+
+  template <class Job>
+  void run(std::size_t count, const Job& job) {
+    fits_ = static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!job(i)) throw Interrupted{};
+      done_ += 1;
+    }
+  }
+  bool goes_on(int epoch) const {
+    task_.share_done((done_ + static_cast<double>(epoch) / epochs_) / fits_);
+    return !interrupted();
+  }
+  void chose(const pinnquad::StructuredAltitude&) const {}
+
+ private:
+  const FitTask& task_;
+  int epochs_;
+  double fits_ = 1, done_ = 0;
+};
+
+/// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper.
+inline int structured_epochs(const FitTask& task) {
+  if (task.epochs > 0) return task.epochs;
+  const double epochs = recipe_epochs * 9000.0 / static_cast<double>(std::max<std::size_t>(task.training.size(), 1));
+  return std::clamp(static_cast<int>(epochs), 20, recipe_epochs);
+}
+
+template <class Features, class WithAltitude>
+std::shared_ptr<const TrainedNetwork> fit_structured_on(const FitTask& task) {
+  using Rule = pinnquad::StructuredSettings::Altitude;
+  using Fits = pinnquad::StructuredFitsOf<Features, WithAltitude>;
+  pinnquad::StructuredSettings settings;
+  settings.residual.epochs = structured_epochs(task);
+  settings.pinned_slopes = task.settings.pinned_slopes;
+  settings.altitude = task.lacks("altitude")    ? Rule::no
+                      : !task.settings.altitude ? Rule::by_validation
+                      : *task.settings.altitude ? Rule::yes
+                                                : Rule::no;
+  settings.first_seed = task.seed;
+  settings.seeds = 1;
+  const pinnquad::RowSplit split{task.training, task.validation, {}};
+  const Fits fits = pinnquad::fit_structured<Fits>(split, task.given_airframe(), settings,
+                                                   StructuredWork(task, settings.residual.epochs));
+  AltitudeChoice altitude;
+  altitude.applies = Fits::has_altitude;
+  altitude.taken = fits.altitude.taken;
+  altitude.error_with = fits.altitude.error_with.value_or(pinnquad::not_a_number);
+  altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
+  return std::visit(
+      [&](const auto& model) -> std::shared_ptr<const TrainedNetwork> {
+        return std::make_shared<StructuredNetwork<std::decay_t<decltype(model)>>>(model, altitude);
+      },
+      fits.best().model);
+}
+
+/// Of what an asked motion can have, as far as the flights have it.
+template <TimeReach Reach>
+std::shared_ptr<const TrainedNetwork> fit_structured_kind(const FitTask& task) {
+  using namespace pinnquad;
+  const auto fit = [&task](auto lower, auto higher) {
+    using Lower = LogFeatures<Reach, typename decltype(lower)::type, InverseAccelerations>;
+    using Higher = LogFeatures<Reach, typename decltype(higher)::type, InverseAccelerations>;
+    return fit_structured_on<Lower, Higher>(task);
+  };
+  using Without = InverseFeaturesWithoutVelocity;
+  if (task.lacks("velocity")) {
+    using Battery = WithColumns<Without, BatteryVoltage>;
+    return has_battery(task) ? fit(FeaturesTag<Battery>{}, FeaturesTag<Battery>{})
+                             : fit(FeaturesTag<Without>{}, FeaturesTag<Without>{});
+  }
+  return has_battery(task) ? fit(FeaturesTag<WithColumns<InverseFeatures, BatteryVoltage>>{},
+                                 FeaturesTag<WithColumns<InverseFeaturesWithAltitude, BatteryVoltage>>{})
+                           : fit(FeaturesTag<InverseFeatures>{}, FeaturesTag<InverseFeaturesWithAltitude>{});
+}
+
+}  // namespace programs
