@@ -104,15 +104,15 @@ inline pinnquad::Verdict exported_verdict(const FitPlan& plan, const JudgedKinds
 
 /// The header's provenance; a model that the validation rows do not stop was fitted to them too.
 inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Dataset& dataset, double lag_removed_s,
-                                          const ModelKind& kind, std::uint64_t seed, int epochs,
-                                          const pinnquad::Verdict& verdict) {
+                                          const ModelKind& kind, const FitSettings& settings, std::uint64_t seed,
+                                          int epochs, const pinnquad::Verdict& verdict) {
   std::string flights;
   const auto add = [&flights](const std::vector<std::string>& names) {
     for (const std::string& name : names) add_to_list(flights, name);
   };
   add(fold.train);
   std::size_t rows = fold.split.train.size();
-  if (kind.takes_validation) {
+  if (kind.takes_validation(settings)) {
     if (!fold.part_validates) add(fold.validation);
     rows += fold.split.validation.size();
   }

@@ -122,7 +122,7 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
   job.model = kind.fit(task);
   job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   job.altitude = job.model->altitude();
-  if (!kind.takes_validation) {
+  if (!kind.takes_validation(plan.settings)) {
     job.validation_mae = error_of(*job.model);
   } else if (plan.folds.size() == 1 && job.seed == plan.first_seed && !fold.split.test.empty()) {
     const pinnquad::RowSet none;

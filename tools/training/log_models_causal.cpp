@@ -6,13 +6,8 @@
 namespace programs {
 
 ModelKind log_ridge_causal() {
-  return {"ridge_causal",
-          "ridge, the last 160 ms",
-          TimeReach::causal,
-          false,
-          needs_window,
-          fit_log_ridge<TimeReach::causal>,
-          true};
+  return {"ridge_causal", "ridge, the last 160 ms",         TimeReach::causal,    false,
+          needs_window,   fit_log_ridge<TimeReach::causal>, takes_validation_rows};
 }
 
 }  // namespace programs

@@ -6,13 +6,8 @@
 namespace programs {
 
 ModelKind log_ridge_centred() {
-  return {"ridge_centred",
-          "ridge, 80 ms to both sides",
-          TimeReach::centred,
-          false,
-          needs_window,
-          fit_log_ridge<TimeReach::centred>,
-          true};
+  return {"ridge_centred", "ridge, 80 ms to both sides",      TimeReach::centred,   false,
+          needs_window,    fit_log_ridge<TimeReach::centred>, takes_validation_rows};
 }
 
 }  // namespace programs

@@ -31,11 +31,19 @@ std::shared_ptr<const TrainedNetwork> fit_linearized(const FitTask& fit) {
 }  // namespace
 
 ModelKind log_linear() {
-  return {"linear", "linear on the paper's features", TimeReach::present, false, needs_velocity, fit_linear, true};
+  return {"linear",
+          "linear on the paper's features",
+          TimeReach::present,
+          false,
+          needs_velocity,
+          fit_linear,
+          takes_validation_rows};
 }
 ModelKind log_linearized() {
-  return {"linearized", "linearized model of the airframe", TimeReach::present, false, needs_velocity, fit_linearized,
-          true};
+  return {"linearized",         "linearized model of the airframe",
+          TimeReach::present,   false,
+          needs_velocity,       fit_linearized,
+          takes_validation_rows};
 }
 
 }  // namespace programs

@@ -38,15 +38,16 @@ std::shared_ptr<const TrainedNetwork> fit_physics(const FitTask& fit) {
 }  // namespace
 
 ModelKind log_constant() {
-  return {"constant", "mean of the commands", TimeReach::present, false, always_applicable, fit_constant, true};
+  return {"constant",        "mean of the commands", TimeReach::present,   false,
+          always_applicable, fit_constant,           takes_validation_rows};
 }
 ModelKind log_physics() {
-  return {"physics", "physics, parameters fitted", TimeReach::present, false, always_applicable, fit_physics, true};
+  return {"physics",   "physics, parameters fitted", TimeReach::present, false, always_applicable,
+          fit_physics, takes_validation_rows};
 }
 ModelKind log_ridge() {
-  return {"ridge", "ridge on physics features", TimeReach::present,
-          false,   always_applicable,           fit_log_ridge<TimeReach::present>,
-          true};
+  return {"ridge",           "ridge on physics features",       TimeReach::present,   false,
+          always_applicable, fit_log_ridge<TimeReach::present>, takes_validation_rows};
 }
 
 }  // namespace programs

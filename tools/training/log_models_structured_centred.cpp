@@ -5,14 +5,9 @@
 namespace programs {
 
 ModelKind log_structured_centred() {
-  return {"structured_centred",
-          "structured, 80 ms to both sides",
-          TimeReach::centred,
-          true,
-          needs_window,
-          fit_structured_kind<TimeReach::centred>,
-          false,
-          pinnquad::structured_in_words};
+  return {
+      "structured_centred", "structured, 80 ms to both sides",       TimeReach::centred, true,
+      needs_window,         fit_structured_kind<TimeReach::centred>, fits_validation,    pinnquad::structured_in_words};
 }
 
 }  // namespace programs

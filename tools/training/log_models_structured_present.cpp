@@ -5,14 +5,10 @@
 namespace programs {
 
 ModelKind log_structured() {
-  return {"structured",
-          "structured",
-          TimeReach::present,
-          true,
-          always_applicable,
-          fit_structured_kind<TimeReach::present>,
-          false,
-          pinnquad::structured_in_words};
+  return {"structured",       "structured",
+          TimeReach::present, true,
+          always_applicable,  fit_structured_kind<TimeReach::present>,
+          fits_validation,    pinnquad::structured_in_words};
 }
 
 }  // namespace programs

@@ -25,6 +25,7 @@ struct FitSettings {
   bool library_airframe = false;  ///< see NetworkOfModel
   std::optional<bool> altitude;   ///< is the model shown it? none: where the validation rows gain much
   bool pinned_slopes = false;     ///< to the airframe's in hover; false: learnt
+  bool fit_validation = false;    ///< of the structured model: no rows are left to find limits of trust by
 };
 
 /// The target of a fit.
@@ -48,6 +49,9 @@ struct FitTask {
   pinnquad::GivenAirframe given_airframe() const { return {airframe.name, airframe.value}; }
 };
 
+inline bool never_takes_validation(const FitSettings&) { return false; }
+inline bool takes_validation_rows(const FitSettings&) { return true; }
+
 struct ModelKind {
   const char* key;    ///< in report.json: "ridge"
   const char* title;  ///< in tables: "ridge on physics features"
@@ -59,7 +63,7 @@ struct ModelKind {
   std::shared_ptr<const TrainedNetwork> (*fit)(const FitTask&);
   /// fit() is fitted to the validation rows too: what it says of them is no measure of it. Without them it does as
   /// well.
-  bool takes_validation = false;
+  bool (*takes_validation)(const FitSettings&) = never_takes_validation;
   const char* words = nullptr;  ///< its training, in an exported header; null: the title says it
   bool exportable = true;       ///< false: to be compared with alone
 };

@@ -84,16 +84,16 @@ std::vector<ModelKind> network_kinds() {
          return detail::fit_by_parts<Parts>(
              task, [] { return pinnquad::Mse{}; }, Parts::vanilla_optimizer);
        },
-       false, "MSE"},
+       never_takes_validation, "MSE"},
       {"physics_informed", "physics-informed", present, true, needs_velocity,
        [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::annealed, Parts::informed_optimizer); },
-       false, "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"},
+       never_takes_validation, "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"},
       {"constant_weight", "constant weight", present, true, needs_velocity,
        [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::constant, Parts::informed_optimizer); },
-       false, "MSE + local monotonicity (roll, pitch, yaw), constant weight"},
+       never_takes_validation, "MSE + local monotonicity (roll, pitch, yaw), constant weight"},
       {"pearson", "pearson", present, true, needs_velocity,
        [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::pearson, Parts::informed_optimizer); },
-       false, "MSE + Pearson's correlation (roll, pitch, yaw), cyclical annealing"}};
+       never_takes_validation, "MSE + Pearson's correlation (roll, pitch, yaw), cyclical annealing"}};
 }
 
 /// The losses that `--loss` takes: the keys of network_kinds(), in its order.

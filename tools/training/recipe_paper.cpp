@@ -59,7 +59,7 @@ ModelKind linearized_kind() {
               return linear_prediction(airframe, rotors, sample);
             });
           },
-          false,
+          never_takes_validation,
           "linearized model of the airframe",
           false};
 }

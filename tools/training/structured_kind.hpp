@@ -20,14 +20,20 @@ template <class Model>
 class StructuredNetwork
     : public NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>> {
  public:
-  StructuredNetwork(const Model& model, const AltitudeChoice& altitude)
+  StructuredNetwork(const Model& model, const AltitudeChoice& altitude, bool fits_validation)
       : NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>>(model),
-        altitude_(altitude) {}
+        altitude_(altitude),
+        fits_validation_(fits_validation) {}
   AltitudeChoice altitude() const override { return altitude_; }
+  /// Limits of trust are found by rows that it was not fitted to.
+  bool has_trust() const override { return !pinnquad::is_windowed<typename Model::Features> && !fits_validation_; }
 
  private:
   AltitudeChoice altitude_;
+  bool fits_validation_;
 };
+
+inline bool fits_validation(const FitSettings& settings) { return settings.fit_validation; }
 
 /// Work of fit_structured(): one fit after the other, with progress; Ctrl-C stops it.
 class StructuredWork {
@@ -54,11 +60,12 @@ class StructuredWork {
   double fits_ = 1, done_ = 0;
 };
 
-/// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper.
+/// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper, over all groups left out.
 inline int structured_epochs(const FitTask& task) {
   if (task.epochs > 0) return task.epochs;
-  const double epochs = recipe_epochs * 9000.0 / static_cast<double>(std::max<std::size_t>(task.training.size(), 1));
-  return std::clamp(static_cast<int>(epochs), 20, recipe_epochs);
+  const double groups = static_cast<double>(pinnquad::left_out_groups(task.training).size());
+  const double rows = static_cast<double>(task.training.size()) * (task.settings.fit_validation ? groups : 1);
+  return std::clamp(static_cast<int>(recipe_epochs * 9000.0 / std::max(rows, 1.0)), 12, recipe_epochs);
 }
 
 template <class Features, class WithAltitude>
@@ -68,6 +75,7 @@ std::shared_ptr<const TrainedNetwork> fit_structured_on(const FitTask& task) {
   pinnquad::StructuredSettings settings;
   settings.residual.epochs = structured_epochs(task);
   settings.pinned_slopes = task.settings.pinned_slopes;
+  settings.fit_validation = task.settings.fit_validation;
   settings.altitude = task.lacks("altitude")    ? Rule::no
                       : !task.settings.altitude ? Rule::by_validation
                       : *task.settings.altitude ? Rule::yes
@@ -84,7 +92,8 @@ std::shared_ptr<const TrainedNetwork> fit_structured_on(const FitTask& task) {
   altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
   return std::visit(
       [&](const auto& model) -> std::shared_ptr<const TrainedNetwork> {
-        return std::make_shared<StructuredNetwork<std::decay_t<decltype(model)>>>(model, altitude);
+        return std::make_shared<StructuredNetwork<std::decay_t<decltype(model)>>>(model, altitude,
+                                                                                  settings.fit_validation);
       },
       fits.best().model);
 }

@@ -87,7 +87,8 @@ class Training {
               options.seeds,
               options.epochs > 0 || !recipe_ ? options.epochs : programs::recipe_epochs,
               options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()),
-              {!programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes}},
+              {!programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
+               options.flights.empty()}},
         report_(options.out + "/report.json", plan_, dataset, facts_of_recipe()) {}
 
   int run() {
@@ -244,7 +245,8 @@ class Training {
   Verdict verdict_of(std::size_t kind) const {
     std::optional<std::uint64_t> seed;
     if (!rotated()) {
-      const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation);
+      const programs::FinishedFit* best =
+          programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation(plan_.settings));
       if (best == nullptr) return {not_a_number, not_a_number, not_a_number};
       seed = best->seed;
     }
@@ -343,16 +345,17 @@ class Training {
       programs::FitPlan once = plan_;
       once.kinds = {plan_.kinds[kind]};
       once.folds = {*all_};
-      if (once.kinds.front().takes_validation) once.seeds = 1;
+      if (once.kinds.front().takes_validation(plan_.settings)) once.seeds = 1;
       all_fits_ = programs::fit_all(once);
       if (all_fits_.finished.size() < all_fits_.wanted) programs::stop_if_interrupted();
       const programs::FinishedFit* best =
-          programs::best_fit(all_fits_.finished, 0, once.kinds.front().takes_validation);
+          programs::best_fit(all_fits_.finished, 0, once.kinds.front().takes_validation(plan_.settings));
       if (best == nullptr)
         throw std::invalid_argument("the fit to all flights has no finite error on " + all_->validation.front());
       return Exported{best->model, best->seed, &*all_, {}};
     }
-    const programs::FinishedFit* best = programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation);
+    const programs::FinishedFit* best =
+        programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation(plan_.settings));
     if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
     programs::FinishedFit again = *best;
     if (!again.model) programs::fit_again(plan_, again);
@@ -361,7 +364,7 @@ class Training {
 
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
     const Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
-                                                    made.seed, plan_.epochs, verdict);
+                                                    plan_.settings, made.seed, plan_.epochs, verdict);
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},

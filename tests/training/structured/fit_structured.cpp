@@ -4,7 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
@@ -18,16 +20,27 @@ namespace {
 
 using Altitude = StructuredSettings::Altitude;
 
+Flight flown(const std::string& name, std::uint64_t seed, int samples) {
+  FlightPlan plan = AgileFlight::plan();
+  plan.samples = samples;
+  const Quadrotor<double, StandardAtmosphere, QuadraticDrag> vehicle(
+      airframe_value<PaperQuadrotor, double>(), paper_site<double>(), StandardAtmosphere{}, QuadraticDrag{});
+  Flight flight = fly(vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(seed)), plan).flight;
+  flight.name = flight.trajectory = name;
+  return flight;
+}
+
+/// The same, with what no affine map tells in all its commands: `size` |v_bx|.
+Flight bent(const std::string& name, std::uint64_t seed, int samples, double size) {
+  Flight flight = flown(name, seed, samples);
+  for (Sample& sample : flight) {
+    for (double& u : sample.commands) u += size * std::abs(sample.velocity_m_s[0]);
+  }
+  return flight;
+}
+
 const Dataset& flights() {
-  static const Dataset dataset = [] {
-    FlightPlan plan = AgileFlight::plan();
-    plan.samples = 1500;
-    const Quadrotor<double, StandardAtmosphere, QuadraticDrag> vehicle(
-        airframe_value<PaperQuadrotor, double>(), paper_site<double>(), StandardAtmosphere{}, QuadraticDrag{});
-    Flight flight = fly(vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(3)), plan).flight;
-    flight.name = "flown";
-    return Dataset(std::move(flight));
-  }();
+  static const Dataset dataset(flown("flown", 3, 1500));
   return dataset;
 }
 
@@ -52,6 +65,7 @@ std::vector<float> parameters_of(const StructuredFits::Fit& fit) {
       fit.model);
 }
 
+bool has_residual(const StructuredFits::Fit& fit) { return fit.model.index() % 2 == 1; }
 bool shown_the_altitude(const StructuredFits::Fit& fit) { return fit.model.index() >= 2; }
 
 /// The last job first, and a word of each call.
@@ -152,4 +166,75 @@ TEST_CASE("of errors that are not finite none is the best") {
   const double errors[] = {std::nan(""), 0.2, 0.1, std::nan("")};
   for (std::size_t i = 0; i < 4; ++i) fits.models[i].validation_error = errors[i];
   CHECK(fits.best().validation_error == 0.1);
+}
+
+TEST_CASE("a residual that the validation rows keep is dropped where whole flights left out do not gain") {
+  StructuredSettings settings = quick(Altitude::no);
+  settings.residual.epochs = 30;
+  settings.seeds = 1;
+  const auto kept = [&](double of_other) {
+    Dataset dataset;
+    dataset.add(bent("a", 3, 2000, 0.02));
+    dataset.add(bent("b", 4, 1000, of_other));
+    dataset.add(bent("c", 5, 1000, 0.02));
+    const RowSplit split = {{dataset[0], {0, 2000}}, {dataset[2], {0, 1000}}, {}};
+    RowSplit both = split;
+    both.train.add(dataset[1], {0, 1000});
+    CHECK(has_residual(fit_structured<PaperQuadrotor>(split, settings).best()));  // one flight: validation alone
+    return has_residual(fit_structured<PaperQuadrotor>(both, settings).best());
+  };
+  CHECK(kept(0.02));
+  CHECK_FALSE(kept(-0.02));
+}
+
+TEST_CASE("where the validation rows are fitted too, whole flights left out choose: all of the residual, or none") {
+  StructuredSettings settings = quick(Altitude::no);
+  settings.residual.epochs = 30;
+  settings.seeds = 1;
+  settings.fit_validation = true;
+  const auto fit = [&](double size, double of_other) {
+    Dataset dataset;
+    dataset.add(bent("a", 3, 1200, size));
+    dataset.add(bent("b", 4, 1200, of_other));
+    dataset.add(bent("c", 5, 1200, size));
+    const RowSplit split = {{dataset[0], {0, 1200}}, {dataset[2], {0, 1200}}, {}};
+    RowSplit more = split;
+    more.train.add(dataset[1], {0, 1200});
+    const RowSet unseen(dataset[1], {0, 1200});
+    const auto two = fit_structured<PaperQuadrotor>(split, settings).best();
+    const double error =
+        std::visit([&](const auto& model) { return model_errors(model, unseen).mean.mean_absolute; }, two.model);
+    const auto three = fit_structured<PaperQuadrotor>(more, settings).best();
+    return std::array<double, 3>{has_residual(two) ? 1.0 : 0.0, error, has_residual(three) ? 1.0 : 0.0};
+  };
+  const auto with = fit(0.02, 0.02), odd = fit(0.02, -0.02);
+  CHECK(with[0] == 1);
+  CHECK(with[2] == 1);
+  CHECK(with[1] < 0.015);  // of a flight that neither trained nor chose; the base alone leaves 0.03
+  CHECK(odd[2] == 0);
+
+  // one flight of one trajectory: its quarters are left out
+  Dataset alone(bent("a", 3, 1500, 0.02));
+  const RowSplit split{{alone[0], {0, 1200}}, {alone[0], {1200, 1500}}, {}};
+  CHECK(std::isfinite(fit_structured<PaperQuadrotor>(split, settings).best().validation_error));
+}
+
+TEST_CASE("the share of a residual's answer is that of least squared error, and 0 where one group does not gain") {
+  detail::Agreement agreement;
+  agreement.begin_group();
+  agreement.add(0, 1.0, 0.5);
+  agreement.add(0, -2.0, -1.0);
+  agreement.add(1, 1.0, 3.0);
+  agreement.add(2, 1.0, 0.5);
+  agreement.add(3, 1.0, -1.0);
+  CHECK(agreement.share(0) == doctest::Approx(0.5));  // (0.5 + 2) / (1 + 4)
+  CHECK(agreement.share(1) == 1);                     // no more than it says
+  CHECK(agreement.share(3) == 0);
+  // 1.25 - (2 x 2.5 x 0.5 - 5 x 0.25) = 0 of the first, 9 - 5 of the second, 0.25 - 0.25 of the third
+  CHECK(agreement.gain() == doctest::Approx(1.25 + 5 + 0.25));
+  agreement.begin_group();
+  agreement.add(0, 1.0, 0.6);
+  agreement.add(2, 1.0, -0.1);
+  CHECK(agreement.share(0) == doctest::Approx(3.1 / 6));
+  CHECK(agreement.share(2) == 0);
 }

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -20,6 +21,7 @@
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/training/structured/agreement.hpp"
 #include "pinnquad/training/structured/residual_fit.hpp"
 
 namespace pinnquad {
@@ -36,6 +38,9 @@ struct StructuredSettings {
   ResidualTraining residual{};
   bool pinned_slopes = false;  ///< the base's slopes are the airframe's in hover; false: learnt
   Altitude altitude = Altitude::by_validation;
+  /// The validation rows are fitted too. Then whole flights, each left out in turn, choose alone, and no rows are left
+  /// that limits of trust could be found by.
+  bool fit_validation = false;
   double least_altitude_gain = 0.2;  ///< by_validation: least share of the error that the altitude must take away
   std::uint64_t first_seed = 1;
   int seeds = 5;
@@ -116,22 +121,31 @@ class StructuredFitter {
 
  public:
   StructuredFitter(const RowSplit& split, const GivenAirframe& airframe, const StructuredSettings& settings)
-      : split_(split), settings_(settings), context_(make_context<ContextType>(split.train, airframe)) {
+      : split_(split),
+        settings_(settings),
+        fitted_(settings.fit_validation ? rows_of({split.train, split.validation}) : split.train),
+        context_(make_context<ContextType>(fitted_, airframe)) {
     if (settings.pinned_slopes) pinned_ = hover_slopes(airframe.template airframe<double>());
-    for (const RowSet& group : left_out_groups(split.train)) {
+    for (const RowSet& group : left_out_groups(fitted_)) {
       RegressionSums sums = regression_sums(context_, group);
       if (!(sums.rows() > 0)) continue;  // no window is complete there
       groups_.push_back(group);
       sums_.push_back(std::move(sums));
     }
     map_ = fit_monotone_base(monotone_shape(context_), sums_, pinned_);
-    whole_flights_ = whole_flight_groups(split.train).size() > 1 && groups_.size() > 1;
+    whole_flights_ = whole_flight_groups(fitted_).size() > 1 && groups_.size() > 1;
   }
 
   /// None where `goes_on` stopped it.
   template <class GoesOn>
   std::optional<Fit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
     const auto start = std::chrono::steady_clock::now();
+    const auto done = [&](const auto& predictor, double error) {
+      Fit made{make_trained_model(predictor, context_, fitted_), seed, error, 0};
+      made.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      return made;
+    };
+    if (settings_.fit_validation) return fit_by_groups(seed, goes_on, done);
     const auto fit = fitted(split_.train, map_, seed, goes_on);
     if (!fit.finished) return {};
     bool kept = fit.residual_kept;
@@ -140,11 +154,6 @@ class StructuredFitter {
       if (!gains) return {};
       kept = *gains;
     }
-    const auto done = [&](const auto& predictor, double error) {
-      Fit made{make_trained_model(predictor, context_, split_.train), seed, error, 0};
-      made.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      return made;
-    };
     return kept ? done(fit.predictor, fit.error) : done(fit.base, fit.base_error);
   }
 
@@ -155,30 +164,120 @@ class StructuredFitter {
     return fit_monotone<Residual>(context_, training, split_.validation, map, settings_.residual, engine, goes_on);
   }
 
+  static RowSet rows_of(const std::vector<RowSet>& groups) {
+    RowSet rows;
+    for (const RowSet& group : groups) {
+      for (const FlightRows& piece : group.pieces()) rows.add(*piece.flight, piece.rows);
+    }
+    return rows;
+  }
+
+  /// Calls `use(others, base without the group, the group)`, each group left out in turn.
+  template <class Use>
+  void each_left_out(const Use& use) const {
+    for (std::size_t out = 0; out < groups_.size(); ++out) {
+      std::vector<RowSet> others = groups_;
+      std::vector<RegressionSums> sums = sums_;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
+      sums.erase(sums.begin() + static_cast<std::ptrdiff_t>(out));
+      use(rows_of(others), fit_monotone_base(monotone_shape(context_), sums, pinned_), groups_[out]);
+    }
+  }
+
   /// Does the residual lower the error on whole flights, each left out in turn of the rows that it is fitted to? None
   /// where `goes_on` stopped it.
   template <class GoesOn>
   std::optional<bool> gains_on_flights_left_out(std::uint64_t seed, const GoesOn& goes_on) const {
     double base_error = 0, error = 0;
-    for (std::size_t out = 0; out < groups_.size(); ++out) {
-      RowSet others;
-      std::vector<RegressionSums> sums;
-      for (std::size_t i = 0; i < groups_.size(); ++i) {
-        if (i == out) continue;
-        for (const FlightRows& piece : groups_[i].pieces()) others.add(*piece.flight, piece.rows);
-        sums.push_back(sums_[i]);
-      }
-      const auto fit = fitted(others, fit_monotone_base(monotone_shape(context_), sums, pinned_), seed, goes_on);
-      if (!fit.finished) return {};
-      const auto unseen = standardised<float>(context_, groups_[out]);
+    bool finished = true;
+    each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
+      if (!finished) return;
+      const auto fit = fitted(others, map, seed, goes_on);
+      finished = fit.finished;
+      const auto unseen = standardised<float>(context_, group);
       base_error += unseen.size() * command_error(context_, fit.base, unseen);
       error += unseen.size() * command_error(context_, fit.predictor, unseen);
-    }
+    });
+    if (!finished) return {};
     return error < (1 - settings_.residual.least_gain) * base_error;
+  }
+
+  /// The residual that a base leaves of rows, as the network is shown it.
+  auto left_by(const AffineMap& map, const RowSet& rows) const {
+    auto data = standardised<float>(context_, rows);
+    take_away(map, data);
+    return residual_rows<Features>(data);
+  }
+
+  template <class GoesOn, class Visit>
+  bool train(const AffineMap& map, const RowSet& rows, int epochs, std::uint64_t seed, const GoesOn& goes_on,
+             const Visit& visit) const {
+    std::mt19937_64 engine(seed);
+    return train_residual<Residual>(
+        residual_context(context_), left_by(map, rows), [](const auto&) {}, settings_.residual, epochs, engine, goes_on,
+        visit);
+  }
+
+  /// Groups left out in turn say how long the residual is trained and what share of each output counts; then base and
+  /// residual are fitted to all rows.
+  template <class GoesOn, class Done>
+  std::optional<Fit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
+    const int epochs = settings_.residual.epochs;
+    std::vector<Agreement> by_epoch(static_cast<std::size_t>(epochs));
+    bool finished = groups_.size() > 1;
+    each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
+      const auto unseen = left_by(map, group);
+      finished = finished && train(map, others, epochs, seed, goes_on, [&](const auto& trainer, int epoch) {
+                   agree(by_epoch[static_cast<std::size_t>(epoch)], trainer.network(), unseen);
+                 });
+    });
+    if (!finished && groups_.size() > 1) return {};
+    std::size_t best = 0;
+    for (std::size_t epoch = 1; epoch < by_epoch.size(); ++epoch) {
+      if (by_epoch[epoch].gain() > by_epoch[best].gain()) best = epoch;
+    }
+    const Agreement& chosen = by_epoch[best];
+    const auto base = monotone_base<ContextType>(map_);
+    const double error = groups_.size() > 1 ? chosen.error() : std::numeric_limits<double>::quiet_NaN();
+    if (!(chosen.gain() > 0)) return done(base, error);
+    Residual residual{};
+    if (!train(map_, fitted_, static_cast<int>(best) + 1, seed, goes_on,
+               [&](const auto& trainer, int) { residual = trainer.network(); })) {
+      return {};
+    }
+    take_shares(residual, chosen);
+    using Bound = MonotoneResidual<Features, Residual>;
+    return done(base_and_residual<Bound, MonotonePredictor<Features, Residual>>(base, residual, left_by(map_, fitted_)),
+                error);
+  }
+
+  template <class Data>
+  void agree(Agreement& agreement, const Residual& residual, const Data& unseen) const {
+    agreement.begin_group();
+    for (int row = 0; row < unseen.size(); ++row) {
+      float said[Residual::outputs] = {};
+      residual.forward(unseen.features_of(row), said);
+      for (int k = 0; k < Residual::outputs; ++k) {
+        const double unit = context_.output.standard_deviation[static_cast<std::size_t>(k)];
+        agreement.add(k, unit * static_cast<double>(said[k]), unit * static_cast<double>(unseen.outputs_of(row)[k]));
+      }
+    }
+  }
+
+  /// In the last layer, which is affine: weights by output, then biases.
+  static void take_shares(Residual& residual, const Agreement& agreement) {
+    constexpr int width = 32;
+    auto weight = residual.parameters.end() - Residual::outputs * (width + 1);
+    for (int k = 0; k < Residual::outputs; ++k) {
+      const auto share = static_cast<float>(agreement.share(k));
+      for (int i = 0; i < width; ++i) *weight++ *= share;
+      *(residual.parameters.end() - Residual::outputs + k) *= share;
+    }
   }
 
   const RowSplit& split_;
   const StructuredSettings& settings_;
+  RowSet fitted_;
   ContextType context_;
   std::optional<AxisSlopes> pinned_;
   std::vector<RowSet> groups_;

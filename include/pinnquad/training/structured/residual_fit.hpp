@@ -149,6 +149,38 @@ void take_range(const Residual& residual, const Data& data, Scalar* lower, Scala
   }
 }
 
+/// Trains a residual from `engine`, up to `epochs` of the schedule's. `after_batch` as Trainer::epoch() calls it; after
+/// each epoch `visit(trainer, epoch)`. False where `goes_on(epoch)` stopped it.
+template <class Residual, class ShownContext, class Data, class AfterBatch, class Engine, class GoesOn, class Visit>
+bool train_residual(const ShownContext& shown, const Data& data, const AfterBatch& after_batch,
+                    const ResidualTraining& how, int epochs, Engine& engine, const GoesOn& goes_on,
+                    const Visit& visit) {
+  using Optimizer = Scheduled<Adam, CosineDecay>;
+  constexpr int batch = 64;
+  using ResidualTrainer = Trainer<Residual, Mse, Optimizer, ShownContext, ShuffledBatches, batch>;
+  static_assert(std::is_same_v<typename Residual::Scalar, float>, "pinnquad: a residual is trained in float");
+  Optimizer optimizer;
+  optimizer.optimizer.learning_rate = how.learning_rate;
+  optimizer.optimizer.weight_decay = how.weight_decay;
+  const auto trainer = std::make_unique<ResidualTrainer>(initialised<Residual>(engine), Mse{}, optimizer, shown);
+  for (int epoch = 0; epoch < epochs; ++epoch) {
+    if (!goes_on(epoch)) return false;
+    trainer->epoch(data, {epoch, how.epochs}, engine, after_batch);
+    visit(*trainer, epoch);
+  }
+  return true;
+}
+
+/// Base and residual, which is bounded to its outputs on its rows.
+template <class Bound, class Predictor, class Base, class Residual, class Data>
+Predictor base_and_residual(const Base& base, const Residual& residual, const Data& data) {
+  Predictor predictor{};
+  auto* to = std::copy(base.parameters.begin(), base.parameters.end(), predictor.parameters.begin());
+  take_range(residual, data, to + Bound::lower, to + Bound::upper);
+  std::copy(residual.parameters.begin(), residual.parameters.end(), to + Bound::own);
+  return predictor;
+}
+
 /// `Bound`: the residual's type with its bounds. `shown` is the context of the features that the residual is shown,
 /// `show` gives it its rows of the base's. `after_batch` as Trainer::epoch() calls it.
 template <class Residual, class Bound, class Predictor, class ContextType, class ShownContext, class Show,
@@ -159,10 +191,6 @@ ResidualFit<typename ContextType::Features, Predictor> fit_residual(const Contex
                                                                     const RowSet& training, const RowSet& validation,
                                                                     const AffineMap& map, const ResidualTraining& how,
                                                                     Engine& engine, const GoesOn& goes_on) {
-  using Optimizer = Scheduled<Adam, CosineDecay>;
-  constexpr int batch = 64;
-  using ResidualTrainer = Trainer<Residual, Mse, Optimizer, ShownContext, ShuffledBatches, batch>;
-  static_assert(std::is_same_v<typename Residual::Scalar, float>, "pinnquad: a residual is trained in float");
   ResidualFit<typename ContextType::Features, Predictor> fit;
   fit.base = monotone_base<ContextType>(map);
   auto rows = standardised<float>(context, training);
@@ -173,22 +201,13 @@ ResidualFit<typename ContextType::Features, Predictor> fit_residual(const Contex
   const auto data = show(std::move(rows)), validating = show(std::move(left));
   fit.base_error = fit.error = command_error(context, fit.base, unseen);
 
-  Optimizer optimizer;
-  optimizer.optimizer.learning_rate = how.learning_rate;
-  optimizer.optimizer.weight_decay = how.weight_decay;
-  const auto trainer = std::make_unique<ResidualTrainer>(initialised<Residual>(engine), Mse{}, optimizer, shown);
   Checkpoint<Residual> best;
-  for (int epoch = 0; epoch < how.epochs; ++epoch) {
-    fit.finished = goes_on(epoch);
-    if (!fit.finished) return fit;
-    trainer->epoch(data, {epoch, how.epochs}, engine, after_batch);
-    best.offer(epoch, trainer->validate(validating).mean_absolute, *trainer);
-  }
-  if (best.empty()) return fit;
+  fit.finished = train_residual<Residual>(
+      shown, data, after_batch, how, how.epochs, engine, goes_on,
+      [&](auto& trainer, int epoch) { best.offer(epoch, trainer.validate(validating).mean_absolute, trainer); });
+  if (!fit.finished || best.empty()) return fit;
   fit.epoch = best.epoch();
-  auto* to = std::copy(fit.base.parameters.begin(), fit.base.parameters.end(), fit.predictor.parameters.begin());
-  take_range(best.network(), data, to + Bound::lower, to + Bound::upper);
-  std::copy(best.network().parameters.begin(), best.network().parameters.end(), to + Bound::own);
+  fit.predictor = base_and_residual<Bound, Predictor>(fit.base, best.network(), data);
   fit.error = command_error(context, fit.predictor, unseen);
   fit.residual_kept = fit.error < (1 - how.least_gain) * fit.base_error;
   return fit;
