@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "flight/run_time_view.hpp"
@@ -66,13 +66,10 @@ struct HeldColumns {
 };
 
 /// Calls `fly` with the feed-forward of a model, which must stay where it is. `columns`: the value of each that it asks
-/// for, in their order. Throws std::invalid_argument of a window that looks ahead.
+/// for, in their order. A window that looks ahead is never complete.
 template <class Guard, class Fly>
 decltype(auto) with_feed_forward(const pinnquad::BlockModel& model, const Guard& guard, double ground_z_m,
                                  const std::vector<double>& columns, const Fly& fly) {
-  if (!model.features().window().causal && model.features().window().taps > 1) {
-    throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
-  }
   return model.with([&](const auto& own) {
     using Scalar = std::decay_t<decltype(*own.parameters())>;
     using Inverse = pinnquad::InverseDynamics<RunTimeView<FlightFeatures, Scalar>, Guard>;

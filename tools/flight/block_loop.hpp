@@ -28,8 +28,8 @@ struct LoopFlights {
   pinnquad::TrackingResult<double> model, analytic_inverse, hover_trim;
 };
 
-/// Where the model declines the analytic inverse of the airframe flies. Throws std::invalid_argument, one line: an
-/// airframe that can't be flown there, a window that looks ahead.
+/// Where the model declines, the analytic inverse of the airframe flies. Throws std::invalid_argument, one line, of an
+/// airframe that can't be flown there.
 LoopFlights fly_loop(const pinnquad::BlockModel& model, const LoopPlan& plan);
 
 }  // namespace programs

@@ -66,7 +66,7 @@ std::vector<double> column_values(const BlockModel& model, const std::vector<std
     result.push_back(values[i].value_or(0));
   }
   if (!missing.empty()) {
-    throw std::invalid_argument("--column: the model asks for " + missing + " too: --column NAME=VALUE says each");
+    throw std::invalid_argument("--column: the model asks for " + missing + ": say each as --column NAME=VALUE");
   }
   return result;
 }
@@ -150,6 +150,9 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
 
 int loop(const LoopOptions& options) {
   const BlockModel model = programs::read_model(options.model);
+  if (model.features().window().latest_s > 0) {
+    throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
+  }
   const std::vector<double> columns = column_values(model, options.columns);
   const programs::NamedAirframe airframe = chosen_airframe(options, model);
   const programs::LoopFlights flights =
