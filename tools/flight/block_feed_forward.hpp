@@ -52,7 +52,7 @@ class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
 
 namespace programs {
 
-/// What a loop measures beside the motion: the height above the ground, exactly; columns that stand still.
+/// Measured beside the motion: the height above the ground, exactly; columns that stand still.
 template <class Scalar>
 struct HeldColumns {
   double ground_z_m = 0;  ///< NED

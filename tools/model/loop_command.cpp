@@ -16,6 +16,7 @@
 
 #include "airframe/choice.hpp"
 #include "command_line/console.hpp"
+#include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "flight/block_loop.hpp"
@@ -51,7 +52,7 @@ std::vector<double> column_values(const BlockModel& model, const std::vector<std
           (asked.empty() ? "none" : programs::listed(asked, [](const ColumnName& c) { return printable(c.name); })));
     }
     if (values[at]) throw std::invalid_argument("--column: " + printable(name) + " is given twice");
-    constexpr double most = std::numeric_limits<float>::max();
+    constexpr auto most = static_cast<double>(std::numeric_limits<float>::max());
     double value = 0;
     if (equals == std::string::npos || !programs::parse_decimal(text.substr(equals + 1), -most, most, value)) {
       throw std::invalid_argument("--column: expected " + printable(name) + "=NUMBER in " + printable(asked[at].unit) +
@@ -157,6 +158,7 @@ int loop(const LoopOptions& options) {
   const programs::NamedAirframe airframe = chosen_airframe(options, model);
   const programs::LoopFlights flights =
       programs::fly_loop(model, {options.trajectory, airframe.value, options.guard == "envelope", columns});
+  programs::stop_if_interrupted();
   const nlohmann::json report = report_of(options, model, airframe.name, columns, flights);
   if (options.json) {
     std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
