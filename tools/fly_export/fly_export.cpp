@@ -17,6 +17,7 @@
 
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
+#include "flight/loop_trajectories.hpp"
 #include "pinnquad/flight.hpp"
 #include "pinnquad/io/text_file.hpp"
 #include "pinnquad/simulation/tracking.hpp"
@@ -160,41 +161,15 @@ struct Altimeter {
   }
 };
 
-/// Largest entry that the envelope allows a feature either way; `none` where there is no such feature.
-double reach(const char* name, double none) {
+/// Where the model was trained, if it is shown the altitude.
+std::optional<programs::NearGround> near_ground() {
+  if constexpr (!knows_altitude) return {};
+  programs::NearGround range;
   for (std::size_t i = 0; i < Model::Features::names.size(); ++i) {
-    if (std::string(name) != Model::Features::names[i]) continue;
-    return std::min(static_cast<double>(Model::envelope_upper[i]), -static_cast<double>(Model::envelope_lower[i]));
+    range.take(Model::Features::names[i], static_cast<double>(Model::envelope_lower[i]),
+               static_cast<double>(Model::envelope_upper[i]));
   }
-  return none;
-}
-
-/// A figure-eight that this airframe can fly: its sideways acceleration stays within 40 % of what thrust beyond hover
-/// allows. Near the ground it rises and sinks over most of the heights that the model was trained at, as slowly as its
-/// envelope asks for.
-FigureEight<double> trajectory_for(const Vehicle& vehicle) {
-  FigureEight<double> eight;
-  eight.center_m = {0, 0, -20};
-  constexpr double turn = 6.283185307179586;
-  const double thrust_to_weight = vehicle.airframe().thrust_to_weight();
-  const double sideways =
-      standard_gravity_m_s2<double> * std::sqrt(std::max(0.01, thrust_to_weight * thrust_to_weight - 1));
-  if constexpr (knows_altitude) {
-    const auto lower = static_cast<double>(Model::envelope_lower.back());
-    const auto upper = static_cast<double>(Model::envelope_upper.back());
-    const double lowest = std::max(lower, 0.1);  // its margin reaches below the ground
-    eight.center_m[2] = vehicle.site().ground_z_m - (lowest + 0.45 * (upper - lowest));
-    eight.half_height_m = 0.35 * (upper - lowest);
-    eight.half_length_m = 1;
-    eight.half_width_m = 0.5;
-    constexpr double share = 0.5, no_limit = 1e3;  // of the envelope: the feedback adds to what is planned
-    eight.period_s = std::max({4.0, turn * eight.half_length_m / (share * reach("v_bx", no_limit)),
-                               turn * 2 * eight.half_width_m / (share * reach("v_by", no_limit)),
-                               turn * eight.half_height_m / (share * reach("v_bz", no_limit))});
-  }
-  const double rate_limit = std::sqrt(0.4 * sideways / (4 * eight.half_width_m));
-  eight.period_s = std::max(eight.period_s, turn / rate_limit);
-  return eight;
+  return range;
 }
 
 template <class FeedForward>
@@ -223,7 +198,8 @@ bool closed_loop(const Flown& model) {
                        std::string("this airframe can't be flown near the ground: ") + to_string(vehicle.status()));
     return false;
   }
-  const FigureEight<double> trajectory = trajectory_for(vehicle);
+  const FigureEight<double> trajectory =
+      programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, near_ground());
   const AnalyticInverse<Vehicle> analytic(vehicle);
   const Altimeter altimeter{vehicle.site().ground_z_m};
   HoverTrim<double> trim;

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
+#include "flight/run_time_view.hpp"
 #include "model/flight_stack.hpp"
 #include "model/replay_reason.hpp"
-#include "model/run_time_view.hpp"
 
 namespace programs {
 

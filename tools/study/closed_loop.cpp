@@ -5,9 +5,9 @@
 #include <exception>
 
 #include "pinnquad/control/trajectory.hpp"
+#include "pinnquad/core/rotation.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/simulation/tracking.hpp"
-#include "training/wanted_row.hpp"
 
 namespace study {
 
@@ -16,7 +16,24 @@ namespace {
 using pinnquad::Status;
 using Commands = pinnquad::Commands<double>;
 
-/// The model asked row by row, as it is judged.
+/// A motion that is asked for, as a row. `ground_z_m`: NED, what the altitude counts from.
+pinnquad::Sample wanted_row(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
+                            double time_s, double ground_z_m) {
+  const pinnquad::EulerAngles<double> angles = pinnquad::to_euler(state.attitude);
+  pinnquad::Sample sample;
+  sample.time_s = time_s;
+  sample.linear_acceleration_m_s2 = desired.linear_m_s2;
+  sample.angular_acceleration_rad_s2 = desired.angular_rad_s2;
+  sample.velocity_m_s = pinnquad::body_velocity(state);
+  sample.body_rates_rad_s = state.body_rates_rad_s;
+  sample.roll_rad = angles.roll_rad;
+  sample.pitch_rad = angles.pitch_rad;
+  sample.yaw_rad = angles.yaw_rad;
+  sample.altitude_m = ground_z_m - state.position_m[2];
+  return sample;
+}
+
+/// The model asked row by row, as it is judged: formulas, which have no block, stand beside trained models here.
 class ModelFeedForward {
  public:
   ModelFeedForward(const RowPredictions& model, const Commands& hover, double ground_z_m)
@@ -26,7 +43,7 @@ class ModelFeedForward {
                     std::uint64_t time_us, Commands& commands) noexcept {
     try {
       pinnquad::Flight row;
-      row.push_back(programs::wanted_row(state, desired, pinnquad::seconds_of(time_us), ground_z_m_));
+      row.push_back(wanted_row(state, desired, pinnquad::seconds_of(time_us), ground_z_m_));
       const Commands made = model_(pinnquad::RowSet(row, {0, 1})).front();
       const bool answered = pinnquad::all_finite(made);
       count_.add(answered ? Status::ok : Status::outside_envelope);

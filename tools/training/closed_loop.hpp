@@ -7,92 +7,37 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "airframe/choice.hpp"
+#include "flight/block_feed_forward.hpp"
+#include "flight/loop_figures.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/flatness.hpp"
 #include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 #include "training/logged_vehicle.hpp"
-#include "training/model_kind.hpp"
-#include "training/trained_network.hpp"
-#include "training/wanted_row.hpp"
 
 namespace programs {
 
 using LoggedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, LoggedTorque>;
 
-/// The model as a feed-forward policy: asked with the rows of the last instants as a flight, as it was judged. Where it
-/// has no answer (its window is not complete) the formula of the vehicle answers, and that is counted.
-class LoggedFeedForward {
- public:
-  /// Extra columns are held at the medians of the training rows.
-  LoggedFeedForward(std::shared_ptr<const TrainedNetwork> model, TimeReach reach, const LoggedQuadrotor& vehicle,
-                    const pinnquad::RowSet& training)
-      : model_(std::move(model)), formula_(vehicle), window_s_(reach == TimeReach::present ? 0 : longest_window_s) {
-    for (const pinnquad::ExtraColumn& column : training.pieces().front().flight->columns()) {
-      std::vector<double> values = column.values;
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      pinnquad::ExtraColumn held;
-      held.name = column.name;
-      held.unit = column.unit;
-      held.values = {*middle};
-      held_.push_back(std::move(held));
-    }
+/// The median of each column that the model asks for, in the first training flight: what the loop holds it at.
+inline std::vector<double> held_columns(const pinnquad::BlockModel& model, const pinnquad::RowSet& training) {
+  std::vector<double> held;
+  for (const pinnquad::ColumnName& column : model.columns()) {
+    const pinnquad::Flight& flight = *training.pieces().front().flight;
+    std::vector<double> values = flight.column(column.name)->values;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    held.push_back(*middle);
   }
-
-  pinnquad::Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
-                              std::uint64_t time_us, pinnquad::Commands<double>& commands) noexcept {
-    try {
-      remember(state, desired, pinnquad::seconds_of(time_us));
-      pinnquad::Flight flight;
-      for (const pinnquad::Sample& sample : past_) flight.push_back(sample);
-      for (pinnquad::ExtraColumn column : held_) {
-        column.values.assign(past_.size(), column.values.front());
-        flight.add_column(std::move(column));
-      }
-      ++asked_;
-      const auto made = model_->predictions(pinnquad::RowSet(flight, {0, flight.size()})).back();
-      if (std::all_of(made.begin(), made.end(), [](double u) { return std::isfinite(u); })) {
-        ++answered_;
-        for (std::size_t i = 0; i < commands.size(); ++i) commands[i] = std::clamp(made[i], 0.0, 1.0);
-        return pinnquad::Status::ok;
-      }
-      return formula_(state, desired, time_us, commands);
-    } catch (const std::exception&) {
-      return pinnquad::Status::not_finite;
-    }
-  }
-
-  double answered_share() const {
-    return asked_ > 0 ? static_cast<double>(answered_) / static_cast<double>(asked_) : 0.0;
-  }
-
- private:
-  static constexpr double longest_window_s = 0.25;
-
-  void remember(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired, double time_s) {
-    past_.push_back(wanted_row(state, desired, time_s));
-    past_.erase(past_.begin(), std::find_if(past_.begin(), past_.end(), [&](const pinnquad::Sample& old) {
-                  return old.time_s >= time_s - window_s_;
-                }));
-  }
-
-  std::shared_ptr<const TrainedNetwork> model_;
-  pinnquad::AnalyticInverse<LoggedQuadrotor> formula_;
-  double window_s_;
-  std::vector<pinnquad::ExtraColumn> held_;
-  std::vector<pinnquad::Sample> past_;
-  std::size_t asked_ = 0, answered_ = 0;
-};
+  return held;
+}
 
 /// Limits that flights have reached in all but their last hundredths.
 struct FlownEnvelope {
@@ -143,9 +88,10 @@ inline std::optional<pinnquad::FigureEight<double>> eight_within(const FlownEnve
   return {};
 }
 
-/// Results of the flight, for report.json and the page; `why_not` alone where there was none.
-inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& model, TimeReach reach,
-                                 const pinnquad::RowSet& training, const NamedAirframe& airframe,
+/// Results of the flight, for report.json and the page; `why_not` alone where there was none. The model answers outside
+/// its envelope too; while its window fills, the analytic inverse does.
+inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnquad::RowSet& training,
+                                 const NamedAirframe& airframe,
                                  const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs,
                                  bool has_velocity) {
   const LoggedEffects effects = logged_effects(training, signs);
@@ -162,42 +108,22 @@ inline nlohmann::json fly_logged(const std::shared_ptr<const TrainedNetwork>& mo
   plan.duration_s = std::max(20.0, eight->ramp_s + 2 * eight->period_s);
   plan.steps_per_control = 4;
   const pinnquad::FlightController<double> controller({}, pinnquad::flight_limits(*made, 1.0));
-  const auto told = [](const pinnquad::TrackingResult<double>& flown) {
-    constexpr auto ok = pinnquad::Status::ok;
-    return nlohmann::json{{"rmse_m", flown.rmse_m},
-                          {"largest_error_m", flown.max_error_m},
-                          {"flown_s", flown.flown_s},
-                          {"status", pinnquad::to_string(flown.status != ok ? flown.status : flown.declined)}};
+  using Analytic = pinnquad::AnalyticInverse<LoggedQuadrotor>;
+  using Guard = pinnquad::Guard<pinnquad::FiniteInputs, pinnquad::FiniteOutputs, pinnquad::ClipCommands<>,
+                                pinnquad::Fallback<Analytic>>;
+  const Analytic analytic(vehicle);
+  const auto fly = [&](const auto& feed_forward) {
+    return pinnquad::track(vehicle, *eight, controller, feed_forward, plan);
   };
-  // the policy is copied into the loop: what it counts is shared
-  struct Counted {
-    std::shared_ptr<LoggedFeedForward> policy;
-    pinnquad::Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
-                                std::uint64_t time_us, pinnquad::Commands<double>& commands) noexcept {
-      return (*policy)(state, desired, time_us, commands);
-    }
-  };
-  const Counted policy{std::make_shared<LoggedFeedForward>(model, reach, vehicle, training)};
-  nlohmann::json result = {
-      {"trajectory", "figure-eight"},
-      {"half_length_m", eight->half_length_m},
-      {"period_s", eight->period_s},
-      {"model", told(pinnquad::track(vehicle, *eight, controller, policy, plan))},
-      {"formula",
-       told(pinnquad::track(vehicle, *eight, controller, pinnquad::AnalyticInverse<LoggedQuadrotor>(vehicle), plan))},
-      {"hover_trim", told(pinnquad::track(vehicle, *eight, controller, trim, plan))}};
-  result["model"]["answered_share"] = policy.policy->answered_share();
+  const auto by_model = with_feed_forward(model, Guard(analytic), 0, held_columns(model, training), fly);
+  nlohmann::json result = {{"trajectory", "figure-eight"},
+                           {"half_length_m", eight->half_length_m},
+                           {"period_s", eight->period_s},
+                           {"model", loop_figures(by_model)},
+                           {"formula", loop_figures(fly(analytic))},
+                           {"hover_trim", loop_figures(fly(trim))}};
+  result["model"]["answered_share"] = answered_share(by_model.fallback);
   return result;
-}
-
-/// Whether the model lost the vehicle: the flight ended, or went further off than the figure is long and no
-/// feed-forward is off.
-inline bool lost_vehicle(const nlohmann::json& flown) {
-  if (!flown.contains("model")) return false;
-  const nlohmann::json& model = flown["model"];
-  return model["status"] != to_string(pinnquad::Status::ok) ||
-         !(model["largest_error_m"] <=
-           flown["hover_trim"]["largest_error_m"].get<double>() + 2 * flown["half_length_m"].get<double>());
 }
 
 }  // namespace programs

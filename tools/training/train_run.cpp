@@ -423,8 +423,10 @@ class Training {
   /// The model in a closed loop on the vehicle that the logs show; what looks ahead is not flown on measured motion.
   nlohmann::json fly(const Exported& made, const programs::ModelKind& kind) const {
     if (kind.reach == programs::TimeReach::centred || !options_.flights.empty()) return {};
-    return programs::fly_logged(made.model, kind.reach, made.fold->split.train, plan_.airframe,
-                                programs::axis_signs(plan_.airframe), !dataset_.lacks("velocity"));
+    const RowSet& training = made.fold->split.train;
+    const BlockModel block(kind.title, made.model->block(training));
+    return programs::fly_logged(block, training, plan_.airframe, programs::axis_signs(plan_.airframe),
+                                !dataset_.lacks("velocity"));
   }
 
   void tell_flight(const nlohmann::json& flown) {

@@ -54,6 +54,10 @@ class TrainedNetwork {
                                        const pinnquad::Provenance& /*provenance*/) const {
     throw std::logic_error("a model to be compared with alone is not exported");
   }
+  /// The block that export_to() would write, but for its provenance: opened as a BlockModel it flies.
+  virtual std::vector<unsigned char> block(const pinnquad::RowSet& /*training*/) const {
+    throw std::logic_error("a model to be compared with alone has no block");
+  }
   /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
   /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the feature set asks
   /// for it, predicted u (4), flown u (4). Of a feature set that asks for more "pinnquad-replay-features", and X in the
@@ -130,6 +134,9 @@ class NetworkOfModel : public JudgedModel<Model> {
       exported = pinnquad::export_model<WithTrust>(files, name, model, split, provenance);
     });
     return exported;
+  }
+  std::vector<unsigned char> block(const pinnquad::RowSet& training) const override {
+    return pinnquad::model_block(this->model_, pinnquad::golden_features(this->model_, training), {});
   }
   void write_replay(const std::string& path, const pinnquad::RowSet& rows) const override {
     using Inputs = typename Model::Features::template Inputs<typename Model::Scalar>;

@@ -101,8 +101,10 @@ class NetworkInverse {
       "pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument that measures it "
       "(control/feed_forward.hpp)");
 
-  explicit NetworkInverse(const InverseDynamics& inverse, const Measured& measured = Measured{}) noexcept
-      : inverse_(inverse), measured_(measured) {}
+  /// `history`: an empty one, given where features that are known at run time alone say how long it is.
+  explicit NetworkInverse(const InverseDynamics& inverse, const Measured& measured = Measured{},
+                          const History& history = History{}) noexcept
+      : inverse_(inverse), measured_(measured), history_(history) {}
 
   template <class Scalar>
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, std::uint64_t time_us,
@@ -142,7 +144,7 @@ class NetworkInverse {
 
   InverseDynamics inverse_;
   Measured measured_;
-  History history_{};
+  History history_;
   FallbackCount count_{};
 };
 

@@ -96,13 +96,81 @@ constexpr bool follows(const Window& window, double earlier_s, double later_s) n
   return later_s > earlier_s && later_s - earlier_s <= window.largest_gap_s + window.tolerance_s;
 }
 
-}  // namespace detail
+/// Inputs of an instant.
+template <class Inputs>
+struct TimedInputs {
+  double time_s;
+  Inputs inputs;
+};
+
+/// The last inputs of a loop, as many as a causal window asks for. `Samples`: room for four TimedInputs or more.
+/// `Window`: a TapWindow, or one that is known at run time alone.
+template <class Scalar, class Window, class Samples>
+class PastInputs {
+ public:
+  PastInputs() = default;
+  PastInputs(const Window& window, const Samples& samples) : window_(window), samples_(samples) {}
+
+  /// Takes the present inputs, sound ones of a finite time, and fills the window's other taps. False where it is not
+  /// complete.
+  template <class Inputs>
+  bool take(const Inputs& present, double time_s, Inputs* others) noexcept {
+    if (count_ > 0) {
+      const double newest_s = sample(count_ - 1).time_s;
+      if (equal(time_s, newest_s)) {
+        --count_;
+      } else if (!follows(window_, newest_s, time_s)) {
+        count_ = 0;
+      } else if (count_ > 1 && newest_s - sample(count_ - 2).time_s < thinned_s() &&
+                 (!keeps_neighbours() || follows(window_, sample(count_ - 2).time_s, time_s))) {
+        --count_;  // the present one takes the place of one that was kept as the newest alone
+      }
+    }
+    sample(count_) = {time_s, present};
+    ++count_;
+    while (count_ > 1 && sample(1).time_s <= time_s + window_.earliest_s + window_.tolerance_s) {
+      oldest_ = (oldest_ + 1) % size();
+      --count_;
+    }
+    return fill_window<Scalar>(
+        window_, time_s, 0, count_ - 1, count_ - 1, [this](int i) noexcept { return sample(i).time_s; },
+        [this](int i, Inputs& result) noexcept {
+          result = sample(i).inputs;
+          return true;
+        },
+        others);
+  }
+
+  void clear() noexcept { count_ = 0; }
+
+ private:
+  int size() const noexcept { return static_cast<int>(samples_.size()); }
+  /// Samples closer than this are thinned: so many fit into the window that its oldest neighbour and the newest have
+  /// room too.
+  double thinned_s() const noexcept { return -window_.earliest_s / (size() - 3); }
+  /// True where thinning must leave no gap. A sample that stays before a late tick takes no more room, since the two
+  /// steps together are as long as two that thinning leaves. A shorter history has no room for that.
+  bool keeps_neighbours() const noexcept { return 2 * thinned_s() <= window_.largest_gap_s; }
+
+  /// Counted from the oldest.
+  auto& sample(int i) noexcept { return samples_[std::size_t((oldest_ + i) % size())]; }
+
+  Window window_{};
+  Samples samples_{};
+  int oldest_{0};
+  int count_{0};
+};
 
 /// Samples that a history keeps by default: eight per period of the window. Those of a faster loop are thinned to that.
+constexpr int history_length(int taps) noexcept { return 8 * (taps - 1) + 4; }
+
+}  // namespace detail
+
+/// The same of a feature set.
 template <class Features>
 constexpr int default_history_length() noexcept {
   if constexpr (is_windowed<Features>) {
-    return 8 * (Features::Window::taps - 1) + 4;
+    return detail::history_length(Features::Window::taps);
   } else {
     return 0;
   }
@@ -148,30 +216,7 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
     if (!is_finite(time_s)) return Status::not_finite;
     const Status checked = FeatureSet::check(present);
     if (checked != Status::ok) return checked;
-    if (count_ > 0) {
-      const double newest_s = sample(count_ - 1).time_s;
-      if (detail::equal(time_s, newest_s)) {
-        --count_;
-      } else if (!detail::follows(Window{}, newest_s, time_s)) {
-        count_ = 0;
-      } else if (count_ > 1 && newest_s - sample(count_ - 2).time_s < thinned_s &&
-                 (!keeps_neighbours || detail::follows(Window{}, sample(count_ - 2).time_s, time_s))) {
-        --count_;  // the present one takes the place of one that was kept as the newest alone
-      }
-    }
-    sample(count_) = {time_s, present};
-    ++count_;
-    while (count_ > 1 && sample(1).time_s <= time_s + Window::earliest_s + Window::tolerance_s) {
-      oldest_ = (oldest_ + 1) % MostSamples;
-      --count_;
-    }
-    inputs_.complete = detail::fill_window<Scalar>(
-        Window{}, time_s, 0, count_ - 1, count_ - 1, [this](int i) noexcept { return sample(i).time_s; },
-        [this](int i, Present& result) noexcept {
-          result = sample(i).inputs;
-          return true;
-        },
-        inputs_.others.data());
+    inputs_.complete = past_.take(present, time_s, inputs_.others.data());
     return inputs_.complete ? Status::ok : Status::warming_up;
   }
 
@@ -180,30 +225,14 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
 
   /// Forgets the past, as after a controller was switched off.
   void clear() noexcept {
-    count_ = 0;
+    past_.clear();
     inputs_.complete = false;
   }
 
  private:
-  struct Sample {
-    double time_s;
-    Present inputs;
-  };
+  using Samples = std::array<detail::TimedInputs<Present>, std::size_t(MostSamples)>;
 
-  /// Samples closer than this are thinned: so many fit into the window that its oldest neighbour and the newest have
-  /// room too.
-  static constexpr double thinned_s = -Window::earliest_s / (MostSamples - 3);
-  /// True where thinning must leave no gap. A sample that stays before a late tick takes no more room, since the two
-  /// steps together are as long as two that thinning leaves. A shorter history has no room for that.
-  static constexpr bool keeps_neighbours = 2 * thinned_s <= Window::largest_gap_s;
-
-  /// Counted from the oldest.
-  Sample& sample(int i) noexcept { return samples_[std::size_t((oldest_ + i) % MostSamples)]; }
-  const Sample& sample(int i) const noexcept { return samples_[std::size_t((oldest_ + i) % MostSamples)]; }
-
-  std::array<Sample, std::size_t(MostSamples)> samples_{};
-  int oldest_{0};
-  int count_{0};
+  detail::PastInputs<Scalar, Window, Samples> past_{};
   Inputs inputs_{};
 };
 

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""loop flies a model from its block as the compiled model flies: the same figures as fly_export's, and of a model of a
+user's own (a column, a window, a wrench, another activation) as its header's; what it can't fly is refused."""
+import json
+import re
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, Program, replaced
+
+MODELS = SOURCE / "examples/models"
+OWN = "loop own.block --column battery_voltage=15.2"
+
+
+def flown_by(pinnquad, words, code=0):
+    return json.loads(pinnquad(f"{words} --json", code=code).out)
+
+
+@pytest.fixture(scope="module")
+def slow(made, flown):
+    """A folder with s/: trained below the speed of the figure-eight, so that the model is asked outside its envelope."""
+    flight = flown("--seed 3 --samples 3000 --max-speed 3")
+    return made(f"train --flight {flight} --recipe small --seeds 1 --epochs 60 --allow-poor --out s") / "s"
+
+
+@pytest.fixture(scope="module")
+def near(made, flown):
+    """A folder with n/: a model that is shown the altitude."""
+    return made(f"train --flight {flown('d2 --seed 3 --samples 3000')} --altitude yes --seeds 1 --epochs 5 "
+                "--allow-poor --out n") / "n"
+
+
+@pytest.mark.parametrize("model", ["slow", "near"])
+def test_as_compiled(pinnquad, fly_export, request, model):
+    """The same trajectory, vehicle and guard, by the header and by the block."""
+    folder = request.getfixturevalue(model)
+    said = fly_export(folder / "model.hpp")("--replay", folder / "replay.txt", code=None).out
+    number = r"([\d.]+)"
+    rmse, largest, _, fell_back, asked = map(
+        float, re.search(rf"^  export +{number} +{number} +{number} +(\d+) of (\d+) ", said, re.M).groups())
+    looped = flown_by(pinnquad, f"loop {folder}/model.hpp")
+    assert asked == looped["model"]["asked"] == 15000
+    assert abs(fell_back / asked - (1 - looped["model"]["answered_share"])) < 2e-4
+    assert (fell_back > 0) == (model == "slow"), said
+    assert looped["model"]["declined"] == ({"outside_envelope": pytest.approx(fell_back, abs=3)} if fell_back else {})
+    for line, name in ("analytic inverse", "analytic_inverse"), (r"none \(hover trim\)", "hover_trim"), ("export", "model"):
+        found = re.search(rf"^  {line} +{number} +{number} ", said, re.M)
+        for figure, key in zip(found.groups(), ("rmse_m", "largest_error_m")):
+            assert abs(float(figure) - 100 * looped[name][key]) < 0.011, (name, key)
+    assert rmse < largest
+
+
+@pytest.fixture(scope="module")
+def own(pinnquad, compiler, flown, tmp_path_factory):
+    """A folder with a model of a user's own, as `new` begins it: its header, its block, and what flies the header."""
+    folder = tmp_path_factory.mktemp("own")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        header, *rows = flown("--seed 3 --samples 3000").read_text().splitlines()
+        volts = (f"{row},{14.5 + line % 100 / 50}" for line, row in enumerate(rows))
+        Path("flight.csv").write_text("\n".join([f"{header},battery_voltage [V]", *volts, ""]))
+        pinnquad("new project --name Own")
+        features = "Windowed<WithColumns<PaperFeatures, BatteryVoltage>, 2, PeriodMicroseconds<50000>>"
+        replaced("project/model.hpp", "project/model.hpp", ("^using MyFeatures = .*", f"using MyFeatures = {features};"),
+                 ("^using MyOutputs = .*", "using MyOutputs = WrenchOutputs;"),
+                 ("^using MyNetwork = .*", "using MyNetwork = Mlp<float, InputSize<34>, Hidden<2, 16>, OutputSize<4>, "
+                  "Silu>;"), ("epochs = 300", "epochs = 60"), ("^using MyLoss = .*", "using MyLoss = Mse;"))
+        compiler("-O2 project/main.cpp -o train")
+        Program("./train")("flight.csv own.hpp")
+        Path("model.hpp").symlink_to("own.hpp")
+        compiler("-O2 -ffp-contract=off -I.", SOURCE / "tests/programs/loop/compiled.cpp", "-o", "compiled")
+    return folder
+
+
+@pytest.fixture
+def own_here(own, work):
+    for path in own.iterdir():
+        (work / path.name).symlink_to(path)
+
+
+def test_model_of_a_users_own(pinnquad, own_here):
+    rmse, largest, answered, asked = map(float, Program("./compiled")().out.split())
+    looped = flown_by(pinnquad, OWN)
+    model = looped["model"]
+    assert looped["columns"] == {"battery_voltage": 15.2}
+    assert abs(model["rmse_m"] - rmse) < 1e-5 and abs(model["largest_error_m"] - largest) < 1e-5, (rmse, largest)
+    assert abs(answered - asked * model["answered_share"]) < 2
+    # two instants 50 ms apart, and 2 ms between two ticks
+    assert model["declined"]["warming_up"] == 25
+    assert model["rmse_m"] < looped["hover_trim"]["rmse_m"], "it knows nothing of the vehicle"
+    said = pinnquad(OWN).out
+    assert "battery_voltage 15.2 V" in said and re.search(r"stood in for the model: .*\b25 warming_up", said), said
+    # what is held matters; no voltage that was trained is so low
+    assert flown_by(pinnquad, "loop own.hpp --column battery_voltage=14.7")["model"]["rmse_m"] != model["rmse_m"]
+    low = flown_by(pinnquad, "loop own.hpp --column battery_voltage=9", code=1)["model"]
+    assert low["answered_share"] == 0 and low["declined"].keys() == {"outside_envelope", "warming_up"}
+    everywhere = flown_by(pinnquad, "loop own.hpp --column battery_voltage=9 --guard none", code=(0, 1))["model"]
+    assert everywhere["declined"] == {"warming_up": 25}
+
+
+@pytest.mark.parametrize("words, keyword", [
+    ("own.block", "battery_voltage [V]"), ("own.block --column battery_voltage", "=NUMBER in V"),
+    ("own.block --column battery_voltage=fast", "'battery_voltage=fast'"), ("own.block --column battery_voltage=nan", "=NUMBER"),
+    ("own.block --column battery_voltage=15 battery_voltage=16", "twice"), ("own.block --column pack=15", "'pack'"),
+    (f"{MODELS}/demo_quadrotor.block --column pack=15", "none"), ("flight.csv", "block"), ("none.block", "none"),
+    (f"{MODELS}/demo_quadrotor.hpp --airframe turned.toml", "stand or turn otherwise"),
+    (f"{MODELS}/demo_quadrotor.hpp --airframe zeppelin", "'zeppelin'"),
+    (f"{MODELS}/demo_quadrotor.hpp --trajectory helix", "--trajectory"), (f"{MODELS}/demo_quadrotor.hpp --guard all", "--guard")])
+def test_refused(pinnquad, own_here, words, keyword):
+    replaced(SOURCE / "examples/airframes/racer_5_inch.toml", "turned.toml", ('"counter_clockwise"', '"other"'),
+             ('"clockwise"', '"counter_clockwise"'), ('"other"', '"clockwise"'))
+    pinnquad.refused(f"loop {words}", keyword=keyword)
+
+
+def test_a_window_that_looks_ahead(pinnquad, recorded, made):
+    log = recorded("flight_logs/nanobench_subset_50hz.csv")
+    nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
+    pinnquad(f"train --dataset {nano} --airframe crazyflie_2_1 --hold-out B9_trefoil_fast_rep1 --seeds 1 --out c "
+             "--models constant,ridge_centred --export ridge_centred --allow-poor")
+    pinnquad.refused("loop c/model.hpp", at="c/model.block", keyword="ahead")
+
+
+def test_loses_another_vehicle(pinnquad):
+    """The model of a quadrotor of 1.5 kg on a racer."""
+    words = f"loop {MODELS}/structured_quadrotor.block --airframe racer_5_inch --trajectory yaw_eight"
+    done = pinnquad(words, code=1)
+    assert "loses the vehicle" in done.lines[-1] and "outside_envelope" in done.out
+    for trajectory in "eight", "yaw_eight", "circle":
+        flown = flown_by(pinnquad, f"loop {MODELS}/structured_quadrotor.block --trajectory {trajectory}")
+        assert flown["model"]["answered_share"] > 0.99 and flown["model"]["rmse_m"] < 0.02, trajectory

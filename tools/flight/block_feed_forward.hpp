@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// A model of a block as feed-forward: NetworkInverse, with the window and the columns that the block asks for. It
+// answers as the compiled model would, to the bit of the portable kernel, behind the guard that is given.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "flight/run_time_view.hpp"
+#include "pinnquad/control/feed_forward.hpp"
+
+namespace pinnquad {
+
+/// Of features that are known at run time alone, with a window that looks back or with none.
+template <class Scalar, int MostSamples>
+class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
+ public:
+  using Inputs = programs::FlightInputs<Scalar>;
+  using Present = RunTimeInputs<Scalar>;
+
+  /// The features must stay where they are.
+  explicit InputHistory(const RunTimeFeatures& features)
+      : past_(features.window(), Samples(std::size_t(detail::history_length(features.window().taps)))) {
+    inputs_.features = &features;
+    inputs_.taps.resize(std::size_t(features.window().taps));
+  }
+
+  /// As that of a windowed feature set.
+  Status take(const Present& present, double time_s) noexcept {
+    static_cast<MotionInputsWithAltitude<Scalar>&>(inputs_) = present;
+    inputs_.taps.front() = present;
+    inputs_.complete = false;
+    if (!is_finite(time_s)) return Status::not_finite;
+    const Status checked = inputs_.features->check_present(present);
+    if (checked != Status::ok) return checked;
+    inputs_.complete = past_.take(present, time_s, inputs_.taps.data() + 1);
+    return inputs_.complete ? Status::ok : Status::warming_up;
+  }
+  const Inputs& inputs() const noexcept { return inputs_; }
+
+ private:
+  using Samples = std::vector<detail::TimedInputs<Present>>;
+
+  detail::PastInputs<Scalar, RunTimeWindow, Samples> past_;
+  Inputs inputs_;
+};
+
+}  // namespace pinnquad
+
+namespace programs {
+
+/// Measured beside the motion: the height above the ground, exactly; columns that stand still.
+template <class Scalar>
+struct HeldColumns {
+  double ground_z_m = 0;  ///< NED
+  std::array<Scalar, std::size_t(pinnquad::RunTimeFeatures::most_columns)> columns{};
+
+  void operator()(const pinnquad::State<double>& state, std::uint64_t /*time_us*/,
+                  pinnquad::RunTimeInputs<Scalar>& present) const noexcept {
+    present.altitude_m = static_cast<Scalar>(ground_z_m - state.position_m[2]);
+    present.columns = columns;
+  }
+};
+
+/// Calls `fly` with the feed-forward of a model, which must stay where it is. `columns`: the value of each that it asks
+/// for, in their order. A window that looks ahead is never complete.
+template <class Guard, class Fly>
+decltype(auto) with_feed_forward(const pinnquad::BlockModel& model, const Guard& guard, double ground_z_m,
+                                 const std::vector<double>& columns, const Fly& fly) {
+  return model.with([&](const auto& own) {
+    using Scalar = std::decay_t<decltype(*own.parameters())>;
+    using Inverse = pinnquad::InverseDynamics<RunTimeView<FlightFeatures, Scalar>, Guard>;
+    using History = pinnquad::InputHistory<FlightFeatures, Scalar>;
+    HeldColumns<Scalar> held;
+    held.ground_z_m = ground_z_m;
+    for (std::size_t i = 0; i < columns.size(); ++i) held.columns[i] = static_cast<Scalar>(columns[i]);
+    const Inverse inverse(RunTimeView<FlightFeatures, Scalar>(own), guard);
+    return fly(pinnquad::NetworkInverse<Inverse, HeldColumns<Scalar>>(inverse, held, History(own.features())));
+  });
+}
+
+}  // namespace programs

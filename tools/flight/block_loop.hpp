@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// A model of a block flown in a closed loop: feed-forward on a trajectory, beside the analytic inverse and none.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/simulation/tracking.hpp"
+
+namespace programs {
+
+/// By name: a figure-eight; one in 14/15 of its period whose nose swings by 0.5 rad; a level circle.
+inline constexpr std::array<const char*, 3> loop_trajectories = {"eight", "yaw_eight", "circle"};
+
+struct LoopPlan {
+  std::string trajectory;                 ///< one of loop_trajectories
+  pinnquad::Airframe<double> airframe{};  ///< what flies, in calm air
+  bool keeps_envelope = true;             ///< the model declines outside its training envelope, as TrainingGuard does
+  std::vector<double> columns;            ///< of the model, in their order
+};
+
+struct LoopFlights {
+  double half_length_m = 0, period_s = 0;
+  double lowest_m = 0, highest_m = 0;  ///< altitude of the trajectory
+  bool near_ground = false;            ///< in ground effect: the model is shown the altitude
+  pinnquad::TrackingResult<double> model, analytic_inverse, hover_trim;
+};
+
+/// Where the model declines, the analytic inverse of the airframe flies. Throws std::invalid_argument, one line, of an
+/// airframe that can't be flown there.
+LoopFlights fly_loop(const pinnquad::BlockModel& model, const LoopPlan& plan);
+
+}  // namespace programs

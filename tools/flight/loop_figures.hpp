@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Figures of closed loops: how far off each feed-forward flew, and whether a model lost the vehicle.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "pinnquad/simulation/tracking.hpp"
+
+namespace programs {
+
+/// The share of the control ticks that the model answered; of one that was not asked 0.
+inline double answered_share(const pinnquad::FallbackCount& count) {
+  return count.asked > 0 ? 1 - count.fallbacks() / static_cast<double>(count.asked) : 0.0;
+}
+
+inline nlohmann::json loop_figures(const pinnquad::TrackingResult<double>& flown) {
+  constexpr auto ok = pinnquad::Status::ok;
+  return {{"rmse_m", flown.rmse_m},
+          {"largest_error_m", flown.max_error_m},
+          {"flown_s", flown.flown_s},
+          {"status", pinnquad::to_string(flown.status != ok ? flown.status : flown.declined)}};
+}
+
+/// Of a figure with its `half_length_m`, flown by a `model` and by none (`hover_trim`), as loop_figures() says them:
+/// true where the model's flight ended, or went further off than the figure is long and no feed-forward is off.
+inline bool lost_vehicle(const nlohmann::json& flown) {
+  if (!flown.contains("model")) return false;
+  const nlohmann::json& model = flown["model"];
+  return model["status"] != to_string(pinnquad::Status::ok) ||
+         !(model["largest_error_m"] <=
+           flown["hover_trim"]["largest_error_m"].get<double>() + 2 * flown["half_length_m"].get<double>());
+}
+
+}  // namespace programs

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// Flies a model from its block, as feed-forward in a closed loop: no compiler is asked.
+//   pinnquad loop my_model/model.block --trajectory circle --column battery_voltage=15.2
+#include "model/loop_command.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "airframe/choice.hpp"
+#include "command_line/console.hpp"
+#include "command_line/interrupt.hpp"
+#include "command_line/listed.hpp"
+#include "command_line/options.hpp"
+#include "flight/block_loop.hpp"
+#include "flight/loop_figures.hpp"
+#include "model/given_model.hpp"
+#include "pinnquad/exported/model.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+struct LoopOptions {
+  std::string model;
+  std::string airframe;
+  std::string trajectory = programs::loop_trajectories.front();
+  std::string guard = "envelope";
+  std::vector<std::string> columns;
+  bool json = false;
+};
+
+/// The value of each column that the model asks for, in their order. Throws std::invalid_argument, one line.
+std::vector<double> column_values(const BlockModel& model, const std::vector<std::string>& given) {
+  const std::vector<ColumnName> asked = model.columns();
+  std::vector<std::optional<double>> values(asked.size());
+  for (const std::string& text : given) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::size_t at = 0;
+    while (at < asked.size() && asked[at].name != name) ++at;
+    if (at == asked.size()) {
+      throw std::invalid_argument(
+          "--column: the model asks for no column '" + printable(name) + "'; its columns: " +
+          (asked.empty() ? "none" : programs::listed(asked, [](const ColumnName& c) { return printable(c.name); })));
+    }
+    if (values[at]) throw std::invalid_argument("--column: " + printable(name) + " is given twice");
+    constexpr auto most = static_cast<double>(std::numeric_limits<float>::max());
+    double value = 0;
+    if (equals == std::string::npos || !programs::parse_decimal(text.substr(equals + 1), -most, most, value)) {
+      throw std::invalid_argument("--column: expected " + printable(name) + "=NUMBER in " + printable(asked[at].unit) +
+                                  ", found '" + printable(text) + "'");
+    }
+    values[at] = value;
+  }
+  std::string missing;
+  std::vector<double> result;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (!values[i]) programs::add_to_list(missing, printable(asked[i].name + " [" + asked[i].unit + "]"));
+    result.push_back(values[i].value_or(0));
+  }
+  if (!missing.empty()) {
+    throw std::invalid_argument("--column: the model asks for " + missing + ": say each as --column NAME=VALUE");
+  }
+  return result;
+}
+
+/// The airframe that flies. Throws std::invalid_argument for one whose motors are not those of the model.
+programs::NamedAirframe chosen_airframe(const LoopOptions& options, const BlockModel& model) {
+  if (options.airframe.empty()) return {model.airframe_name(), model.airframe()};
+  programs::NamedAirframe chosen = programs::chosen_airframe(options.airframe);
+  if (motor_torque_signs(chosen.value) != motor_torque_signs(model.airframe())) {
+    throw std::invalid_argument("--airframe: the motors of " + printable(chosen.name) +
+                                " stand or turn otherwise than those of " + model.airframe_name() +
+                                ", which the model commands");
+  }
+  return chosen;
+}
+
+/// Ticks that the model did not answer, by the reason.
+nlohmann::json declined(const FallbackCount& count) {
+  nlohmann::json by_status = nlohmann::json::object();
+  for (int i = 0; i < status_count; ++i) {
+    const auto status = static_cast<Status>(i);
+    if (count.of(status) == 0 || has_output(status)) continue;
+    by_status[to_string(status)] = count.of(status);
+  }
+  return by_status;
+}
+
+nlohmann::json report_of(const LoopOptions& options, const BlockModel& model, const std::string& airframe,
+                         const std::vector<double>& columns, const programs::LoopFlights& flights) {
+  nlohmann::json report = {{"path", model.path()},
+                           {"answer", model.answer()},
+                           {"airframe", airframe},
+                           {"guard", options.guard},
+                           {"columns", nlohmann::json::object()},
+                           {"trajectory", options.trajectory},
+                           {"half_length_m", flights.half_length_m},
+                           {"period_s", flights.period_s},
+                           {"altitude_m", {flights.lowest_m, flights.highest_m}},
+                           {"model", programs::loop_figures(flights.model)},
+                           {"analytic_inverse", programs::loop_figures(flights.analytic_inverse)},
+                           {"hover_trim", programs::loop_figures(flights.hover_trim)}};
+  for (std::size_t i = 0; i < columns.size(); ++i) report["columns"][model.columns()[i].name] = columns[i];
+  report["model"]["asked"] = flights.model.fallback.asked;
+  report["model"]["answered_share"] = programs::answered_share(flights.model.fallback);
+  report["model"]["declined"] = declined(flights.model.fallback);
+  return report;
+}
+
+void print_flight(const char* name, const TrackingResult<double>& flown) {
+  std::printf("  %-20s %8.2f %8.2f %9.2f", name, 100 * flown.rmse_m, 100 * flown.max_error_m, flown.max_speed_m_s);
+  if (flown.fallback.asked > 0) {
+    std::printf("   %.2f %% of %u", 100 * programs::answered_share(flown.fallback), flown.fallback.asked);
+  }
+  const Status ended = flown.status != Status::ok ? flown.status : flown.declined;
+  if (ended != Status::ok) std::printf("   %s after %.1f s", to_string(ended), flown.flown_s);
+  std::printf("\n");
+}
+
+void print_table(const LoopOptions& options, const BlockModel& model, const std::string& airframe,
+                 const std::vector<double>& columns, const programs::LoopFlights& flights) {
+  std::printf("model       %s, for %s\n", printable(model.path()).c_str(), model.airframe_name().c_str());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const ColumnName column = model.columns()[i];
+    std::printf("column      %s %g %s\n", printable(column.name).c_str(), columns[i], printable(column.unit).c_str());
+  }
+  std::printf("trajectory  %s, period %.1f s, %.2f to %.2f m above the ground%s, flown by %s for %.0f s\n",
+              options.trajectory.c_str(), flights.period_s, flights.lowest_m, flights.highest_m,
+              flights.near_ground ? ", in ground effect" : "", printable(airframe).c_str(),
+              TrackingPlan<double>{}.duration_s);
+  std::printf("  %-20s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "answered by the model");
+  print_flight("model", flights.model);
+  print_flight("analytic inverse", flights.analytic_inverse);
+  print_flight("none (hover trim)", flights.hover_trim);
+  const nlohmann::json by_status = declined(flights.model.fallback);
+  std::string reasons;
+  for (const auto& [status, ticks] : by_status.items()) {
+    programs::add_to_list(reasons, std::to_string(ticks.get<unsigned>()) + " " + status);
+  }
+  if (!reasons.empty()) std::printf("  the analytic inverse stood in for the model: %s\n", reasons.c_str());
+}
+
+int loop(const LoopOptions& options) {
+  const BlockModel model = programs::read_model(options.model);
+  if (model.features().window().latest_s > 0) {
+    throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
+  }
+  const std::vector<double> columns = column_values(model, options.columns);
+  const programs::NamedAirframe airframe = chosen_airframe(options, model);
+  const programs::LoopFlights flights =
+      programs::fly_loop(model, {options.trajectory, airframe.value, options.guard == "envelope", columns});
+  programs::stop_if_interrupted();
+  const nlohmann::json report = report_of(options, model, airframe.name, columns, flights);
+  if (options.json) {
+    std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    print_table(options, model, airframe.name, columns, flights);
+  }
+  const auto failed = [&](const char* why) {
+    programs::complain("loop", model.path() + ": " + why);
+    return programs::exit_failed;
+  };
+  if (programs::lost_vehicle(report)) return failed("loses the vehicle");
+  if (!(programs::answered_share(flights.model.fallback) > 0)) return failed("answers nothing on this trajectory");
+  return 0;
+}
+
+}  // namespace
+
+programs::Command programs::loop_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "loop", "Flies a model in a closed loop in the simulator, from its block, without compiling");
+  const auto options = std::make_shared<LoopOptions>();
+  add_model(*line, options->model);
+  line->add_option("--trajectory", options->trajectory,
+                   "eight: a figure-eight that the airframe can fly; yaw_eight: a quicker one whose nose swings; "
+                   "circle: a level one")
+      ->capture_default_str()
+      ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
+  line->add_option("--column", options->columns,
+                   "the value at which a column is held, one for each column that the model asks for: --column "
+                   "battery_voltage=15.2")
+      ->type_name("NAME=VALUE");
+  line->add_option(
+      "--airframe", options->airframe,
+      "what flies in place of the model's own airframe, its motors as there: a file, or one of: " + airframe_names());
+  line->add_option("--guard", options->guard,
+                   "envelope: outside of its training envelope the analytic inverse flies in place of the model; none: "
+                   "the model flies there too")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"envelope", "none"}));
+  line->add_flag("--json", options->json, "the figures as JSON");
+  line->footer(
+      "Examples:\n"
+      "  pinnquad loop my_model/model.hpp\n"
+      "  pinnquad loop my_model/model.block --trajectory circle --guard none --json\n"
+      "  pinnquad loop trained.block --column battery_voltage=15.2\n"
+      "The feedback is the same for all that fly. A model that is shown the altitude flies near the ground.\n"
+      "Exit codes: 0; 1 the model loses the vehicle, or answers nothing; 2 bad input or a file that can't be read; "
+      "130\n"
+      "interrupted.");
+  return {line, [options] { return loop(*options); }};
+}
