@@ -401,6 +401,18 @@ TEST_CASE(
     const double braking = (speed(d + h) * speed(d + h) - speed(d - h) * speed(d - h)) / (4 * h);
     CHECK(braking <= 0.4 * limits.max_horizontal_acceleration_m_s2 * (1 + 1e-6));
   }
+  // a climb is braked by gravity, with as little thrust as is allowed; a descent by thrust beyond the weight
+  FlightLimits<double> fast;
+  fast.max_climb_m_s = fast.max_descent_m_s = 100;
+  fast.min_vertical_specific_force_m_s2 = 3;
+  fast.max_specific_force_m_s2 = 15;
+  const FlightController<double> racer(gains, fast);
+  for (const double sign : {-1.0, 1.0}) {
+    const auto speed = [&](double at) { return racer.wanted_velocity({0, 0, 0}, {0, 0, sign * at})[2]; };
+    constexpr double far = 30, h = 1e-3, g = 9.80665;
+    const double braking = (speed(far + h) * speed(far + h) - speed(far - h) * speed(far - h)) / (4 * h);
+    CHECK(braking == doctest::Approx(0.4 * (sign < 0 ? g - 3 : 15 - g)).epsilon(1e-6));
+  }
   const Vector3<double> near(0.3, -0.2, 0.1);
   CHECK((controller.wanted_velocity({0, 0, 0}, near) - near * gains.position_1_s).norm() <= 1e-15);
 }

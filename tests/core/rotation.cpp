@@ -267,3 +267,13 @@ TEST_CASE_TEMPLATE("normalized has norm 1 and keeps the direction", Scalar, floa
     CHECK(distance(components(unit), components(q)) <= rotation_tolerance<Scalar>);
   }
 }
+
+TEST_CASE_TEMPLATE("a quaternion too short is no rotation, as one too long is none", Scalar, float, double) {
+  const auto scaled = [](double norm) {
+    return pinnquad::is_unit(Quaternion<Scalar>{Scalar(0.6 * norm), Scalar(0), Scalar(-0.8 * norm), Scalar(0)});
+  };
+  CHECK(scaled(1));
+  CHECK_FALSE(scaled(0));
+  CHECK_FALSE(scaled(0.8));
+  CHECK_FALSE(scaled(1.2));
+}

@@ -51,3 +51,25 @@ TEST_CASE("a set of a dataset's rows reads the same rows after more flights were
     CHECK(pinnquad::to_values(rows[row]) == pinnquad::to_values(first[row]));
   }
 }
+
+TEST_CASE("the period is the median step; recordings whose periods differ by more than a hundredth have none") {
+  const auto recorded = [](double period_s, unsigned seed) {
+    Flight flight = random_flight(9, seed);
+    Flight timed;
+    for (std::size_t row = 0; row < flight.size(); ++row) {
+      pinnquad::Sample sample = flight[row];
+      sample.time_s = period_s * static_cast<double>(row) + (row > 5 ? 1.0 : 0.0);  // one gap
+      timed.push_back(sample);
+    }
+    return timed;
+  };
+  const Flight first = recorded(0.01, 1), alike = recorded(0.010005, 2), other = recorded(0.0105, 3);
+  CHECK(pinnquad::sample_period_s(RowSet{}) == 0);
+  RowSet rows;
+  rows.add(first, {0, 9});
+  CHECK(pinnquad::sample_period_s(rows) == 0.01);
+  rows.add(alike, {0, 9});
+  CHECK(pinnquad::sample_period_s(rows) == 0.01);
+  rows.add(other, {0, 9});
+  CHECK(pinnquad::sample_period_s(rows) == 0);
+}

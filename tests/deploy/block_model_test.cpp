@@ -102,6 +102,34 @@ TEST_CASE("the certificate of the shipped block is that which the compiler works
   }
 }
 
+TEST_CASE("a residual that sees the angular acceleration, without a bound of its paths: no certificate") {
+  using Base = MonotoneBase<PhysicsFeatures>;
+  const auto block_of = [](auto residual) {
+    using Predictor = Sum<Base, Saturated<decltype(residual)>>;
+    using Model = test::ModelOf<Predictor, PhysicsFeatures, AxisCommandOutputs>;
+    Model model = test::drawn_model<Model>(4);
+    auto* const parameters = model.network.parameters.data();
+    for (int i = 0; i < 3 * Base::taps; ++i) parameters[Base::slopes + i] = 1;
+    for (int k = 0; k < 4; ++k) {
+      parameters[Base::parameter_count + k] = -0.2F;
+      parameters[Base::parameter_count + 4 + k] = 0.2F;
+    }
+    return BlockModel("drawn.block", test::drawn_block(model));
+  };
+  using Seeing = Network<float, InputSize<PhysicsFeatures::size>, Dense<8>, Tanh, Dense<4>>;
+  CHECK_FALSE(block_of(Seeing{}).certificate().has_value());
+}
+
+TEST_CASE("commands are affine in outputs that are commands; a rotor's thrust is the square of its speed") {
+  const auto is_affine = [](auto outputs) {
+    using Affine = Network<float, InputSize<PaperFeatures::size>, Dense<4>>;
+    using Model = test::ModelOf<Affine, PaperFeatures, decltype(outputs)>;
+    return BlockModel("drawn.block", test::drawn_block(test::drawn_model<Model>(4))).has_affine_schema();
+  };
+  CHECK(is_affine(CommandOutputs{}));
+  CHECK_FALSE(is_affine(RotorSpeedOutputs{}));
+}
+
 TEST_CASE_TEMPLATE("rows are answered as the compiled model answers them, to the bit", Model,
                    OfFeatures<PaperFeatures, float>, OfFeatures<WithVoltage, double>,
                    OfFeatures<Windowed<WithVoltage, 3, Period>, float>,

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,8 +12,8 @@
 #include <string>
 #include <variant>
 
-#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/training_sets.hpp"
@@ -71,12 +72,32 @@ TEST_CASE("header, block and limits of trust are of one model") {
   const BlockModel opened((out / "model.block").string());
   CHECK(opened.name() == "SomeModel");
   CHECK(header.str().find("contents_hash = " + hexadecimal(opened.contents_hash())) != std::string::npos);
+  double stated[5];  // as the core of a flight stack reads them
+  opened.with([&](const auto& own) {
+    REQUIRE(own.records().trust != nullptr);
+    std::memcpy(stated, own.records().trust, sizeof stated);
+  });
+  CHECK(stated[0] == limits.squared_distance_limit);
+  CHECK(stated[1] == limits.command_residual_factor);
+  CHECK(stated[2] == limits.command_residual_limit);
+  CHECK(stated[3] == limits.command_residual_cleared);
+  CHECK(stated[4] == limits.update_period_s);
   const std::string trust = text_of(out / "trust.hpp");
   const std::string hash = hexadecimal(content_hash(made.flights));
   CHECK(trust.find("struct SomeModelTrust") != std::string::npos);
   CHECK(trust.find(hash) != std::string::npos);
   CHECK(header.str().find(hash) != std::string::npos);
   CHECK(header.str().find("training_data = \"made\"") != std::string::npos);
+}
+
+TEST_CASE("a block says the R^2 of its model and that of linear regression, each under its name") {
+  Material made(300);
+  made.from.verdict = Verdict{0.75, 0.5, 0.25};
+  const pinnquad_test::TemporaryFolder folder;
+  export_model(folder.path(), "SomeModel", made.model, made.split, made.from);
+  const BlockModel opened((fs::path(folder.path()) / "model.block").string());
+  CHECK(std::stod(opened.provenance("test_r_squared")) == 0.75);
+  CHECK(std::stod(opened.provenance("linear_regression_r_squared")) == 0.5);
 }
 
 TEST_CASE("validation rows that are too few: why there are no limits, and those of another model are gone") {

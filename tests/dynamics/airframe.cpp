@@ -127,6 +127,13 @@ TEST_CASE_TEMPLATE("too heavy to hover is refused, just light enough is not", Sc
   CHECK(check_airframe(airframe) == Status::ok);
 }
 
+TEST_CASE("thrust-to-weight is of what the rotors are, each by its own thrust") {
+  Airframe<double> airframe = pinnquad::PaperQuadrotor::value<double>();
+  const double plain = airframe.thrust_to_weight();
+  airframe.rotors[2].thrust_scale = 0.6;
+  CHECK(airframe.thrust_to_weight() == doctest::Approx(plain * 3.6 / 4));
+}
+
 TEST_CASE("Table 1 and the simulator: coefficients, limits, thrust-to-weight") {
   const Airframe<double> reference = pinnquad::ReferenceQuadrotor15::value<double>();
   // printed by the running simulator in float32: seven digits

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <variant>
@@ -37,6 +38,29 @@ std::vector<Commands<double>> flown(const RowSet& rows) {
 }
 
 }  // namespace
+
+TEST_CASE("a step is large by half a deviation of the angular acceleration, whatever the commands are") {
+  std::array<AxisSeries, 3> series;
+  for (AxisSeries& s : series) {
+    // deviation near 10: steps of 20 are large, of 1 are not; the predicted sum moves against the small ones alone
+    s.angular_acceleration = {-10, -9, 10, 9, -10, -9, 10, 9, -10};
+    s.target = {-0.10, -0.09, 0.10, 0.09, -0.10, -0.09, 0.10, 0.09, -0.10};
+    s.predicted = {-0.10, -0.11, 0.10, 0.11, -0.10, -0.11, 0.10, 0.11, -0.10};
+  }
+  const auto check = [&] {
+    const auto signs = pair_signs(series);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      CHECK(signs.all[axis] == 0.5);
+      CHECK(signs.large[axis] == 0);
+      CHECK(signs.of_flown[axis] == 0);
+    }
+  };
+  check();
+  for (AxisSeries& s : series) {
+    for (double& sum : s.target) sum *= 1e4;
+  }
+  check();
+}
 
 TEST_CASE("the flown commands themselves have no error, and the signs of the flown") {
   const Flight flight = test::random_flight_rows(200, 4);

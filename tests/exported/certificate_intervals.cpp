@@ -166,6 +166,22 @@ TEST_CASE("slopes of an acceleration that is held over all taps: enclosed") {
   CHECK(proven < 55);
 }
 
+TEST_CASE("the slope by thrust is rounded to its safe side") {
+  using Base = MonotoneModel<BaseAlone>::Base;
+  constexpr std::size_t force_z = 2;  // among what row 0, the sum of the commands, weighs
+  static_assert(PhysicsFeatures::names[force_z][0] == 's' && PhysicsFeatures::names[force_z][2] == 'z');
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const MonotoneModel<BaseAlone> model(seed);
+    const Interval slope = Interval(-1) * Interval(double(model.parameters[std::size_t(3 * Base::taps) + force_z])) /
+                           Interval(double(model.input.standard_deviation[force_z])) *
+                           Interval(double(model.output.standard_deviation[0]));
+    const Certificate certificate = model.certificate();
+    CHECK(certificate.thrust_slope <= slope.lower());
+    CHECK(certificate.held_thrust_slope <= slope.lower());
+    CHECK(certificate.thrust_slope == doctest::Approx(slope.upper()).epsilon(tight));
+  }
+}
+
 TEST_CASE("the residual stays between the certificate's bounds over any box, and each command within its own") {
   std::mt19937_64 engine(4);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

@@ -13,6 +13,7 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/features/input_history.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "support/random_states.hpp"
 
 using namespace pinnquad;
@@ -88,6 +89,23 @@ TEST_CASE("names tell the tap, units repeat, the angular acceleration is the pre
   using WithVoltage = Windowed<WithColumns<PaperFeatures, BatteryVoltage>, 2, Period>;
   CHECK(std::string(WithVoltage::names[33]) == "battery_voltage[-1]");
   CHECK(std::string(extra_column_names<WithVoltage>[0]) == "battery_voltage");
+}
+
+TEST_CASE("a feature of another tap has the unit of the present one, whatever part of the features is repeated") {
+  using PartOf = PartlyWindowed<WithColumns<PhysicsFeatures, BatteryVoltage>, AccelerationFeatures, 3, Period>;
+  constexpr int present = PartOf::TapFeatures::size;
+  for (int i = present; i < PartOf::size; ++i) {
+    const std::string name = PartOf::names[std::size_t(i)];
+    const std::string of_present = name.substr(0, name.find('['));
+    CAPTURE(name);
+    int found = 0;
+    for (int k = 0; k < present; ++k) {
+      if (of_present != PartOf::names[std::size_t(k)]) continue;
+      CHECK(std::string(PartOf::units[std::size_t(i)]) == PartOf::units[std::size_t(k)]);
+      ++found;
+    }
+    CHECK(found == 1);
+  }
 }
 
 TEST_CASE("X of a window is X of each tap; a window that lacks a tap is refused, and its features are no numbers") {

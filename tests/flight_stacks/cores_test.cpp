@@ -228,6 +228,12 @@ TEST_CASE(
     REQUIRE(cf.step());
     CHECK(m[1] + m[3] > m[0] + m[2] + 0.005f);
   }
+  SUBCASE("turning to the left asked at a rate: the same") {
+    cf.set_point.mode_yaw = crazyflie_mode_velocity;
+    cf.set_point.yaw_rate = 60;
+    REQUIRE(cf.step());
+    CHECK(m[1] + m[3] > m[0] + m[2] + 0.005f);
+  }
   SUBCASE("place ahead: the rear motors lift") {
     cf.set_point.position[0] = 1;
     REQUIRE(cf.step());

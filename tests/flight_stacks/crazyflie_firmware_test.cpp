@@ -176,12 +176,13 @@ class Firmware {
     setpoint_.mode.x = setpoint_.mode.y = modeDisable;
   }
   void estimator_stops() { stopped_ = true; }
+  void gyro_stops() { gyro_stopped_ = true; }
 
   void run(int ms, bool flies = false) {
     for (int i = 0; i < ms; ++i) {
       ++tick_ms;
       ++step_;
-      sensors_.interruptTimestamp = std::uint64_t{tick_ms} * 1000 - 300;
+      if (!gyro_stopped_) sensors_.interruptTimestamp = std::uint64_t{tick_ms} * 1000 - 300;
       sense();
       if (!stopped_) estimate();
       setpoint_.timestamp = tick_ms / 10 * 10;  // a commander at 100 Hz
@@ -263,7 +264,7 @@ class Firmware {
   control_t control_{}, twin_control_{};
   stabilizerStep_t step_ = 0;
   float noise_ = 0, most_force_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, gyro_stopped_ = false;
   long ticks_ = 0, ticks_by_network_ = 0;
 };
 
@@ -331,6 +332,28 @@ TEST_CASE("an estimator that stops is noticed; the PID controller that takes ove
     firmware.run(200);
     CHECK_FALSE(firmware.by_network());  // until it was off, or by hand
   }
+}
+
+TEST_CASE("a gyro that stops is stale by its own time: the network keeps its commands for a while, then gives up") {
+  Firmware firmware(Estimator::kalman);
+  firmware.run(100);
+  REQUIRE(firmware.by_network());
+  firmware.gyro_stops();
+  firmware.run(100);
+  CHECK_FALSE(firmware.by_network());
+  CrazyflieCoreRecord record{};
+  pinnquad_flight_record(&record);
+  CHECK(record.stale_inputs == pinnquad::autopilot::body_rates_bit);
+}
+
+TEST_CASE("no command asks for more than the platform's motors have") {
+  const Firmware firmware(Estimator::kalman);
+  CrazyflieCoreSettings settings{};
+  pinnquad_flight_settings(tick_ms, &settings);
+  const double most_N =
+      static_cast<double>(settings.highest_command) * firmware.vehicle().airframe().max_rotor_thrust_N();
+  REQUIRE(firmware.vehicle().airframe().max_rotor_thrust_N() > static_cast<double>(THRUST_MAX));
+  CHECK(most_N == doctest::Approx(static_cast<double>(THRUST_MAX)).epsilon(1e-5));
 }
 
 TEST_CASE("roll and pitch by hand are not the network's, whatever the height is") {

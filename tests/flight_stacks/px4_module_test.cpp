@@ -283,7 +283,7 @@ TEST_CASE("a battery that sags: the controls grow by its scale where the paramet
   pinnquad_px4::Propulsion propulsion;
   propulsion.battery_scale(1.25f);
   float controls[4];
-  propulsion.controls(std::array<float, 4>{0.9f, 0.8f, 0.5f, 0.1f}, controls);
+  propulsion.controls(std::array<float, 4>{0.9f, 0.8f, 0.5f, 0.05f}, controls);  // the last has no room below
   for (const float u : controls) CHECK((u >= 0 && u <= 1));
   CHECK(controls[0] == doctest::Approx(1));
   CHECK(controls[0] - controls[1] == doctest::Approx(1.25 * 0.1));  // the torque stays
@@ -747,6 +747,10 @@ TEST_CASE("each step's record is published, and the settings once a second: what
   CHECK(published <= 2);
   CHECK(settings.horizontal_speed_m_s == px4::parameter_values()["PQ_V_XY"]);
   CHECK(settings.lowest_command == doctest::Approx(px4::parameter_values()["PQ_OUT_MIN"]));
+  world.armed = false;  // selected still, and the motors are nobody's
+  world.run(100);
+  REQUIRE(record_sub.update(&record));
+  CHECK(record.drives_motors == 0);
   world.attitude_stops = true;
   world.run(30);
   REQUIRE(record_sub.update(&record));
@@ -807,6 +811,16 @@ TEST_CASE("without a trajectory the sticks fly it along its heading; released, i
   CHECK(record.reaction == flies);  // brakes
   CHECK(record.wanted_velocity_m_s[0] == 0);
   world.local.vx = 0.1f;
+  fly_by(700);
+  CHECK(record.reaction == holds);
+  sticks.throttle = 1;
+  world.local.vz = -1;
+  fly_by(100);
+  sticks.throttle = 0;
+  fly_by(700);
+  CHECK(record.reaction == flies);  // a climb is braked too
+  CHECK(record.wanted_velocity_m_s[2] == 0);
+  world.local.vz = 0;
   fly_by(700);
   CHECK(record.reaction == holds);
   sticks.pitch = 1;

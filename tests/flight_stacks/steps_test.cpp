@@ -354,6 +354,70 @@ TEST_CASE("an estimator that moves its estimate by 3 m and 0.4 rad moves nothing
   SUBCASE("holding its place") { unmoved(); }
 }
 
+TEST_CASE("an estimator that moves its velocity by half a metre per second makes no bias of it") {
+  Standing standing;
+  standing.controller.situation({true, false});
+  for (int i = 0; i < 5; ++i) standing.step();
+  const Vector3<float> by_m_s(0.5f, 0, -0.25f), before = standing.controller.bias().acceleration_m_s2();
+  const auto bias_moves_by = [&] {
+    standing.local.velocity_m_s += by_m_s;
+    standing.step();
+    return (standing.controller.bias().acceleration_m_s2() - before).norm();
+  };
+  SUBCASE("said to be a reset") {
+    standing.controller.jump({{0, 0, 0}, by_m_s}, 0);
+    CHECK(bias_moves_by() < 1e-3f);
+  }
+  SUBCASE("not said: it is motion") { CHECK(bias_moves_by() > 0.01f); }
+}
+
+TEST_CASE("a motion that it is flown by hand makes no bias") {
+  Standing standing;
+  standing.controller.situation({true, false});
+  for (int i = 0; i < 5; ++i) standing.step();
+  const Vector3<float> before = standing.controller.bias().acceleration_m_s2();
+  standing.controller.skip(standing.now_us);
+  standing.now_us += 2000;
+  standing.local.velocity_m_s += Vector3<float>(0.5f, 0, -0.25f);
+  standing.step();
+  CHECK((standing.controller.bias().acceleration_m_s2() - before).norm() < 1e-3f);
+}
+
+TEST_CASE("a tick that is late by seconds counts as a tenth of one: thrust does not come at once") {
+  constexpr float duration_s = 1;
+  pinnquad::autopilot::detail::TakeOff take_off(duration_s);
+  take_off.skip({false, true});  // stands on the ground
+  pinnquad::autopilot::detail::VerticalMotion climbs;
+  climbs.asks_to_climb = true;
+  take_off.update(1'000'000, {true, true}, climbs);
+  take_off.update(4'000'000, {true, true}, climbs);
+  CHECK(take_off.lift() == doctest::Approx(0.1));
+}
+
+TEST_CASE("the attitude of a flown window is the same, whichever of its two quaternions the estimator says") {
+  pinnquad::autopilot::detail::FlownMotion one_sign(0.01f), both(0.01f);
+  pinnquad::State<float> state;
+  int windows = 0;
+  for (int tick = 0; tick < 400; ++tick) {
+    const auto now_us = static_cast<std::uint64_t>(1'000'000 + 2000 * tick);
+    const auto flown = [&](pinnquad::autopilot::detail::FlownMotion& motion, float sign) {
+      const pinnquad::Quaternion<float> q =
+          pinnquad::from_euler<float>({0.03f * static_cast<float>(tick % 25), -0.2f, 1.0f});
+      state.attitude = {sign * q.w, sign * q.x, sign * q.y, sign * q.z};
+      motion.velocity(now_us, state.velocity_m_s);
+      motion.body_rates(now_us, state.body_rates_rad_s);
+      return motion.tick(now_us, true, state, {0.5f, 0.5f, 0.5f, 0.5f});
+    };
+    const bool complete = flown(one_sign, 1);
+    REQUIRE(flown(both, tick % 25 < 12 ? -1.0f : 1.0f) == complete);
+    if (!complete) continue;
+    ++windows;
+    const pinnquad::Quaternion<float>&a = one_sign.motion().attitude, &b = both.motion().attitude;
+    CHECK(std::abs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z) == doctest::Approx(1).epsilon(1e-5));
+  }
+  CHECK(windows >= 2);
+}
+
 TEST_CASE("the analytic inverse knows the effects that the vehicle is said to have") {
   using Dragging = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag, pinnquad::RotorDrag>;
   using View = pinnquad::ModelView<DemoQuadModel>;

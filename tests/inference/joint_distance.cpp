@@ -266,6 +266,39 @@ TEST_CASE("a monitored inverse: the model while it was right, then the fallback,
 
 namespace {
 
+/// Answers with the time that it is told.
+struct ClockFallback {
+  Status operator()(const MotionInputs<float>&, const PlaceAndTime<double>& place,
+                    Commands<float>& commands) const noexcept {
+    const auto time = static_cast<float>(place.time_s);
+    commands = {time, time, time, time};
+    return Status::ok;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("while the model is distrusted its fallback is told place and time, with a report and without") {
+  RandomStates random(407);
+  using Backed = Guarded<Extend<TrainingGuard, Fallback<ClockFallback>>>;
+  MonitoredInverse<Backed, Trust> inverse{Backed(Extend<TrainingGuard, Fallback<ClockFallback>>(ClockFallback{}))};
+  const auto inputs = inputs_of(random, 0.5);
+  for (int i = 0; i < 9; ++i) REQUIRE(inverse.observe(inputs, {9, 9, 9, 9}) == Status::ok);
+  REQUIRE_FALSE(inverse.trusted());
+  PlaceAndTime<double> place;
+  place.time_s = 0.25;
+  Commands<float> with_report = marked(), without = marked();
+  MonitoredInverse<Backed, Trust>::Report report;
+  CHECK(inverse.predict(inputs, place, with_report, report) == Status::fell_back);
+  CHECK(inverse.predict(inputs, place, without) == Status::fell_back);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(with_report[i] == 0.25F);
+    CHECK(without[i] == 0.25F);
+  }
+}
+
+namespace {
+
 template <class T>
 using Observed = decltype(std::declval<T&>().observe(MotionInputs<float>{}, Commands<float>{}));
 template <class T>

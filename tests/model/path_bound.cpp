@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -125,6 +126,32 @@ TEST_CASE_TEMPLATE("the path bound is that of interval arithmetic with directed 
         CHECK(bound.lower[k] == doctest::Approx(expected[k].lower()).epsilon(1e-13));
         CHECK(bound.upper[k] == doctest::Approx(expected[k].upper()).epsilon(1e-13));
       }
+    }
+  }
+}
+
+TEST_CASE("along a direction: bounds of the first layer's products with directed rounding, of either sign") {
+  std::mt19937_64 engine(4);
+  for (int sample = 0; sample < 200; ++sample) {
+    One network;
+    fill_uniform(network.parameters, engine, 1);
+    double least[One::inputs], most[One::inputs], work[4 * 4], lower[4], upper[4];
+    for (int i = 0; i < One::inputs; ++i) {
+      least[i] = uniform(engine, -3, sample % 2 == 0 ? -1 : 1);
+      most[i] = least[i] + (sample % 3 == 0 ? 0 : uniform(engine, 0, 0.5));
+    }
+    constexpr int widths[] = {4};
+    path_bound_along(network.parameters.data(), One::inputs, static_cast<const int*>(widths), 1,
+                     static_cast<const double*>(least), static_cast<const double*>(most), static_cast<double*>(work), 4,
+                     static_cast<double*>(lower), static_cast<double*>(upper));
+    for (int row = 0; row < 4; ++row) {
+      Interval sum(0);
+      for (int i = 0; i < One::inputs; ++i) {
+        sum = sum +
+              Interval(double(network.parameters[std::size_t(row * One::inputs + i)])) * Interval(least[i], most[i]);
+      }
+      CHECK(lower[row] <= std::min(0.0, sum.lower()));
+      CHECK(upper[row] >= std::max(0.0, sum.upper()));
     }
   }
 }

@@ -45,8 +45,7 @@ TEST_CASE("its commands make the thrust and the torque that hold the body rates"
   const Airframe<double> airframe = crooked();
   const Point at;
   double u[rotor_count];
-  RigidBodyBase::commands(static_cast<const double*>(at.x), RigidBodyBase::prepare(airframe),
-                             static_cast<double*>(u));
+  RigidBodyBase::commands(static_cast<const double*>(at.x), RigidBodyBase::prepare(airframe), static_cast<double*>(u));
   const Vector3<double> rates(at.x[6], at.x[7], at.x[8]);
   Wrench<double> wrench;
   wrench.force_N = Vector3<double>(0, 0, airframe.mass_kg * at.x[2]);
@@ -58,7 +57,7 @@ TEST_CASE("its commands make the thrust and the torque that hold the body rates"
   for (int axis = 0; axis < 3; ++axis) turning.x[3 + axis] += 100;
   double same[rotor_count];
   RigidBodyBase::commands(static_cast<const double*>(turning.x), RigidBodyBase::prepare(airframe),
-                             static_cast<double*>(same));
+                          static_cast<double*>(same));
   for (int i = 0; i < rotor_count; ++i) CHECK(same[i] == u[i]);
 }
 
@@ -99,4 +98,26 @@ TEST_CASE("signed sums on it: there and back; 0 are its own commands") {
   Sums::commands(x, static_cast<const double*>(nothing), body, static_cast<double*>(again));
   RigidBodyBase::commands(x, body.base, static_cast<double*>(base));
   for (int i = 0; i < rotor_count; ++i) CHECK(again[i] == base[i]);
+}
+
+TEST_CASE("a rotor that gives way to more thrust gives way most at command 0: no thrust slope is below the least") {
+  // The centre of mass lies outside the rotors' rectangle: about one diagonal the shares of the thrust are < 0.
+  Airframe<double> airframe = PaperQuadrotor::value<double>();
+  for (auto& rotor : airframe.rotors) rotor.x_m += 0.3;
+  const auto shares = RigidBodyBase::prepare(airframe).map;
+  int giving_way = 0;
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    if (!(shares.by[i][0] < 0)) continue;
+    airframe.rotors[i].thrust_curve = 0.5;
+    ++giving_way;
+  }
+  REQUIRE(giving_way > 0);
+  const auto body = RigidBodyBase::prepare(airframe);
+  double x[features] = {}, u[rotor_count];
+  const double step_m_s2 = 1e-6;
+  x[RigidBodyBase::force_z] = -step_m_s2;
+  RigidBodyBase::commands(static_cast<const double*>(x), body, static_cast<double*>(u));
+  const double rise = (u[0] + u[1] + u[2] + u[3]) / step_m_s2;
+  CHECK(RigidBodyBase::least_thrust_slope(airframe) <= rise + 1e-9);
+  CHECK(RigidBodyBase::least_thrust_slope(airframe) == doctest::Approx(rise).epsilon(1e-4));
 }

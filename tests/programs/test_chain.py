@@ -88,7 +88,10 @@ def test_several_flights(pinnquad, flight, other):
     for text in "held out: part_3.csv (1000 rows)", "validate: part_2.csv (1000 rows)", "train: part_1.csv (1000 rows)":
         assert text in said, said
     assert 'training_data = "part_1.csv"' in Path("d/model.hpp").read_text()
-    assert Path("d/replay.txt").read_text().startswith("pinnquad-replay 1 1000 24\n")
+    first, *replayed = Path("d/replay.txt").read_text().splitlines()
+    assert first == "pinnquad-replay 1 1000 24"
+    flown = [[float(u) for u in row.split(",")[17:21]] for row in rows[2000:]]  # of part_3.csv, which is held out
+    assert [[float(u) for u in line.split()[-4:]] for line in replayed] == flown
     (fold,) = report_of("d")["folds"]
     assert (fold["train"], fold["validation"], fold["held_out"]) == (["part_1.csv"], ["part_2.csv"], ["part_3.csv"])
     # two of them named, and each in its turn: the export is fitted to all, and no flight decides alone

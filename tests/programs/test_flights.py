@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The paper's flights: bounds by --statistics, stick recordings flown again, recorder errors, pictures, bad input,
 Ctrl-C."""
+import math
 import os
 import re
 import time
@@ -38,6 +39,8 @@ def test_rows_and_bounds(pinnquad, flight, samples):
                      re.M), "the table has no means"
     seeds = [{name: float(value) for name, value in row.items()} for row in table("table.csv")]
     assert len(seeds) == 3
+    tilt = max(math.acos(math.cos(float(row["roll"])) * math.cos(float(row["pitch"]))) for row in table("flight.csv"))
+    assert math.degrees(tilt) - 0.01 <= seeds[0]["max_tilt_deg"] <= 1.2 * math.degrees(tilt), seeds[0]
     for seed in seeds:
         assert seed["max_speed_m_s"] <= 8 and seed["min_altitude_m"] > 0 and seed["saturated_percent"] < 5, seed
         assert min(seed["pcc_roll"], seed["pcc_pitch"], seed["pcc_yaw"]) >= 0.95, seed

@@ -26,10 +26,12 @@ def test_train(pinnquad, flight):
     """More work than any machine does in a test, in pieces small enough for any; taken up again."""
     process = pinnquad.start("train --out out --seeds 500 --epochs 30 --threads 2 --flight", flight)
     until(lambda: len(list(Path("out").glob("fits/*-2-1.fit"))) == 3, process)
+    pinnquad.refused("train --out out --seeds 1 --epochs 1 --flight", flight, at="out", keyword="another program")
     kept = finished(ended(process), 1501)
     assert kept >= 7 and len(list(Path("out/fits").iterdir())) == kept
     report = report_of("out")
     assert report["exported"] is False and "interrupted" in report["not_exported_because"]
+    assert report["fits"] == {"finished": kept, "wanted": 1501}
     assert not Path("out/model.hpp").exists()
     no_partial_files("out")
     said = pinnquad("train --out out --seeds 2 --epochs 30 --flight", flight).out

@@ -75,10 +75,13 @@ def test_worse_than_the_mean(pinnquad, good):
     assert "bool worse_than_mean = true;" in header and report_of("poor")["exported"] is True
     # one that is refused where another was exported: what there is old is named
     shutil.copytree("poor", "stale")
+    os.link("stale/report.json", "held.json")  # who has the old report open keeps it whole
     line = pinnquad.refused(train.format("stale"), code=1, keyword="earlier training").lines[0]
     for file in "model.hpp", "replay.txt", "model.block":
         assert f"stale/{file}" in line
         same_bytes(f"poor/{file}", f"stale/{file}")
+    same_bytes("poor/report.json", "held.json")
+    assert report_of("stale")["exported"] is False
 
 
 def linear(line, cells):

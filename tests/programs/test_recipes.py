@@ -60,6 +60,12 @@ def test_reports(pinnquad, trained, flight):
         assert f"{axis:5} {slope:.6f} s^2/rad, {slope / own:.2f} of the airframe's own" in said, axis
         assert default["models"]["structured"]["wrong_derivative_share"][axis]["mean"] == 0, axis
     assert default["settings"]["structured"]["slopes"] == "learned"
+    structured, warned = default["models"]["structured"], (trained() / "stderr.txt").read_text()
+    motors = [motor["r2"]["mean"] for motor in structured["per_motor"].values()]
+    assert abs(default["verdict"]["worst_motor_r2"] - min(motors)) <= 1e-9 < default["verdict"]["r2"] - min(motors)
+    for network in "vanilla", "physics_informed":  # a network that errs less is told, and no other
+        less = default["models"][network]["validation_mae"]["mean"] < structured["validation_mae"]["mean"]
+        assert (f"--export {network} exports it" in warned) == less, network
 
     assert [report["settings"]["recipe"] for report in (paper, best, small)] == ["paper", "best", "small"]
     assert paper["settings"]["network"] == best["settings"]["network"] == "10 x 25 ReLU"

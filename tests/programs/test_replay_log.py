@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from conftest import SOURCE, cell, edited, listing, replaced, table
+from exported import Header
 
 DEMO = SOURCE / "examples/models/demo_quadrotor.hpp"
 TRUST = SOURCE / "tests/flight_stacks/structured_trust.hpp"
@@ -88,6 +89,13 @@ def test_flights(pinnquad, in_flights, guard):
         reasons[name] = " ".join(row["reason"] for row in rows)
         assert name != "demo" or "NaN or infinite: wdot_x" in said
     assert re.search(r"wdot_y = [-0-9.]+ rad/s\^2 is (above|below) [-0-9.]+, by [0-9.e+]+ half-widths", reasons["demo"])
+    header = Header(DEMO)
+    ends = {side: dict(zip(header.names(), header.numbers(f"envelope_{end}")))
+            for side, end in (("below", "lower"), ("above", "upper"))}
+    borders = re.findall(r"(\w+) = \S+(?: \S+)? is (above|below) (\S+), by \S+ half-widths", reasons["demo"])
+    assert len(borders) > 50
+    for name, side, border in borders:
+        assert abs(float(border) - ends[side][name]) <= 1e-3 * abs(ends[side][name]) + 1e-6, (name, side, border)
     if guard == "flight_stack":
         assert "the analytic inverse declines too" in reasons["demo"]
         behind_gap = rows[800]
@@ -337,6 +345,17 @@ def test_other_gain_in_the_log(eight, differs):
     differs("first at ", "gain", *models(eight))
 
 
+def test_later_settings(eight, same):
+    """Of several settings in a log those count that held when the core began."""
+    Path("later").mkdir()
+    Path("later", RECORD).symlink_to(eight / RECORD)
+    lines = (eight / SETTINGS).read_text().splitlines()
+    names, later = lines[0].split(","), lines[-1].split(",")
+    later[names.index("timestamp")], later[names.index("tilt_1_s")] = str(10**9), "9.01"
+    Path("later", SETTINGS).write_text("\n".join([*lines, ",".join(later)]) + "\n")
+    same("later", *models(eight))
+
+
 @pytest.mark.parametrize("tick, name, change, pattern", [
     (7000, "status", "11", r" in 1 of 9000 ticks, first at 11\.998 s \(tick 7000\): status ok, logged fell_back$"),
     (7001, "reaction", "2", r"\(tick 7001\): it flies, logged: levels$"),
@@ -345,6 +364,8 @@ def test_other_gain_in_the_log(eight, differs):
                                                     r"\(tick 7003\): u2 [0-9.]*, logged nan$"),
     (7004, "stale_inputs", "4", r"\(tick 7004\): stale: none, logged: position and velocity$"),
     (7005, "refused_samples", "1", r"\(tick 7005\): 0 samples refused, logged 1$"),
+    # 0.029 half-widths outside the envelope are no rounding
+    (8610, "cause", "0", r" in 1 of 9000 ticks, .*\(tick 8610\): "),
     # an input: the answer is another
     (7001, "body_rates_rad_s[1]", lambda rate: rate + 0.01, r" in 1 of 9000 ticks, .*\(tick 7001\): u1 ")])
 def test_one_cell(eight, same, differs, tick, name, change, pattern):

@@ -46,6 +46,9 @@ def test_page(driver, bundle):
     page = json.loads(flight)
     rows = [list(map(float, line.split(","))) for line in Path("rows.csv").read_text().splitlines()[1:]]
     assert len(rows) == 200
+    # front right and rear left turn counter-clockwise
+    assert [(r["x_m"] > 0, r["y_m"] > 0, r["spin"]) for r in page["rotors"]] == [(True, True, 1), (False, False, 1),
+                                                                                 (True, False, -1), (False, True, -1)]
     velocity = page["velocity_unit_m_s"]
     # name, kind of number, first column of rows.csv, unit, tolerance in SI
     for name, kind, columns, first, unit, tolerance in [

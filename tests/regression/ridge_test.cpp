@@ -193,6 +193,21 @@ TEST_CASE("noise calls for a penalty, many clean rows for none") {
   CHECK(choose_penalty(plain) < 1e-2);
 }
 
+TEST_CASE("of penalties that err alike the largest is chosen, wherever it stands") {
+  std::vector<RegressionSums> groups;
+  for (int group = 0; group < 3; ++group) {  // features that stand still explain nothing under any penalty
+    RegressionSums sums(2, 1);
+    const std::array<double, 2> still{};
+    for (int i = 0; i < 5; ++i) {
+      const double y = std::sin(1.3 * i + group);
+      sums.add(still.data(), &y);
+    }
+    groups.push_back(sums);
+  }
+  CHECK(choose_penalty(groups, {1e-3, 1.0, 1e-1}) == 1.0);
+  CHECK(choose_penalty(groups, {1.0, 1e-3}) == 1.0);
+}
+
 TEST_CASE("what has no answer is refused in a line") {
   CHECK_THROWS_AS(fit_ridge(RegressionSums(3, 1), 1), std::invalid_argument);
   CHECK_THROWS_AS(fit_ridge(sums_of(0, 5), -1), std::invalid_argument);

@@ -43,6 +43,9 @@ TEST_CASE("linear between rows, the first before them, a hover after them") {
   CHECK(pilot(anywhere, 3.5).stick_rad_s[2] == -1);
   CHECK(pilot(anywhere, 4).velocity_m_s[0] == 0);
   CHECK(pilot(anywhere, 4.1).velocity_m_s.norm() == 0);
+  RecordedSticks ends_moving({row_of(1, 2), row_of(2, 4)});
+  CHECK(ends_moving(anywhere, 2).velocity_m_s[0] == 4);
+  CHECK(ends_moving(anywhere, 2.1).velocity_m_s.norm() == 0);
   CHECK(pilot.duration_s() == 4);
   RecordedSticks negative_zero({row_of(0, -0.0), row_of(1, 3)});  // -0 + 3 * 0 would be 0
   CHECK(std::signbit(negative_zero(anywhere, 0).velocity_m_s[0]));

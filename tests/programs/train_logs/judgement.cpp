@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,21 @@ pinnquad::Flight two_commands(const std::string& name, std::initializer_list<dou
 
 const auto& each_flight = pinnquad_test::each_flight;
 using pinnquad_test::Judged;
+
+/// Answers the first rows of a hundred alone, whatever they are.
+template <std::size_t percent>
+programs::ModelKind answers_some(const char* key) {
+  programs::ModelKind kind = pinnquad_test::constant_kind();
+  kind.key = key;
+  kind.fit = [](const programs::FitTask&) {
+    return pinnquad_test::model_of([](const pinnquad::RowSet& rows) {
+      programs::Predictions made(rows.size(), {0.5, 0.5, 0.5, 0.5});
+      for (std::size_t row = percent * rows.size() / 100; row < rows.size(); ++row) made[row].fill(std::nan(""));
+      return made;
+    });
+  };
+  return kind;
+}
 
 }  // namespace
 
@@ -130,6 +147,30 @@ TEST_CASE("models that look ahead are ranked apart, and are no simpler model of 
   for (const auto& kind : run.judged.kinds) CHECK(kind.fits.front().errors.rows == 399);
 }
 
+TEST_CASE("a kind that answers less than half of the rows is not judged, and takes no row from the others") {
+  const Judged run(3, {pinnquad_test::constant_kind(), answers_some<40>("few"), answers_some<60>("most")},
+                   {{"flight2"}, {}}, 1);
+  CHECK(run.judged.find("few")->not_applicable == "answers 40 % of the rows of flight2 alone");
+  CHECK(run.judged.find("most")->applicable());
+  CHECK(run.judged.rows == std::vector<std::size_t>{240});  // of 400: those that both others answer
+  CHECK(run.judged.find("constant")->fits[0].errors.rows == 240);
+}
+
+TEST_CASE("a difference that chance makes once in ten times decides nothing, one of three in a hundred does") {
+  pinnquad::PairedComparison flights;
+  flights.pairs = 6;
+  for (const double lower : {-0.1, 0.1}) {
+    CAPTURE(lower);
+    flights.mean_difference = lower;
+    flights.wins = lower < 0 ? 6 : 0;
+    flights.losses = 6 - flights.wins;
+    flights.p_value = 0.1;
+    CHECK(programs::detail::standing_of(flights) == (lower < 0 ? Standing::undecided : Standing::no_better));
+    flights.p_value = 0.03;
+    CHECK(programs::detail::standing_of(flights) == (lower < 0 ? Standing::success : Standing::worse));
+  }
+}
+
 TEST_CASE("slopes: those of the truth are right, those of a mirrored model wrong in every row, a constant has none") {
   const Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, each_flight);
   CHECK_FALSE(programs::sees_acceleration(run.judged.kinds[0]));
@@ -188,8 +229,67 @@ TEST_CASE("what is exported: by validation, none that diverged, of a recipe what
 
   Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, {{"flight2"}, {}}, 1);
   CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{1, 0});
+  // the rows held out have no say: what errs less on the validation rows goes first
+  run.judged.kinds[0].fits[0].validation_mae = run.judged.kinds[1].fits[0].validation_mae / 2;
+  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{0, 1});
+  CHECK(programs::kinds_to_export(run.judged, "causal", true) == std::vector<std::size_t>{1, 0});
   run.judged.kinds[1].kind.exportable = false;
   CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{0});
+}
+
+TEST_CASE("the verdict on an export is that of its own fit, after a rotation the mean; the worst motor is the worst") {
+  Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::secret_mean_kind()}, {{"flight2"}, {}}, 2);
+  programs::JudgedKind& kind = run.judged.kinds[1];
+  REQUIRE(kind.fits.size() == 2);
+  kind.fits[0].errors.r2 = {0.9, 0.8, 0.7, 0.6};
+  kind.fits[1].errors.r2 = {0.5, 0.1, 0.5, 0.5};
+  const auto verdict_of = [&](std::optional<std::uint64_t> seed) {
+    return programs::exported_verdict(run.plan, run.judged, 1, seed);
+  };
+  CHECK(verdict_of(kind.fits[0].seed).test_r_squared == doctest::Approx(0.75));
+  CHECK(verdict_of(kind.fits[0].seed).worst_motor_r_squared == doctest::Approx(0.6));
+  CHECK(verdict_of(kind.fits[1].seed).test_r_squared == doctest::Approx(0.4));
+  CHECK(verdict_of(kind.fits[1].seed).worst_motor_r_squared == doctest::Approx(0.1));
+  CHECK(verdict_of({}).test_r_squared == doctest::Approx(0.575));
+  CHECK(verdict_of({}).worst_motor_r_squared == doctest::Approx(0.45));
+}
+
+TEST_CASE("an export says the flights and as many rows as it was fitted to") {
+  const Judged run(3, {pinnquad_test::constant_kind()}, {{"flight2"}, {}}, 1);
+  const programs::Fold& fold = run.plan.folds[0];
+  const auto from = [&](bool takes_validation) {
+    programs::ModelKind kind = pinnquad_test::constant_kind();
+    kind.takes_validation = takes_validation;
+    return programs::provenance_of(fold, run.dataset, 0.02, kind, 7, 0, {});
+  };
+  CHECK(from(false).training_rows == fold.split.train.size());
+  CHECK(from(false).training_data == fold.train[0]);
+  CHECK(from(true).training_rows == fold.split.train.size() + fold.split.validation.size());
+  CHECK(from(true).training_data == fold.train[0] + ", " + fold.validation[0]);
+  CHECK(from(true).seed == 7);
+  CHECK(from(true).lag_removed_s == 0.02);
+}
+
+TEST_CASE("the validation error of a kind that is fitted to the validation rows is of a fit that has not seen them") {
+  programs::ModelKind kind = pinnquad_test::constant_kind();
+  kind.takes_validation = true;
+  kind.fit = [](const programs::FitTask& task) {
+    const bool seen = !task.validation.empty();
+    return pinnquad_test::model_of([seen](const pinnquad::RowSet& rows) {  // knows by heart what it has seen
+      programs::Predictions made;
+      for (std::size_t row = 0; row < rows.size(); ++row) {
+        made.push_back(seen ? rows[row].commands : pinnquad::Commands<double>{});
+      }
+      return made;
+    });
+  };
+  const Judged run(3, {kind}, {{"flight2"}, {}}, 1);
+  const pinnquad::RowSet& rows = run.plan.folds[0].split.validation;
+  double sum = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (const double u : rows[row].commands) sum += u / 4;
+  }
+  CHECK(run.fits.finished[0].validation_mae == doctest::Approx(sum / static_cast<double>(rows.size())));
 }
 
 TEST_CASE("figures over seeds: mean, deviation and each; null where one is not finite") {
@@ -238,6 +338,14 @@ TEST_CASE("the fits of later seeds follow the first seed's choice of the altitud
     CHECK(fit.held_out == before);
     CHECK(fit.model != nullptr);
   }
+  const pinnquad_test::TemporaryFolder folder;
+  const programs::FitStore store(folder.path("fits"), run.plan);
+  store.keep(run.fits.finished[0]);
+  const programs::Fits gone_on = programs::fit_all(run.plan, store);
+  REQUIRE(gone_on.finished.size() == 3);
+  CHECK(gone_on.known == 1);
+  CHECK(gone_on.finished[0].altitude.applies);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(gone_on.finished[i].held_out == run.fits.finished[i].held_out);
 }
 
 TEST_CASE(
@@ -277,7 +385,19 @@ TEST_CASE(
   programs::write_results(folder.path("results.csv"), run.plan, run.judged);
   std::ifstream csv(folder.path("results.csv"));
   std::size_t lines = 0;
+  std::vector<std::string> heads;
   for (std::string line; std::getline(csv, line); ++lines) {
+    std::vector<std::string> cells;
+    std::istringstream text(line);
+    for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+    if (lines == 0) heads = cells;
+    REQUIRE(cells.size() == heads.size());
+    for (std::size_t i = 0; lines > 0 && i < cells.size(); ++i) {  // under each head what report.json says by that name
+      CAPTURE(heads[i]);
+      const nlohmann::json& said = json["results"][lines - 1][heads[i]];
+      if (said.is_number()) CHECK(std::stod(cells[i]) == said.get<double>());
+      if (said.is_string()) CHECK(cells[i] == said.get<std::string>());
+    }
   }
   CHECK(lines == 1 + json["results"].size());
   CHECK(json["models"]["battery"]["applicable"] == false);
@@ -308,6 +428,15 @@ TEST_CASE(
   programs::FinishedFit other_seed = asked;
   other_seed.seed = 77;
   CHECK_FALSE(store.load(other_seed));
+  pinnquad::Dataset changed;  // of as many rows, one number another
+  for (pinnquad::Flight flight : run.dataset.flights()) {
+    if (changed.size() == 0) flight[7].velocity_m_s[0] += 1e-9;
+    changed.add(std::move(flight));
+  }
+  programs::FitPlan other_rows = run.plan;
+  other_rows.folds = programs::folds_of(changed, each_flight);
+  loaded = asked;
+  CHECK_FALSE(programs::FitStore(folder.path("fits"), other_rows).load(loaded));
   programs::FitPlan longer = run.plan;
   longer.epochs = 10;
   programs::FitPlan pinned = run.plan, other_recipe = run.plan;

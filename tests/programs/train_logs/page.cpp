@@ -102,6 +102,20 @@ TEST_CASE(
   CHECK(page.find("No flights to watch in 3D") != std::string::npos);
 }
 
+TEST_CASE("the page draws what the first seed's model predicts") {
+  using namespace pinnquad_test;
+  const Judged run(simulated_dataset(3, 300), {secret_mean_kind()}, {{"flight2"}, {}}, 3);
+  REQUIRE(run.fits.finished.size() == 3);
+  pinnquad::logs::ImportedDataset imported;
+  const nlohmann::json none;
+  const programs::TrainingPage page{run.plan, imported, run.fits, run.judged, run.verdicts, none, {}, "", {}};
+  const auto shown = programs::detail::shown_predictions(page, 0);
+  REQUIRE(shown.size() == 1);
+  for (const programs::FinishedFit& fit : run.fits.finished) {
+    CHECK((shown[0] == &fit.held_out) == (fit.seed == run.plan.first_seed));
+  }
+}
+
 TEST_CASE("the worst moment is where a model was spoiled, and what happened there is named") {
   using namespace pinnquad_test;
   pinnquad::Flight flight = simulated_flight("a", 1, 400);

@@ -153,13 +153,14 @@ TEST_CASE("of a window the present and the sum over the taps are held above 0, e
 }
 
 TEST_CASE("a residual is kept where there is something to learn, bounded to what it says on the training rows") {
-  const auto fitted = [](const Law& law) {
+  const auto fitted = [](const Law& law, double least_gain = ResidualTraining{}.least_gain) {
     const Flight flight = flight_of(law, 4, 1500);
     const RowSet training(flight, {0, 1000}), validation(flight, {1000, 1500});
     const auto context = make_context<Setting<PhysicsFeatures>>(training);
     std::mt19937_64 engine(1);
     ResidualTraining how;
     how.epochs = 60;
+    how.least_gain = least_gain;
     return fit_monotone<Residual>(context, training, validation, fit_monotone_base(context, training), how, engine,
                                   [](int) { return true; });
   };
@@ -170,6 +171,9 @@ TEST_CASE("a residual is kept where there is something to learn, bounded to what
   CHECK(fit.residual_kept);
   CHECK(fit.error < 0.5 * fit.base_error);
   CHECK(!fitted(Law{}).residual_kept);
+  const auto asked = fitted(curved, 0.999);  // for more than there is to gain
+  CHECK(asked.error > 0.001 * asked.base_error);
+  CHECK(!asked.residual_kept);
 
   // far away it says no more than it did in training
   float x[PhysicsFeatures::size], y[4], base[4];

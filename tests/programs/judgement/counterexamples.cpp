@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// The search for a counterexample, on sums that are known in closed form.
+#include "model/counterexample.hpp"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+/// One feature from 0 to 1; the sum rises with it up to `top`, and falls ten times as steeply beyond.
+programs::SearchedModel falls_beyond(double top) {
+  programs::SearchedModel model;
+  model.lower = {0};
+  model.upper = {1};
+  model.ways = {{0, false, {0}}};
+  model.derivatives = [top](const std::vector<double>& x) { return std::vector<double>{x[0] < top ? 1.0 : -10.0}; };
+  model.sums = [top](const std::vector<double>& x) {
+    return std::array<double, 3>{x[0] < top ? x[0] : top - 10 * (x[0] - top), 0, 0};
+  };
+  model.starts = {{1.0}};
+  return model;
+}
+
+constexpr double seconds = 0.05;
+
+}  // namespace
+
+TEST_CASE("a sum that falls inside the envelope is found, and both motions lie inside") {
+  const programs::Search search = programs::search_counterexample(falls_beyond(0.5), 1, seconds);
+  REQUIRE(search.found.has_value());
+  CHECK(search.found->x[0] >= 0);
+  CHECK(search.found->step > 0);
+  CHECK(search.found->x[0] + search.found->step <= 1);
+  CHECK(search.found->sum_of_more < search.found->sum);
+  CHECK(search.least[0] == -10);
+}
+
+TEST_CASE("a sum that falls over no step inside the envelope is no counterexample, whatever it does beyond") {
+  const programs::Search search = programs::search_counterexample(falls_beyond(0.9999), 1, seconds);
+  CHECK_FALSE(search.found.has_value());
+  CHECK(search.least[0] == -10);
+}
