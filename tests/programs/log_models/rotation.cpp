@@ -192,7 +192,7 @@ int main(int count, char** arguments) {
     std::printf("%s: expected %.2f or more\n", key, least);
     return false;
   };
-  // the structured model is shown of the specific force what an asked motion has: the lateral parts tell of a flight's trim
+  // of the specific force the structured model is shown what an asked motion has: lateral parts tell of a flight's trim
   bool good = at_least("ridge_centred", asked_r_squared) && at_least("structured_centred", asked_unbiased_r_squared);
   // what every step of the ladder is worth: a constant knows nothing, the window is what the present instant lacks
   if (wanted != "residual") {

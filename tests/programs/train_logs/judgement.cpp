@@ -259,8 +259,8 @@ TEST_CASE("an export says the flights and as many rows as it was fitted to") {
   const programs::Fold& fold = run.plan.folds[0];
   const auto from = [&](bool takes_validation) {
     programs::ModelKind kind = pinnquad_test::constant_kind();
-    kind.takes_validation = takes_validation;
-    return programs::provenance_of(fold, run.dataset, 0.02, kind, 7, 0, {});
+    if (takes_validation) kind.takes_validation = programs::takes_validation_rows;
+    return programs::provenance_of(fold, run.dataset, 0.02, kind, {}, 7, 0, {});
   };
   CHECK(from(false).training_rows == fold.split.train.size());
   CHECK(from(false).training_data == fold.train[0]);
@@ -272,7 +272,7 @@ TEST_CASE("an export says the flights and as many rows as it was fitted to") {
 
 TEST_CASE("the validation error of a kind that is fitted to the validation rows is of a fit that has not seen them") {
   programs::ModelKind kind = pinnquad_test::constant_kind();
-  kind.takes_validation = true;
+  kind.takes_validation = programs::takes_validation_rows;
   kind.fit = [](const programs::FitTask& task) {
     const bool seen = !task.validation.empty();
     return pinnquad_test::model_of([seen](const pinnquad::RowSet& rows) {  // knows by heart what it has seen

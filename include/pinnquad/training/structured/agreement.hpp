@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a residual says of rows that it has not seen, group by group: how much of it counts.
+// A residual asked of rows that it has not seen, group by group: how much of its answer counts.
 #pragma once
 
 #include <algorithm>
@@ -40,8 +40,8 @@ class Agreement {
     for (int output = 0; output < outputs; ++output) all += total(output).gain(share(output));
     return all;
   }
-  /// Root mean square of the commands' error that they leave: the squared error of the signed sums is four times that of
-  /// the commands.
+  /// Root mean square of the commands' error that they leave: the squared error of the signed sums is four times that
+  /// of the commands.
   double error() const {
     double squares = 0, rows = 0;
     for (int output = 0; output < outputs; ++output) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The structured model, whole: a monotone base in closed form and a residual network, fitted from several seeds. The
-// validation rows choose whether the model is shown the altitude, and whether the residual is kept; so do whole flights,
-// each left out in turn, where several train.
+// validation rows choose whether the model is shown the altitude, and whether the residual is kept; so do whole
+// flights, each left out in turn, where several train.
 #pragma once
 
 #include <algorithm>
