@@ -85,7 +85,8 @@ class Training {
               dataset.sample_period_s,
               options.seed,
               options.seeds,
-              options.epochs > 0 || !recipe_ ? options.epochs : programs::recipe_epochs,
+              options.epochs > 0 || options.recipe.empty() || options.flights.empty() ? options.epochs
+                                                                                      : programs::recipe_epochs,
               options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()),
               {!programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
                options.flights.empty()}},
@@ -125,8 +126,9 @@ class Training {
 
   void tell_recipe() const {
     if (!recipe_) return;
-    std::printf("      network %s; %s, batch %d, %d epochs\n", recipe_->network.c_str(), recipe_->optimizer.c_str(),
-                recipe_->settings.at("batch").get<int>(), plan_.epochs);
+    const std::string epochs = plan_.epochs > 0 ? std::to_string(plan_.epochs) + " epochs" : "epochs as suit each kind";
+    std::printf("      network %s; %s, batch %d, %s\n", recipe_->network.c_str(), recipe_->optimizer.c_str(),
+                recipe_->settings.at("batch").get<int>(), epochs.c_str());
     if (!recipe_->besides_in_words.empty()) std::printf("      %s\n", recipe_->besides_in_words.c_str());
     std::fflush(stdout);
   }
