@@ -20,7 +20,7 @@ namespace {
 
 using Altitude = StructuredSettings::Altitude;
 
-Flight flown(const std::string& name, std::uint64_t seed, int samples) {
+Flight flown(const std::string& name, std::uint64_t seed, std::size_t samples) {
   FlightPlan plan = AgileFlight::plan();
   plan.samples = samples;
   const Quadrotor<double, StandardAtmosphere, QuadraticDrag> vehicle(
@@ -31,7 +31,7 @@ Flight flown(const std::string& name, std::uint64_t seed, int samples) {
 }
 
 /// The same, with what no affine map tells in all its commands: `size` |v_bx|.
-Flight bent(const std::string& name, std::uint64_t seed, int samples, double size) {
+Flight bent(const std::string& name, std::uint64_t seed, std::size_t samples, double size) {
   Flight flight = flown(name, seed, samples);
   for (Sample& sample : flight) {
     for (double& u : sample.commands) u += size * std::abs(sample.velocity_m_s[0]);
