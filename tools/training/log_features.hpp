@@ -36,25 +36,28 @@ inline bool has_battery(const FitTask& fit) {
   return true;
 }
 
+/// Calls `use(FeaturesTag...)` with these sets, and the battery's voltage in each where the flights have it.
+template <class... Sets, class Use>
+auto with_battery(const FitTask& fit, const Use& use) {
+  using pinnquad::WithColumns, pinnquad::BatteryVoltage;
+  return has_battery(fit) ? use(FeaturesTag<WithColumns<Sets, BatteryVoltage>>{}...) : use(FeaturesTag<Sets>{}...);
+}
+
 /// Calls `use(FeaturesTag)` with what physics asks for, as far as the logs have it.
 template <TimeReach Reach, class Use>
 auto with_physics_features(const FitTask& fit, const Use& use) {
   using namespace pinnquad;
-  using Without = PhysicsFeaturesWithoutVelocity;
-  if (!fit.lacks("velocity")) {
-    return has_battery(fit) ? use(FeaturesTag<LogFeatures<Reach, WithColumns<PhysicsFeatures, BatteryVoltage>>>{})
-                            : use(FeaturesTag<LogFeatures<Reach, PhysicsFeatures>>{});
-  }
-  return has_battery(fit) ? use(FeaturesTag<LogFeatures<Reach, WithColumns<Without, BatteryVoltage>>>{})
-                          : use(FeaturesTag<LogFeatures<Reach, Without>>{});
+  const auto reaching = [&use](auto tag) {
+    return use(FeaturesTag<LogFeatures<Reach, typename decltype(tag)::type>>{});
+  };
+  return fit.lacks("velocity") ? with_battery<PhysicsFeaturesWithoutVelocity>(fit, reaching)
+                               : with_battery<PhysicsFeatures>(fit, reaching);
 }
 
 /// The same with the paper's features, which the logs have to have but for the battery.
 template <class Use>
 auto with_paper_features(const FitTask& fit, const Use& use) {
-  using namespace pinnquad;
-  return has_battery(fit) ? use(FeaturesTag<WithColumns<PaperFeatures, BatteryVoltage>>{})
-                          : use(FeaturesTag<PaperFeatures>{});
+  return with_battery<pinnquad::PaperFeatures>(fit, use);
 }
 
 /// A window is interpolated between rows, but not over gaps.

@@ -15,18 +15,20 @@
 
 namespace programs {
 
+/// Limits of trust are of models without a window.
+template <class Model>
+using ExportedStructured =
+    NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>>;
+
 /// A structured model, and how it was chosen whether it is shown the altitude.
 template <class Model>
-class StructuredNetwork
-    : public NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>> {
+class StructuredNetwork : public ExportedStructured<Model> {
  public:
   StructuredNetwork(const Model& model, const AltitudeChoice& altitude, bool fits_validation)
-      : NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>>(model),
-        altitude_(altitude),
-        fits_validation_(fits_validation) {}
+      : ExportedStructured<Model>(model), altitude_(altitude), fits_validation_(fits_validation) {}
   AltitudeChoice altitude() const override { return altitude_; }
-  /// Limits of trust are found by rows that it was not fitted to.
-  bool has_trust() const override { return !pinnquad::is_windowed<typename Model::Features> && !fits_validation_; }
+  /// Limits are found by rows that it was not fitted to.
+  bool has_trust() const override { return ExportedStructured<Model>::has_trust() && !fits_validation_; }
 
  private:
   AltitudeChoice altitude_;
@@ -107,15 +109,9 @@ std::shared_ptr<const TrainedNetwork> fit_structured_kind(const FitTask& task) {
     using Higher = LogFeatures<Reach, typename decltype(higher)::type, InverseAccelerations>;
     return fit_structured_on<Lower, Higher>(task);
   };
+  if (!task.lacks("velocity")) return with_battery<InverseFeatures, InverseFeaturesWithAltitude>(task, fit);
   using Without = InverseFeaturesWithoutVelocity;
-  if (task.lacks("velocity")) {
-    using Battery = WithColumns<Without, BatteryVoltage>;
-    return has_battery(task) ? fit(FeaturesTag<Battery>{}, FeaturesTag<Battery>{})
-                             : fit(FeaturesTag<Without>{}, FeaturesTag<Without>{});
-  }
-  return has_battery(task) ? fit(FeaturesTag<WithColumns<InverseFeatures, BatteryVoltage>>{},
-                                 FeaturesTag<WithColumns<InverseFeaturesWithAltitude, BatteryVoltage>>{})
-                           : fit(FeaturesTag<InverseFeatures>{}, FeaturesTag<InverseFeaturesWithAltitude>{});
+  return with_battery<Without, Without>(task, fit);
 }
 
 }  // namespace programs

@@ -222,23 +222,24 @@ class StructuredFitter {
   /// residual are fitted to all rows.
   template <class GoesOn, class Done>
   std::optional<Fit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
+    const auto base = monotone_base<ContextType>(map_);
+    if (groups_.size() < 2) return done(base, std::numeric_limits<double>::quiet_NaN());  // nothing to choose by
     const int epochs = settings_.residual.epochs;
     std::vector<Agreement> by_epoch(static_cast<std::size_t>(epochs));
-    bool finished = groups_.size() > 1;
+    bool finished = true;
     each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
       const auto unseen = left_by(map, group);
       finished = finished && train(map, others, epochs, seed, goes_on, [&](const auto& trainer, int epoch) {
                    agree(by_epoch[static_cast<std::size_t>(epoch)], trainer.network(), unseen);
                  });
     });
-    if (!finished && groups_.size() > 1) return {};
+    if (!finished) return {};
     std::size_t best = 0;
     for (std::size_t epoch = 1; epoch < by_epoch.size(); ++epoch) {
       if (by_epoch[epoch].gain() > by_epoch[best].gain()) best = epoch;
     }
     const Agreement& chosen = by_epoch[best];
-    const auto base = monotone_base<ContextType>(map_);
-    const double error = groups_.size() > 1 ? chosen.error() : std::numeric_limits<double>::quiet_NaN();
+    const double error = chosen.error();
     if (!(chosen.gain() > 0)) return done(base, error);
     Residual residual{};
     if (!train(map_, fitted_, static_cast<int>(best) + 1, seed, goes_on,
@@ -266,7 +267,7 @@ class StructuredFitter {
 
   /// In the last layer, which is affine: weights by output, then biases.
   static void take_shares(Residual& residual, const Agreement& agreement) {
-    constexpr int width = 32;
+    constexpr int width = Residual::template Layer<Residual::layer_count - 1>::inputs;
     auto weight = residual.parameters.end() - Residual::outputs * (width + 1);
     for (int k = 0; k < Residual::outputs; ++k) {
       const auto share = static_cast<float>(agreement.share(k));
