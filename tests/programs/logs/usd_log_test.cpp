@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ std::string log_of_version_2() {
   Bytes bytes;
   bytes.u8(0xbc).u16(2).u16(1);
   bytes.u16(7).text("pose").zeros(1).u16(2).text("x(f)").zeros(1).text("n(H)").zeros(1);
-  return bytes.u16(7).u64(1'500'000).f32(1.5F).u16(65535).str();
+  return bytes.u16(7).u64(1'500'000).f32(1.5f).u16(65535).str();
 }
 
 std::string with_checksum(const std::string& bytes, std::uint64_t checksum) {
