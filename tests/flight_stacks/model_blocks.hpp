@@ -95,14 +95,19 @@ Block corrupt_block() {
   return block;
 }
 
+/// With a checksum that is right.
+inline Block sealed(Block block) {
+  const std::uint32_t sum = pinnquad::crc32(block.data(), block.size() - 4);
+  for (std::size_t byte = 0; byte < 4; ++byte) block[block.size() - 4 + byte] = (sum >> (8 * byte)) & 0xffu;
+  return block;
+}
+
 /// A weight that is wrong under a checksum that is right.
 template <class Model>
 Block wrong_block() {
   Block block = sound_block<Model>();
   block[block.size() - 6] ^= 0x40;  // in the exponent of the last bias
-  const std::uint32_t sum = pinnquad::crc32(block.data(), block.size() - 4);
-  for (std::size_t byte = 0; byte < 4; ++byte) block[block.size() - 4 + byte] = (sum >> (8 * byte)) & 0xffu;
-  return block;
+  return sealed(block);
 }
 
 }  // namespace pinnquad::autopilot::test

@@ -120,9 +120,45 @@ TEST_CASE("limits of trust: beyond the distance the analytic inverse flies") {
 
 TEST_CASE("limits of trust: a model of other training data than theirs is refused") {
   TrustingPx4Stack stack;
-  const Block other = other_block<StructuredQuadModel>(), sound = sound_block<StructuredQuadModel>();
+  const Block sound = sound_block<StructuredQuadModel>();
+  Block other = sound;
+  other[pinnquad::ModelBlockHeader::training_data_hash] ^= 1;
+  other = sealed(other);
   CHECK(stack.offer(other.data(), other.size()) == Status::block_incompatible);
   CHECK_FALSE(stack.ready());
   CHECK(stack.offer(sound.data(), sound.size()) == Status::ok);
   CHECK(stack.settings().distance_limit == static_cast<float>(StructuredQuadModelTrust::distance_limit));
+}
+
+TEST_CASE("limits of trust: another model begins without the command residual of the one before") {
+  const Block first = sound_block<StructuredQuadModel>();
+  Block second = first;
+  second[second.size() - 8] ^= 1;  // the last bit of its last number
+  second = sealed(second);
+  TrustingController controller;
+  REQUIRE(controller.offer_model(first.data(), first.size()) == Status::ok);
+  controller.situation({true, false});
+  std::uint64_t now_us = 1'000'000;  // a window begins: none ends within what follows
+  const auto cause_of_step = [&] {
+    REQUIRE(controller.body_rates(now_us, {0, 0, 0}) == Status::ok);
+    REQUIRE(controller.attitude(now_us, {}) == Status::ok);
+    REQUIRE(controller.local(now_us, {}) == Status::ok);
+    pinnquad::Commands<float> commands{};
+    pinnquad::autopilot::StepReport report;
+    REQUIRE(controller.step(now_us, commands, report) == Reaction::holds_position);
+    now_us += 2000;
+    return report.cause;
+  };
+  CHECK(cause_of_step() != Status::distrusted);
+  CoreRecord logged;
+  logged.innovation = 0.05f;
+  logged.trusted = 0;
+  controller.resume(logged);
+  CHECK(cause_of_step() == Status::distrusted);
+  CHECK(controller.command_residual() == 0.05f);
+  REQUIRE(controller.offer_model(second.data(), second.size()) == Status::ok);
+  CHECK_FALSE(controller.trusted());
+  CHECK(cause_of_step() != Status::distrusted);
+  CHECK(controller.trusted());
+  CHECK(controller.command_residual() == 0);
 }

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, report_of
+from conftest import SOURCE, edited, replaced, report_of
 from exported import AXES, Header
 
 DEMO = SOURCE / "examples/models/demo_quadrotor.hpp"
@@ -152,6 +152,43 @@ def test_windows(pinnquad, recorded, made, model):
                   for i in places]
         held, present = map(float, re.search(name + r" +(\S+) s.2/rad.*alone (\S+)", said).groups())
         assert len(places) == 9 and abs(held - sum(slopes)) < 2e-6 and abs(present - slopes[0]) < 2e-6, name
+
+
+@pytest.mark.parametrize("past, code", [(0.5, 0), (1.5, 1)])
+def test_held_slope(pinnquad, flown, dataset, past, code):
+    """Commands that are affine in the angular accelerations of now and, against them, of 20 ms before: the present
+    slope is 4 x 0.02 whatever the past takes off about the yaw axis, the slope of one that is held is that less it."""
+    signs = (-1, 1, 1, -1), (1, -1, 1, -1), (1, 1, -1, -1)  # front right, rear left, front left, rear right
+
+    def of_two_instants():
+        before = []
+
+        def change(line, cells):
+            if line == 1:
+                return
+            now = [0.002 * float(cells[4]), 0.002 * float(cells[5]), 0.02 * float(cells[6])]
+            then = before or now
+            cells[0] = 0.02 * (line - 2)
+            for u in range(4):
+                cells[17 + u] = 0.5 + sum(signs[axis][u] * (now[axis] - (past if axis == 2 else 0.5) * then[axis])
+                                          for axis in range(3))
+            before[:] = now
+
+        return change
+
+    names = "a", "b", "c"
+    dataset("logs", {name: edited(flown(f"--seed {seed} --samples 500"), f"{name}.csv", of_two_instants())
+                     for seed, name in enumerate(names, start=1)})
+    replaced("logs/dataset.json", "logs/dataset.json", ('"sample_period_s": 0.05', '"sample_period_s": 0.02'))
+    pinnquad("train --dataset logs --airframe paper_quadrotor --hold-out c --models constant,ridge_causal "
+             "--export ridge_causal --seeds 1 --out held")
+    found = json.loads(pinnquad("certify --json held/model.hpp", code=code).out)
+    assert found["verdict"] == ("counterexample" if code else "proven")
+    if not code:
+        assert abs(found["slope"]["yaw"] - 0.08) < 1e-5 and abs(found["held_slope"]["yaw"] - 0.04) < 1e-5, found
+        return
+    assert abs(found["counterexample"]["derivative"] + 0.04) < 1e-5
+    assert found["counterexample"]["moved"] == ["wdot_z", *(f"wdot_z[-{tap}]" for tap in range(1, 9))]
 
 
 def test_refused(pinnquad, flight):

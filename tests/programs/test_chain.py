@@ -126,6 +126,12 @@ def test_replay_files(exported, trained, flight):
     exported.refused("--replay", flight, at="flight.csv:1", keyword="pinnquad-replay")
     Path("truncated.txt").write_bytes((trained[0] / "replay.txt").read_bytes()[:5000])
     exported.refused("--replay truncated.txt", at="truncated.txt:*:*", keyword="number")
+    # of motions that the model answers none of, nothing agrees
+    head, *rows = (trained[0] / "replay.txt").read_text().splitlines()
+    beyond = [" ".join([*row.split()[:3], "1e6", *row.split()[4:]]) for row in rows]  # rad/s^2, about x
+    Path("beyond.txt").write_text("\n".join([head, *beyond, ""]))
+    said = exported("--replay beyond.txt", code=1).out
+    assert f"{len(rows)} outside" in said and ": DISAGREES" in said and ": agrees" not in said, said
 
 
 def test_later_weights(exported, trained, later, flight):

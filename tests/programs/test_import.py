@@ -170,6 +170,20 @@ def test_against_closed_form(pinnquad):
     assert max(errors(numbers("ned.csv", *commands), numbers(f"given/{FLIGHT}", *commands), 0.04)[1]) <= 1e-5
 
 
+def test_between_two_rows(pinnquad):
+    """At twice the table's rate a command is the mean of its two neighbours, or held: the one before."""
+    commands = "u1", "u2", "u3", "u4"
+    logged = {round(100 * t): row for t, *row in numbers("ned.csv", *commands)}
+    for words, weight in ((), 0.5), (("--hold",), 0):
+        imported(pinnquad, "ned.csv", *NED, "--lag", "0", "--rate", "200", *words, out="twice")
+        rows = numbers(f"twice/{FLIGHT}", *commands)
+        between = [(round(200 * t) // 2, row) for t, *row in rows if round(200 * t) % 2]
+        assert len(between) > 1800
+        for at, row in between:
+            for before, after, command in zip(logged[at], logged[at + 1], row):
+                assert abs(command - before - weight * (after - before)) < 1e-6, (words, at)
+
+
 def test_replaces_a_dataset_alone(pinnquad, logs):
     shutil.copytree(logs / "ned", "ned")
     assert imported(pinnquad, "ned.csv", *NED) == (logs / "ned.txt").read_text(), "the same log gave another dataset"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """train on a dataset of logged flights, from folder to header: what is held out, refused, written, interrupted and
 taken up again."""
+import json
 import re
 from pathlib import Path
 
@@ -75,6 +76,37 @@ def test_one_flight_cannot_decide(pinnquad, logs):
     said = pinnquad(f"{TRAIN} --hold-out flight2 --models constant,linear --seeds 1 --out one").out
     assert "1 held-out flight can't tell" in said
     assert '"success": true' not in Path("one/report.json").read_text()
+
+
+def test_lost_in_the_loop(pinnquad, logs):
+    """A kind that errs less and loses the vehicle is not exported where another keeps it, unless asked for by name."""
+    for words, exported in ("", "linear"), ("--export ridge", "ridge"):
+        done = pinnquad(f"{TRAIN} --hold-out flight3 --models constant,ridge,linear {words} --seeds 1 --out lost")
+        report = report_of("lost")
+        error = {kind: report["models"][kind]["validation_mae"]["mean"] for kind in ("ridge", "linear")}
+        assert error["ridge"] < 0.2 * error["linear"]
+        assert report["exported_model"] == exported
+        loop, lost = report["closed_loop"], exported == "ridge"
+        off = loop["model"]["largest_error_m"] - loop["hover_trim"]["largest_error_m"]
+        assert (off > 2 * loop["half_length_m"]) == lost, loop
+        assert re.search("^train: warning: ridge .* loses the vehicle", done.err, re.M), done
+
+
+def test_seed_after_a_rotation(pinnquad, write):
+    """What is exported is fitted to all flights by each seed, and of these fits the one that errs least on the flight
+    that validates: as evaluate says of the exports of each seed alone."""
+    write("logs", FLIGHTS[:3])
+    words = f"{TRAIN} --hold-out-each flight --models constant,vanilla --epochs 2 --allow-poor"
+    pinnquad(f"{words} --seed 2 --seeds 3 --out all")
+    validated = re.search("validated on (flight[1-3])", Path("all/report.html").read_text()).group(1)
+    error = {}
+    for seed in 2, 3, 4:
+        pinnquad(f"{words} --seed {seed} --seeds 1 --out alone")
+        judged = pinnquad(f"evaluate alone/model.hpp --json --flight logs/{validated}.csv", code=(0, 1)).out
+        error[seed] = json.loads(judged)["mean_absolute_error"]
+    best = min(error, key=error.get)
+    assert error[best] < 0.95 * error[2], "the first seed is as good: another says more"
+    assert report_of("all")["exported_seed"] == best
 
 
 def test_recipe(pinnquad, logs):

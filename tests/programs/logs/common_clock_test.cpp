@@ -154,6 +154,17 @@ TEST_CASE("a held value is the last one before") {
   for (std::size_t row = 0; row < expected.size(); ++row) CHECK(got[row] == expected[row]);
 }
 
+TEST_CASE("a held value holds beyond the last row as long as a gap may be bridged, and no longer") {
+  const CleanClock clock = clean_clock({0, 0.1, 0.2, 0.3});
+  const UniformClock to{0.3, 0.05, 10};
+  const auto got = resample(clock, {1, 2, 3, 4}, to, Resampling::hold, 0.12);
+  for (std::size_t row = 0; row < to.rows; ++row) {
+    CAPTURE(row);
+    CHECK(std::isfinite(got[row]) == (row <= 2));  // 0.4 s is 0.1 s after the last one
+    if (row <= 2) CHECK(got[row] == 4);
+  }
+}
+
 TEST_CASE("a fast signal is low-passed before its rows are thinned: what is above half the new rate does not fold") {
   const double period_s = 0.004;
   std::vector<double> time_s = ticks(5000, period_s), slow, fast;

@@ -54,3 +54,41 @@ TEST_CASE("without a word of landing the ground is the lowest height; a mapping 
   pinnquad::logs::LogRows result;
   CHECK(pinnquad::logs::ground_height(rows, {20, 30}, mapping, result) == doctest::Approx(12.5));
 }
+
+TEST_CASE("altitude is above that ground, whether the log has heights or positions") {
+  pinnquad::logs::CommonRows rows;
+  rows.period_s = 0.02;
+  const std::vector<double> heights = {488, 488, 489.5, 492};
+  for (std::size_t row = 0; row < heights.size(); ++row) {
+    rows.time_s.push_back(rows.period_s * static_cast<double>(row));
+    rows.landed.push_back(row < 2 ? 1 : 0);
+    for (std::size_t i = 0; i < 4; ++i) {
+      rows.attitude[i].push_back(i == 0 ? 1 : 0);
+      rows.commands[i].push_back(0.5);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (auto* quantity : {&rows.body_rates, &rows.angular_acceleration, &rows.specific_force, &rows.velocity})
+        (*quantity)[axis].push_back(0);
+    }
+  }
+  SUBCASE("heights") { rows.altitude = heights; }
+  SUBCASE("positions, which point down") {
+    for (const double height : heights) {
+      rows.position[0].push_back(0);
+      rows.position[1].push_back(0);
+      rows.position[2].push_back(-height);
+    }
+  }
+  pinnquad::logs::BoundLog log;
+  pinnquad::logs::Source source;
+  log.of(pinnquad::logs::Quantity::velocity).source = &source;
+  pinnquad::logs::Mapping mapping;
+  mapping.ground_from_log = true;
+  const pinnquad::logs::LogRows made = pinnquad::logs::rows_of_log(rows, log, mapping, "flight.csv");
+  REQUIRE(made.flight.size() == 4);
+  CHECK(made.has_altitude);
+  CHECK(made.landed == std::vector<bool>{true, true, false, false});
+  const std::vector<double> above = {0, 0, 1.5, 4};
+  for (std::size_t row = 0; row < above.size(); ++row)
+    CHECK(made.flight[row].altitude_m == doctest::Approx(above[row]));
+}

@@ -73,6 +73,22 @@ TEST_CASE("a hop between two contacts is ground, the end of a log is not a conta
   CHECK_FALSE(mask[1400]);
 }
 
+TEST_CASE("on the ground is what the log calls landed, and what is lower than the mapping's least height") {
+  pinnquad::logs::LogRows rows;
+  rows.flight = Flight(6);
+  for (std::size_t row = 0; row < 6; ++row) rows.flight[row].altitude_m = 0.1 * static_cast<double>(row);
+  rows.has_altitude = true;
+  rows.landed = {false, false, false, false, true, false};
+  pinnquad::logs::Mapping mapping;
+  CHECK(pinnquad::logs::on_the_ground(rows, mapping, 0.01) == RowMask{false, false, false, false, true, false});
+  mapping.least_height_m = 0.15;
+  CHECK(pinnquad::logs::on_the_ground(rows, mapping, 0.01) == RowMask{true, true, false, false, true, false});
+  rows.landed.clear();
+  CHECK(pinnquad::logs::on_the_ground(rows, mapping, 0.01) == RowMask{true, true, false, false, false, false});
+  rows.has_altitude = false;
+  CHECK(count(pinnquad::logs::on_the_ground(rows, mapping, 0.01)) == 0);
+}
+
 TEST_CASE("a value like none of its neighbours is found, whatever its column; motion and turning round are not") {
   const Flight good = synthetic_flight();
   CHECK(count(pinnquad::logs::outlier_rows(good)) == 0);
