@@ -91,15 +91,16 @@ def test_from_an_export(pinnquad):
     assert '"Tiny"' in Path("crazyflie/main.cpp").read_text(), "--name goes before the header's"
 
 
-def test_another_mass(pinnquad):
-    """An airframe of the library's name and another mass stands in the project itself."""
-    replaced(SOURCE / "examples/airframes/crazyflie_2_1.toml", "heavy.toml", ("^mass_kg = .*", "mass_kg = 0.035"))
-    pinnquad("fly --airframe heavy.toml --seed 3 --samples 2200 --out heavy.csv")
-    pinnquad("train --flight heavy.csv --airframe heavy.toml --recipe paper --loss vanilla --seeds 1 --epochs 1 "
-             "--out heavy --allow-poor")
-    pinnquad("new project --model heavy/model.hpp")
+def test_another_inertia(pinnquad):
+    """An airframe of the library's name and another inertia stands in the project itself."""
+    replaced(SOURCE / "examples/airframes/crazyflie_2_1.toml", "own.toml",
+             ("^(inertia_kg_m2 = .)1.4e-05", r"\g<1>1.5e-05"))
+    pinnquad("fly --airframe own.toml --seed 3 --samples 2200 --out own.csv")
+    pinnquad("train --flight own.csv --airframe own.toml --recipe paper --loss vanilla --seeds 1 --epochs 1 "
+             "--out own --allow-poor")
+    pinnquad("new project --model own/model.hpp")
     project = Path("project/model.hpp").read_text()
-    assert "a.mass_kg = Scalar(0.035);" in project and "using MyAirframe = GivenAirframe;" in project
+    assert "{Scalar(1.5e-05), Scalar(1.4e-05)" in project and "using MyAirframe = GivenAirframe;" in project
 
 
 @pytest.mark.parametrize("words, at, keyword", [

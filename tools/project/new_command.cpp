@@ -106,10 +106,14 @@ Filling library_airframe(const std::string& type) {
   return {{"struct", ""}, {"airframe", type}, {"airframe_value", "{}"}};
 }
 
-Filling given_airframe(const programs::NamedAirframe& airframe) {
+std::string struct_of(const std::string& name, const Airframe<double>& airframe) {
   std::ostringstream text;
-  write_airframe(text << '\n', "OwnAirframe", airframe.name, airframe.value);
-  return own_airframe(text.str(), "OwnAirframe");
+  write_airframe(text << '\n', "OwnAirframe", name, airframe);
+  return text.str();
+}
+
+Filling given_airframe(const programs::NamedAirframe& airframe) {
+  return own_airframe(struct_of(airframe.name, airframe.value), "OwnAirframe");
 }
 
 /// That of a name or a file.
@@ -121,15 +125,17 @@ Filling chosen_airframe(const std::string& name_or_file) {
   return places.empty() ? given_airframe(programs::chosen_airframe(name_or_file)) : places;
 }
 
-/// That of a model: one of the library, where it has its name and mass.
+/// That of a model: one of the library, where all its numbers are.
 Filling airframe_of(const BlockModel& model) {
-  Filling places;
-  programs::with_airframe(model.airframe_name(), [&](auto tag) {
+  const std::string name = model.airframe_name(), own = struct_of(name, model.airframe());
+  Filling places = own_airframe(own, "OwnAirframe");
+  programs::with_airframe(name, [&](auto tag) {
     using Vehicle = typename decltype(tag)::type;
-    if (!pinnquad::detail::equal(airframe_value<Vehicle, double>().mass_kg, model.airframe().mass_kg)) return;
-    places = library_airframe(short_name(type_name<Vehicle>()));
+    if (struct_of(name, airframe_value<Vehicle, double>()) == own) {
+      places = library_airframe(short_name(type_name<Vehicle>()));
+    }
   });
-  return places.empty() ? given_airframe({model.airframe_name(), model.airframe()}) : places;
+  return places;
 }
 
 /// Values for the places of the template.

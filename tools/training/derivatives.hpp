@@ -56,16 +56,6 @@ DerivativeFigures derivative_figures(const pinnquad::RowSet& rows, const Derivat
   return signs.figures();
 }
 
-/// Of a trained model, over the rows that have features.
-template <class Model>
-DerivativeFigures derivative_figures_of(const Model& model, const pinnquad::RowSet& rows) {
-  const auto derivatives = pinnquad::ExactDerivatives::of_trained(model);
-  DerivativeSigns signs;
-  pinnquad::each_features<typename Model::Features, double>(
-      rows, [&](const pinnquad::Flight&, std::size_t, const auto& x) { signs.add(derivatives(x.data())); });
-  return signs.figures();
-}
-
 /// Of a formula, by a central difference: exact where a rotor's thrust is proportional to its command.
 /// `predict(sample)`: its commands.
 template <class Predict>

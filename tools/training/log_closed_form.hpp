@@ -39,7 +39,7 @@ std::shared_ptr<const TrainedNetwork> log_model_of(const Answer& answer, const C
                                                    const pinnquad::RowSet& rows) {
   const auto model = pinnquad::make_trained_model(answer, context, rows);
   using Model = std::decay_t<decltype(model)>;
-  return std::make_shared<NetworkOfModel<Model, ExportedAirframe::by_value>>(model);
+  return std::make_shared<NetworkOfModel<Model, ExportedAirframe::by_value>>(model, rows);
 }
 
 /// `solve(context, rows)` gives the map of standardised features to standardised outputs.

@@ -68,7 +68,8 @@ std::shared_ptr<const TrainedNetwork> fit_by_parts(const FitTask& task, const Ma
   const auto network = std::make_unique<typename Parts::Network>(
       trained_network<typename Parts::Network>(task, context, loss(), optimizer(), epochs, KeptEpoch::last));
   const auto model = pinnquad::make_trained_model(*network, context, task.training);
-  return std::make_shared<NetworkOfModel<std::decay_t<decltype(model)>>>(model, task.settings.library_airframe);
+  return std::make_shared<NetworkOfModel<std::decay_t<decltype(model)>>>(model, task.training,
+                                                                         task.settings.library_airframe);
 }
 
 }  // namespace detail

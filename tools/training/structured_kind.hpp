@@ -24,8 +24,9 @@ using ExportedStructured =
 template <class Model>
 class StructuredNetwork : public ExportedStructured<Model> {
  public:
-  StructuredNetwork(const Model& model, const AltitudeChoice& altitude, bool fits_validation)
-      : ExportedStructured<Model>(model), altitude_(altitude), fits_validation_(fits_validation) {}
+  StructuredNetwork(const Model& model, const pinnquad::RowSet& training, const AltitudeChoice& altitude,
+                    bool fits_validation)
+      : ExportedStructured<Model>(model, training), altitude_(altitude), fits_validation_(fits_validation) {}
   AltitudeChoice altitude() const override { return altitude_; }
   /// Limits are found by rows that it was not fitted to.
   bool has_trust() const override { return ExportedStructured<Model>::has_trust() && !fits_validation_; }
@@ -94,7 +95,7 @@ std::shared_ptr<const TrainedNetwork> fit_structured_on(const FitTask& task) {
   altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
   return std::visit(
       [&](const auto& model) -> std::shared_ptr<const TrainedNetwork> {
-        return std::make_shared<StructuredNetwork<std::decay_t<decltype(model)>>>(model, altitude,
+        return std::make_shared<StructuredNetwork<std::decay_t<decltype(model)>>>(model, task.training, altitude,
                                                                                   settings.fit_validation);
       },
       fits.best().model);

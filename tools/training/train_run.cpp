@@ -374,8 +374,8 @@ class Training {
     const bool trusted = made.model->has_trust() && written.no_trust_because.empty();
     std::error_code ignored;
     if (!trusted) std::filesystem::remove(trust, ignored);  // of an earlier training
-    made.model->write_replay(options_.out + "/replay.txt",
-                             made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
+    programs::write_replay(options_.out + "/replay.txt", *made.model->block(),
+                           made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
     std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
                 kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
                 verdict.worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
@@ -426,8 +426,7 @@ class Training {
   nlohmann::json fly(const Exported& made, const programs::ModelKind& kind) const {
     if (kind.reach == programs::TimeReach::centred || !options_.flights.empty()) return {};
     const RowSet& training = made.fold->split.train;
-    const BlockModel block(kind.title, made.model->block(training));
-    return programs::fly_logged(block, training, plan_.airframe, programs::axis_signs(plan_.airframe),
+    return programs::fly_logged(*made.model->block(), training, plan_.airframe, programs::axis_signs(plan_.airframe),
                                 !dataset_.lacks("velocity"));
   }
 

@@ -10,23 +10,12 @@
 #include <vector>
 
 #include "airframe/names.hpp"
-#include "pinnquad/data/csv.hpp"
-#include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/deploy/export_model.hpp"
-#include "pinnquad/exported/certificate.hpp"
-#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "training/derivatives.hpp"
-#include "training/model_predictions.hpp"
 
 namespace programs {
-
-/// Certificate of a trained model's structure; none of a model without.
-template <class Model>
-std::optional<pinnquad::Certificate> certificate_of_structure(const Model& model) {
-  if constexpr (pinnquad::has_certificate<Model>) return pinnquad::certificate_of_trained(model);
-  return {};
-}
 
 /// Is a model shown the altitude? By the validation rows; errors are NaN where those were not asked.
 struct AltitudeChoice {
@@ -43,8 +32,6 @@ class TrainedNetwork {
   virtual Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
-  /// Certificate of its structure; none of a model without.
-  virtual std::optional<pinnquad::Certificate> certificate() const { return {}; }
   virtual AltitudeChoice altitude() const { return {}; }
   /// Whether export_to() can write limits of trust.
   virtual bool has_trust() const { return false; }
@@ -54,15 +41,10 @@ class TrainedNetwork {
                                        const pinnquad::Provenance& /*provenance*/) const {
     throw std::logic_error("a model to be compared with alone is not exported");
   }
-  /// The block that export_to() would write, but for its provenance: opened as a BlockModel it flies.
-  virtual std::vector<unsigned char> block(const pinnquad::RowSet& /*training*/) const {
-    throw std::logic_error("a model to be compared with alone has no block");
-  }
-  /// Rows as the flight side is asked them, and what the network predicts: a line of counts, then a row of numbers per
-  /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the feature set asks
-  /// for it, predicted u (4), flown u (4). Of a feature set that asks for more "pinnquad-replay-features", and X in the
-  /// place of the first 16.
-  virtual void write_replay(const std::string& /*path*/, const pinnquad::RowSet& /*rows*/) const {}
+  /// As a program that has never seen its types flies it; null: a model to be compared with alone.
+  virtual const pinnquad::BlockModel* block() const { return nullptr; }
+  /// Of its structure; none of a model without.
+  std::optional<pinnquad::Certificate> certificate() const;
 };
 
 /// A formula, which nobody trains: `predict(sample)` gives the commands.
@@ -91,25 +73,24 @@ std::shared_ptr<const TrainedNetwork> formula_model(const pinnquad::GivenAirfram
   return std::make_shared<FormulaModel<Predict>>(airframe, std::move(predict));
 }
 
-/// A pinnquad::TrainedModel, to be judged: the numbers that its header would hold.
-template <class Model>
-class JudgedModel : public TrainedNetwork {
+/// A model by its block: commands, derivatives, proof are those that any program would find in it.
+class BlockNetwork : public TrainedNetwork {
  public:
-  explicit JudgedModel(const Model& model) : model_(model) {}
+  explicit BlockNetwork(const std::vector<unsigned char>& block);
+  /// Of a pinnquad::TrainedModel; `training`: what it was trained on.
+  template <class Model>
+  BlockNetwork(const Model& model, const pinnquad::RowSet& training)
+      : BlockNetwork(pinnquad::model_block(model, pinnquad::golden_features(model, training), {})) {}
 
-  Predictions predictions(const pinnquad::RowSet& rows) const override {
-    return pinnquad::predicted_commands(model_, rows);
-  }
-  Predictions guarded_predictions(const pinnquad::RowSet& rows) const override {
-    return pinnquad::predicted_commands(model_, rows, true);
-  }
-  DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override {
-    return derivative_figures_of(model_, rows);
-  }
-  std::optional<pinnquad::Certificate> certificate() const override { return certificate_of_structure(model_); }
+  Predictions predictions(const pinnquad::RowSet& rows) const override;
+  Predictions guarded_predictions(const pinnquad::RowSet& rows) const override;
+  DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override;
+  const pinnquad::BlockModel* block() const override { return &block_; }
 
- protected:
-  Model model_;
+ private:
+  Predictions answers(const pinnquad::RowSet& rows, bool guarded) const;
+
+  pinnquad::BlockModel block_;
 };
 
 /// How an export says which airframe it is for.
@@ -121,10 +102,10 @@ enum class ExportedAirframe {
 /// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
 /// name. `WithTrust`: its export has limits of trust, where they are asked for.
 template <class Model, ExportedAirframe Exported = ExportedAirframe::by_name, bool WithTrust = false>
-class NetworkOfModel : public JudgedModel<Model> {
+class NetworkOfModel : public BlockNetwork {
  public:
-  explicit NetworkOfModel(const Model& model, bool library_airframe = false)
-      : JudgedModel<Model>(model), library_airframe_(library_airframe) {}
+  NetworkOfModel(const Model& model, const pinnquad::RowSet& training, bool library_airframe = false)
+      : BlockNetwork(model, training), model_(model), library_airframe_(library_airframe) {}
 
   bool has_trust() const override { return WithTrust; }
   pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
@@ -135,66 +116,34 @@ class NetworkOfModel : public JudgedModel<Model> {
     });
     return exported;
   }
-  std::vector<unsigned char> block(const pinnquad::RowSet& training) const override {
-    return pinnquad::model_block(this->model_, pinnquad::golden_features(this->model_, training), {});
-  }
-  void write_replay(const std::string& path, const pinnquad::RowSet& rows) const override {
-    using Inputs = typename Model::Features::template Inputs<typename Model::Scalar>;
-    constexpr bool with_altitude = std::is_same_v<Inputs, pinnquad::MotionInputsWithAltitude<typename Model::Scalar>>;
-    constexpr bool asks_for_motion =
-        with_altitude || std::is_same_v<Inputs, pinnquad::MotionInputs<typename Model::Scalar>>;
-    std::size_t count = 0;
-    std::string lines, line;
-    const auto add = [&line](double value) { line += (line.empty() ? "" : " ") + pinnquad::number_text(value); };
-    pinnquad::each_features<typename Model::Features, typename Model::Scalar>(
-        rows, [&](const pinnquad::Flight& flight, std::size_t row, const typename Model::FeatureVector& x) {
-          line.clear();
-          if constexpr (asks_for_motion) {
-            const Inputs in = pinnquad::sample_inputs<Inputs>(flight[row]);
-            for (const auto* vector : {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s,
-                                       &in.body_rates_rad_s}) {
-              for (int i = 0; i < 3; ++i) add(static_cast<double>((*vector)[i]));
-            }
-            for (const auto v : {in.attitude.w, in.attitude.x, in.attitude.y, in.attitude.z})
-              add(static_cast<double>(v));
-            if constexpr (with_altitude) add(static_cast<double>(in.altitude_m));
-          } else {
-            for (const auto v : x) add(static_cast<double>(v));
-          }
-          for (const auto u : this->model_.predict(x)) add(static_cast<double>(u));
-          for (const double u : flight[row].commands) add(u);
-          lines += line + '\n';
-          ++count;
-        });
-    constexpr int asked = with_altitude ? 17 : asks_for_motion ? 16 : Model::Features::size;
-    constexpr int numbers = asked + 2 * pinnquad::rotor_count;
-    pinnquad::AtomicFile file(path);
-    file.stream() << (asks_for_motion ? "pinnquad-replay 1 " : "pinnquad-replay-features 1 ") << count << ' ' << numbers
-                  << '\n'
-                  << lines;
-    file.commit();
-  }
 
  private:
   /// Calls `use` with the model of the airframe's own type, or of the value.
   template <class Use>
   void with_exported(const Use& use) const {
-    if (!library_airframe_ || Exported == ExportedAirframe::by_value) return use(this->model_);
+    if (!library_airframe_ || Exported == ExportedAirframe::by_value) return use(model_);
     if constexpr (Exported == ExportedAirframe::by_name) {
-      with_airframe(this->model_.airframe_name(), [&](auto tag) {
+      with_airframe(model_.airframe_name(), [&](auto tag) {
         using Context = pinnquad::Context<typename Model::Features, typename decltype(tag)::type>;
         pinnquad::TrainedModel<typename Model::Network, Context> named;
-        named.network = this->model_.network;
-        named.input = this->model_.input;
-        named.output = this->model_.output;
-        named.envelope_lower = this->model_.envelope_lower;
-        named.envelope_upper = this->model_.envelope_upper;
+        named.network = model_.network;
+        named.input = model_.input;
+        named.output = model_.output;
+        named.envelope_lower = model_.envelope_lower;
+        named.envelope_upper = model_.envelope_upper;
         use(named);
       });
     }
   }
 
+  Model model_;
   bool library_airframe_;
 };
+
+/// Rows as the flight side is asked them, and what the model predicts: a line of counts, then a row of numbers per
+/// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the model asks for it,
+/// predicted u (4), flown u (4). Of a model that asks for more "pinnquad-replay-features", and X in the place of the
+/// first 16.
+void write_replay(const std::string& path, const pinnquad::BlockModel& model, const pinnquad::RowSet& rows);
 
 }  // namespace programs

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -148,9 +149,14 @@ std::vector<ColumnName> wanted_columns() {
   return wanted;
 }
 
-/// Calls `visit(flight, row, x)` for every row of a set that has features: X in physical units, an array of Scalar.
-template <class Features, class Scalar, class Visit>
-void each_features(const RowSet& rows, const Visit& visit) {
+/// X of a row in physical units, and where the row stands.
+template <class Features, class Scalar>
+using FeaturesVisit = std::function<void(const Flight&, std::size_t,
+                                         const std::array<Scalar, static_cast<std::size_t>(Features::size)>&)>;
+
+/// Calls `visit(flight, row, x)` for every row of a set that has features.
+template <class Features, class Scalar>
+void each_features(const RowSet& rows, const FeaturesVisit<Features, Scalar>& visit) {
   using Inputs = typename Features::template Inputs<Scalar>;
   for (const FlightRows& piece : rows.pieces()) {
     const FlightInputs<Inputs> recorded(piece);

@@ -69,6 +69,7 @@ struct AnsweredRow {
   Commands<double> commands{};    ///< in the model's own scalar
   AxisDerivatives derivatives{};  ///< in double; of a window by an acceleration that is held
   bool inside_envelope = true;
+  std::vector<double> features{};  ///< in physical units, as the model's own scalar holds them
 };
 
 class BlockModel {
@@ -220,6 +221,7 @@ class BlockModel {
       std::vector<RunTimeInputs<double>> exact(taps);
       std::vector<Scalar> x(size), work(model.workspace());
       std::vector<double> exact_x(size);
+      AnsweredRow answered;
       std::size_t first = 0;
       for (const FlightRows& piece : rows.pieces()) {
         const detail::RunTimeFlightInputs<Scalar> own(model.features(), piece);
@@ -229,7 +231,7 @@ class BlockModel {
           model.features().extract(static_cast<const RunTimeInputs<Scalar>*>(inputs.data()), x.data());
           Commands<Scalar> u{};
           model.commands(x.data(), u.data(), work.data());
-          AnsweredRow answered;
+          answered.features.assign(x.begin(), x.end());
           answered.commands = in_double_commands(u);
           answered.inside_envelope = model.inside_envelope(x.data());
           if (with_derivatives && in_double.read(row, exact.data())) {

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "training/trained_network.hpp"
+
+#include <cstddef>
+
+#include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/decimal.hpp"
+
+namespace programs {
+
+namespace {
+
+/// As a model of this scalar is asked.
+template <class Scalar>
+std::vector<double> motion_numbers(const pinnquad::Sample& sample, bool with_altitude) {
+  const auto in = pinnquad::sample_inputs<pinnquad::MotionInputsWithAltitude<Scalar>>(sample);
+  std::vector<double> numbers;
+  for (const auto* vector :
+       {&in.linear_acceleration_m_s2, &in.angular_acceleration_rad_s2, &in.velocity_m_s, &in.body_rates_rad_s}) {
+    for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<double>((*vector)[i]));
+  }
+  const pinnquad::Quaternion<Scalar>& q = in.attitude;
+  for (const Scalar part : {q.w, q.x, q.y, q.z}) numbers.push_back(static_cast<double>(part));
+  if (with_altitude) numbers.push_back(static_cast<double>(in.altitude_m));
+  return numbers;
+}
+
+}  // namespace
+
+std::optional<pinnquad::Certificate> TrainedNetwork::certificate() const {
+  return block() != nullptr ? block()->certificate() : std::nullopt;
+}
+
+BlockNetwork::BlockNetwork(const std::vector<unsigned char>& block) : block_("a trained model", block) {}
+
+Predictions BlockNetwork::predictions(const pinnquad::RowSet& rows) const { return answers(rows, false); }
+
+Predictions BlockNetwork::guarded_predictions(const pinnquad::RowSet& rows) const { return answers(rows, true); }
+
+DerivativeFigures BlockNetwork::derivatives(const pinnquad::RowSet& rows) const {
+  DerivativeSigns signs;
+  block_.answer(rows, [&signs](std::size_t, const pinnquad::AnsweredRow& row) { signs.add(row.derivatives); });
+  return signs.figures();
+}
+
+/// NaN for a row without features and, if `guarded`, for one outside the training envelope.
+Predictions BlockNetwork::answers(const pinnquad::RowSet& rows, bool guarded) const {
+  constexpr double none = pinnquad::not_a_number;
+  Predictions result(rows.size(), {none, none, none, none});
+  const auto take = [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
+    if (answer.inside_envelope || !guarded) result[row] = answer.commands;
+  };
+  block_.answer(rows, take, false);
+  return result;
+}
+
+void write_replay(const std::string& path, const pinnquad::BlockModel& model, const pinnquad::RowSet& rows) {
+  const pinnquad::RunTimeFeatures& features = model.features();
+  const bool asks_for_motion = features.window().taps == 1 && features.column_count() == 0;
+  const bool with_altitude = features.asks_for_altitude();
+  std::size_t count = 0, asked = 0;
+  std::string lines;
+  const auto take = [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
+    const pinnquad::Sample& sample = rows[row];
+    std::vector<double> numbers = !asks_for_motion    ? answer.features
+                                  : model.is_double() ? motion_numbers<double>(sample, with_altitude)
+                                                      : motion_numbers<float>(sample, with_altitude);
+    asked = numbers.size();
+    numbers.insert(numbers.end(), answer.commands.begin(), answer.commands.end());
+    numbers.insert(numbers.end(), sample.commands.begin(), sample.commands.end());
+    for (std::size_t i = 0; i < numbers.size(); ++i) lines += (i > 0 ? " " : "") + pinnquad::number_text(numbers[i]);
+    lines += '\n';
+    ++count;
+  };
+  model.answer(rows, take, false);
+  pinnquad::AtomicFile file(path);
+  file.stream() << (asks_for_motion ? "pinnquad-replay 1 " : "pinnquad-replay-features 1 ") << count << ' '
+                << asked + 2 * pinnquad::rotor_count << '\n'
+                << lines;
+  file.commit();
+}
+
+}  // namespace programs
