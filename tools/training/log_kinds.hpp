@@ -7,6 +7,7 @@
 namespace programs {
 
 ModelKind log_constant();
+ModelKind log_last_commands();
 ModelKind log_physics();
 ModelKind log_linear();
 ModelKind log_linearized();

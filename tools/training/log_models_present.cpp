@@ -35,8 +35,47 @@ std::shared_ptr<const TrainedNetwork> fit_physics(const FitTask& fit) {
   });
 }
 
+/// No model of the vehicle: a motor goes on as it did. What a model of the motion has to be better than.
+class LastCommands : public TrainedNetwork {
+ public:
+  /// The mean of the commands 100 to 150 ms before a row; NaN where none was logged then.
+  Predictions predictions(const pinnquad::RowSet& rows) const override {
+    constexpr double youngest_s = 0.1, oldest_s = 0.15, rounding_s = 1e-6;
+    Predictions result;
+    for (const pinnquad::FlightRows& piece : rows.pieces()) {
+      const pinnquad::Flight& flight = *piece.flight;
+      for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+        pinnquad::Commands<double> mean{};
+        double count = 0;
+        for (std::size_t past = row; past > piece.rows.begin; --past) {
+          const double age_s = flight[row].time_s - flight[past - 1].time_s;
+          if (age_s > oldest_s + rounding_s) break;
+          if (age_s < youngest_s - rounding_s) continue;
+          for (std::size_t motor = 0; motor < mean.size(); ++motor) mean[motor] += flight[past - 1].commands[motor];
+          ++count;
+        }
+        for (double& command : mean) command = count > 0 ? command / count : pinnquad::not_a_number;
+        result.push_back(mean);
+      }
+    }
+    return result;
+  }
+  DerivativeFigures derivatives(const pinnquad::RowSet& /*rows*/) const override { return {}; }
+};
+
 }  // namespace
 
+ModelKind log_last_commands() {
+  ModelKind kind{
+      "last_commands",
+      "commands 100 ms ago",
+      TimeReach::present,
+      false,
+      always_applicable,
+      [](const FitTask&) -> std::shared_ptr<const TrainedNetwork> { return std::make_shared<LastCommands>(); }};
+  kind.exportable = false;
+  return kind;
+}
 ModelKind log_constant() {
   return {"constant",        "mean of the commands", TimeReach::present,   false,
           always_applicable, fit_constant,           takes_validation_rows};

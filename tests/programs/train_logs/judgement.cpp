@@ -15,6 +15,7 @@
 #include "support/temporary_folder.hpp"
 #include "training/export_choice.hpp"
 #include "training/fit_store.hpp"
+#include "training/log_kinds.hpp"
 #include "training/recipe.hpp"
 #include "training/training_report.hpp"
 
@@ -128,6 +129,31 @@ TEST_CASE("with fewer flights than a test needs nothing is called a success") {
   CHECK_MESSAGE(linear.standing == Standing::undecided, linear.sentence);
   CHECK(linear.sentence.find("1 held-out flight can't tell, 6 or more can") != std::string::npos);
   CHECK(run.of("spoiled").standing == Standing::no_better);
+}
+
+TEST_CASE("the commands 100 ms ago: the mean of those 100 to 150 ms old, none at a flight's begin or behind a gap") {
+  pinnquad::Flight flight;
+  for (int row = 0; row < 20; ++row) {
+    pinnquad::Sample sample;
+    sample.time_s = 0.02 * row + (row >= 15 ? 1 : 0);
+    sample.commands = {0.01 * row, 0.5, 0, 1};
+    flight.push_back(sample);
+  }
+  const std::vector<std::string> absent;
+  const programs::NamedAirframe airframe{"paper", pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>()};
+  const pinnquad::RowSet rows(flight, {0, 20});
+  const programs::FitTask task{airframe, rows, rows, absent};
+  const programs::ModelKind kind = programs::log_last_commands();
+  const programs::Predictions said = kind.fit(task)->predictions(rows);
+  REQUIRE(said.size() == 20);
+  for (std::size_t row = 0; row < 20; ++row) {
+    // 100, 120, 140 ms are 5, 6, 7 rows
+    const bool known = row >= 5 && row < 15;
+    CHECK(std::isfinite(said[row][0]) == known);
+    if (known) CHECK(said[row][0] == doctest::Approx(row == 5 ? 0 : 0.01 * (row == 6 ? 0.5 : double(row) - 6)));
+    if (known) CHECK(said[row][3] == 1);
+  }
+  CHECK_FALSE(kind.exportable);
 }
 
 /// As if of every fit the signs were proven.
