@@ -289,6 +289,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
                                       : (sees_angular_acceleration(model) ? ", and each rotor goes the right way"
                                                                           : " and with no other, before a limit "
                                                                             "clips a command"));
+    std::printf("           %s\n", programs::least_share_in_words(findings.held_slope, own).c_str());
     std::printf("for        all finite features, inside the envelope and outside of it\n");
     std::printf("by         %s\n", findings.argument);
     for (std::size_t axis = 0; axis < 3; ++axis) {

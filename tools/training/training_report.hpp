@@ -263,7 +263,7 @@ class TrainingReport {
 
   /// Of what was exported.
   void certified(const pinnquad::Certificate& certificate, const pinnquad::AxisSlopes& airframe,
-                 double airframe_thrust_slope) {
+                 double airframe_thrust_slope, const pinnquad::SlopesOfSums& known) {
     const pinnquad::AxisSlopes slopes = held_slopes(certificate);
     json_["certificate"] = {{"proven", certificate.proven()},
                             {"command_bound", certificate.command_bound},
@@ -272,6 +272,16 @@ class TrainingReport {
                             {"thrust_slope", certificate.held_thrust_slope},
                             {"airframe_thrust_slope", airframe_thrust_slope},
                             {"in_words", bound_in_words(certificate)}};
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      const pinnquad::MeasuredSlope& slope = known[k];
+      json_["certificate"]["known"][k == 0 ? "thrust" : axis_names[k - 1]] =
+          !slope.known ? nlohmann::json()
+                       : nlohmann::json{{"standard_error", slope.standard_error},
+                                        {"interval_95", {slope.lower, slope.upper}},
+                                        {"by", slope.by_instruments ? "instruments" : "least squares"},
+                                        {"least_squares", slope.least_squares},
+                                        {"instruments_f", slope.strength}};
+    }
   }
   /// Limits of trust: their file, or why there is none.
   void trusted(const std::string& file, const std::string& why_not) {

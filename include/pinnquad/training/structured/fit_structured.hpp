@@ -306,8 +306,8 @@ class StructuredFitter {
   std::optional<AxisSlopes> pinned_;
   std::vector<RowSet> groups_;
   std::vector<RegressionSums> sums_;  ///< of the groups
-  AffineMap map_;       ///< by least squares
-  AffineMap measured_;  ///< by instruments where noise bends it
+  AffineMap map_;                     ///< by least squares
+  AffineMap measured_;                ///< by instruments where noise bends it
   MeasuredSlopes slopes_;
   bool whole_flights_ = false;
 };

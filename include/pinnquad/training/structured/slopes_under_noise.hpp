@@ -13,20 +13,9 @@
 
 #include "pinnquad/regression/instrumental_variables.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
+#include "pinnquad/training/structured/measured_slope.hpp"
 
 namespace pinnquad {
-
-/// How much one signed sum rises with what is asked of it: the sum of the commands with the thrust, s^2/m; those about
-/// the axes with the angular acceleration, s^2/rad.
-struct MeasuredSlope {
-  bool known = false;  ///< false: pinned, of a window, of features without it, or of too few rows
-  double slope = 0;    ///< of the base
-  double standard_error = 0;
-  double lower = 0, upper = 0;  ///< 95 %
-  bool by_instruments = false;  ///< least squares bend it
-  double least_squares = 0;
-  double strength = 0;  ///< InstrumentedWeight::strength
-};
 
 /// What the rows before and after say of a feature that noise bends a slope of.
 struct DenoisedFeature {
@@ -35,9 +24,10 @@ struct DenoisedFeature {
   AffineMap by_neighbours;
 };
 
-/// Of a monotone base: sum of the commands, roll, pitch, yaw.
+/// Of a monotone base.
 struct MeasuredSlopes {
-  std::array<MeasuredSlope, 4> of;
+  SlopesOfSums of;
+  std::vector<int> noisy;                 ///< MonotoneShape::noisy
   std::vector<DenoisedFeature> denoised;  ///< of the slopes by instruments
   bool by_instruments() const { return !denoised.empty(); }
 };
@@ -101,13 +91,13 @@ std::vector<RegressionSums> instrumented_blocks(const ContextType& context, cons
   const double period_s = sample_period_s(rows);
   const double length = std::max(static_cast<double>(rows.size()) / most, period_s > 0 ? least_s / period_s : 0.0);
   std::vector<RegressionSums> blocks;
-  each_with_neighbours<Features>(rows, [&](const Flight& flight, std::size_t row, const auto& x, const auto& before,
-                                           const auto& after) {
-    auto y = sample_outputs<ContextType>(x, flight[row], setting);
-    context.output.standardise(y.data(), y.data());
-    if (blocks.empty() || blocks.back().rows() >= length) blocks.push_back(none);
-    blocks.back().add(with_instruments(context.input, noisy, x, before, after).data(), y.data());
-  });
+  each_with_neighbours<Features>(
+      rows, [&](const Flight& flight, std::size_t row, const auto& x, const auto& before, const auto& after) {
+        auto y = sample_outputs<ContextType>(x, flight[row], setting);
+        context.output.standardise(y.data(), y.data());
+        if (blocks.empty() || blocks.back().rows() >= length) blocks.push_back(none);
+        blocks.back().add(with_instruments(context.input, noisy, x, before, after).data(), y.data());
+      });
   return blocks;
 }
 
@@ -131,6 +121,29 @@ inline InstrumentRoles instrument_roles(const MonotoneShape& shape, const std::v
 
 }  // namespace detail
 
+/// Calls `visit(row, x)` for each row whose neighbours are at hand, counted through the set: features in physical units,
+/// those that bend a slope as the neighbours tell them. Rows to judge a model by whose slopes are by instruments: on the
+/// noisy ones the worse model errs less. `scales`: of a trained model's features.
+template <class Features, class Scales, class Visit>
+void each_denoised(const Scales& scales, const MeasuredSlopes& slopes, const RowSet& rows, const Visit& visit) {
+  std::size_t first = 0;
+  for (const FlightRows& piece : rows.pieces()) {
+    detail::each_with_neighbours<Features>(
+        RowSet(*piece.flight, piece.rows),
+        [&](const Flight&, std::size_t row, const auto& x, const auto& before, const auto& after) {
+          const std::vector<double> told = detail::with_instruments(scales, slopes.noisy, x, before, after);
+          std::vector<double> denoised(x.begin(), x.end());
+          for (const DenoisedFeature& feature : slopes.denoised) {
+            const auto at = static_cast<std::size_t>(feature.place);
+            denoised[at] = static_cast<double>(scales.mean[at]) + static_cast<double>(scales.standard_deviation[at]) *
+                                                                      feature.by_neighbours(told.data()).front();
+          }
+          visit(first + row - piece.rows.begin, denoised);
+        });
+    first += piece.rows.size();
+  }
+}
+
 /// Examines the slopes of `map`, a base by least squares of the same rows, and puts into it the weights by instruments
 /// of each sum whose slope noise bends. `blocks`: of detail::instrumented_blocks(). The bounds of fit_monotone_base()
 /// hold. Fewer than ten blocks say nothing.
@@ -138,6 +151,7 @@ inline MeasuredSlopes measure_slopes(const MonotoneShape& shape, const std::vect
                                      const std::optional<AxisSlopes>& pinned, AffineMap& map) {
   constexpr std::size_t fewest = 10;
   MeasuredSlopes slopes;
+  slopes.noisy = shape.noisy;
   if (blocks.size() < fewest) return slopes;
   const RegressionSums all = detail::total(blocks);
   const double half = interval_factor(static_cast<int>(blocks.size()) - 1);
@@ -153,8 +167,7 @@ inline MeasuredSlopes measure_slopes(const MonotoneShape& shape, const std::vect
     slope.by_instruments = found.errors_in_variables && found.instrumented * scale > 0;
     const auto row = static_cast<std::size_t>(output * map.inputs);
     if (slope.by_instruments) {
-      const AffineMap one =
-          fit_instrumented(all.of_output(output), roles, detail::slope_bounds(shape, output, pinned));
+      const AffineMap one = fit_instrumented(all.of_output(output), roles, detail::slope_bounds(shape, output, pinned));
       std::copy_n(one.weights.begin(), map.inputs, map.weights.begin() + static_cast<std::ptrdiff_t>(row));
       map.intercept[static_cast<std::size_t>(output)] = one.intercept.front();
       std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
