@@ -8,6 +8,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "pinnquad/regression/ridge.hpp"
@@ -112,12 +115,39 @@ inline double fuller_k(const RegressionSums& sums, const InstrumentRoles& roles)
   return detail::eigen_pairs(*whitening * outer * whitening->transpose()).values.minCoeff() - 1 / freedom;
 }
 
-/// The weights of one output by Fuller's estimator. A regressor is among the inputs of the map with its weight, an
-/// instrument with 0.
-inline AffineMap fit_instrumented(const RegressionSums& sums, const InstrumentRoles& roles,
+namespace detail {
+
+/// Fuller's estimate of one output, of sums that are k_class_sums() already.
+inline AffineMap fit_k_class(const RegressionSums& sums, const InstrumentRoles& roles,
+                             const std::vector<WeightBound>& bounds = {}) {
+  return fit_bounded_ridge(sums, smallest_penalty(), regressors(sums, roles), bounds);
+}
+
+}  // namespace detail
+
+/// The weights of one output: that of `regressor` by Fuller's estimator, under the bounds; the others around it, shrunk.
+/// Free of a penalty they would carry what its errors leave: along columns that nearly repeat each other far more than
+/// what they are worth. Their penalty is 1 / (F - 1), F the statistic of all of them being 0: the ridge of a prior whose
+/// variance is that of the weights less that of their errors (Lawless, Wang, Communications in Statistics 5, 1976, with
+/// 1 / F). An instrument is among the inputs of the map with the weight 0.
+inline AffineMap fit_instrumented(const RegressionSums& sums, const InstrumentRoles& roles, int regressor,
                                   const std::vector<detail::WeightBound>& bounds = {}) {
-  return fit_bounded_ridge(k_class_sums(sums, roles, fuller_k(sums, roles)), detail::smallest_penalty(),
-                           detail::regressors(sums, roles), bounds);
+  constexpr double largest_penalty = 1e6;
+  const RegressionSums moved = k_class_sums(sums, roles, fuller_k(sums, roles));
+  AffineMap map = detail::fit_k_class(moved, roles, bounds);
+  const auto held = static_cast<std::size_t>(regressor);
+  const double slope = map.weights[held];
+  const double variance = squared_error(sums, map) / sums.rows();
+  const detail::RidgeSystem system(moved, 0, detail::regressors(moved, roles));
+  Eigen::VectorXd others(system.a.rows());
+  for (Eigen::Index i = 0; i < others.size(); ++i) {
+    const int column = system.columns[static_cast<std::size_t>(i)];
+    others[i] = column == regressor ? 0.0 : map.weights[static_cast<std::size_t>(column)];
+  }
+  const double count = std::max(1.0, static_cast<double>(others.size()) - 1);
+  const double f = sums.rows() * others.dot(system.a * others) / (count * variance);
+  const double penalty = f > 1 + 1 / largest_penalty ? 1 / (f - 1) : largest_penalty;
+  return fit_bounded_ridge(moved, penalty, detail::regressors(moved, roles), {{{{regressor, 1.0}}, slope, true}});
 }
 
 namespace detail {
@@ -126,7 +156,7 @@ namespace detail {
 inline std::array<double, 2> both_weights(const RegressionSums& sums, const InstrumentRoles& roles, int regressor) {
   const auto at = static_cast<std::size_t>(regressor);
   return {fit_ridge(sums, smallest_penalty(), regressors(sums, roles)).weights[at],
-          fit_instrumented(sums, roles).weights[at]};
+          fit_k_class(k_class_sums(sums, roles, fuller_k(sums, roles)), roles).weights[at]};
 }
 
 /// F of what the excluded instruments tell of one regressor when the fitted others are known: Shea's partial R^2

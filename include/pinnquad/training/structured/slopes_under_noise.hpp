@@ -167,7 +167,8 @@ inline MeasuredSlopes measure_slopes(const MonotoneShape& shape, const std::vect
     slope.by_instruments = found.errors_in_variables && found.instrumented * scale > 0;
     const auto row = static_cast<std::size_t>(output * map.inputs);
     if (slope.by_instruments) {
-      const AffineMap one = fit_instrumented(all.of_output(output), roles, detail::slope_bounds(shape, output, pinned));
+      const AffineMap one =
+          fit_instrumented(all.of_output(output), roles, place, detail::slope_bounds(shape, output, pinned));
       std::copy_n(one.weights.begin(), map.inputs, map.weights.begin() + static_cast<std::ptrdiff_t>(row));
       map.intercept[static_cast<std::size_t>(output)] = one.intercept.front();
       std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
