@@ -260,6 +260,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
                                       : (findings.by_path_bound() ? ", and each rotor goes the right way"
                                                                   : " and with no other, before a limit "
                                                                     "clips a command"));
+    std::printf("           %s\n", programs::least_share_in_words(findings.proof->held_slope, own).c_str());
     std::printf("for        all finite features, inside the envelope and outside of it\n");
     std::printf("by         %s\n", in_words(findings.proof->by));
     for (std::size_t axis = 0; axis < 3; ++axis) {

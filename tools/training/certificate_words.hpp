@@ -11,13 +11,26 @@
 
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/training/structured/measured_slope.hpp"
 #include "training/judgement.hpp"
 
 namespace programs {
 
+/// A slope that is not within these shares of the airframe's own in hover is doubted.
+inline constexpr double least_undoubted = 0.8, most_undoubted = 1.2;
+
+/// "by at least 0.98 of the airframe's own slope in hover": the least of the axes.
+inline std::string least_share_in_words(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own) {
+  double least = slopes[0] / own[0];
+  for (std::size_t axis = 1; axis < slopes.size(); ++axis) least = std::min(least, slopes[axis] / own[axis]);
+  char text[96];
+  std::snprintf(text, sizeof text, "by at least %.2f of the airframe's own slope in hover", least);
+  return text;
+}
+
 /// A line for each slope that is far from the airframe's own.
 inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own) {
-  constexpr double least = 0.8, most = 1.2;
+  constexpr double least = least_undoubted, most = most_undoubted;
   std::vector<std::string> doubts;
   for (std::size_t axis = 0; axis < slopes.size(); ++axis) {
     const double ratio = slopes[axis] / own[axis];
@@ -31,16 +44,43 @@ inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes,
   return doubts;
 }
 
-/// Of a model that asks for thrust: nothing where its base follows the thrust that is asked by half as much as the
-/// airframe in hover, or more.
+/// Of a model that asks for thrust, where its base follows it far less or more than the airframe in hover.
 inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& certificate, double own) {
-  if (certificate.held_thrust_slope >= pinnquad::least_thrust_share * own) return {};
+  const double share = certificate.held_thrust_slope / own;
+  if (share >= least_undoubted && share <= most_undoubted) return {};
+  const bool sinks = !(share >= pinnquad::least_thrust_share);
   char text[256];
   std::snprintf(text, sizeof text,
                 "the sum of the commands follows the thrust that is asked by %.2f of what the airframe's own does in "
-                "hover: below %.1f a position loop sinks under a load that it should carry (docs/certificate.md)",
-                certificate.held_thrust_slope / own, pinnquad::least_thrust_share);
+                "hover: %s (docs/certificate.md)",
+                share,
+                sinks ? "below 0.5 a position loop sinks under a load that it should carry"
+                      : "another mass or other rotors flew, or a noisy accelerometer or rotor lag hid it");
   return text;
+}
+
+/// Slopes as the training rows know them, over the airframe's own: "roll 0.99 (0.97 to 1.02)"; by instruments with what
+/// least squares say. Empty where none is known.
+inline std::string known_slopes_in_words(const pinnquad::SlopesOfSums& slopes, double own_thrust,
+                                         const pinnquad::AxisSlopes& own) {
+  std::string words;
+  for (const std::size_t k : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{0}}) {
+    const pinnquad::MeasuredSlope& slope = slopes[k];
+    if (!slope.known) continue;
+    const double one = k == 0 ? own_thrust : own[k - 1];
+    char text[128];
+    std::snprintf(text, sizeof text, "%s%s %.2f to %.2f", words.empty() ? "" : ", ",
+                  k == 0 ? "thrust" : axis_names[k - 1], slope.lower / one, slope.upper / one);
+    words += text;
+    if (!slope.by_instruments) continue;
+    std::snprintf(text, sizeof text, " (by instruments; least squares %.2f)", slope.least_squares / one);
+    words += text;
+  }
+  return words;
+}
+
+inline bool any_by_instruments(const pinnquad::SlopesOfSums& slopes) {
+  return std::any_of(slopes.begin(), slopes.end(), [](const auto& slope) { return slope.by_instruments; });
 }
 
 /// "the residual changes a command by at most 0.1669 0.1669 0.1669 0.1669", rotor by rotor; or that there is none.

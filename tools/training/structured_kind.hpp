@@ -7,6 +7,7 @@
 #include <memory>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "command_line/interrupt.hpp"
 #include "pinnquad/training/structured/fit_structured.hpp"
@@ -20,19 +21,36 @@ template <class Model>
 using ExportedStructured =
     NetworkOfModel<Model, ExportedAirframe::by_value, !pinnquad::is_windowed<typename Model::Features>>;
 
-/// A structured model, and how it was chosen whether it is shown the altitude.
+/// A structured model, how it was chosen whether it is shown the altitude, and what is known of its slopes. Where they
+/// are by instruments, it is judged by features without their noise.
 template <class Model>
 class StructuredNetwork : public ExportedStructured<Model> {
  public:
   StructuredNetwork(const Model& model, const pinnquad::RowSet& training, const AltitudeChoice& altitude,
-                    bool fits_validation)
-      : ExportedStructured<Model>(model, training), altitude_(altitude), fits_validation_(fits_validation) {}
+                    const pinnquad::MeasuredSlopes& slopes, bool fits_validation)
+      : ExportedStructured<Model>(model, training),
+        altitude_(altitude),
+        slopes_(slopes),
+        input_(model.input),
+        fits_validation_(fits_validation) {}
+  Predictions predictions(const pinnquad::RowSet& rows) const override {
+    if (!slopes_.by_instruments()) return ExportedStructured<Model>::predictions(rows);
+    constexpr double none = pinnquad::not_a_number;
+    Predictions result(rows.size(), {none, none, none, none});
+    pinnquad::each_denoised<typename Model::Features>(
+        input_, slopes_, rows,
+        [&](std::size_t row, const std::vector<double>& x) { result[row] = this->block()->commands(x); });
+    return result;
+  }
   AltitudeChoice altitude() const override { return altitude_; }
+  pinnquad::SlopesOfSums slopes() const override { return slopes_.of; }
   /// Limits are found by rows that it was not fitted to.
   bool has_trust() const override { return ExportedStructured<Model>::has_trust() && !fits_validation_; }
 
  private:
   AltitudeChoice altitude_;
+  pinnquad::MeasuredSlopes slopes_;
+  decltype(Model::input) input_;
   bool fits_validation_;
 };
 
@@ -93,12 +111,13 @@ std::shared_ptr<const TrainedNetwork> fit_structured_on(const FitTask& task) {
   altitude.taken = fits.altitude.taken;
   altitude.error_with = fits.altitude.error_with.value_or(pinnquad::not_a_number);
   altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
+  const auto& best = fits.best();
   return std::visit(
       [&](const auto& model) -> std::shared_ptr<const TrainedNetwork> {
         return std::make_shared<StructuredNetwork<std::decay_t<decltype(model)>>>(model, task.training, altitude,
-                                                                                  settings.fit_validation);
+                                                                                  best.slopes, settings.fit_validation);
       },
-      fits.best().model);
+      best.model);
 }
 
 /// Of what an asked motion can have, as far as the flights have it.

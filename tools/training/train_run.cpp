@@ -313,13 +313,18 @@ class Training {
     report_.verdict(kind.kind, rotated() ? std::optional<std::uint64_t>{} : made.seed, verdict, true);
     if (verdict.worse_than_mean()) {
       report_.warn("NOT FOR FLIGHT: " + title + " is worse than the mean of the commands");
+    } else if (programs::any_by_instruments(made.model->slopes())) {
+      report_.warn("noise of gyro or accelerometer bends the slopes of least squares: those of " + title +
+                   " are by instruments, and it was judged by rows without that noise, as their neighbours tell them; "
+                   "on the noisy rows, by which all others were judged, bent slopes err less");
     } else if (verdict.test_r_squared <= verdict.linear_regression_r_squared) {
       report_.warn(title + " does not beat linear regression on the paper's features (R^2 " +
                    decimals(verdict.test_r_squared, 4) + " against " +
                    decimals(verdict.linear_regression_r_squared, 4) + "): a linear map of them would fly as well");
     }
     const programs::KindVerdict& beside_simpler = verdicts_[*chosen_];
-    if (beside_simpler.standing > programs::Standing::undecided) {
+    if (beside_simpler.standing > programs::Standing::undecided &&
+        !programs::any_by_instruments(made.model->slopes())) {
       report_.warn("what is exported, " + title + ": " + beside_simpler.sentence);
     }
     if (verdict.has_poor_motor()) {
@@ -329,7 +334,7 @@ class Training {
     if (kind.kind.reach == programs::TimeReach::centred) {
       report_.warn(title + " looks ahead: it takes planned trajectories, not measured motion");
     }
-    warn_of_better_kind(kind);
+    if (!programs::any_by_instruments(made.model->slopes())) warn_of_better_kind(kind);
     announce("[4/5] export " + title);
     write(made, kind.kind, verdict);
   }
@@ -401,7 +406,7 @@ class Training {
     }
     std::printf("  %s: the same weights as a block of %zu bytes\n", block.c_str(), written.block_bytes);
     report_.trusted(trusted ? trust : "", written.no_trust_because);
-    tell_certificate(*made.model->block());
+    tell_certificate(*made.model->block(), made.model->slopes());
     tell_flight(made.flown);
     report_.write_exported(kind, made.seed, header, block);
     told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +
@@ -412,7 +417,7 @@ class Training {
   }
 
   /// Proof of an export's signs, as `certify` finds it in the header.
-  void tell_certificate(const BlockModel& model) {
+  void tell_certificate(const BlockModel& model, const SlopesOfSums& known) {
     const std::optional<ProvenSigns> signs = model.proven_signs();
     if (!signs) {
       std::printf("  nothing is proven of its signs: `pinnquad certify %s/model.hpp` looks for a counterexample\n",
@@ -423,17 +428,22 @@ class Training {
     const std::optional<Certificate> structure = signs->by == SignProof::affinity ? std::nullopt : model.certificate();
     const AxisSlopes &slopes = signs->held_slope, own = hover_slopes(airframe);
     const double own_thrust = hover_thrust_slope(airframe);
-    report_.certified(*signs, structure, airframe);
+    report_.certified(*signs, structure, airframe, known);
     std::printf(
         "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
-        "input;\n"
+        "input,\n    %s;\n"
         "    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad: %.2f, %.2f, %.2f of the airframe's own in hover;\n",
-        slopes[0], slopes[1], slopes[2], slopes[0] / own[0], slopes[1] / own[1], slopes[2] / own[2]);
+        programs::least_share_in_words(slopes, own).c_str(), slopes[0], slopes[1], slopes[2], slopes[0] / own[0],
+        slopes[1] / own[1], slopes[2] / own[2]);
     if (structure) {
       std::printf("    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n", structure->held_thrust_slope,
                   structure->held_thrust_slope / own_thrust);
     }
     std::printf("    %s\n", programs::bound_in_words(structure).c_str());
+    const std::string intervals = programs::known_slopes_in_words(known, own_thrust, own);
+    if (!intervals.empty()) {
+      std::printf("  95 %% intervals of the training rows, over the airframe's own: %s\n", intervals.c_str());
+    }
     std::fflush(stdout);
     if (options_.airframe.empty() && options_.flights.empty()) return;  // whose airframe's?
     for (const std::string& doubt : programs::slope_doubts(slopes, own)) report_.warn(doubt);

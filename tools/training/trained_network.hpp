@@ -12,6 +12,7 @@
 #include "airframe/names.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/deploy/export_model.hpp"
+#include "pinnquad/training/structured/measured_slope.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "training/derivatives.hpp"
 
@@ -27,12 +28,15 @@ struct AltitudeChoice {
 class TrainedNetwork {
  public:
   virtual ~TrainedNetwork() = default;
+  /// To be judged by. NaN for a row that it has no features of.
   virtual Predictions predictions(const pinnquad::RowSet& rows) const = 0;
   /// The same, NaN where the guard of its export declines: for a row outside the training envelope.
   virtual Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
   virtual AltitudeChoice altitude() const { return {}; }
+  /// How well the training rows know its slopes; unknown of other kinds.
+  virtual pinnquad::SlopesOfSums slopes() const { return {}; }
   /// Whether export_to() can write limits of trust.
   virtual bool has_trust() const { return false; }
   /// Writes `struct <name>` and its block. Throws std::logic_error of a model that is to be compared with alone.

@@ -255,9 +255,20 @@ inline nlohmann::json certificate_json(const nlohmann::json& report) {
   const nlohmann::json& proven = report["certificate"];
   if (!proven.is_object()) return false;
   nlohmann::json told = {{"rows", nlohmann::json::array()}, {"bound", proven["in_words"]}};
-  const auto row = [&told](const std::string& name, double slope, double own, const char* unit) {
-    told["rows"].push_back(
-        {{"name", name}, {"slope", shown::number(slope, 6)}, {"unit", unit}, {"ratio", shown::number(slope / own, 2)}});
+  const auto row = [&told, &proven](const std::string& name, double slope, double own, const char* unit) {
+    const nlohmann::json& known = proven["known"][name];
+    std::string interval = "unknown", by = "";
+    if (known.is_object()) {
+      const auto share = [&](std::size_t i) { return shown::number(known["interval_95"][i].get<double>() / own, 2); };
+      interval = share(0) + " to " + share(1);
+      by = known["by"].get<std::string>();
+    }
+    told["rows"].push_back({{"name", name},
+                            {"slope", shown::number(slope, 6)},
+                            {"unit", unit},
+                            {"ratio", shown::number(slope / own, 2)},
+                            {"interval", interval},
+                            {"by", by}});
   };
   for (const char* axis : axis_names) row(axis, proven["slope"][axis], proven["airframe_slope"][axis], "s²/rad");
   told["thrust"] = proven.contains("thrust_slope");

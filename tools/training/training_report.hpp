@@ -264,11 +264,21 @@ class TrainingReport {
   /// Of what was exported.
   /// `structure`: of a model that has one, besides.
   void certified(const pinnquad::ProvenSigns& signs, const std::optional<pinnquad::Certificate>& structure,
-                 const pinnquad::Airframe<double>& airframe) {
+                 const pinnquad::Airframe<double>& airframe, const pinnquad::SlopesOfSums& known) {
     json_["certificate"] = {{"proven", true},
                             {"slope", detail::by_axis(signs.held_slope)},
                             {"airframe_slope", detail::by_axis(pinnquad::hover_slopes(airframe))},
                             {"in_words", bound_in_words(structure)}};
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      const pinnquad::MeasuredSlope& slope = known[k];
+      json_["certificate"]["known"][k == 0 ? "thrust" : axis_names[k - 1]] =
+          !slope.known ? nlohmann::json()
+                       : nlohmann::json{{"standard_error", slope.standard_error},
+                                        {"interval_95", {slope.lower, slope.upper}},
+                                        {"by", slope.by_instruments ? "instruments" : "least squares"},
+                                        {"least_squares", slope.least_squares},
+                                        {"instruments_f", slope.strength}};
+    }
     if (!structure) return;
     json_["certificate"]["command_bound"] = structure->command_bound;
     json_["certificate"]["thrust_slope"] = structure->held_thrust_slope;

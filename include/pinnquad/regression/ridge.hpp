@@ -61,13 +61,17 @@ class RegressionSums {
   }
 
   /// The same rows with one of the outputs.
-  RegressionSums of_output(int output) const {
-    RegressionSums one(inputs_, 1);
-    const int from = 1 + inputs_ + output, to = 1 + inputs_;
-    one.products_.topLeftCorner(to, to) = products_.topLeftCorner(to, to);
-    one.products_.row(to).head(to) = products_.row(from).head(to);
-    one.products_(to, to) = products_(from, from);
-    return one;
+  RegressionSums of_output(int output) const { return of_column(1 + inputs_ + output); }
+  /// The same rows with one of the inputs as the output.
+  RegressionSums of_input(int input) const { return of_column(1 + input); }
+
+  /// Sums of 1, x, y and their products, symmetric.
+  Eigen::MatrixXd products() const { return products_.selfadjointView<Eigen::Lower>(); }
+  /// With these instead, of as many inputs and outputs; the lower triangle is read.
+  RegressionSums with(const Eigen::MatrixXd& products) const {
+    RegressionSums other(inputs_, outputs_);
+    other.products_ = products;
+    return other;
   }
 
   int inputs() const noexcept { return inputs_; }
@@ -85,6 +89,15 @@ class RegressionSums {
   }
 
  private:
+  RegressionSums of_column(int from) const {
+    RegressionSums one(inputs_, 1);
+    const int to = 1 + inputs_;
+    one.products_.topLeftCorner(to, to) = products_.topLeftCorner(to, to);
+    for (int i = 0; i < to; ++i) one.products_(to, i) = from < i ? products_(i, from) : products_(from, i);
+    one.products_(to, to) = products_(from, from);
+    return one;
+  }
+
   int inputs_, outputs_;
   Eigen::MatrixXd products_;  ///< lower triangle
 };

@@ -9,10 +9,12 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/model/certified_numbers.hpp"
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
@@ -134,6 +136,10 @@ struct MonotoneShape {
   std::vector<int> places;  ///< of each tap's angular acceleration among the features, the present first
   std::vector<double> input_deviation, output_deviation;
   AxisSlopes airframe_slopes{};  ///< hover_slopes()
+  /// Features that a gyro's or an accelerometer's noise is in, by their units, and the specific force along the thrust
+  /// axis among them. None of a window: its taps would be their own instruments.
+  std::vector<int> noisy;
+  int thrust = -1;
 };
 
 /// The places and scales of a context's features, as the equations of the fit read them.
@@ -148,8 +154,55 @@ MonotoneShape monotone_shape(const ContextType& context) {
   shape.input_deviation.assign(context.input.standard_deviation.begin(), context.input.standard_deviation.end());
   shape.output_deviation.assign(context.output.standard_deviation.begin(), context.output.standard_deviation.end());
   shape.airframe_slopes = hover_slopes(context.template airframe<double>());
+  if constexpr (!is_windowed<Features>) {
+    constexpr auto thrusts = detail::thrust_places<Features>();
+    if (thrusts.count > 0) shape.thrust = thrusts.place[0];
+    for (int i = 0; i < Features::size; ++i) {
+      const std::string_view unit = Features::units[static_cast<std::size_t>(i)];
+      if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") shape.noisy.push_back(i);
+    }
+  }
   return shape;
 }
+
+namespace detail {
+
+/// All but the angular accelerations about the other axes.
+inline std::vector<bool> features_of_output(const MonotoneShape& shape, int output) {
+  std::vector<bool> taken(static_cast<std::size_t>(shape.inputs), true);
+  for (const int place : shape.places) {
+    for (int i = 0; i < 3; ++i) taken[static_cast<std::size_t>(place + i)] = i == output - 1;
+  }
+  return taken;
+}
+
+/// Of an axis command: none of the sum of the commands. See fit_monotone_base().
+inline std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output,
+                                             const std::optional<AxisSlopes>& pinned) {
+  constexpr double least_share = 0.01;
+  const int axis = output - 1;
+  if (axis < 0) return {};
+  const auto of_axis = static_cast<std::size_t>(axis);
+  const double least = least_share * shape.airframe_slopes[of_axis];
+  if (!(least > 0) || (pinned && !((*pinned)[of_axis] > least))) {
+    throw std::invalid_argument("monotone base: expected slopes above 0 and above the least share of the airframe's");
+  }
+  WeightBound present, held;
+  for (const int place : shape.places) {
+    const auto feature = static_cast<std::size_t>(place + axis);
+    const double factor = shape.output_deviation[static_cast<std::size_t>(output)] / shape.input_deviation[feature];
+    if (held.terms.empty()) present.terms.emplace_back(place + axis, factor);
+    held.terms.emplace_back(place + axis, factor);
+  }
+  present.least = held.least = least;
+  if (pinned) {
+    held.pinned = true;
+    held.least = (*pinned)[of_axis];
+  }
+  return shape.places.size() > 1 ? std::vector{held, present} : std::vector{held};
+}
+
+}  // namespace detail
 
 /// The base of a structured model: per axis command a ridge regression that sees its own angular acceleration alone,
 /// with a slope above 0. Standardised features to standardised axis commands. Each penalty is chosen by leaving out one
@@ -159,40 +212,13 @@ MonotoneShape monotone_shape(const ContextType& context) {
 /// std::invalid_argument for no rows, and for pinned slopes that are not above this hundredth.
 inline AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector<RegressionSums>& groups,
                                    const std::optional<AxisSlopes>& pinned = {}) {
-  constexpr double least_share = 0.01;
   if (groups.empty()) throw std::invalid_argument("monotone base: expected rows with all features, found none");
   AffineMap all;
   all.inputs = shape.inputs;
   all.outputs = AxisCommandOutputs::size;
   for (int output = 0; output < all.outputs; ++output) {
-    std::vector<bool> taken(static_cast<std::size_t>(shape.inputs), true);
-    std::vector<detail::WeightBound> bounds;
-    const int axis = output - 1;
-    for (const int place : shape.places) {
-      for (int i = 0; i < 3; ++i) taken[static_cast<std::size_t>(place + i)] = i == axis;
-    }
-    if (axis >= 0) {
-      const auto of_axis = static_cast<std::size_t>(axis);
-      const double least = least_share * shape.airframe_slopes[of_axis];
-      if (!(least > 0) || (pinned && !((*pinned)[of_axis] > least))) {
-        throw std::invalid_argument(
-            "monotone base: expected slopes above 0 and above the least share of the airframe's");
-      }
-      detail::WeightBound present, held;
-      for (const int place : shape.places) {
-        const auto feature = static_cast<std::size_t>(place + axis);
-        const double factor = shape.output_deviation[static_cast<std::size_t>(output)] / shape.input_deviation[feature];
-        if (held.terms.empty()) present.terms.emplace_back(place + axis, factor);
-        held.terms.emplace_back(place + axis, factor);
-      }
-      present.least = held.least = least;
-      if (pinned) {
-        held.pinned = true;
-        held.least = (*pinned)[of_axis];
-      }
-      bounds.push_back(held);
-      if (shape.places.size() > 1) bounds.push_back(present);
-    }
+    const std::vector<bool> taken = detail::features_of_output(shape, output);
+    const std::vector<detail::WeightBound> bounds = detail::slope_bounds(shape, output, pinned);
     std::vector<RegressionSums> parts;
     for (const RegressionSums& group : groups) parts.push_back(group.of_output(output));
     const double penalty = parts.size() < 2 ? 0.0 : choose_penalty(parts, usual_penalties(), taken);

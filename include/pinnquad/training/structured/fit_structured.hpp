@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The structured model, whole: a monotone base in closed form and a residual network, fitted from several seeds. The
 // validation rows choose whether the model is shown the altitude, and whether the residual is kept; so do whole
-// flights, each left out in turn, where several train.
+// flights, each left out in turn, where several train. They choose by errors of least squares: rows with noise prefer
+// slopes that it bends. What is fitted has the slopes of slopes_under_noise.hpp.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +24,7 @@
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/structured/agreement.hpp"
 #include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/slopes_under_noise.hpp"
 
 namespace pinnquad {
 
@@ -82,8 +84,9 @@ struct StructuredFitsOf {
   struct Fit {
     Model model;
     std::uint64_t seed = 0;
-    double validation_error = 0;  ///< mean absolute error of the commands on the validation rows
+    double validation_error = 0;  ///< mean absolute error of the commands on the validation rows, by least squares
     double training_s = 0;        ///< wall-clock time of the residual's training
+    MeasuredSlopes slopes{};      ///< the same of all seeds
   };
   StructuredAltitude altitude;
   std::vector<Fit> models;
@@ -132,7 +135,11 @@ class StructuredFitter {
       groups_.push_back(group);
       sums_.push_back(std::move(sums));
     }
-    map_ = fit_monotone_base(monotone_shape(context_), sums_, pinned_);
+    const MonotoneShape shape = monotone_shape(context_);
+    measured_ = map_ = fit_monotone_base(shape, sums_, pinned_);
+    if (!shape.noisy.empty()) {
+      slopes_ = measure_slopes(shape, instrumented_blocks(context_, fitted_, shape.noisy), pinned_, measured_);
+    }
     whole_flights_ = whole_flight_groups(fitted_).size() > 1 && groups_.size() > 1;
   }
 
@@ -141,7 +148,7 @@ class StructuredFitter {
   std::optional<Fit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
     const auto start = std::chrono::steady_clock::now();
     const auto done = [&](const auto& predictor, double error) {
-      Fit made{make_trained_model(predictor, context_, fitted_), seed, error, 0};
+      Fit made{make_trained_model(with_measured_slopes(predictor), context_, fitted_), seed, error, 0, slopes_};
       made.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return made;
     };
@@ -170,6 +177,22 @@ class StructuredFitter {
       for (const FlightRows& piece : group.pieces()) rows.add(*piece.flight, piece.rows);
     }
     return rows;
+  }
+
+  /// The base with its measured slopes. A sum that has them by instruments has no residual: what a network is shown, it
+  /// would use to take them back.
+  template <class Predictor>
+  Predictor with_measured_slopes(Predictor predictor) const {
+    using Bound = MonotoneResidual<Features, Residual>;
+    if (!slopes_.by_instruments()) return predictor;
+    const auto base = monotone_base<ContextType>(measured_);
+    auto* const residual = std::copy(base.parameters.begin(), base.parameters.end(), predictor.parameters.data());
+    if constexpr (Predictor::parameter_count > MonotoneBase<Features>::parameter_count) {
+      for (std::size_t k = 0; k < slopes_.of.size(); ++k) {
+        if (slopes_.of[k].by_instruments) residual[Bound::lower + int(k)] = residual[Bound::upper + int(k)] = 0;
+      }
+    }
+    return predictor;
   }
 
   /// Calls `use(others, base without the group, the group)`, each group left out in turn.
@@ -283,7 +306,9 @@ class StructuredFitter {
   std::optional<AxisSlopes> pinned_;
   std::vector<RowSet> groups_;
   std::vector<RegressionSums> sums_;  ///< of the groups
-  AffineMap map_;
+  AffineMap map_;                     ///< by least squares
+  AffineMap measured_;                ///< by instruments where noise bends it
+  MeasuredSlopes slopes_;
   bool whole_flights_ = false;
 };
 

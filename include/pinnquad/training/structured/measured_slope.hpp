@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// How well the rows of a training know a slope: its standard error and interval (slopes_under_noise.hpp).
+#pragma once
+
+#include <array>
+
+namespace pinnquad {
+
+/// How much one signed sum rises with what is asked of it: the sum of the commands with the thrust, s^2/m; those about
+/// the axes with the angular acceleration, s^2/rad.
+struct MeasuredSlope {
+  bool known = false;  ///< false: pinned, of a window, of features without it, or of too few rows
+  double slope = 0;    ///< of the base
+  double standard_error = 0;
+  double lower = 0, upper = 0;  ///< 95 %
+  bool by_instruments = false;  ///< least squares bend it
+  double least_squares = 0;
+  double strength = 0;  ///< F of the instruments (regression/instrumental_variables.hpp): weak below 10
+};
+
+/// Sum of the commands, roll, pitch, yaw.
+using SlopesOfSums = std::array<MeasuredSlope, 4>;
+
+}  // namespace pinnquad

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Slopes of a structured model of flights whose gyro is noisy, and of the same flights without.
+#include "pinnquad/training/structured/slopes_under_noise.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/pinnquad.hpp"
+#include "pinnquad/training/structured/fit_structured.hpp"
+
+using namespace pinnquad;
+
+namespace {
+
+Flight flown(double gyro_noise_rad_s, std::size_t samples = 6000) {
+  FlightPlan plan = AgileFlight::plan();
+  plan.samples = samples;
+  const Quadrotor<double, StandardAtmosphere, QuadraticDrag> vehicle(
+      airframe_value<PaperQuadrotor, double>(), paper_site<double>(), StandardAtmosphere{}, QuadraticDrag{});
+  Flight flight = fly(vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(3)), plan).flight;
+  std::mt19937_64 engine(4);
+  constexpr double between_samples_s = 0.01;
+  for (Sample& sample : flight) {
+    for (int i = 0; i < 3; ++i) {
+      const double before = standard_normal(engine), now = standard_normal(engine);
+      sample.body_rates_rad_s[i] += gyro_noise_rad_s * now;
+      sample.angular_acceleration_rad_s2[i] += gyro_noise_rad_s * (now - before) / between_samples_s;
+    }
+  }
+  return flight;
+}
+
+StructuredFits::Fit fitted(const Flight& flight, bool pinned = false) {
+  StructuredSettings settings;
+  settings.residual.epochs = 3;
+  settings.altitude = StructuredSettings::Altitude::no;
+  settings.pinned_slopes = pinned;
+  settings.seeds = 1;
+  const Dataset dataset(flight);
+  return fit_structured<PaperQuadrotor>(split_for_training(dataset), settings).best();
+}
+
+Certificate certificate_of_fit(const StructuredFits::Fit& fit) {
+  return std::visit([](const auto& model) { return certificate_of_trained(model); }, fit.model);
+}
+
+double error_on(const StructuredFits::Fit& fit, const Flight& flight) {
+  const RowSet rows(flight, {0, flight.size()});
+  return std::visit([&](const auto& model) { return model_errors(model, rows).mean.mean_absolute; }, fit.model);
+}
+
+const AxisSlopes own = hover_slopes(airframe_value<PaperQuadrotor, double>());
+const double own_thrust = hover_thrust_slope(airframe_value<PaperQuadrotor, double>());
+
+using Setting = Context<InverseFeatures, PaperQuadrotor, AxisCommandOutputs>;
+
+}  // namespace
+
+TEST_CASE("noise of the gyro bends the slopes of least squares; those by instruments are the airframe's") {
+  const Flight quiet = flown(0), noisy = flown(0.03);
+  const StructuredFits::Fit fit = fitted(noisy);
+  const Certificate certificate = certificate_of_fit(fit);
+  CHECK(certificate.proven());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const MeasuredSlope& slope = fit.slopes.of[1 + axis];
+    CHECK(slope.known);
+    CHECK(slope.by_instruments);
+    CHECK(slope.least_squares < 0.8 * own[axis]);
+    CHECK(slope.slope == doctest::Approx(own[axis]).epsilon(axis < 2 ? 0.1 : 0.25));
+    CHECK(slope.lower < 1.03 * own[axis]);  // rotor lag makes a quiet flight's 1.02 of the airframe's
+    CHECK(slope.upper > own[axis]);
+    CHECK(certificate.slope[axis] == doctest::Approx(slope.slope).epsilon(1e-5));
+    CHECK(certificate.residual_lower[1 + axis] == 0);
+    CHECK(certificate.residual_upper[1 + axis] == 0);
+  }
+  // w x v moves the specific force by little
+  CHECK(fit.slopes.of[0].known);
+  CHECK(fit.slopes.of[0].slope == doctest::Approx(own_thrust).epsilon(0.05));
+  CHECK(certificate.thrust_slope == doctest::Approx(fit.slopes.of[0].slope).epsilon(1e-5));
+
+  // without noise nearly as good as one that was trained so; least squares are six times as bad
+  CHECK(error_on(fit, quiet) < 2 * error_on(fitted(quiet), quiet));
+}
+
+TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals") {
+  const Flight quiet = flown(0, 4000);
+  const Dataset dataset(quiet);
+  const RowSplit split = split_for_training(dataset);
+  const StructuredFits::Fit fit = fitted(quiet);
+  const auto context = make_context<Setting>(split.train);
+  const auto base = monotone_base<Setting>(fit_monotone_base(context, split.train));
+  CHECK_FALSE(fit.slopes.by_instruments());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const MeasuredSlope& slope = fit.slopes.of[k];
+    CHECK(slope.known);
+    CHECK_FALSE(slope.by_instruments);
+    CHECK(slope.lower < slope.slope);
+    CHECK(slope.slope < slope.upper);
+    CHECK(slope.upper - slope.lower < 0.1 * slope.slope);
+  }
+  std::visit(
+      [&](const auto& model) {
+        for (std::size_t i = 0; i < base.parameters.size(); ++i) {
+          CHECK(model.network.parameters[i] == base.parameters[i]);
+        }
+      },
+      fit.model);
+}
+
+TEST_CASE("pinned slopes are not measured, nor those of a window, nor of few rows") {
+  const StructuredFits::Fit pinned = fitted(flown(0.03, 3000), true);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    CHECK_FALSE(pinned.slopes.of[1 + axis].known);
+    CHECK(certificate_of_fit(pinned).slope[axis] == doctest::Approx(own[axis]).epsilon(1e-5));
+  }
+  CHECK(pinned.slopes.of[0].known);
+  CHECK_FALSE(fitted(flown(0.03, 300)).slopes.of[1].known);
+
+  using Window = PartlyWindowed<InverseFeatures, InverseAccelerations, 3, PeriodMicroseconds<50000>>;
+  const Flight flight = flown(0, 100);
+  const RowSet rows(flight, {0, flight.size()});
+  CHECK(monotone_shape(make_context<Context<Window, PaperQuadrotor, AxisCommandOutputs>>(rows)).noisy.empty());
+  CHECK(monotone_shape(make_context<Setting>(rows)).noisy == std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  CHECK(monotone_shape(make_context<Setting>(rows)).thrust == 0);
+}
+
+TEST_CASE("a sum by instruments has no residual, the others keep theirs") {
+  Flight bent = flown(0.03, 3000);
+  for (Sample& sample : bent) {
+    for (double& u : sample.commands) u += 0.1 * std::abs(sample.velocity_m_s[0]);
+  }
+  StructuredSettings settings;
+  settings.residual.epochs = 20;
+  settings.altitude = StructuredSettings::Altitude::no;
+  settings.seeds = 1;
+  const Dataset dataset(bent);
+  const auto fit = fit_structured<PaperQuadrotor>(split_for_training(dataset), settings).best();
+  const Certificate certificate = certificate_of_fit(fit);
+  CHECK(certificate.proven());
+  CHECK(fit.slopes.of[1].by_instruments);
+  CHECK(certificate.residual_upper[1] - certificate.residual_lower[1] == 0);
+  CHECK(certificate.residual_upper[0] - certificate.residual_lower[0] > 0.1);
+}
+
+TEST_CASE("neighbours are a tenth of a second away, and none is beyond a gap or another piece") {
+  Flight flight = flown(0, 200);
+  for (std::size_t row = 120; row < flight.size(); ++row) flight[row].time_s += 1;
+  RowSet rows(flight, {10, 60});
+  rows.add(flight, {100, 200});
+  std::vector<std::size_t> seen;
+  detail::each_with_neighbours<InverseFeatures>(
+      rows, [&](const Flight&, std::size_t row, const auto& x, const auto& before, const auto& after) {
+        CHECK(x == sample_features<InverseFeatures, double>(flight[row]));
+        CHECK(before == sample_features<InverseFeatures, double>(flight[row - 2]));
+        CHECK(after == sample_features<InverseFeatures, double>(flight[row + 2]));
+        seen.push_back(row);
+      });
+  std::vector<std::size_t> expected;
+  for (const auto& [begin, end] : {std::pair<std::size_t, std::size_t>{12, 58}, {102, 118}, {122, 198}}) {
+    for (std::size_t row = begin; row < end; ++row) expected.push_back(row);
+  }
+  CHECK(seen == expected);
+}
+
+TEST_CASE("rows to judge by are nearer to the truth than those with noise, and all else is as it was") {
+  const Flight quiet = flown(0), noisy = flown(0.03);
+  const StructuredFits::Fit fit = fitted(noisy);
+  const RowSet rows(noisy, {100, 2000});
+  std::visit(
+      [&](const auto& model) {
+        using Features = typename std::decay_t<decltype(model)>::Features;
+        double denoised = 0, measured = 0;
+        std::size_t count = 0;
+        each_denoised<Features>(model.input, fit.slopes, rows, [&](std::size_t row, const std::vector<double>& x) {
+          const auto truth = sample_features<Features, double>(quiet[100 + row]);
+          const auto seen = sample_features<Features, double>(noisy[100 + row]);
+          denoised += std::pow(x[1] - truth[1], 2);
+          measured += std::pow(seen[1] - truth[1], 2);
+          for (std::size_t i = 4; i < x.size(); ++i) CHECK(x[i] == seen[i]);
+          ++count;
+        });
+        CHECK(count == 1900 - 4);
+        CHECK(denoised < 0.8 * measured);
+      },
+      fit.model);
+}
