@@ -80,11 +80,11 @@ std::vector<double> with_instruments(const Scales& scales, const std::vector<int
   return all;
 }
 
-/// Sums of these over blocks of consecutive rows: a hundred, of two seconds at least.
+/// Sums of these over blocks of consecutive rows: fifty, of two seconds at least.
 template <class ContextType>
 std::vector<RegressionSums> instrumented_blocks(const ContextType& context, const RowSet& rows,
                                                 const std::vector<int>& noisy) {
-  constexpr double most = 100, least_s = 2;
+  constexpr double most = 50, least_s = 2;
   using Features = typename ContextType::Features;
   const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
   const RegressionSums none(Features::size + 2 * static_cast<int>(noisy.size()), ContextType::output_count);
