@@ -148,11 +148,11 @@ inline AffineMap fit_k_class(const RegressionSums& sums, const InstrumentRoles& 
 
 }  // namespace detail
 
-/// The weights of one output: that of `regressor` by Fuller's estimator, under the bounds; the others around it, shrunk.
-/// Free of a penalty they would carry what its errors leave: along columns that nearly repeat each other far more than
-/// what they are worth. Their penalty is 1 / (F - 1), F the statistic of all of them being 0: the ridge of a prior whose
-/// variance is that of the weights less that of their errors (Lawless, Wang, Communications in Statistics 5, 1976, with
-/// 1 / F). An instrument is among the inputs of the map with the weight 0.
+/// The weights of one output: that of `regressor` by Fuller's estimator, under the bounds; the others around it,
+/// shrunk. Free of a penalty they would carry what its errors leave: along columns that nearly repeat each other far
+/// more than they are worth. Their penalty is 1 / (F - 1), F the statistic of all of them being 0: the ridge of a prior
+/// whose variance is that of the weights less that of their errors (Lawless, Wang, Communications in Statistics 5, 1976,
+/// have 1 / F). An instrument is among the inputs of the map with the weight 0.
 inline AffineMap fit_instrumented(const RegressionSums& sums, const InstrumentRoles& roles, int regressor,
                                   const std::vector<detail::WeightBound>& bounds = {}) {
   constexpr double largest_penalty = 1e6;
@@ -200,8 +200,8 @@ inline double first_stage_strength(const RegressionSums& sums, const InstrumentR
 }  // namespace detail
 
 /// The weight of `regressor`, one of the noisy, by both estimators, and whether least squares bend it: a test of
-/// exogeneity by Hausman's contrast (Econometrica 46, 1978) of this weight alone. Rows of a flight follow each other, so
-/// standard errors are those of the jackknife that leaves out whole blocks (Kuensch, Annals of Statistics 17, 1989):
+/// exogeneity by Hausman's contrast (Econometrica 46, 1978) of this weight alone. Rows of a flight follow each other,
+/// so standard errors are those of the jackknife that leaves out whole blocks (Kuensch, Annals of Statistics 17, 1989):
 /// sqrt((n - 1) / n sum (w_i - mean)^2). A block must be longer than the memory of the residuals. `output`: one of the
 /// sums'. Throws std::invalid_argument for fewer than three blocks.
 inline InstrumentedWeight instrumented_weight(const std::vector<RegressionSums>& blocks, int output,
