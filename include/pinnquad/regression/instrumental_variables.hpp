@@ -151,8 +151,8 @@ inline AffineMap fit_k_class(const RegressionSums& sums, const InstrumentRoles& 
 /// The weights of one output: that of `regressor` by Fuller's estimator, under the bounds; the others around it,
 /// shrunk. Free of a penalty they would carry what its errors leave: along columns that nearly repeat each other far
 /// more than they are worth. Their penalty is 1 / (F - 1), F the statistic of all of them being 0: the ridge of a prior
-/// whose variance is that of the weights less that of their errors (Lawless, Wang, Communications in Statistics 5, 1976,
-/// have 1 / F). An instrument is among the inputs of the map with the weight 0.
+/// whose variance is that of the weights less that of their errors (Lawless, Wang, Communications in Statistics 5,
+/// 1976, have 1 / F). An instrument is among the inputs of the map with the weight 0.
 inline AffineMap fit_instrumented(const RegressionSums& sums, const InstrumentRoles& roles, int regressor,
                                   const std::vector<detail::WeightBound>& bounds = {}) {
   constexpr double largest_penalty = 1e6;
