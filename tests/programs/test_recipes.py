@@ -92,6 +92,38 @@ def test_reports(pinnquad, trained, flight):
         assert abs(model["wrong_derivative_share"][axis]["mean"] - judged["wrong_derivative_share"][axis]) <= 1e-6, axis
 
 
+def test_slopes_under_noise(pinnquad, flown):
+    """Gyro noise bends the slopes of least squares: those of instruments are exported, each with an interval, said by
+    report, page and console alike; of a quiet flight least squares are kept."""
+    words = "--models structured --seeds 1 --epochs 3 --threads 1"
+    quiet, noisy = flown("--seed 3 --samples 5000"), flown("--seed 3 --samples 5000 --gyro-noise 0.03 --jitter 10")
+    errors = {}
+    for flight, by in (quiet, "least squares"), (noisy, "instruments"):
+        folder = Path(by.split()[0])
+        said = pinnquad(f"train {words}", "--flight", flight, "--out", folder).out
+        report = report_of(folder)
+        certificate = report["certificate"]
+        assert certificate["proven"] is True and report["exported"] is True
+        assert sorted(certificate["known"]) == ["pitch", "roll", "thrust", "yaw"]
+        for axis in AXES:
+            known, own = certificate["known"][axis], certificate["airframe_slope"][axis]
+            lower, upper = known["interval_95"]
+            assert known["by"] == by and lower < certificate["slope"][axis] < upper, axis
+            assert (known["least_squares"] < 0.8 * own) == (by == "instruments"), axis
+            assert f"{axis} {lower / own:.2f} to {upper / own:.2f}" in said, axis
+            assert lower < 1.03 * own and upper > own, axis
+        assert certificate["known"]["thrust"]["by"] == "least squares"
+        least = min(certificate["slope"][axis] / certificate["airframe_slope"][axis] for axis in AXES)
+        assert f"at least {least:.2f} of the airframe's own slope" in said
+        assert f"at least {least:.2f} of the airframe's own slope" in pinnquad("certify", folder / "model.hpp").out
+        assert said.count("by instruments") == (3 if by == "instruments" else 0)
+        assert f"<td>{by}</td>" in (folder / "report.html").read_text()
+        assert any("instruments" in warning for warning in report["warnings"]) == (by == "instruments")
+        judged = json.loads(pinnquad("evaluate", folder / "model.block", "--flight", quiet, "--json").out)
+        errors[by] = judged["rmse"]
+    assert errors["instruments"] < 2 * errors["least squares"] < 0.02, "on a flight without noise"
+
+
 def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
     """The altitude is not shown far from the ground, shown where the commands depend on it, or as asked; pinned slopes
     are the airframe's."""

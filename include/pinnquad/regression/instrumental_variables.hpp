@@ -66,10 +66,10 @@ inline std::vector<int> joined(std::vector<int> first, const std::vector<int>& s
   return first;
 }
 
-/// The noisy regressors and, last, the output.
-inline Eigen::MatrixXd of_noisy(const Eigen::MatrixXd& all, const InstrumentRoles& roles) {
-  std::vector<Eigen::Index> columns;
-  for (const int i : roles.noisy) columns.push_back(1 + i);
+/// Rows and columns of 1, these inputs and the output.
+inline Eigen::MatrixXd part_of(const Eigen::MatrixXd& all, const std::vector<int>& inputs) {
+  std::vector<Eigen::Index> columns = {0};
+  for (const int i : inputs) columns.push_back(1 + i);
   columns.push_back(all.cols() - 1);
   const auto size = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd part(size, size);
@@ -90,6 +90,30 @@ inline std::vector<bool> regressors(const RegressionSums& sums, const Instrument
 /// Of this output's fit; it is there to keep a system solvable, no more.
 inline double smallest_penalty() { return usual_penalties().front(); }
 
+/// Products of all columns, and what 1, exact regressors and instruments leave of them.
+struct InstrumentedProducts {
+  Eigen::MatrixXd all, left;
+
+  InstrumentedProducts(const RegressionSums& sums, const InstrumentRoles& roles)
+      : all(sums.products()), left(left_by(all, joined(roles.exact, roles.instruments))) {}
+};
+
+/// See fuller_k().
+inline double fuller_k(const RegressionSums& sums, const InstrumentedProducts& products, const InstrumentRoles& roles) {
+  const double freedom = sums.rows() - 1 - static_cast<double>(roles.exact.size() + roles.instruments.size());
+  if (!(freedom > 0)) return 1;
+  const auto count = static_cast<Eigen::Index>(roles.noisy.size()) + 1;
+  std::vector<int> first;  // exact regressors, then noisy ones
+  for (std::size_t i = 0; i < roles.exact.size(); ++i) first.push_back(static_cast<int>(i));
+  const Eigen::MatrixXd outer =
+      left_by(part_of(products.all, joined(roles.exact, roles.noisy)), first).bottomRightCorner(count, count) /
+      sums.rows();
+  const Eigen::MatrixXd inner = part_of(products.left, roles.noisy).bottomRightCorner(count, count) / sums.rows();
+  const auto whitening = whitening_of(inner);
+  if (!whitening) return 1;
+  return eigen_pairs(*whitening * outer * whitening->transpose()).values.minCoeff() - 1 / freedom;
+}
+
 }  // namespace detail
 
 /// Sums of which least squares give the k-class estimate of one output:
@@ -97,28 +121,26 @@ inline double smallest_penalty() { return usual_penalties().front(); }
 /// k = 0: least squares; k = 1: two-stage least squares; fuller_k(): limited information. (Wooldridge, Econometric
 /// Analysis of Cross Section and Panel Data, ch. 5; Davidson, MacKinnon, Econometric Theory and Methods, ch. 12.)
 inline RegressionSums k_class_sums(const RegressionSums& sums, const InstrumentRoles& roles, double k) {
-  const Eigen::MatrixXd all = sums.products();
-  return sums.with(all - k * detail::left_by(all, detail::joined(roles.exact, roles.instruments)));
+  const detail::InstrumentedProducts products(sums, roles);
+  return sums.with(products.all - k * products.left);
 }
 
 /// k of Fuller's estimator (Econometrica 45, 1977), of one output: that of limited information maximum likelihood less
 /// 1 / (rows - instruments). Two-stage least squares with weak or many instruments lean towards least squares; this
 /// hardly. 1 where the rows are too few, or repeat each other.
 inline double fuller_k(const RegressionSums& sums, const InstrumentRoles& roles) {
-  const std::vector<int> told = detail::joined(roles.exact, roles.instruments);
-  const double freedom = sums.rows() - 1 - static_cast<double>(told.size());
-  if (!(freedom > 0)) return 1;
-  const Eigen::MatrixXd all = sums.products() / sums.rows();
-  const Eigen::MatrixXd inner = detail::of_noisy(detail::left_by(all, told), roles);
-  const Eigen::MatrixXd outer = detail::of_noisy(detail::left_by(all, roles.exact), roles);
-  const auto whitening = detail::whitening_of(inner);
-  if (!whitening) return 1;
-  return detail::eigen_pairs(*whitening * outer * whitening->transpose()).values.minCoeff() - 1 / freedom;
+  return detail::fuller_k(sums, detail::InstrumentedProducts(sums, roles), roles);
 }
 
 namespace detail {
 
-/// Fuller's estimate of one output, of sums that are k_class_sums() already.
+/// k_class_sums() of Fuller's estimator.
+inline RegressionSums fuller_sums(const RegressionSums& sums, const InstrumentRoles& roles) {
+  const InstrumentedProducts products(sums, roles);
+  return sums.with(products.all - fuller_k(sums, products, roles) * products.left);
+}
+
+/// The estimate of one output, of sums that are k_class_sums() already.
 inline AffineMap fit_k_class(const RegressionSums& sums, const InstrumentRoles& roles,
                              const std::vector<WeightBound>& bounds = {}) {
   return fit_bounded_ridge(sums, smallest_penalty(), regressors(sums, roles), bounds);
@@ -126,15 +148,15 @@ inline AffineMap fit_k_class(const RegressionSums& sums, const InstrumentRoles& 
 
 }  // namespace detail
 
-/// The weights of one output: that of `regressor` by Fuller's estimator, under the bounds; the others around it, shrunk.
-/// Free of a penalty they would carry what its errors leave: along columns that nearly repeat each other far more than
-/// what they are worth. Their penalty is 1 / (F - 1), F the statistic of all of them being 0: the ridge of a prior whose
-/// variance is that of the weights less that of their errors (Lawless, Wang, Communications in Statistics 5, 1976, with
-/// 1 / F). An instrument is among the inputs of the map with the weight 0.
+/// The weights of one output: that of `regressor` by Fuller's estimator, under the bounds; the others around it,
+/// shrunk. Free of a penalty they would carry what its errors leave: along columns that nearly repeat each other far
+/// more than they are worth. Their penalty is 1 / (F - 1), F the statistic of all of them being 0: the ridge of a prior
+/// whose variance is that of the weights less that of their errors (Lawless, Wang, Communications in Statistics 5,
+/// 1976, have 1 / F). An instrument is among the inputs of the map with the weight 0.
 inline AffineMap fit_instrumented(const RegressionSums& sums, const InstrumentRoles& roles, int regressor,
                                   const std::vector<detail::WeightBound>& bounds = {}) {
   constexpr double largest_penalty = 1e6;
-  const RegressionSums moved = k_class_sums(sums, roles, fuller_k(sums, roles));
+  const RegressionSums moved = detail::fuller_sums(sums, roles);
   AffineMap map = detail::fit_k_class(moved, roles, bounds);
   const auto held = static_cast<std::size_t>(regressor);
   const double slope = map.weights[held];
@@ -157,7 +179,7 @@ namespace detail {
 inline std::array<double, 2> both_weights(const RegressionSums& sums, const InstrumentRoles& roles, int regressor) {
   const auto at = static_cast<std::size_t>(regressor);
   return {fit_ridge(sums, smallest_penalty(), regressors(sums, roles)).weights[at],
-          fit_k_class(k_class_sums(sums, roles, fuller_k(sums, roles)), roles).weights[at]};
+          fit_k_class(fuller_sums(sums, roles), roles).weights[at]};
 }
 
 /// F of what the excluded instruments tell of one regressor when the fitted others are known: Shea's partial R^2
@@ -178,8 +200,8 @@ inline double first_stage_strength(const RegressionSums& sums, const InstrumentR
 }  // namespace detail
 
 /// The weight of `regressor`, one of the noisy, by both estimators, and whether least squares bend it: a test of
-/// exogeneity by Hausman's contrast (Econometrica 46, 1978) of this weight alone. Rows of a flight follow each other, so
-/// standard errors are those of the jackknife that leaves out whole blocks (Kuensch, Annals of Statistics 17, 1989):
+/// exogeneity by Hausman's contrast (Econometrica 46, 1978) of this weight alone. Rows of a flight follow each other,
+/// so standard errors are those of the jackknife that leaves out whole blocks (Kuensch, Annals of Statistics 17, 1989):
 /// sqrt((n - 1) / n sum (w_i - mean)^2). A block must be longer than the memory of the residuals. `output`: one of the
 /// sums'. Throws std::invalid_argument for fewer than three blocks.
 inline InstrumentedWeight instrumented_weight(const std::vector<RegressionSums>& blocks, int output,

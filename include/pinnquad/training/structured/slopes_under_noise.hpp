@@ -20,7 +20,7 @@ namespace pinnquad {
 /// What the rows before and after say of a feature that noise bends a slope of.
 struct DenoisedFeature {
   int place = 0;
-  /// Of the standardised features, then of the noisy ones before and after; what is noisy at the instant counts nothing.
+  /// Of the standardised features, then of the noisy ones before and after; the noisy ones of now count nothing.
   AffineMap by_neighbours;
 };
 
@@ -80,11 +80,11 @@ std::vector<double> with_instruments(const Scales& scales, const std::vector<int
   return all;
 }
 
-/// Sums of these over blocks of consecutive rows: a hundred, of two seconds at least.
+/// Sums of these over blocks of consecutive rows: fifty, of two seconds at least.
 template <class ContextType>
 std::vector<RegressionSums> instrumented_blocks(const ContextType& context, const RowSet& rows,
                                                 const std::vector<int>& noisy) {
-  constexpr double most = 100, least_s = 2;
+  constexpr double most = 50, least_s = 2;
   using Features = typename ContextType::Features;
   const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
   const RegressionSums none(Features::size + 2 * static_cast<int>(noisy.size()), ContextType::output_count);
@@ -121,9 +121,9 @@ inline InstrumentRoles instrument_roles(const MonotoneShape& shape, const std::v
 
 }  // namespace detail
 
-/// Calls `visit(row, x)` for each row whose neighbours are at hand, counted through the set: features in physical units,
-/// those that bend a slope as the neighbours tell them. Rows to judge a model by whose slopes are by instruments: on the
-/// noisy ones the worse model errs less. `scales`: of a trained model's features.
+/// Calls `visit(row, x)` for each row whose neighbours are at hand, counted through the set: features in physical
+/// units, those that bend a slope as the neighbours tell them. Rows to judge a model by whose slopes are by
+/// instruments: on the noisy ones the worse model errs less. `scales`: of a trained model's features.
 template <class Features, class Scales, class Visit>
 void each_denoised(const Scales& scales, const MeasuredSlopes& slopes, const RowSet& rows, const Visit& visit) {
   std::size_t first = 0;
