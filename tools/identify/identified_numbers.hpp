@@ -75,21 +75,23 @@ inline std::vector<IdentifiedNumber> identified_numbers(const pinnquad::Identifi
                        found.damping_1_s[axis], 1, about[axis], turned[axis]});
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    numbers.push_back({std::string("linear_drag_") + axes[axis] + "_1_s", std::string("linear drag along ") + axes[axis],
-                       "1/s", found.linear_drag_1_s[axis], 0.3, along[axis], moved[axis]});
+    numbers.push_back({std::string("linear_drag_") + axes[axis] + "_1_s",
+                       std::string("linear drag along ") + axes[axis], "1/s", found.linear_drag_1_s[axis], 0.3,
+                       along[axis], moved[axis]});
     numbers.push_back({std::string("quadratic_drag_") + axes[axis] + "_1_m",
                        std::string("quadratic drag along ") + axes[axis], "1/m", found.quadratic_drag_1_m[axis], 0.1,
                        along[axis], moved[axis]});
-    numbers.push_back({std::string("drag_") + axes[axis] + "_1_m", std::string("drag along ") + axes[axis] +
-                       ", all quadratic", "1/m", found.drag_1_m[axis], 0.1, along[axis], moved[axis]});
+    numbers.push_back({std::string("drag_") + axes[axis] + "_1_m",
+                       std::string("drag along ") + axes[axis] + ", all quadratic", "1/m", found.drag_1_m[axis], 0.1,
+                       along[axis], moved[axis]});
   }
   for (std::size_t axis = 0; axis < 2; ++axis) {
     numbers.push_back({axis == 0 ? "offset_y_over_arm" : "offset_x_over_arm",
                        std::string("centre of gravity along ") + (axis == 0 ? "y" : "x"), "arms",
                        found.imbalance[axis] * (axis == 0 ? 1 : -1), 0.02, "hover for 20 s", turned[axis]});
   }
-  numbers.push_back({"yaw_trim", "yaw trim of all rotors over one", "1", found.imbalance[2], 0.1, "hover for 20 s",
-                     turned[2]});
+  numbers.push_back(
+      {"yaw_trim", "yaw trim of all rotors over one", "1", found.imbalance[2], 0.1, "hover for 20 s", turned[2]});
   for (std::size_t axis = 0; axis < 2; ++axis) {
     numbers.push_back({std::string("gyroscopic_") + turns[axis], std::string("gyroscopic term of ") + turns[axis], "1",
                        found.gyroscopic[axis], 0.5, "turns at speed: circles with the heading along the path, 30 s",
@@ -97,8 +99,7 @@ inline std::vector<IdentifiedNumber> identified_numbers(const pinnquad::Identifi
   }
   if (found.mean_voltage_V > 0) {
     numbers.push_back({"battery", "thrust over battery voltage, relative", "1", found.battery, 1,
-                       "from a full battery to an empty one",
-                       "at a mean of " + text(found.mean_voltage_V) + " V"});
+                       "from a full battery to an empty one", "at a mean of " + text(found.mean_voltage_V) + " V"});
   }
   return numbers;
 }

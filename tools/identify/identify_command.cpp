@@ -125,8 +125,7 @@ std::vector<std::string> assumptions(const IdentifyOptions& options, const progr
 nlohmann::json json_of(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
 
 void print_json(const pinnquad::Identification& found, const std::vector<programs::IdentifiedNumber>& numbers,
-                const std::vector<std::string>& assumed, const logs::ImportedDataset& dataset,
-                const std::string& out) {
+                const std::vector<std::string>& assumed, const logs::ImportedDataset& dataset, const std::string& out) {
   nlohmann::json of_numbers = nlohmann::json::object();
   for (const programs::IdentifiedNumber& number : numbers) {
     nlohmann::json& one = of_numbers[number.key];
@@ -188,9 +187,9 @@ std::string why_none(const std::vector<programs::IdentifiedNumber>& numbers, con
       if (i == 3 && !backwards) continue;
       if (pinnquad::is_told(number.estimate, 0.3) && !backwards) continue;
       return "column " + std::string(columns[i]) + ": " + number.words + " is " +
-             (backwards ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"
-                        : "not told, " + interval_text(number.estimate) + ", as " + number.moved + "; fly: " +
-                              number.flight);
+             (backwards
+                  ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"
+                  : "not told, " + interval_text(number.estimate) + ", as " + number.moved + "; fly: " + number.flight);
     }
   }
   return "no vehicle has these numbers";
@@ -229,8 +228,8 @@ int run(const IdentifyOptions& options) {
     pinnquad::AtomicFile file(options.out);
     for (const std::string& one : assumed) file.stream() << "# not of the flights: " << one << "\n";
     for (const programs::IdentifiedNumber& number : numbers) {
-      file.stream() << "# " << number.words << " " << pinnquad::number_text(number.estimate.value) << " "
-                    << number.unit << ", 95 % " << interval_text(number.estimate) << "\n";
+      file.stream() << "# " << number.words << " " << pinnquad::number_text(number.estimate.value) << " " << number.unit
+                    << ", 95 % " << interval_text(number.estimate) << "\n";
     }
     file.stream() << programs::airframe_toml({options.name, made->value});
     file.commit();
@@ -289,7 +288,8 @@ programs::Command programs::identify_command(CLI::App& program) {
       "  pinnquad identify --log logs --mapping px4 --mass 1.2 --arm 0.18 --out vehicle.toml\n"
       "  pinnquad identify --dataset my_logs --airframe mine.toml --json\n"
       "  pinnquad identify --flight d1.csv\n"
-      "Exit codes: 0; 1 the flights do not tell thrust, roll or pitch, or the commands turn the vehicle the other way;\n"
+      "Exit codes: 0; 1 the flights do not tell thrust, roll or pitch, or the commands turn the vehicle the other "
+      "way;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted. Then nothing was written.");
   return {line, [options, line] {
             require_one_source(*line);

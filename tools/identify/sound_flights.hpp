@@ -79,9 +79,9 @@ inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::Importe
     const pinnquad::logs::RowMask grounded = pinnquad::logs::grounded_rows(flight, period_s);
     const double share = static_cast<double>(detail::count(grounded)) / static_cast<double>(flight.size());
     if (share > most_grounded) {
-      detail::refuse_flight(file, "a vehicle in the air in columns vdot_bz and u1 to u4",
-                            "something else than the rotors bears it in " + pinnquad::logs::percent(share) +
-                                " of the rows");
+      detail::refuse_flight(
+          file, "a vehicle in the air in columns vdot_bz and u1 to u4",
+          "something else than the rotors bears it in " + pinnquad::logs::percent(share) + " of the rows");
     }
     flights.push_back(pinnquad::logs::without(flight, grounded));
   }

@@ -24,16 +24,16 @@
 namespace pinnquad {
 
 struct IdentificationSettings {
-  double window_s = 0.16;        ///< of the smoothing: motion up to some 6 Hz counts
-  double thrust_curve = 0;       ///< of thrust_fraction()
-  bool fit_thrust_curve = false; ///< finds it, in place of taking that one
+  double window_s = 0.16;         ///< of the smoothing: motion up to some 6 Hz counts
+  double thrust_curve = 0;        ///< of thrust_fraction()
+  bool fit_thrust_curve = false;  ///< finds it, in place of taking that one
 };
 
 /// An interval is infinite where the flights do not tell.
 struct Identification {
-  Estimate thrust_m_s2;   ///< A: specific force of one rotor at command 1
-  Estimate thrust_curve;  ///< k of thrust_fraction(), where it was to be found
-  Estimate battery;       ///< E: relative change of the thrust over that of the voltage
+  Estimate thrust_m_s2;                          ///< A: specific force of one rotor at command 1
+  Estimate thrust_curve;                         ///< k of thrust_fraction(), where it was to be found
+  Estimate battery;                              ///< E: relative change of the thrust over that of the voltage
   std::array<Estimate, 3> effectiveness_rad_s2;  ///< B: angular acceleration of one rotor at command 1
   std::array<Estimate, 3> imbalance;             ///< C / B: of all rotors together, over that of one; of roll and pitch
                                                  ///< the offset of the centre of gravity over the arm
@@ -42,11 +42,11 @@ struct Identification {
   std::array<Estimate, 3> linear_drag_1_s;       ///< d, beside q
   std::array<Estimate, 3> quadratic_drag_1_m;    ///< q, beside d
   std::array<Estimate, 3> drag_1_m;              ///< q of a vehicle without d
-  Estimate lag_s;        ///< time constant of the rotors
-  Estimate delay_s;      ///< before it, filters of the sensors included; may be negative by half a row
-  Estimate response_s;   ///< both together
-  Estimate rise_s, fall_s, fall_after_rise_s;    ///< time constants of growing and falling thrust, and their difference
-  bool delay_held = false;                       ///< lag and delay are not told apart: the delay is held at 0
+  Estimate lag_s;                                ///< time constant of the rotors
+  Estimate delay_s;     ///< before it, filters of the sensors included; may be negative by half a row
+  Estimate response_s;  ///< both together
+  Estimate rise_s, fall_s, fall_after_rise_s;  ///< time constants of growing and falling thrust, and their difference
+  bool delay_held = false;                     ///< lag and delay are not told apart: the delay is held at 0
   double mean_voltage_V = 0;
   double duration_s = 0;  ///< of flight that was used
   std::size_t blocks = 0;
@@ -95,11 +95,11 @@ class Identifier {
  private:
   using Series = SmoothedFlights::Series;
   using Fractions = std::array<Series, rotor_count>;
-  static constexpr std::size_t shifts = 4;       // instruments: this many past instants
-  static constexpr double block_s = 3;           // long against rotors, controllers and gusts near hover
+  static constexpr std::size_t shifts = 4;  // instruments: this many past instants
+  static constexpr double block_s = 3;      // long against rotors, controllers and gusts near hover
   static constexpr double most_blocks = 50;
   static constexpr std::size_t fewest_instants = 100;
-  static constexpr std::size_t of_axis = 4;      // unknowns B, C, D, G
+  static constexpr std::size_t of_axis = 4;  // unknowns B, C, D, G
   static constexpr std::size_t axis_instruments = 6 * shifts + 1;
 
   std::size_t block_of(std::size_t place) const { return place * blocks_ / used_.size(); }
@@ -238,13 +238,15 @@ class Identifier {
       };
       const RotorResponse before = response;
       response.rise_s = towards(before.rise_s, 0, shortest_s, longest_s);
-      response.fall_s = kind == Response::rise_fall_and_delay ? towards(before.fall_s, 1, shortest_s, longest_s)
-                                                              : response.rise_s;
-      if (kind == Response::lag_and_delay) response.delay_s = towards(before.delay_s, 1, -longest_delay_s, longest_delay_s);
+      response.fall_s =
+          kind == Response::rise_fall_and_delay ? towards(before.fall_s, 1, shortest_s, longest_s) : response.rise_s;
+      if (kind == Response::lag_and_delay)
+        response.delay_s = towards(before.delay_s, 1, -longest_delay_s, longest_delay_s);
       if (kind == Response::rise_fall_and_delay)
         response.delay_s = towards(before.delay_s, 2, -longest_delay_s, longest_delay_s);
-      const double moved = std::max({std::abs(response.rise_s - before.rise_s), std::abs(response.fall_s - before.fall_s),
-                                     std::abs(response.delay_s - before.delay_s)});
+      const double moved =
+          std::max({std::abs(response.rise_s - before.rise_s), std::abs(response.fall_s - before.fall_s),
+                    std::abs(response.delay_s - before.delay_s)});
       if (step > 2 && moved < close_s) break;
     }
     return solution;
@@ -291,14 +293,12 @@ class Identifier {
   /// k of f_z = -A ((1 - k) sum s_linear + k sum s_square) - drag.
   double find_curve(Identification& result) const {
     const Fractions linear = flights_.thrust_fractions(0, response_), square = flights_.thrust_fractions(1, response_);
-    const BlockSolution solution = force_regression(
-        2, 4,
-        [&](std::size_t i, double* x) {
-          x[0] = -sum(linear, i);
-          x[1] = -sum(square, i);
-          x[2] = -flights_.velocity()[2][i];
-          x[3] = -flights_.squared_velocity()[2][i];
-        });
+    const BlockSolution solution = force_regression(2, 4, [&](std::size_t i, double* x) {
+      x[0] = -sum(linear, i);
+      x[1] = -sum(square, i);
+      x[2] = -flights_.velocity()[2][i];
+      x[3] = -flights_.squared_velocity()[2][i];
+    });
     if (!solution.told(1)) return settings_.thrust_curve;
     result.thrust_curve =
         solution.estimate_of([](const std::vector<double>& values) { return values[1] / (values[0] + values[1]); });

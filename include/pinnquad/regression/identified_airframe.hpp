@@ -75,8 +75,8 @@ inline std::optional<IdentifiedAirframe> identified_airframe(const Identificatio
                        std::pow(like.propeller_diameter_m, 4);
   made.thrust_coefficient = thrust_N / rated;
   if (positive(found.effectiveness_rad_s2[2])) {
-    made.power_coefficient = 2 * pi * found.effectiveness_rad_s2[2].value * z_kg_m2.value /
-                             (rated * like.propeller_diameter_m);
+    made.power_coefficient =
+        2 * pi * found.effectiveness_rad_s2[2].value * z_kg_m2.value / (rated * like.propeller_diameter_m);
   } else {
     made.power_coefficient = like.power_coefficient / like.thrust_coefficient * made.thrust_coefficient;
     result.assumed.emplace_back("power_coefficient");

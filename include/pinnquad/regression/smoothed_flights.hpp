@@ -59,15 +59,15 @@ class SmoothedFlights {
   /// The stretch without a gap in which an instant lies.
   std::size_t stretch(std::size_t instant) const { return stretch_[instant]; }
 
-  const Triple& rates() const noexcept { return rates_; }                        ///< rad/s
-  const Triple& angular_acceleration() const noexcept { return derivatives_; }   ///< of the rates, rad/s^2
-  const Triple& rate_products() const noexcept { return products_; }             ///< w_y w_z, w_z w_x, w_x w_y
-  const Triple& specific_force() const noexcept { return forces_; }              ///< m/s^2
+  const Triple& rates() const noexcept { return rates_; }                       ///< rad/s
+  const Triple& angular_acceleration() const noexcept { return derivatives_; }  ///< of the rates, rad/s^2
+  const Triple& rate_products() const noexcept { return products_; }            ///< w_y w_z, w_z w_x, w_x w_y
+  const Triple& specific_force() const noexcept { return forces_; }             ///< m/s^2
   /// The same by the derivative of the velocity and by gravity: no accelerometer, and none of its offset, is in it. Empty
   /// where no row has a velocity.
   const Triple& kinematic_force() const noexcept { return kinematic_forces_; }
-  const Triple& velocity() const noexcept { return velocities_; }                ///< body, m/s
-  const Triple& squared_velocity() const noexcept { return squares_; }           ///< |v_i| v_i
+  const Triple& velocity() const noexcept { return velocities_; }       ///< body, m/s
+  const Triple& squared_velocity() const noexcept { return squares_; }  ///< |v_i| v_i
   /// Of the column `battery_voltage`; empty unless all flights have it.
   const Series& voltage() const noexcept { return voltage_; }
 
@@ -106,7 +106,7 @@ class SmoothedFlights {
  private:
   struct Stretch {
     std::array<Series, rotor_count> commands;
-    std::size_t first = 0;     ///< row of the first instant
+    std::size_t first = 0;  ///< row of the first instant
     std::size_t instants = 0;
   };
 
