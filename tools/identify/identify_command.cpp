@@ -177,8 +177,10 @@ std::string why_none(const std::vector<programs::IdentifiedNumber>& numbers, con
   constexpr std::array<const char*, 4> needed = {"thrust_m_s2", "roll_effectiveness_rad_s2",
                                                  "pitch_effectiveness_rad_s2", "yaw_effectiveness_rad_s2"};
   constexpr std::array<const char*, 4> columns = {"vdot_bz", "w_x", "w_y", "w_z"};
-  if (found.duration_s <= 0 || found.blocks < 3) {
-    return "no stretch of a second or more without a gap in the rows, of which 10 s in all are needed";
+  constexpr double least_s = 10;
+  if (!std::isfinite(found.thrust_m_s2.half_width) && found.duration_s < least_s) {
+    return "expected 10 s or more of flight, in stretches of a second or more without a gap, found " +
+           pinnquad::number_text(std::round(10 * found.duration_s) / 10) + " s";
   }
   for (std::size_t i = 0; i < needed.size(); ++i) {
     for (const programs::IdentifiedNumber& number : numbers) {

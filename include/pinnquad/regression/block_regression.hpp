@@ -117,19 +117,18 @@ class BlockRegression {
     ++sums.rows;
   }
 
-  BlockSolution solve() const {
+  /// Without intervals, and so without blocks, where they are not wanted: the blocks are most of the work.
+  BlockSolution solve(bool with_intervals = true) const {
     Sums all = blocks_.front();
-    std::size_t count = all.rows > 0 ? 1 : 0;
     for (std::size_t i = 1; i < blocks_.size(); ++i) {
       all.zx += blocks_[i].zx;
       all.zy += blocks_[i].zy;
       all.zz += blocks_[i].zz;
-      count += blocks_[i].rows > 0 ? 1 : 0;
     }
     const std::vector<bool> told = told_apart(normal_of(all, {}));
     std::vector<std::vector<double>> left_out;
     for (const Sums& block : blocks_) {
-      if (block.rows == 0) continue;
+      if (block.rows == 0 || !with_intervals) continue;
       Sums others = all;
       others.zx -= block.zx;
       others.zy -= block.zy;
