@@ -62,13 +62,16 @@ std::array<std::array<double, rotor_count>, 3> signs_of(const Airframe<double>& 
   return {allocation_signs(airframe, 0), allocation_signs(airframe, 1), allocation_signs(airframe, 2)};
 }
 
-/// A minute of an agile flight, at 250 or 100 Hz, its gyro, velocity and attitude noisy, its commands late.
-Flight recorded(const DrawnVehicle& drawn, std::mt19937_64& engine, bool fast, double latency_s) {
+/// Rows of a log every so many ticks of 2 ms: 250, 100 and 20 Hz.
+constexpr std::array<int, 3> ticks_a_row = {2, 5, 25};
+
+/// An agile flight, a minute, of coarse rows four; its gyro, velocity and attitude noisy, its commands late.
+Flight recorded(const DrawnVehicle& drawn, std::mt19937_64& engine, int ticks, double latency_s) {
   const Vehicle vehicle(drawn.airframe, paper_site<double>(), QuadraticDrag{}, drawn.damping);
   REQUIRE(vehicle.status() == Status::ok);
   FlightPlan plan;
-  plan.controls_per_sample = fast ? 2 : 5;
-  plan.samples = static_cast<std::size_t>(60 / plan.sample_period_s());
+  plan.controls_per_sample = ticks;
+  plan.samples = static_cast<std::size_t>((ticks > 10 ? 240 : 60) / plan.sample_period_s());
   RecorderErrors errors;
   errors.gyro_noise_rad_s = 0.05;
   errors.velocity_noise_m_s = 0.05;
@@ -89,7 +92,7 @@ std::size_t flights_asked_for() {
 
 }  // namespace
 
-TEST_CASE("intervals of simulated flights hold the vehicle's numbers in 90 to 99 of 100") {
+TEST_CASE("intervals of simulated flights hold the vehicle's numbers in 90 or more of 100, and not in all") {
   const std::size_t flights = flights_asked_for();
   std::map<std::string, std::size_t> held;
   for (std::size_t flight = 0; flight < flights; ++flight) {
@@ -97,15 +100,15 @@ TEST_CASE("intervals of simulated flights hold the vehicle's numbers in 90 to 99
     const DrawnVehicle drawn = drawn_vehicle(flight, engine);
     // ticks of 2 ms: rows have the command of the tick before, half a tick late, so that odd delays are exact
     const double latency_s = 0.001 * (1 + 2 * std::floor(uniform(engine, 0, 10)));
-    const Flight rows = recorded(drawn, engine, flight / 4 % 2 == 0, latency_s);
+    const Flight rows = recorded(drawn, engine, ticks_a_row[flight / 4 % 3], latency_s);
     const Airframe<double>& a = drawn.airframe;
     const Identification found = identify({rows, {0, rows.size()}}, signs_of(a));
     const auto check = [&](const std::string& name, const Estimate& estimate, double truth) {
       held[name] += estimate.holds(truth) ? 1 : 0;
       CAPTURE(flight);
       CAPTURE(name);
-      // twice as far: a wrong formula, not chance
-      CHECK(std::abs(estimate.value - truth) <= 2.5 * estimate.half_width);
+      // three times as far: a wrong formula, not chance
+      CHECK(std::abs(estimate.value - truth) <= 3 * estimate.half_width);
     };
     const double thrust_N = a.max_rotor_thrust_N();
     const std::array<double, 3>& j = a.inertia_kg_m2;
@@ -134,14 +137,14 @@ TEST_CASE("intervals of simulated flights hold the vehicle's numbers in 90 to 99
     CAPTURE(name);
     MESSAGE(name << ": " << count << " of " << flights);
     CHECK(double(count) >= few * double(flights));
-    if (flights >= 100) CHECK(double(count) <= 0.99 * double(flights));
+    if (flights >= 100) CHECK(double(count) <= 0.995 * double(flights));
   }
 }
 
 TEST_CASE("an identified vehicle answers commands as the one that flew, of another mass and other arms") {
   std::mt19937_64 engine(7);
   const DrawnVehicle drawn = drawn_vehicle(0, engine);
-  const Flight rows = recorded(drawn, engine, false, 0.001);
+  const Flight rows = recorded(drawn, engine, ticks_a_row[1], 0.001);
   const Airframe<double>& truth = drawn.airframe;
   const Identification found = identify({rows, {0, rows.size()}}, signs_of(truth));
   Airframe<double> like = airframe_value<Px4Sih, double>();
@@ -173,7 +176,7 @@ TEST_CASE("rotors that rise faster than they fall, a thrust curve and a battery 
     rotor.fall_time_constant_s = 0.06;
     rotor.thrust_curve = 0.5;
   }
-  Flight rows = recorded(drawn, engine, true, 0.001);
+  Flight rows = recorded(drawn, engine, ticks_a_row[0], 0.001);
   ExtraColumn battery;
   battery.name = "battery_voltage";
   battery.unit = "V";
@@ -200,7 +203,7 @@ TEST_CASE("rotors that rise faster than they fall, a thrust curve and a battery 
 TEST_CASE("a vehicle that stands still, or that turns against its commands, is none") {
   std::mt19937_64 engine(9);
   const DrawnVehicle drawn = drawn_vehicle(0, engine);
-  const Flight rows = recorded(drawn, engine, false, 0.001);
+  const Flight rows = recorded(drawn, engine, ticks_a_row[1], 0.001);
   Flight still = rows, backwards = rows;
   for (Sample& sample : still) {
     sample.commands = {0.5, 0.5, 0.5, 0.5};

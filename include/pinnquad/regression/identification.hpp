@@ -92,15 +92,22 @@ class Identifier {
     response_ = {usual_lag_s, usual_lag_s, 0};
     BlockSolution solution = fit.converge(response_, RotationFit::lag_and_delay());
     result.lag_s = solution.estimate(first);
+    // between coarse rows a command may have been anything: what a cubic misses grows with the square of the period
+    const auto resolved = [this](Estimate estimate) {
+      const double period_s = rows_.flights().period_s();
+      estimate.half_width = std::hypot(estimate.half_width, period_s * period_s / (12 * response_.rise_s));
+      return estimate;
+    };
+    result.lag_s = resolved(result.lag_s);
     result.delay_held = !(result.lag_s.half_width < std::abs(result.lag_s.value)) || result.lag_s.value <= 0;
     if (!result.delay_held) {
-      result.delay_s = solution.estimate(first + 1);
+      result.delay_s = resolved(solution.estimate(first + 1));
       result.response_s =
           solution.estimate_of([](const std::vector<double>& values) { return values[first] + values[first + 1]; });
     } else {
       response_ = {usual_lag_s, usual_lag_s, 0};
       solution = fit.converge(response_, RotationFit::lag());
-      result.lag_s = {response_.rise_s, solution.estimate(first).half_width};
+      result.lag_s = resolved({response_.rise_s, solution.estimate(first).half_width});
       result.response_s = result.lag_s;
       result.delay_s = {};
     }
@@ -118,8 +125,8 @@ class Identifier {
     RotorResponse each = response_;
     const BlockSolution two = fit.converge(each, RotationFit::rise_fall_and_delay());
     if (!two.told(first) || !two.told(first + 1)) return;
-    result.rise_s = two.estimate(first);
-    result.fall_s = two.estimate(first + 1);
+    result.rise_s = resolved(two.estimate(first));
+    result.fall_s = resolved(two.estimate(first + 1));
     result.fall_after_rise_s =
         two.estimate_of([](const std::vector<double>& values) { return values[first + 1] - values[first]; });
   }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Flights as smoothed series at instants, for regressions of motion on commands. Each series is weighted over a window
-// around the instant by phi(t) = (1 + cos(pi t / h)) / (2 h), |t| < h: the same weights for what is explained and what
-// explains it, so that a linear law between them holds as it stands. A derivative is that of the weights,
-//   integral phi(t) w'(t) dt = - integral phi'(t) w(t) dt,
-// so that no noisy column is differentiated. Noise above 1 / h is left out, and with it most of what a gyro's noise does
-// to the commands through the controller.
+// Flights as smoothed series at instants, for regressions of motion on commands. A series is its mean over the time from
+// each row to the next, of a cubic through four rows; a derivative is the difference of the two rows over that time, so
+// that no noisy column is differentiated and the law between the two holds as it stands, however coarse the rows are.
+// All are weighted alike over a window around the instant, by 1 + cos(2 pi t / window): noise of higher frequencies is left
+// out, and with it most of what a gyro's noise does to the commands through the controller.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +34,7 @@ class SmoothedFlights {
   using Triple = std::array<Series, 3>;
   static constexpr double settling_s = 0.3;  ///< at the begin of each stretch: the rotors' first state is not known
 
-  /// `window_s`: 2 h, at least eight rows. Stretches without a gap of fewer rows than settling and window are left out.
+  /// `window_s`: at least eight rows. Stretches without a gap of fewer rows than settling and window are left out.
   /// Rows of one period, see sample_period_s(); no instants without one.
   SmoothedFlights(const RowSet& rows, double window_s) : period_s_(sample_period_s(rows)) {
     if (!(period_s_ > 0)) return;
@@ -71,8 +70,7 @@ class SmoothedFlights {
   /// Of the column `battery_voltage`; empty unless all flights have it.
   const Series& voltage() const noexcept { return voltage_; }
 
-  /// Smoothed thrust fractions of the rotors whose commands have these curves (thrust_fraction()). Between rows the
-  /// commands run on a cubic through four rows.
+  /// Smoothed thrust fractions of rotors whose commands have this curve (thrust_fraction()).
   std::array<Series, rotor_count> thrust_fractions(double curve, const RotorResponse& response) const {
     std::array<Series, rotor_count> result;
     constexpr double longest_step_s = 0.005;
@@ -82,23 +80,24 @@ class SmoothedFlights {
     const double fall = lag_factor(response.fall_s, period_s_ * step);
     const double late = response.delay_s / period_s_;
     Series thrust;
-    std::size_t first = 0;
     for (const Stretch& stretch : stretches_) {
       for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
         const Series& u = stretch.commands[rotor];
-        thrust.resize(u.size());
-        double now = thrust_fraction(curve, clip_command(command_at(u, -late)));
-        for (std::size_t row = 0; row < u.size(); ++row) {
-          thrust[row] = now;
+        thrust.resize(u.size() - 1);
+        double now = thrust_fraction(curve, clip_command(at_row(u, -late)));
+        for (std::size_t row = 0; row < thrust.size(); ++row) {
+          double sum = 0;
           for (std::size_t part = 0; part < parts; ++part) {
             const double at = static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step - late;
-            const double wanted = thrust_fraction(curve, clip_command(command_at(u, at)));
+            const double wanted = thrust_fraction(curve, clip_command(at_row(u, at)));
+            const double before = now;
             now = wanted + (wanted >= now ? rise : fall) * (now - wanted);
+            sum += 0.5 * (before + now);
           }
+          thrust[row] = sum * step;
         }
-        smooth(thrust, stretch.instants, stretch.first, weights_, result[rotor]);
+        smooth(thrust, stretch.instants, stretch.first, result[rotor]);
       }
-      first += stretch.instants;
     }
     return result;
   }
@@ -111,39 +110,50 @@ class SmoothedFlights {
   };
 
   void make_weights() {
-    constexpr double pi = 3.141592653589793;
-    const auto half = static_cast<std::ptrdiff_t>(half_);
-    double sum = 0, moment = 0;
-    for (std::ptrdiff_t k = -half; k <= half; ++k) {
-      const double phase = pi * static_cast<double>(k) / static_cast<double>(half);
-      weights_.push_back(1 + std::cos(phase));
-      slopes_.push_back(std::sin(phase));
-      sum += weights_.back();
-      moment += slopes_.back() * static_cast<double>(k) * period_s_;
+    constexpr double tau = 6.283185307179586;
+    const std::size_t count = 2 * half_;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+      weights_.push_back((1 - std::cos(tau * share)) / static_cast<double>(count));
     }
-    for (double& weight : weights_) weight /= sum;
-    for (double& slope : slopes_) slope /= moment;
   }
 
-  static double command_at(const Series& u, double row) noexcept {
+  /// At a row with its fraction, on a cubic through four rows (Catmull and Rom).
+  static double at_row(const Series& u, double row) noexcept {
     const auto last = static_cast<double>(u.size() - 1);
     if (row <= 0) return u.front();
     if (row >= last) return u.back();
     const auto i = static_cast<std::size_t>(row);
     const double s = row - static_cast<double>(i);
-    const double b = u[i], c = u[std::min(i + 1, u.size() - 1)];
-    const double a = i > 0 ? u[i - 1] : b, d = i + 2 < u.size() ? u[i + 2] : c;
-    // Catmull and Rom
+    const auto [a, b, c, d] = around(u, i);
     return b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a)));
+  }
+  /// Rows i - 1 to i + 2, the ends repeated.
+  static std::array<double, 4> around(const Series& u, std::size_t i) noexcept {
+    const std::size_t last = u.size() - 1;
+    return {u[i > 0 ? i - 1 : 0], u[i], u[std::min(i + 1, last)], u[std::min(i + 2, last)]};
+  }
+  /// Means from each row to the next, of that cubic.
+  static Series means(const Series& u) {
+    Series result(u.size() - 1);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const auto [a, b, c, d] = around(u, i);
+      result[i] = (13 * (b + c) - a - d) / 24;
+    }
+    return result;
+  }
+  Series differences(const Series& u) const {
+    Series result(u.size() - 1);
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = (u[i + 1] - u[i]) / period_s_;
+    return result;
   }
 
   /// Appends the weighted sums around each instant.
-  void smooth(const Series& series, std::size_t instants, std::size_t first, const Series& weights,
-              Series& result) const {
+  void smooth(const Series& intervals, std::size_t instants, std::size_t first, Series& result) const {
     for (std::size_t i = 0; i < instants; ++i) {
-      const std::size_t from = first + i * stride_ - half_;
+      const double* const from = &intervals[first + i * stride_ - half_];
       double sum = 0;
-      for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * series[from + k];
+      for (std::size_t k = 0; k < weights_.size(); ++k) sum += weights_[k] * from[k];
       result.push_back(sum);
     }
   }
@@ -164,7 +174,7 @@ class SmoothedFlights {
     if (rows.size() < first + half_ + 1) return;
     Stretch stretch;
     stretch.first = first;
-    stretch.instants = (rows.size() - half_ - 1 - first) / stride_ + 1;
+    stretch.instants = (rows.size() - 1 - half_ - first) / stride_ + 1;
     std::array<Series, 18> series;
     const ExtraColumn* const battery = flight.column("battery_voltage");
     Series voltage;
@@ -187,25 +197,23 @@ class SmoothedFlights {
       }
       if (battery != nullptr) voltage.push_back(battery->values[row]);
     }
-    const auto add = [&](const Series& one, const Series& weights, Series& result) {
-      smooth(one, stretch.instants, first, weights, result);
+    const auto add = [&](const Series& intervals, Series& result) {
+      smooth(intervals, stretch.instants, first, result);
     };
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      add(series[axis], weights_, rates_[axis]);
-      add(series[axis], slopes_, derivatives_[axis]);
-      add(series[3 + axis], weights_, products_[axis]);
-      add(series[6 + axis], weights_, forces_[axis]);
-      add(series[9 + axis], weights_, velocities_[axis]);
-      add(series[12 + axis], weights_, squares_[axis]);
-      Series& kinematic = kinematic_forces_[axis];
-      const std::size_t from = kinematic.size();
-      Series derivative;
-      add(series[15 + axis], weights_, kinematic);
-      add(series[9 + axis], slopes_, derivative);
-      for (std::size_t i = 0; i < derivative.size(); ++i) kinematic[from + i] += derivative[i];
+      add(means(series[axis]), rates_[axis]);
+      add(differences(series[axis]), derivatives_[axis]);
+      add(means(series[3 + axis]), products_[axis]);
+      add(means(series[6 + axis]), forces_[axis]);
+      add(means(series[9 + axis]), velocities_[axis]);
+      add(means(series[12 + axis]), squares_[axis]);
+      Series kinematic = means(series[15 + axis]);
+      const Series derivative = differences(series[9 + axis]);
+      for (std::size_t i = 0; i < kinematic.size(); ++i) kinematic[i] += derivative[i];
+      add(kinematic, kinematic_forces_[axis]);
     }
     has_voltage_ = has_voltage_ && battery != nullptr;
-    if (has_voltage_) add(voltage, weights_, voltage_);
+    if (has_voltage_) add(means(voltage), voltage_);
     if (!has_voltage_) voltage_.clear();
     stretch_.insert(stretch_.end(), stretch.instants, stretches_.size());
     stretches_.push_back(std::move(stretch));
@@ -213,7 +221,7 @@ class SmoothedFlights {
 
   double period_s_ = 0;
   std::size_t half_ = 0, stride_ = 1;
-  Series weights_, slopes_;
+  Series weights_;
   std::vector<Stretch> stretches_;
   std::vector<std::size_t> stretch_;
   Triple rates_, derivatives_, products_, forces_, kinematic_forces_, velocities_, squares_;
